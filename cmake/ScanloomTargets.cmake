@@ -1,0 +1,44 @@
+# How every target of this tree is built.
+
+add_library(scanloom_options INTERFACE)
+target_include_directories(scanloom_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(scanloom_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror=return-type
+                                                  # the same bits from the same scans on every machine:
+                                                  -ffp-contract=off)
+if(DEFINED ENV{CI})
+  target_compile_options(scanloom_options INTERFACE -Werror)
+endif()
+if(SCANLOOM_SANITIZE)
+  add_compile_options(-fsanitize=${SCANLOOM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${SCANLOOM_SANITIZE})
+endif()
+
+# scanloom_library(NAME SOURCES a.cpp ... LINKS target ...)
+# One folder, one library; LINKS are the folders and packages it may include.
+function(scanloom_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC scanloom_options ${ARG_LINKS})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE scanloom_options ${ARG_LINKS})
+  endif()
+endfunction()
+
+# scanloom_program(NAME SOURCES main.cpp ... LINKS target ...)
+function(scanloom_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE scanloom_options ${ARG_LINKS})
+endfunction()
+
+# scanloom_test(NAME SOURCES x_test.cpp ... LINKS target ...)
+# One executable; each of its cases is a test of CTest's.
+function(scanloom_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;ENVIRONMENT" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  target_link_libraries(${name} PRIVATE scanloom_options GTest::gmock GTest::gtest_main ${ARG_LINKS})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300 ENVIRONMENT "${ARG_ENVIRONMENT}")
+endfunction()

@@ -1,0 +1,27 @@
+#include "common/error/error.hpp"
+
+namespace scanloom {
+
+std::string_view name_of(Errc code) noexcept {
+    switch (code) {
+    case Errc::kMalformed: return "malformed";
+    case Errc::kTooLarge: return "too_large";
+    case Errc::kUnsupportedVersion: return "unsupported_version";
+    case Errc::kInvalidField: return "invalid_field";
+    case Errc::kNotFound: return "not_found";
+    case Errc::kAlreadyExists: return "already_exists";
+    case Errc::kConflict: return "conflict";
+    case Errc::kOutOfOrder: return "out_of_order";
+    case Errc::kCreditExceeded: return "credit_exceeded";
+    case Errc::kTimeout: return "timeout";
+    case Errc::kReplaced: return "replaced";
+    case Errc::kGone: return "gone";
+    case Errc::kStoreFailed: return "store_failed";
+    case Errc::kShuttingDown: return "shutting_down";
+    case Errc::kUnauthorized: return "unauthorized";
+    case Errc::kUnreachable: return "unreachable";
+    }
+    return "unknown";
+}
+
+} // namespace scanloom

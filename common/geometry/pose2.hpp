@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom {
+
+using Point2 = Eigen::Vector2d; ///< metres
+
+/// The same direction in (-pi, pi].
+[[nodiscard]] inline double normalize_angle(double angle_rad) noexcept {
+    const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
+    return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
+}
+
+/// A pose in the plane, and the rigid transform it stands for: `T_a_b` takes points of frame b
+/// into frame a. Metres; radians counter-clockwise, kept in (-pi, pi] by compose() and inverse().
+struct Pose2 {
+    double x = 0.0;
+    double y = 0.0;
+    double yaw = 0.0;
+
+    friend bool operator==(const Pose2&, const Pose2&) = default;
+};
+
+[[nodiscard]] inline bool is_finite(const Pose2& pose) noexcept {
+    return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+}
+
+/// T_a_c = T_a_b * T_b_c.
+[[nodiscard]] inline Pose2 compose(const Pose2& T_a_b, const Pose2& T_b_c) noexcept {
+    const double c = std::cos(T_a_b.yaw);
+    const double s = std::sin(T_a_b.yaw);
+    return {T_a_b.x + c * T_b_c.x - s * T_b_c.y, T_a_b.y + s * T_b_c.x + c * T_b_c.y,
+            normalize_angle(T_a_b.yaw + T_b_c.yaw)};
+}
+
+/// T_b_a of T_a_b.
+[[nodiscard]] inline Pose2 inverse(const Pose2& T_a_b) noexcept {
+    const double c = std::cos(T_a_b.yaw);
+    const double s = std::sin(T_a_b.yaw);
+    return {-c * T_a_b.x - s * T_a_b.y, s * T_a_b.x - c * T_a_b.y, normalize_angle(-T_a_b.yaw)};
+}
+
+/// A point of frame b, in frame a.
+[[nodiscard]] inline Point2 transform(const Pose2& T_a_b, const Point2& point_b) noexcept {
+    const double c = std::cos(T_a_b.yaw);
+    const double s = std::sin(T_a_b.yaw);
+    return {T_a_b.x + c * point_b.x() - s * point_b.y(), T_a_b.y + s * point_b.x() + c * point_b.y()};
+}
+
+} // namespace scanloom

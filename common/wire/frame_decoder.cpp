@@ -1,0 +1,58 @@
+#include "common/wire/frame_decoder.hpp"
+
+#include <boost/endian/conversion.hpp>
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstring>
+
+namespace scanloom::wire {
+
+std::span<std::byte> FrameDecoder::prepare(std::size_t bytes) {
+    if (begin_ == end_) begin_ = end_ = 0;
+    if (buffer_.size() - end_ < bytes && begin_ > 0) {
+        std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+        end_ -= begin_;
+        begin_ = 0;
+    }
+    if (buffer_.size() - end_ < bytes) buffer_.resize(end_ + bytes);
+    return std::span(buffer_).subspan(end_);
+}
+
+void FrameDecoder::commit(std::size_t bytes) noexcept {
+    assert(end_ + bytes <= buffer_.size());
+    end_ += bytes;
+}
+
+Result<std::optional<std::string_view>> FrameDecoder::next() {
+    if (failed_) return *failed_;
+    const std::size_t available = end_ - begin_;
+    if (available < kLengthPrefixBytes) return std::optional<std::string_view>{};
+
+    const std::byte* head = buffer_.data() + begin_;
+    const std::size_t length = boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(head));
+    if (length > frame_bytes_max_) {
+        failed_ = Error{Errc::kTooLarge, fmt::format("a frame announces {} bytes, at most {} are allowed here; send fewer "
+                                                     "scans a batch",
+                                                     length, frame_bytes_max_)};
+        return *failed_;
+    }
+    if (length == 0) {
+        failed_ = Error{Errc::kMalformed, "a frame of 0 bytes; every frame holds one scanloom.v1.Frame with a body"};
+        return *failed_;
+    }
+    if (available < kLengthPrefixBytes + length) return std::optional<std::string_view>{};
+
+    begin_ += kLengthPrefixBytes + length;
+    return std::optional(std::string_view(reinterpret_cast<const char*>(head + kLengthPrefixBytes), length));
+}
+
+void append_frame(std::string& out, std::string_view body) {
+    assert(body.size() <= kFrameBytesMax);
+    unsigned char prefix[kLengthPrefixBytes];
+    boost::endian::store_big_u32(prefix, static_cast<std::uint32_t>(body.size()));
+    out.append(reinterpret_cast<const char*>(prefix), kLengthPrefixBytes);
+    out.append(body);
+}
+
+} // namespace scanloom::wire

@@ -1,0 +1,80 @@
+#include "common/wire/log_codec.hpp"
+
+#include "common/wire/proto_convert.hpp"
+
+#include "scanloom/v1/log.pb.h"
+
+#include <google/protobuf/arena.h>
+
+namespace scanloom::wire {
+namespace {
+
+Error damaged(const char* what) {
+    return {Errc::kMalformed, std::string(what) + " in the store cannot be read; the store is damaged or was written by another program"};
+}
+
+struct ToProto {
+    v1::LogEntry& out;
+
+    void operator()(const RobotJoined& joined) const {
+        out.mutable_robot_joined()->set_robot(joined.robot);
+        out.mutable_robot_joined()->set_name(joined.name);
+    }
+    void operator()(const SensorDescribed& described) const {
+        out.mutable_sensor_described()->set_robot(described.robot);
+        to_proto(described.sensor, *out.mutable_sensor_described()->mutable_sensor());
+    }
+    void operator()(const ScanTaken& taken) const {
+        out.mutable_scan_taken()->set_robot(taken.robot);
+        to_proto(taken.scan, *out.mutable_scan_taken()->mutable_scan());
+    }
+};
+
+} // namespace
+
+std::string encode_entry(const LogEntry& entry) {
+    google::protobuf::Arena arena;
+    auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
+    std::visit(ToProto{*proto}, entry);
+    return proto->SerializeAsString();
+}
+
+Result<LogEntry> decode_entry(std::string_view bytes) {
+    google::protobuf::Arena arena;
+    auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
+    if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
+    switch (proto->body_case()) {
+    case v1::LogEntry::kRobotJoined:
+        return LogEntry(RobotJoined{proto->robot_joined().robot(), proto->robot_joined().name()});
+    case v1::LogEntry::kSensorDescribed: {
+        auto sensor = from_proto(proto->sensor_described().sensor());
+        if (!sensor) return prefixed("sensor_described.", sensor.error());
+        return LogEntry(SensorDescribed{proto->sensor_described().robot(), std::move(*sensor)});
+    }
+    case v1::LogEntry::kScanTaken: {
+        auto scan = from_proto(proto->scan_taken().scan());
+        if (!scan) return prefixed("scan_taken.", scan.error());
+        return LogEntry(ScanTaken{proto->scan_taken().robot(), std::move(*scan)});
+    }
+    case v1::LogEntry::BODY_NOT_SET: break;
+    }
+    return damaged("a log entry");
+}
+
+std::string encode_session(const SessionRecord& record) {
+    v1::SessionRecord proto;
+    proto.set_name(record.name);
+    proto.set_created(record.created);
+    to_proto(record.options, *proto.mutable_config());
+    return proto.SerializeAsString();
+}
+
+Result<SessionRecord> decode_session(std::string_view bytes) {
+    v1::SessionRecord proto;
+    if (!proto.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a session");
+    auto options = from_proto(proto.config());
+    if (!options) return options.error();
+    return SessionRecord{proto.name(), proto.created(), *options};
+}
+
+} // namespace scanloom::wire

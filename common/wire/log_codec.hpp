@@ -1,0 +1,29 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+#include "common/scan/session_options.hpp"
+
+#include <string>
+#include <string_view>
+
+/// The store's bytes (proto/scanloom/v1/log.proto) as plain values.
+namespace scanloom::wire {
+
+/// A session as the store lists it.
+struct SessionRecord {
+    std::string name;
+    double created = 0.0;   ///< seconds since the epoch
+    SessionOptions options; ///< fully resolved when the session was created
+
+    friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
+};
+
+[[nodiscard]] std::string encode_entry(const LogEntry& entry);
+[[nodiscard]] std::string encode_session(const SessionRecord& record);
+
+/// Errors  kMalformed, kInvalidField: the entry was not written by this program or is damaged.
+[[nodiscard]] Result<LogEntry> decode_entry(std::string_view bytes);
+[[nodiscard]] Result<SessionRecord> decode_session(std::string_view bytes);
+
+} // namespace scanloom::wire

@@ -1,0 +1,225 @@
+#include "common/wire/proto_convert.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::wire {
+namespace {
+
+/// A sensor may repeat its first direction at the end of a turn, and rounding may exceed it a little.
+constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-6;
+
+Result<> check_angles(const BeamAngles& angles) {
+    const std::size_t count = beam_count(angles);
+    if (count == 0) return invalid_field("angles describe 0 beams; at least 1 is needed");
+    if (count > kBeamsMax) {
+        return Error{Errc::kTooLarge, fmt::format("angles describe {} beams, at most {} are allowed", count, kBeamsMax)};
+    }
+    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
+        if (!std::isfinite(uniform->first) || std::abs(uniform->first) > 2.0 * kFullTurn) {
+            return invalid_field(fmt::format("angles.uniform.first is {}; an angle in radians is needed", uniform->first));
+        }
+        if (!std::isfinite(uniform->increment) || uniform->increment == 0.0) {
+            return invalid_field(
+                fmt::format("angles.uniform.increment is {}; a finite angle other than 0 is needed", uniform->increment));
+        }
+        const double span = std::abs(uniform->increment) * static_cast<double>(count - 1);
+        if (span > kFullTurn) {
+            return invalid_field(fmt::format("angles.uniform spans {:.3f} rad over {} beams, more than a full turn", span,
+                                             count));
+        }
+        return {};
+    }
+    const auto& list = std::get<ExplicitAngles>(angles);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (!std::isfinite(list[i]) || std::abs(list[i]) > 2.0 * kFullTurn) {
+            return invalid_field(fmt::format("angles.explicit.angles[{}] is {}; an angle in radians is needed", i, list[i]));
+        }
+    }
+    return {};
+}
+
+Result<BeamAngles> read_angles(const v1::BeamAngles& proto) {
+    BeamAngles angles;
+    switch (proto.spacing_case()) {
+    case v1::BeamAngles::kUniform:
+        angles = UniformAngles{proto.uniform().first(), proto.uniform().increment(), proto.uniform().count()};
+        break;
+    case v1::BeamAngles::kExplicit:
+        angles = ExplicitAngles(proto.explicit_().angles().begin(), proto.explicit_().angles().end());
+        break;
+    case v1::BeamAngles::SPACING_NOT_SET:
+        return invalid_field("angles are neither uniform nor explicit; set one of them");
+    }
+    if (auto ok = check_angles(angles); !ok) return ok.error();
+    return angles;
+}
+
+void write_angles(const BeamAngles& angles, v1::BeamAngles& out) {
+    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
+        out.mutable_uniform()->set_first(uniform->first);
+        out.mutable_uniform()->set_increment(uniform->increment);
+        out.mutable_uniform()->set_count(uniform->count);
+        return;
+    }
+    const auto& list = std::get<ExplicitAngles>(angles);
+    out.mutable_explicit_()->mutable_angles()->Add(list.begin(), list.end());
+}
+
+Result<> check_beam_counts(const Scan& scan) {
+    const std::size_t beams = scan.ranges.size();
+    if (beams == 0) return invalid_field("ranges is empty; a scan has at least 1 beam");
+    if (beams > kBeamsMax) {
+        return Error{Errc::kTooLarge, fmt::format("ranges has {} beams, at most {} are allowed", beams, kBeamsMax)};
+    }
+    if (!scan.intensities.empty() && scan.intensities.size() != beams) {
+        return invalid_field(fmt::format("intensities has {} values for {} ranges; send none or one a beam",
+                                         scan.intensities.size(), beams));
+    }
+    if (scan.angles && beam_count(*scan.angles) != beams) {
+        return invalid_field(
+            fmt::format("angles describe {} beams, ranges has {}; send one range an angle", beam_count(*scan.angles), beams));
+    }
+    return {};
+}
+
+} // namespace
+
+Error invalid_field(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
+
+Result<Pose2> from_proto(const v1::Pose2& proto) {
+    const auto check = [](const char* name, double value) -> Result<> {
+        if (!std::isfinite(value)) return invalid_field(fmt::format("{} is {}; a finite number is needed", name, value));
+        if (std::abs(value) > kCoordinateMax) {
+            return invalid_field(fmt::format("{} is {:g}; at most {:g} either way is allowed", name, value, kCoordinateMax));
+        }
+        return {};
+    };
+    if (auto ok = check("x", proto.x()); !ok) return ok.error();
+    if (auto ok = check("y", proto.y()); !ok) return ok.error();
+    if (auto ok = check("yaw", proto.yaw()); !ok) return ok.error();
+    return Pose2{proto.x(), proto.y(), normalize_angle(proto.yaw())};
+}
+
+Result<Sensor> from_proto(const v1::SensorDescription& proto) {
+    Sensor sensor;
+    sensor.id = proto.sensor();
+    if (sensor.id >= kSensorsMax) {
+        return invalid_field(fmt::format("sensor is {}; sensors are numbered 0 to {}", sensor.id, kSensorsMax - 1));
+    }
+    switch (proto.kind()) {
+    case v1::SENSOR_KIND_LASER: sensor.kind = SensorKind::kLaser; break;
+    case v1::SENSOR_KIND_SONAR: sensor.kind = SensorKind::kSonar; break;
+    default: return invalid_field(fmt::format("kind is {}; SENSOR_KIND_LASER or _SONAR is needed", static_cast<int>(proto.kind())));
+    }
+    sensor.name = proto.name();
+    if (sensor.name.size() > kNameBytesMax) {
+        return Error{Errc::kTooLarge, fmt::format("name has {} bytes, at most {} are allowed", sensor.name.size(), kNameBytesMax)};
+    }
+    auto mount = from_proto(proto.mount());
+    if (!mount) return prefixed("mount.", mount.error());
+    sensor.mount = *mount;
+    auto angles = read_angles(proto.angles());
+    if (!angles) return angles.error();
+    sensor.angles = std::move(*angles);
+    sensor.aperture = proto.aperture();
+    if (!(sensor.aperture >= 0.0 && sensor.aperture <= std::numbers::pi)) {
+        return invalid_field(fmt::format("aperture is {}; 0 to pi radians are allowed", sensor.aperture));
+    }
+    sensor.range_min = proto.range_min();
+    sensor.range_max = proto.range_max();
+    if (!(sensor.range_min >= 0.0)) {
+        return invalid_field(fmt::format("range_min is {}; 0 metres or more are needed", sensor.range_min));
+    }
+    if (!(sensor.range_max > sensor.range_min && sensor.range_max <= kRangeMax)) {
+        return invalid_field(fmt::format("range_max is {}; more than range_min ({}) and at most {} metres are needed",
+                                         sensor.range_max, sensor.range_min, kRangeMax));
+    }
+    return sensor;
+}
+
+Result<Scan> from_proto(const v1::Scan& proto) {
+    Scan scan;
+    scan.seq = proto.seq();
+    if (scan.seq == 0) return invalid_field("seq is 0; the first scan of a robot has seq 1");
+    scan.stamp = proto.stamp();
+    if (!std::isfinite(scan.stamp)) {
+        return invalid_field(fmt::format("stamp is {}; a finite number of seconds is needed", scan.stamp));
+    }
+    scan.sensor = proto.sensor();
+    auto pose = from_proto(proto.pose());
+    if (!pose) return prefixed("pose.", pose.error());
+    scan.pose = *pose;
+    if (proto.has_odometry()) {
+        auto odometry = from_proto(proto.odometry());
+        if (!odometry) return prefixed("odometry.", odometry.error());
+        scan.odometry = *odometry;
+    }
+    scan.ranges.assign(proto.ranges().begin(), proto.ranges().end());
+    scan.intensities.assign(proto.intensities().begin(), proto.intensities().end());
+    if (proto.has_angles()) {
+        auto angles = read_angles(proto.angles());
+        if (!angles) return angles.error();
+        scan.angles = std::move(*angles);
+    }
+    if (auto ok = check_beam_counts(scan); !ok) return ok.error();
+    return scan;
+}
+
+Result<SessionOptions> from_proto(const v1::SessionConfig& proto) {
+    SessionOptions options;
+    if (proto.has_cell_size()) options.cell_size = proto.cell_size();
+    if (proto.has_p_occupied()) options.p_occupied = proto.p_occupied();
+    if (proto.has_p_free()) options.p_free = proto.p_free();
+    if (proto.has_p_prior()) options.p_prior = proto.p_prior();
+    if (proto.has_p_min()) options.p_min = proto.p_min();
+    if (proto.has_p_max()) options.p_max = proto.p_max();
+    if (proto.has_obstacle_thickness()) options.obstacle_thickness = proto.obstacle_thickness();
+    if (proto.has_beam_aperture()) options.beam_aperture = proto.beam_aperture();
+    return options;
+}
+
+void to_proto(const Pose2& pose, v1::Pose2& out) {
+    out.set_x(pose.x);
+    out.set_y(pose.y);
+    out.set_yaw(pose.yaw);
+}
+
+void to_proto(const Sensor& sensor, v1::SensorDescription& out) {
+    out.set_sensor(sensor.id);
+    out.set_kind(sensor.kind == SensorKind::kLaser ? v1::SENSOR_KIND_LASER : v1::SENSOR_KIND_SONAR);
+    out.set_name(sensor.name);
+    to_proto(sensor.mount, *out.mutable_mount());
+    write_angles(sensor.angles, *out.mutable_angles());
+    out.set_aperture(sensor.aperture);
+    out.set_range_min(sensor.range_min);
+    out.set_range_max(sensor.range_max);
+}
+
+void to_proto(const Scan& scan, v1::Scan& out) {
+    out.set_seq(scan.seq);
+    out.set_stamp(scan.stamp);
+    out.set_sensor(scan.sensor);
+    to_proto(scan.pose, *out.mutable_pose());
+    if (scan.odometry) to_proto(*scan.odometry, *out.mutable_odometry());
+    out.mutable_ranges()->Add(scan.ranges.begin(), scan.ranges.end());
+    out.mutable_intensities()->Add(scan.intensities.begin(), scan.intensities.end());
+    if (scan.angles) write_angles(*scan.angles, *out.mutable_angles());
+}
+
+void to_proto(const SessionOptions& options, v1::SessionConfig& out) {
+    if (options.cell_size) out.set_cell_size(*options.cell_size);
+    if (options.p_occupied) out.set_p_occupied(*options.p_occupied);
+    if (options.p_free) out.set_p_free(*options.p_free);
+    if (options.p_prior) out.set_p_prior(*options.p_prior);
+    if (options.p_min) out.set_p_min(*options.p_min);
+    if (options.p_max) out.set_p_max(*options.p_max);
+    if (options.obstacle_thickness) out.set_obstacle_thickness(*options.obstacle_thickness);
+    if (options.beam_aperture) out.set_beam_aperture(*options.beam_aperture);
+}
+
+} // namespace scanloom::wire

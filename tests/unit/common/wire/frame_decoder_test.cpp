@@ -1,0 +1,107 @@
+#include "common/wire/frame_decoder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+namespace scanloom::wire {
+namespace {
+
+void feed(FrameDecoder& decoder, std::string_view bytes) {
+    std::memcpy(decoder.prepare(bytes.size()).data(), bytes.data(), bytes.size());
+    decoder.commit(bytes.size());
+}
+
+std::vector<std::string> drain(FrameDecoder& decoder) {
+    std::vector<std::string> bodies;
+    for (auto body = decoder.next(); body && *body; body = decoder.next()) bodies.emplace_back(**body);
+    return bodies;
+}
+
+std::string stream_of(const std::vector<std::string>& bodies) {
+    std::string stream;
+    for (const auto& body : bodies) append_frame(stream, body);
+    return stream;
+}
+
+const std::vector<std::string> kBodies = {"a", std::string(300, 'b'), "ccc", std::string("\0\0\0\1", 4), "e"};
+
+TEST(FrameDecoder, AnySplitInTwoYieldsTheSameBodies) {
+    const std::string stream = stream_of(kBodies);
+    for (std::size_t split = 0; split <= stream.size(); ++split) {
+        FrameDecoder decoder(1000);
+        feed(decoder, std::string_view(stream).substr(0, split));
+        auto bodies = drain(decoder);
+        feed(decoder, std::string_view(stream).substr(split));
+        for (auto& body : drain(decoder)) bodies.push_back(std::move(body));
+        EXPECT_EQ(bodies, kBodies) << "split after " << split << " bytes";
+        EXPECT_TRUE(decoder.at_frame_border());
+    }
+}
+
+TEST(FrameDecoder, AnyRandomSplitYieldsTheSameBodies) {
+    std::mt19937 random(11);
+    for (int round = 0; round < 2000; ++round) {
+        std::vector<std::string> sent(1 + random() % 8);
+        for (auto& body : sent) body = std::string(1 + random() % 700, static_cast<char>(random() % 256));
+        const std::string stream = stream_of(sent);
+        FrameDecoder decoder(1000);
+        std::vector<std::string> received;
+        for (std::size_t at = 0; at < stream.size();) {
+            const std::size_t length = std::min<std::size_t>(1 + random() % 97, stream.size() - at);
+            feed(decoder, std::string_view(stream).substr(at, length));
+            at += length;
+            if (random() % 3 != 0) {
+                for (auto& body : drain(decoder)) received.push_back(std::move(body));
+            }
+        }
+        for (auto& body : drain(decoder)) received.push_back(std::move(body));
+        ASSERT_EQ(received, sent) << "round " << round;
+    }
+}
+
+TEST(FrameDecoder, ATruncatedFrameIsNotAtAFrameBorder) {
+    const std::string stream = stream_of({"abcdef"});
+    FrameDecoder decoder(1000);
+    feed(decoder, std::string_view(stream).substr(0, stream.size() - 1));
+    EXPECT_TRUE(drain(decoder).empty());
+    EXPECT_FALSE(decoder.at_frame_border());
+}
+
+TEST(FrameDecoder, AnOversizedFrameIsRefusedFromItsLengthAlone) {
+    FrameDecoder decoder(1000);
+    feed(decoder, std::string_view("\x00\x00\x03\xe9", 4));
+    const auto body = decoder.next();
+    ASSERT_FALSE(body);
+    EXPECT_EQ(body.error().code, Errc::kTooLarge);
+    EXPECT_THAT(body.error().message, testing::HasSubstr("1001 bytes, at most 1000"));
+    feed(decoder, stream_of({"fine"}));
+    EXPECT_FALSE(decoder.next()) << "after an error the frame borders are lost";
+}
+
+TEST(FrameDecoder, AFrameOfTheLargestSizePasses) {
+    FrameDecoder decoder(1000);
+    feed(decoder, stream_of({std::string(1000, 'x')}));
+    EXPECT_EQ(drain(decoder).size(), 1U);
+}
+
+TEST(FrameDecoder, AnEmptyFrameIsRefused) {
+    FrameDecoder decoder(1000);
+    feed(decoder, std::string_view("\0\0\0\0", 4));
+    ASSERT_FALSE(decoder.next());
+    EXPECT_EQ(decoder.next().error().code, Errc::kMalformed);
+}
+
+TEST(FrameDecoder, TheLimitMayGrowAfterTheHello) {
+    FrameDecoder decoder(10);
+    feed(decoder, stream_of({"hello"}));
+    EXPECT_EQ(drain(decoder).size(), 1U);
+    decoder.set_frame_bytes_max(1000);
+    feed(decoder, stream_of({std::string(500, 'x')}));
+    EXPECT_EQ(drain(decoder).size(), 1U);
+}
+
+} // namespace
+} // namespace scanloom::wire
