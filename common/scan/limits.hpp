@@ -6,19 +6,19 @@
 namespace scanloom {
 
 /// What anyone may send. Larger values are refused with an error that names the field.
-inline constexpr std::size_t kBeamsMax = 4096;          ///< beams of one scan
-inline constexpr std::size_t kSensorsMax = 64;          ///< sensors of one robot
+inline constexpr std::size_t kBeamsMax = 4096; ///< beams of one scan
+inline constexpr std::size_t kSensorsMax = 64; ///< sensors of one robot
 inline constexpr std::size_t kScansPerBatchMax = 1024;
-inline constexpr std::size_t kNameBytesMax = 64;        ///< session, robot and sensor names
-inline constexpr double kCoordinateMax = 1e6;           ///< metres from the origin, each axis
-inline constexpr double kRangeMax = 1000.0;             ///< metres, a sensor's range_max
+inline constexpr std::size_t kNameBytesMax = 64; ///< session, robot and sensor names
+inline constexpr double kCoordinateMax = 1e6;    ///< metres from the origin, each axis
+inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
 
 /// Session and robot names: [A-Za-z0-9_-]{1,64}. Safe in URLs; never used as paths.
 [[nodiscard]] constexpr bool is_valid_name(std::string_view name) noexcept {
     if (name.empty() || name.size() > kNameBytesMax) return false;
     for (const char c : name) {
-        const bool allowed = (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
-                             c == '-';
+        const bool allowed =
+            (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
         if (!allowed) return false;
     }
     return true;

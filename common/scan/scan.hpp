@@ -12,8 +12,8 @@ namespace scanloom {
 
 /// A reading in whole millimetres: one of the two marks below, or a length.
 using RangeMm = std::uint32_t;
-inline constexpr RangeMm kInvalidRange = 0;            ///< no valid reading
-inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU;     ///< nothing within the sensor's range_max
+inline constexpr RangeMm kInvalidRange = 0;        ///< no valid reading
+inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU; ///< nothing within the sensor's range_max
 
 /// Rounds a reading once, where it enters the system (on the robot): NaN, zero and negative lengths
 /// become kInvalidRange, +inf and lengths beyond 4,294,967 m kNoReturn.
@@ -21,14 +21,14 @@ inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU;     ///< nothing within the s
 
 /// One sweep of one sensor, taken from one pose.
 struct Scan {
-    std::uint64_t seq = 0;                    ///< per (session, robot), from 1, rising by 1
-    double stamp = 0.0;                       ///< seconds since the epoch, or since the robot's own start
-    std::uint32_t sensor = 0;                 ///< Sensor::id
-    Pose2 pose;                               ///< T_map_robot
-    std::optional<Pose2> odometry;            ///< T_odom_robot
-    std::vector<RangeMm> ranges;              ///< one a beam
-    std::vector<std::uint32_t> intensities;   ///< empty, or one a beam; the sensor's own scale
-    std::optional<BeamAngles> angles;         ///< only where they differ from the sensor's
+    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1
+    double stamp = 0.0;                     ///< seconds since the epoch, or since the robot's own start
+    std::uint32_t sensor = 0;               ///< Sensor::id
+    Pose2 pose;                             ///< T_map_robot
+    std::optional<Pose2> odometry;          ///< T_odom_robot
+    std::vector<RangeMm> ranges;            ///< one a beam
+    std::vector<std::uint32_t> intensities; ///< empty, or one a beam; the sensor's own scale
+    std::optional<BeamAngles> angles;       ///< only where they differ from the sensor's
 
     friend bool operator==(const Scan&, const Scan&) = default;
 };

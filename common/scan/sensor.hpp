@@ -15,12 +15,12 @@ enum class SensorKind { kLaser, kSonar };
 /// A reading z means: z < range_min, zero or not a number: nothing is learnt from the beam;
 /// range_min <= z < range_max: a hit at z; z >= range_max: nothing stands within range_max.
 struct Sensor {
-    std::uint32_t id = 0;                 ///< the robot's own number for it
+    std::uint32_t id = 0; ///< the robot's own number for it
     SensorKind kind = SensorKind::kLaser;
-    std::string name;                     ///< for people
-    Pose2 mount;                          ///< T_robot_sensor
-    BeamAngles angles;                    ///< used by scans that carry none
-    double aperture = 0.0;                ///< full width of a beam, radians; 0 = the session's default
+    std::string name;      ///< for people
+    Pose2 mount;           ///< T_robot_sensor
+    BeamAngles angles;     ///< used by scans that carry none
+    double aperture = 0.0; ///< full width of a beam, radians; 0 = the session's default
     double range_min = 0.0;
     double range_max = 0.0;
 

@@ -32,9 +32,10 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
     const std::byte* head = buffer_.data() + begin_;
     const std::size_t length = boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(head));
     if (length > frame_bytes_max_) {
-        failed_ = Error{Errc::kTooLarge, fmt::format("a frame announces {} bytes, at most {} are allowed here; send fewer "
-                                                     "scans a batch",
-                                                     length, frame_bytes_max_)};
+        failed_ =
+            Error{Errc::kTooLarge, fmt::format("a frame announces {} bytes, at most {} are allowed here; send fewer "
+                                               "scans a batch",
+                                               length, frame_bytes_max_)};
         return *failed_;
     }
     if (length == 0) {

@@ -13,7 +13,7 @@
 namespace scanloom::wire {
 
 inline constexpr std::size_t kLengthPrefixBytes = 4;
-inline constexpr std::size_t kFrameBytesMax = std::size_t{1} << 20;          ///< after the hello
+inline constexpr std::size_t kFrameBytesMax = std::size_t{1} << 20; ///< after the hello
 inline constexpr std::size_t kFrameBytesMaxBeforeHello = std::size_t{16} << 10;
 
 /// Cuts a byte stream into frame bodies: `uint32 length, big-endian`, then that many bytes.

@@ -10,7 +10,8 @@ namespace scanloom::wire {
 namespace {
 
 Error damaged(const char* what) {
-    return {Errc::kMalformed, std::string(what) + " in the store cannot be read; the store is damaged or was written by another program"};
+    return {Errc::kMalformed,
+            std::string(what) + " in the store cannot be read; the store is damaged or was written by another program"};
 }
 
 struct ToProto {

@@ -60,13 +60,15 @@ Result<> check_name(std::string_view field, std::string_view name) {
 Result<Message> read_hello(const v1::Hello& proto) {
     Hello hello{proto.protocol_version(), proto.robot(), proto.session(), proto.token(), std::nullopt, proto.client()};
     if (hello.protocol_version != kProtocolVersion) {
-        return Error{Errc::kUnsupportedVersion, fmt::format("hello.protocol_version is {}; this program speaks version {}",
-                                                            hello.protocol_version, kProtocolVersion)};
+        return Error{Errc::kUnsupportedVersion,
+                     fmt::format("hello.protocol_version is {}; this program speaks version {}", hello.protocol_version,
+                                 kProtocolVersion)};
     }
     if (auto ok = check_name("hello.robot", hello.robot); !ok) return ok.error();
     if (auto ok = check_name("hello.session", hello.session); !ok) return ok.error();
     if (hello.client.size() > 128) {
-        return Error{Errc::kTooLarge, fmt::format("hello.client has {} bytes, at most 128 are allowed", hello.client.size())};
+        return Error{Errc::kTooLarge,
+                     fmt::format("hello.client has {} bytes, at most 128 are allowed", hello.client.size())};
     }
     if (proto.has_create()) {
         auto options = from_proto(proto.create());
@@ -110,7 +112,8 @@ Result<Message> read_frame(const v1::Frame& frame) {
     case v1::Frame::kAck:
         return Message(Ack{frame.ack().durable_seq(), frame.ack().applied_seq(), frame.ack().credit_bytes()});
     case v1::Frame::kError:
-        return Message(LinkError{Error{to_errc(frame.error().code()), frame.error().message()}, frame.error().retryable()});
+        return Message(
+            LinkError{Error{to_errc(frame.error().code()), frame.error().message()}, frame.error().retryable()});
     case v1::Frame::kPing: return Message(Ping{frame.ping().nonce()});
     case v1::Frame::kPong: return Message(Pong{frame.pong().nonce()});
     case v1::Frame::kGoodbye: return Message(Goodbye{frame.goodbye().reason()});
@@ -174,8 +177,9 @@ struct ToProto {
 } // namespace
 
 std::string_view name_of(const Message& message) noexcept {
-    constexpr std::string_view kNames[] = {"hello", "welcome", "sensor_description", "scan_batch", "ack",
-                                           "error", "ping",    "pong",               "goodbye",    "correction"};
+    constexpr std::string_view kNames[] = {
+        "hello", "welcome", "sensor_description", "scan_batch", "ack", "error", "ping",
+        "pong",  "goodbye", "correction"};
     static_assert(std::size(kNames) == std::variant_size_v<Message>);
     return kNames[message.index()];
 }
@@ -185,7 +189,8 @@ Result<Message> decode(std::string_view body) {
     auto* frame = google::protobuf::Arena::CreateMessage<v1::Frame>(&arena);
     if (!frame->ParseFromArray(body.data(), static_cast<int>(body.size()))) {
         return Error{Errc::kMalformed,
-                     fmt::format("{} bytes that are not a scanloom.v1.Frame; check the sender's protobuf definition", body.size())};
+                     fmt::format("{} bytes that are not a scanloom.v1.Frame; check the sender's protobuf definition",
+                                 body.size())};
     }
     return read_frame(*frame);
 }
@@ -202,14 +207,16 @@ Result<> check_scan(const Scan& scan, const Sensor& sensor) {
     if (const auto* uniform = std::get_if<UniformAngles>(&sensor.angles)) {
         const double span = std::abs(uniform->increment) * static_cast<double>(scan.ranges.size() - 1);
         if (span <= 2.0 * std::numbers::pi + 1e-6) return {};
-        return invalid_field(fmt::format("ranges has {} beams, which span {:.3f} rad at the increment of sensor {}, more "
-                                         "than a full turn; send the scan's own angles",
-                                         scan.ranges.size(), span, sensor.id));
+        return invalid_field(
+            fmt::format("ranges has {} beams, which span {:.3f} rad at the increment of sensor {}, more "
+                        "than a full turn; send the scan's own angles",
+                        scan.ranges.size(), span, sensor.id));
     }
     const std::size_t described = beam_count(sensor.angles);
     if (scan.ranges.size() == described) return {};
-    return invalid_field(fmt::format("ranges has {} beams, sensor {} has {} explicit angles; send the scan's own angles",
-                                     scan.ranges.size(), sensor.id, described));
+    return invalid_field(
+        fmt::format("ranges has {} beams, sensor {} has {} explicit angles; send the scan's own angles",
+                    scan.ranges.size(), sensor.id, described));
 }
 
 } // namespace scanloom::wire

@@ -93,8 +93,7 @@ struct Correction {
     friend bool operator==(const Correction&, const Correction&) = default;
 };
 
-using Message =
-    std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction>;
+using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction>;
 
 /// Name of the frame a message travels in, as proto/ spells it ("scan_batch").
 [[nodiscard]] std::string_view name_of(const Message& message) noexcept;

@@ -17,27 +17,30 @@ Result<> check_angles(const BeamAngles& angles) {
     const std::size_t count = beam_count(angles);
     if (count == 0) return invalid_field("angles describe 0 beams; at least 1 is needed");
     if (count > kBeamsMax) {
-        return Error{Errc::kTooLarge, fmt::format("angles describe {} beams, at most {} are allowed", count, kBeamsMax)};
+        return Error{Errc::kTooLarge,
+                     fmt::format("angles describe {} beams, at most {} are allowed", count, kBeamsMax)};
     }
     if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
         if (!std::isfinite(uniform->first) || std::abs(uniform->first) > 2.0 * kFullTurn) {
-            return invalid_field(fmt::format("angles.uniform.first is {}; an angle in radians is needed", uniform->first));
+            return invalid_field(
+                fmt::format("angles.uniform.first is {}; an angle in radians is needed", uniform->first));
         }
         if (!std::isfinite(uniform->increment) || uniform->increment == 0.0) {
-            return invalid_field(
-                fmt::format("angles.uniform.increment is {}; a finite angle other than 0 is needed", uniform->increment));
+            return invalid_field(fmt::format("angles.uniform.increment is {}; a finite angle other than 0 is needed",
+                                             uniform->increment));
         }
         const double span = std::abs(uniform->increment) * static_cast<double>(count - 1);
         if (span > kFullTurn) {
-            return invalid_field(fmt::format("angles.uniform spans {:.3f} rad over {} beams, more than a full turn", span,
-                                             count));
+            return invalid_field(
+                fmt::format("angles.uniform spans {:.3f} rad over {} beams, more than a full turn", span, count));
         }
         return {};
     }
     const auto& list = std::get<ExplicitAngles>(angles);
     for (std::size_t i = 0; i < list.size(); ++i) {
         if (!std::isfinite(list[i]) || std::abs(list[i]) > 2.0 * kFullTurn) {
-            return invalid_field(fmt::format("angles.explicit.angles[{}] is {}; an angle in radians is needed", i, list[i]));
+            return invalid_field(
+                fmt::format("angles.explicit.angles[{}] is {}; an angle in radians is needed", i, list[i]));
         }
     }
     return {};
@@ -81,8 +84,8 @@ Result<> check_beam_counts(const Scan& scan) {
                                          scan.intensities.size(), beams));
     }
     if (scan.angles && beam_count(*scan.angles) != beams) {
-        return invalid_field(
-            fmt::format("angles describe {} beams, ranges has {}; send one range an angle", beam_count(*scan.angles), beams));
+        return invalid_field(fmt::format("angles describe {} beams, ranges has {}; send one range an angle",
+                                         beam_count(*scan.angles), beams));
     }
     return {};
 }
@@ -93,9 +96,11 @@ Error invalid_field(std::string message) { return {Errc::kInvalidField, std::mov
 
 Result<Pose2> from_proto(const v1::Pose2& proto) {
     const auto check = [](const char* name, double value) -> Result<> {
-        if (!std::isfinite(value)) return invalid_field(fmt::format("{} is {}; a finite number is needed", name, value));
+        if (!std::isfinite(value))
+            return invalid_field(fmt::format("{} is {}; a finite number is needed", name, value));
         if (std::abs(value) > kCoordinateMax) {
-            return invalid_field(fmt::format("{} is {:g}; at most {:g} either way is allowed", name, value, kCoordinateMax));
+            return invalid_field(
+                fmt::format("{} is {:g}; at most {:g} either way is allowed", name, value, kCoordinateMax));
         }
         return {};
     };
@@ -114,11 +119,14 @@ Result<Sensor> from_proto(const v1::SensorDescription& proto) {
     switch (proto.kind()) {
     case v1::SENSOR_KIND_LASER: sensor.kind = SensorKind::kLaser; break;
     case v1::SENSOR_KIND_SONAR: sensor.kind = SensorKind::kSonar; break;
-    default: return invalid_field(fmt::format("kind is {}; SENSOR_KIND_LASER or _SONAR is needed", static_cast<int>(proto.kind())));
+    default:
+        return invalid_field(
+            fmt::format("kind is {}; SENSOR_KIND_LASER or _SONAR is needed", static_cast<int>(proto.kind())));
     }
     sensor.name = proto.name();
     if (sensor.name.size() > kNameBytesMax) {
-        return Error{Errc::kTooLarge, fmt::format("name has {} bytes, at most {} are allowed", sensor.name.size(), kNameBytesMax)};
+        return Error{Errc::kTooLarge,
+                     fmt::format("name has {} bytes, at most {} are allowed", sensor.name.size(), kNameBytesMax)};
     }
     auto mount = from_proto(proto.mount());
     if (!mount) return prefixed("mount.", mount.error());

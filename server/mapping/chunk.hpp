@@ -1,0 +1,71 @@
+#pragma once
+
+#include "common/scan/log_entry.hpp"
+#include "server/mapping/cell.hpp"
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+namespace scanloom::mapping {
+
+inline constexpr std::int32_t kChunkBits = 6;
+inline constexpr std::int32_t kChunkSide = 1 << kChunkBits; ///< cells
+
+/// Which chunk: chunk (ci, cj) holds cells i in [64 ci, 64 ci + 64), j likewise.
+/// Ordered by rows from the bottom, then from the left.
+struct ChunkKey {
+    std::int32_t cj = 0;
+    std::int32_t ci = 0;
+
+    friend auto operator<=>(const ChunkKey&, const ChunkKey&) = default;
+};
+
+[[nodiscard]] constexpr ChunkKey chunk_of(Cell cell) noexcept {
+    return {.cj = cell.j >> kChunkBits, .ci = cell.i >> kChunkBits};
+}
+
+/// A node or a leaf of a ChunkTree.
+struct TreeItem {
+    Revision revision = 0;   ///< the newest change in it or below it
+    std::uint64_t epoch = 0; ///< the epoch it was made in: while that lasts, only the writer sees it
+};
+
+/// 64 x 64 cells of one layer, row j at the bottom first.
+template <class CellValue>
+struct Chunk : TreeItem {
+    std::array<CellValue, std::size_t{kChunkSide} * kChunkSide> cells;
+
+    [[nodiscard]] static constexpr std::size_t index_of(Cell cell) noexcept {
+        return static_cast<std::size_t>((cell.j & (kChunkSide - 1)) << kChunkBits | (cell.i & (kChunkSide - 1)));
+    }
+    [[nodiscard]] CellValue& at(Cell cell) noexcept { return cells[index_of(cell)]; }
+    [[nodiscard]] const CellValue& at(Cell cell) const noexcept { return cells[index_of(cell)]; }
+};
+
+/// Chunks with ci_begin <= ci < ci_end and cj_begin <= cj < cj_end.
+struct ChunkBox {
+    std::int64_t ci_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
+    std::int64_t cj_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
+    std::int64_t ci_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1;
+    std::int64_t cj_end = std::int64_t{std::numeric_limits<std::int32_t>::max()} + 1;
+
+    [[nodiscard]] bool contains(const ChunkBox& other) const noexcept {
+        return ci_begin <= other.ci_begin && other.ci_end <= ci_end && cj_begin <= other.cj_begin &&
+               other.cj_end <= cj_end;
+    }
+    [[nodiscard]] bool intersects(const ChunkBox& other) const noexcept {
+        return ci_begin < other.ci_end && other.ci_begin < ci_end && cj_begin < other.cj_end && other.cj_begin < cj_end;
+    }
+};
+
+/// The chunks that hold any cell of the box.
+[[nodiscard]] inline ChunkBox chunks_of(const CellBox& box) noexcept {
+    if (box.empty()) return {0, 0, 0, 0};
+    const auto begin = chunk_of({box.i_begin, box.j_begin});
+    const auto last = chunk_of({box.i_end - 1, box.j_end - 1});
+    return {begin.ci, begin.cj, std::int64_t{last.ci} + 1, std::int64_t{last.cj} + 1};
+}
+
+} // namespace scanloom::mapping

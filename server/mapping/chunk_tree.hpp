@@ -1,0 +1,230 @@
+#pragma once
+
+#include "server/mapping/chunk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+namespace scanloom::mapping {
+
+namespace tree {
+
+inline constexpr int kFanBits = 3;
+inline constexpr std::uint32_t kFan = 1U << kFanBits; ///< children of a node along each axis
+
+/// An inner node of 8 x 8 children: nodes of the level below, or chunks at the lowest.
+struct Node : TreeItem {
+    std::array<std::shared_ptr<TreeItem>, std::size_t{kFan} * kFan> children;
+};
+
+/// One of the four trees around the origin. Along each axis it counts chunks away from the origin
+/// (0, 1, 2, ... or -1, -2, -3, ... as 0, 1, 2), so that it can grow outwards for ever: a new root
+/// takes the old one as its first child. `height` levels of nodes reach 8^height chunks.
+struct Quadrant {
+    std::shared_ptr<Node> root;
+    int height = 0;
+};
+
+using Quadrants = std::array<Quadrant, 4>; ///< by (cj < 0) * 2 + (ci < 0)
+
+[[nodiscard]] constexpr std::uint32_t away_from_origin(std::int32_t c) noexcept {
+    return static_cast<std::uint32_t>(c < 0 ? ~c : c);
+}
+
+[[nodiscard]] constexpr std::size_t quadrant_of(ChunkKey key) noexcept {
+    return static_cast<std::size_t>((key.cj < 0 ? 2 : 0) + (key.ci < 0 ? 1 : 0));
+}
+
+[[nodiscard]] constexpr bool reaches(int height, std::uint32_t u) noexcept {
+    return height * kFanBits >= 32 || (u >> (height * kFanBits)) == 0;
+}
+
+/// Child slot of chunk (u, v) in a node of `level` (1 = its children are chunks).
+[[nodiscard]] constexpr std::size_t slot_of(std::uint32_t u, std::uint32_t v, int level) noexcept {
+    const int shift = (level - 1) * kFanBits;
+    return ((v >> shift) & (kFan - 1)) << kFanBits | ((u >> shift) & (kFan - 1));
+}
+
+} // namespace tree
+
+/// What a ChunkTree held at one moment: immutable, shared, cheap to copy.
+/// Thread  any number of readers.
+template <class ChunkType>
+class ChunkView {
+public:
+    ChunkView() = default;
+    explicit ChunkView(tree::Quadrants quadrants) : quadrants_(std::move(quadrants)) {}
+
+    /// The chunk, or nullptr where nothing was ever written.
+    [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
+        const auto& quadrant = quadrants_[tree::quadrant_of(key)];
+        const std::uint32_t u = tree::away_from_origin(key.ci);
+        const std::uint32_t v = tree::away_from_origin(key.cj);
+        if (!tree::reaches(quadrant.height, u | v)) return nullptr;
+        const TreeItem* item = quadrant.root.get();
+        for (int level = quadrant.height; item != nullptr && level > 0; --level) {
+            item = static_cast<const tree::Node*>(item)->children[tree::slot_of(u, v, level)].get();
+        }
+        return static_cast<const ChunkType*>(item);
+    }
+
+    /// Calls visit(ChunkKey, const ChunkType&) for every chunk in the box changed after `since`.
+    /// Cost follows what is visited, not what the tree holds. No particular order.
+    template <class Visit>
+    void visit(const ChunkBox& box, Revision since, Visit&& visit) const {
+        for_each_root(box, [&](const Walk& walk) { descend(walk, box, since, visit); });
+    }
+
+    /// The newest revision of any chunk in the box, 0 when there is none.
+    [[nodiscard]] Revision newest(const ChunkBox& box) const {
+        Revision newest = 0;
+        for_each_root(box, [&](const Walk& walk) { newest_below(walk, box, newest); });
+        return newest;
+    }
+
+private:
+    /// A node and the block of chunks it stands for: (u0, v0) counted away from the origin, of a quadrant.
+    struct Walk {
+        const TreeItem* item;
+        int level;
+        std::size_t quadrant;
+        std::uint64_t u0;
+        std::uint64_t v0;
+
+        [[nodiscard]] ChunkBox box() const noexcept {
+            const auto side = std::int64_t{1} << (level * tree::kFanBits);
+            const auto u = static_cast<std::int64_t>(u0);
+            const auto v = static_cast<std::int64_t>(v0);
+            const bool left = (quadrant & 1) != 0;
+            const bool below = (quadrant & 2) != 0;
+            return {left ? -(u + side) : u, below ? -(v + side) : v, left ? -u : u + side, below ? -v : v + side};
+        }
+    };
+
+    template <class Each>
+    void for_each_root(const ChunkBox& box, Each&& each) const {
+        for (std::size_t q = 0; q < quadrants_.size(); ++q) {
+            if (!quadrants_[q].root) continue;
+            const Walk walk{quadrants_[q].root.get(), quadrants_[q].height, q, 0, 0};
+            if (walk.box().intersects(box)) each(walk);
+        }
+    }
+
+    template <class Each>
+    static void for_each_child(const Walk& walk, const ChunkBox& box, Each&& each) {
+        const auto& node = *static_cast<const tree::Node*>(walk.item);
+        const int shift = (walk.level - 1) * tree::kFanBits;
+        for (std::size_t slot = 0; slot < node.children.size(); ++slot) {
+            if (!node.children[slot]) continue;
+            const Walk child{node.children[slot].get(), walk.level - 1, walk.quadrant,
+                             walk.u0 + (std::uint64_t{slot & (tree::kFan - 1)} << shift),
+                             walk.v0 + (std::uint64_t{slot >> tree::kFanBits} << shift)};
+            if (child.box().intersects(box)) each(child);
+        }
+    }
+
+    template <class Visit>
+    static void descend(const Walk& walk, const ChunkBox& box, Revision since, Visit& visit) {
+        if (walk.item->revision <= since) return;
+        if (walk.level == 0) {
+            const ChunkBox at = walk.box();
+            visit(ChunkKey{static_cast<std::int32_t>(at.cj_begin), static_cast<std::int32_t>(at.ci_begin)},
+                  *static_cast<const ChunkType*>(walk.item));
+            return;
+        }
+        for_each_child(walk, box, [&](const Walk& child) { descend(child, box, since, visit); });
+    }
+
+    static void newest_below(const Walk& walk, const ChunkBox& box, Revision& newest) {
+        if (walk.item->revision <= newest) return;
+        if (walk.level == 0 || box.contains(walk.box())) {
+            newest = walk.item->revision;
+            return;
+        }
+        for_each_child(walk, box, [&](const Walk& child) { newest_below(child, box, newest); });
+    }
+
+    tree::Quadrants quadrants_;
+};
+
+/// An unbounded map from ChunkKey to chunks with cheap immutable snapshots: a persistent radix tree.
+/// Chunks and nodes are shared with the snapshots that hold them and copied when next written,
+/// so that a snapshot costs four pointers and a write after it one copy per chunk touched.
+///
+/// Thread  one writer; snapshots may be read by anyone at the same time.
+/// Source  Driscoll, Sarnak, Sleator, Tarjan, Making Data Structures Persistent (1989): path copying.
+template <class ChunkType>
+class ChunkTree {
+public:
+    /// `blank` is what a chunk holds before its first write.
+    explicit ChunkTree(const ChunkType& blank) : blank_(std::make_shared<const ChunkType>(blank)) {}
+
+    /// The chunk, to be written at `revision`; made if it was not there.
+    /// Valid until the next snapshot().
+    [[nodiscard]] ChunkType& write(ChunkKey key, Revision revision) {
+        auto& quadrant = quadrants_[tree::quadrant_of(key)];
+        const std::uint32_t u = tree::away_from_origin(key.ci);
+        const std::uint32_t v = tree::away_from_origin(key.cj);
+        grow(quadrant, u | v);
+        tree::Node* node = own(quadrant.root, revision);
+        for (int level = quadrant.height; level > 1; --level) {
+            node = own_as<tree::Node>(node->children[tree::slot_of(u, v, level)], revision);
+        }
+        return *own_as<ChunkType>(node->children[tree::slot_of(u, v, 1)], revision);
+    }
+
+    /// What the tree holds now. Later writes do not show in it.
+    [[nodiscard]] ChunkView<ChunkType> snapshot() {
+        ++epoch_;
+        return ChunkView<ChunkType>(quadrants_);
+    }
+
+private:
+    void grow(tree::Quadrant& quadrant, std::uint32_t reach) {
+        if (!quadrant.root) {
+            quadrant.root = std::make_shared<tree::Node>();
+            quadrant.root->epoch = epoch_;
+            quadrant.height = 1;
+        }
+        while (!tree::reaches(quadrant.height, reach)) {
+            auto root = std::make_shared<tree::Node>();
+            root->epoch = epoch_;
+            root->revision = quadrant.root->revision;
+            root->children[0] = std::move(quadrant.root);
+            quadrant.root = std::move(root);
+            ++quadrant.height;
+        }
+    }
+
+    tree::Node* own(std::shared_ptr<tree::Node>& node, Revision revision) {
+        if (node->epoch != epoch_) node = std::make_shared<tree::Node>(*node);
+        node->epoch = epoch_;
+        node->revision = std::max(node->revision, revision);
+        return node.get();
+    }
+
+    template <class Item>
+    Item* own_as(std::shared_ptr<TreeItem>& child, Revision revision) {
+        if (!child) {
+            if constexpr (std::is_same_v<Item, tree::Node>) {
+                child = std::make_shared<tree::Node>();
+            } else {
+                child = std::make_shared<ChunkType>(*blank_);
+            }
+        } else if (child->epoch != epoch_) {
+            child = std::make_shared<Item>(*static_cast<const Item*>(child.get()));
+        }
+        child->epoch = epoch_;
+        child->revision = std::max(child->revision, revision);
+        return static_cast<Item*>(child.get());
+    }
+
+    tree::Quadrants quadrants_;
+    std::uint64_t epoch_ = 1;
+    std::shared_ptr<const ChunkType> blank_;
+};
+
+} // namespace scanloom::mapping

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "common/scan/scan.hpp"
+#include "server/mapping/beam_fan.hpp"
+#include "server/mapping/scan_conversion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+namespace scanloom::mapping {
+
+enum class Verdict : std::uint8_t { kFree, kOccupied };
+
+/// What the model must know of a sensor and a map. Metres.
+struct ModelGeometry {
+    double range_min = 0.0;
+    double range_max = 0.0;
+    double thickness = 0.1; ///< alpha; at least one cell is used
+    double cell_size = 0.05;
+};
+
+/// Tells which cells one scan shows to be free or occupied: the inverse sensor model, cell by cell
+/// exact. Calls emit(Verdict, j, i_begin, i_end) for runs of cells of row j; no cell comes twice.
+///
+/// A cell whose centre lies at distance r in the sector of beam k (its nearest, within half the
+/// aperture), with reading z:
+///   occupied  z < range_max and |r - z| < alpha / 2
+///   free      r <= z, r <= range_max, and not occupied
+///   (nothing) otherwise, and for readings below range_min or invalid.
+///
+/// Shapes  ranges holds one reading for each beam that the fan was made from.
+/// Frames  T_map_sensor takes sensor points to the map frame.
+/// Cost    the rows and cells of the area the scan sees; never the map's size.
+/// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. (A printed variant compares
+///         r with z_max in the occupied test: a misprint.)
+template <class Emit>
+void inverse_sensor_model(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+                          const ModelGeometry& geometry, Emit&& emit) {
+    const double cells_per_metre = 1.0 / geometry.cell_size;
+    const double x0 = T_map_sensor.x * cells_per_metre;
+    const double y0 = T_map_sensor.y * cells_per_metre;
+    const double c = std::cos(T_map_sensor.yaw);
+    const double s = std::sin(T_map_sensor.yaw);
+    const double half_band = std::max(geometry.thickness, geometry.cell_size) / 2.0;
+    const auto to_map = [&](Direction d) { return Direction{c * d.x - s * d.y, s * d.x + c * d.y}; };
+
+    for (const Sector& sensor_sector : fan) {
+        const RangeMm reading = ranges[sensor_sector.beam];
+        if (reading == kInvalidRange) continue;
+        const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;
+        if (z < geometry.range_min) continue;
+
+        const Sector sector{sensor_sector.beam, to_map(sensor_sector.low), to_map(sensor_sector.high)};
+        if (z >= geometry.range_max) {
+            scan_convert(sector, x0, y0, geometry.range_max * cells_per_metre,
+                         [&](std::int32_t j, double, std::int32_t begin, std::int32_t end) {
+                             emit(Verdict::kFree, j, begin, end);
+                         });
+            continue;
+        }
+        const double outer = std::min(geometry.range_max, z + half_band) * cells_per_metre;
+        const double inner = std::max(0.0, z - half_band) * cells_per_metre;
+        scan_convert(sector, x0, y0, outer, [&](std::int32_t j, double dy, std::int32_t begin, std::int32_t end) {
+            // The row runs through the free disc from -half to +half, if at all.
+            const double square = inner * inner - dy * dy;
+            std::int32_t free_begin = end;
+            std::int32_t free_end = end;
+            if (square > 0.0) {
+                const double half = std::sqrt(square);
+                free_begin = std::clamp(detail::column_from(-half, x0), begin, end);
+                free_end = std::clamp(detail::column_from(half, x0), free_begin, end);
+            }
+            if (begin < free_begin) emit(Verdict::kOccupied, j, begin, free_begin);
+            if (free_begin < free_end) emit(Verdict::kFree, j, free_begin, free_end);
+            if (free_end < end) emit(Verdict::kOccupied, j, free_end, end);
+        });
+    }
+}
+
+} // namespace scanloom::mapping

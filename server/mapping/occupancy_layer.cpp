@@ -1,0 +1,61 @@
+#include "server/mapping/occupancy_layer.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace scanloom::mapping {
+namespace {
+
+OccupancyChunk blank_chunk() {
+    OccupancyChunk chunk;
+    chunk.cells.fill(kUnknownLogOdds);
+    return chunk;
+}
+
+} // namespace
+
+OccupancyLayer::OccupancyLayer(const MapConfig& config) : tree_(blank_chunk()) {
+    const double l0 = log_odds_of(config.p_prior);
+    const Step common{0, to_fixed(log_odds_of(config.p_min)), to_fixed(log_odds_of(config.p_max)), to_fixed(l0)};
+    free_ = occupied_ = common;
+    free_.amount = to_fixed(log_odds_of(config.p_free) - l0);
+    occupied_.amount = to_fixed(log_odds_of(config.p_occupied) - l0);
+}
+
+void OccupancyLayer::apply(std::span<LogOdds> cells, const Step& step) noexcept {
+    for (LogOdds& cell : cells) {
+        const int before = cell == kUnknownLogOdds ? step.prior : cell;
+        cell = static_cast<LogOdds>(std::clamp<int>(before + step.amount, step.l_min, step.l_max));
+    }
+}
+
+CellBox OccupancyLayer::integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+                                  const ModelGeometry& geometry, Revision revision) {
+    CellBox changed;
+    ChunkKey current_key;
+    OccupancyChunk* current = nullptr; // neighbouring runs mostly fall into the same chunk
+    inverse_sensor_model(fan, ranges, T_map_sensor, geometry,
+                         [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
+                             changed.include_row(j, begin, end);
+                             const Step& step = verdict == Verdict::kFree ? free_ : occupied_;
+                             for (std::int32_t i = begin; i < end;) {
+                                 const ChunkKey key = chunk_of({i, j});
+                                 if (current == nullptr || key != current_key) {
+                                     current = &tree_.write(key, revision);
+                                     current_key = key;
+                                 }
+                                 const std::int32_t piece_end = std::min(end, (key.ci + 1) * kChunkSide);
+                                 apply({&current->at({i, j}), static_cast<std::size_t>(piece_end - i)}, step);
+                                 i = piece_end;
+                             }
+                         });
+    return changed;
+}
+
+void OccupancyLayer::restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
+    auto& chunk = tree_.write(key, revision);
+    assert(cells.size() == chunk.cells.size());
+    std::copy(cells.begin(), cells.end(), chunk.cells.begin());
+}
+
+} // namespace scanloom::mapping

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "server/mapping/chunk_tree.hpp"
+#include "server/mapping/inverse_sensor_model.hpp"
+#include "server/mapping/log_odds.hpp"
+#include "server/mapping/map_config.hpp"
+
+namespace scanloom::mapping {
+
+using OccupancyChunk = Chunk<LogOdds>;
+using OccupancyView = ChunkView<OccupancyChunk>;
+
+/// The occupancy grid of a session: fixed-point log-odds, updated scan by scan.
+///
+/// Update  l = clamp(l + model(cell) - l0, l_min, l_max), unseen cells starting from the prior l0.
+/// Thread  one writer; views may be read by anyone.
+/// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.1.
+class OccupancyLayer {
+public:
+    explicit OccupancyLayer(const MapConfig& config);
+
+    /// Adds the evidence of one scan; the cells changed carry `revision`.
+    /// Pre     ranges has a reading for each beam of the fan; revision >= every earlier one.
+    /// @return smallest box holding the changed cells.
+    CellBox integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+                      const ModelGeometry& geometry, Revision revision);
+
+    /// Puts back a chunk of a checkpoint.
+    void restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+
+    [[nodiscard]] OccupancyView snapshot() { return tree_.snapshot(); }
+
+private:
+    struct Step {
+        LogOdds amount;
+        LogOdds l_min;
+        LogOdds l_max;
+        LogOdds prior;
+    };
+
+    static void apply(std::span<LogOdds> cells, const Step& step) noexcept;
+
+    Step free_;
+    Step occupied_;
+    ChunkTree<OccupancyChunk> tree_;
+};
+
+} // namespace scanloom::mapping

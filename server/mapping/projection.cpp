@@ -1,0 +1,147 @@
+#include "server/mapping/projection.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::mapping {
+namespace {
+
+constexpr double kReachCellsMax = 8192.0;
+
+Error misplaced(Revision revision, std::string what) {
+    return {Errc::kMalformed, fmt::format("log entry {}: {}; the log is damaged", revision, what)};
+}
+
+} // namespace
+
+Projection::Projection(const MapConfig& config) : config_(config), occupancy_(config) {}
+
+Result<> Projection::fold(const LogEntry& entry) {
+    auto folded = std::visit(
+        [this](const auto& body) -> Result<> {
+            using Body = std::decay_t<decltype(body)>;
+            if constexpr (std::is_same_v<Body, RobotJoined>) return fold_joined(body);
+            if constexpr (std::is_same_v<Body, SensorDescribed>) return fold_described(body);
+            if constexpr (std::is_same_v<Body, ScanTaken>) return fold_scan(body);
+        },
+        entry);
+    if (folded) ++revision_;
+    return folded;
+}
+
+Result<> Projection::fold_joined(const RobotJoined& joined) {
+    if (joined.robot != robots_.size()) {
+        return misplaced(revision_ + 1, fmt::format("robot {} joins after {} others", joined.robot, robots_.size()));
+    }
+    robots_.emplace_back().state.name = joined.name;
+    return {};
+}
+
+Result<> Projection::fold_described(const SensorDescribed& described) {
+    if (described.robot >= robots_.size()) {
+        return misplaced(revision_ + 1, fmt::format("a sensor of robot {}, which never joined", described.robot));
+    }
+    auto& robot = robots_[described.robot];
+    robot.sensors[described.sensor.id] = described.sensor;
+    robot.fans.erase(described.sensor.id);
+    return {};
+}
+
+Result<> Projection::fold_scan(const ScanTaken& taken) {
+    const Revision revision = revision_ + 1;
+    if (taken.robot >= robots_.size()) {
+        return misplaced(revision, fmt::format("a scan of robot {}, which never joined", taken.robot));
+    }
+    auto& robot = robots_[taken.robot];
+    const auto& scan = taken.scan;
+    const auto sensor = robot.sensors.find(scan.sensor);
+    if (sensor == robot.sensors.end()) {
+        return misplaced(revision, fmt::format("a scan of sensor {}, which was never described", scan.sensor));
+    }
+    if (scan.seq != robot.state.last_seq + 1) {
+        return misplaced(revision, fmt::format("scan {} of robot '{}' follows scan {}", scan.seq, robot.state.name,
+                                               robot.state.last_seq));
+    }
+    if (sensor->second.kind == SensorKind::kLaser) integrate(robot, sensor->second, scan, revision);
+    robot.state.last_seq = scan.seq;
+    robot.state.scan_count += 1;
+    robot.state.stamp = scan.stamp;
+    robot.state.pose = scan.pose;
+    robot.trajectory.append({revision, scan.stamp, scan.pose});
+    return {};
+}
+
+void Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, Revision revision) {
+    const ModelGeometry geometry{sensor.range_min, sensor.range_max, config_.obstacle_thickness, config_.cell_size};
+    bounds_.include(occupancy_.integrate(fan_of(robot, sensor, scan), scan.ranges, compose(scan.pose, sensor.mount),
+                                         geometry, revision));
+}
+
+const BeamFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
+    auto& known = robot.fans[sensor.id];
+    if (scan.angles || known.beams != scan.ranges.size()) {
+        const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config_.beam_aperture;
+        known.fan = make_beam_fan(angles_of(scan, sensor), aperture);
+        known.beams = scan.angles ? 0 : scan.ranges.size();
+    }
+    return known.fan;
+}
+
+Snapshot Projection::snapshot() {
+    Snapshot snapshot{revision_, config_, bounds_, occupancy_.snapshot(), {}};
+    snapshot.robots.reserve(robots_.size());
+    for (const auto& robot : robots_) {
+        snapshot.robots.push_back(robot.state);
+        snapshot.robots.back().trajectory = robot.trajectory.snapshot();
+    }
+    return snapshot;
+}
+
+const std::map<std::uint32_t, Sensor>& Projection::sensors_of(RobotIndex robot) const {
+    static const std::map<std::uint32_t, Sensor> none;
+    return robot < robots_.size() ? robots_[robot].sensors : none;
+}
+
+ProjectionState Projection::state() const {
+    ProjectionState state{revision_, bounds_, {}};
+    for (const auto& robot : robots_) {
+        auto& out = state.robots.emplace_back(
+            ProjectionState::Robot{robot.state.name, robot.state.last_seq, robot.state.scan_count, {}});
+        for (const auto& [id, sensor] : robot.sensors) out.sensors.push_back(sensor);
+    }
+    return state;
+}
+
+void Projection::restore(const ProjectionState& state) {
+    revision_ = state.revision;
+    bounds_ = state.bounds;
+    for (const auto& saved : state.robots) {
+        auto& robot = robots_.emplace_back();
+        robot.state.name = saved.name;
+        robot.state.last_seq = saved.last_seq;
+        robot.state.scan_count = saved.scan_count;
+        for (const auto& sensor : saved.sensors) robot.sensors[sensor.id] = sensor;
+    }
+}
+
+void Projection::restore_chunk(ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
+    occupancy_.restore(key, revision, cells);
+}
+
+Result<> Projection::restore_point(RobotIndex robot, const TrajectoryPoint& point) {
+    if (robot >= robots_.size())
+        return misplaced(point.revision, fmt::format("a pose of robot {}, which never joined", robot));
+    robots_[robot].trajectory.append(point);
+    robots_[robot].state.stamp = point.stamp;
+    robots_[robot].state.pose = point.pose;
+    return {};
+}
+
+Result<> check_reach(const MapConfig& config, const Sensor& sensor) {
+    if (sensor.range_max <= kReachCellsMax * config.cell_size) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("range_max is {} metres, more than {} cells of {} metres; use larger cells, or state the "
+                             "range that is wanted in the map",
+                             sensor.range_max, kReachCellsMax, config.cell_size)};
+}
+
+} // namespace scanloom::mapping

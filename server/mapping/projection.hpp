@@ -1,0 +1,92 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+#include "server/mapping/snapshot.hpp"
+
+#include <map>
+#include <span>
+
+namespace scanloom::mapping {
+
+/// Rises when the same log would give another map; checkpoints of another version are woven anew.
+inline constexpr std::uint32_t kWeavingVersion = 1;
+
+/// Everything but the chunks and trajectories of a projection: what a checkpoint keeps besides them.
+struct ProjectionState {
+    struct Robot {
+        std::string name;
+        std::uint64_t last_seq = 0;
+        std::uint64_t scan_count = 0;
+        std::vector<Sensor> sensors;
+    };
+
+    Revision revision = 0;
+    CellBox bounds;
+    std::vector<Robot> robots;
+};
+
+/// The maps of one session: a deterministic fold of its log.
+///
+/// Whatever way the entries were batched, replayed or interrupted, the same entries under the same
+/// configuration give the same cells.
+/// Thread  one writer; snapshots are for everybody.
+class Projection {
+public:
+    explicit Projection(const MapConfig& config);
+
+    [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
+    [[nodiscard]] Revision revision() const noexcept { return revision_; }
+
+    /// Adds the next entry of the log.
+    /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
+    ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.
+    [[nodiscard]] Result<> fold(const LogEntry& entry);
+
+    /// What has been woven so far. Cheap; the next writes copy the chunks they touch.
+    [[nodiscard]] Snapshot snapshot();
+
+    /// The sensors that a robot has described, by id; empty for an unknown robot.
+    [[nodiscard]] const std::map<std::uint32_t, Sensor>& sensors_of(RobotIndex robot) const;
+
+    [[nodiscard]] ProjectionState state() const;
+
+    /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then
+    /// every chunk and every trajectory point by rising revision.
+    void restore(const ProjectionState& state);
+    void restore_chunk(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+    /// Errors  kMalformed: no such robot.
+    [[nodiscard]] Result<> restore_point(RobotIndex robot, const TrajectoryPoint& point);
+
+private:
+    /// The fan of a sensor's own angles, kept from scan to scan of the same beam count.
+    struct KnownFan {
+        std::size_t beams = 0;
+        BeamFan fan;
+    };
+
+    struct Robot {
+        RobotState state; // its trajectory view is filled in by snapshot()
+        Trajectory trajectory;
+        std::map<std::uint32_t, Sensor> sensors;
+        std::map<std::uint32_t, KnownFan> fans;
+    };
+
+    Result<> fold_joined(const RobotJoined& joined);
+    Result<> fold_described(const SensorDescribed& described);
+    Result<> fold_scan(const ScanTaken& taken);
+    void integrate(Robot& robot, const Sensor& sensor, const Scan& scan, Revision revision);
+    [[nodiscard]] const BeamFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
+
+    MapConfig config_;
+    Revision revision_ = 0;
+    CellBox bounds_;
+    OccupancyLayer occupancy_;
+    std::vector<Robot> robots_;
+};
+
+/// Whether a sensor's reach is possible at this cell size.
+/// Errors  kInvalidField: range_max spans more than 8192 cells.
+[[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
+
+} // namespace scanloom::mapping

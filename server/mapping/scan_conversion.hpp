@@ -1,0 +1,100 @@
+#pragma once
+
+#include "server/mapping/beam_fan.hpp"
+#include "server/mapping/cell.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace scanloom::mapping {
+
+namespace detail {
+
+/// The cell centres x_low <= x < x_high of a row, relative to the sensor, in cells.
+struct RowSpan {
+    double x_low = -HUGE_VAL;
+    double x_high = HUGE_VAL;
+};
+
+/// A sector seen in the half-plane above the sensor, between its clockwise edge `right` and `left`.
+/// An edge that is not in the half-plane bounds nothing: as a sector spans at most a quarter turn,
+/// it then reaches the horizon on that side.
+struct UpperSector {
+    Direction right;
+    Direction left;
+
+    [[nodiscard]] bool right_above() const noexcept { return right.y > 0.0; }
+    [[nodiscard]] bool left_above() const noexcept { return left.y > 0.0; }
+    [[nodiscard]] bool empty() const noexcept { return !right_above() && !left_above(); }
+
+    /// How far up a disc sector of this radius reaches.
+    [[nodiscard]] double top(double radius) const noexcept {
+        const bool starts_right = !right_above() || right.x >= 0.0;
+        const bool ends_left = !left_above() || left.x <= 0.0;
+        return starts_right && ends_left ? radius : radius * std::max(right.y, left.y);
+    }
+
+    /// What it covers of the row at height y. Pre: !empty() and y > 0.
+    [[nodiscard]] RowSpan at(double y) const noexcept {
+        RowSpan span;
+        if (right_above()) span.x_high = right.x / right.y * y;
+        if (left_above()) span.x_low = left.x / left.y * y;
+        return span;
+    }
+};
+
+/// First column whose centre lies at x or beyond, for a sensor at x0.
+[[nodiscard]] inline std::int32_t column_from(double x, double x0) noexcept {
+    return static_cast<std::int32_t>(std::ceil(x + x0 - 0.5));
+}
+
+} // namespace detail
+
+/// Calls row(j, dy, i_begin, i_end) for each row of cells, i_begin < i_end, whose centres lie in a
+/// sector of a disc. Together the sectors of a fan visit every centre at most once.
+///
+/// Units   cells: the sensor at (x0, y0), the radius too; cell (i, j) has its centre at
+///         (i + 0.5, j + 0.5); dy is the height of the row's centres over the sensor.
+/// Pre     the sector's directions are in the map frame; radius >= 0.
+/// Cost    the rows that the sector crosses.
+template <class Row>
+void scan_convert(const Sector& sector, double x0, double y0, double radius, Row&& row) {
+    const auto clipped = [&](std::int32_t j, double dy, const detail::RowSpan& span) {
+        const double reach = std::sqrt(std::max(0.0, radius * radius - dy * dy));
+        if (span.x_low > reach || span.x_high < -reach) return;
+        const std::int32_t begin = detail::column_from(std::max(span.x_low, -reach), x0);
+        const std::int32_t end = detail::column_from(std::min(span.x_high, reach), x0);
+        if (begin < end) row(j, dy, begin, end);
+    };
+
+    const detail::UpperSector upper{sector.low, sector.high};
+    const auto first_above = static_cast<std::int32_t>(std::floor(y0 - 0.5)) + 1;
+    if (!upper.empty()) {
+        const auto last = static_cast<std::int32_t>(std::floor(y0 + upper.top(radius) - 0.5));
+        for (std::int32_t j = first_above; j <= last; ++j) {
+            const double dy = j + 0.5 - y0;
+            clipped(j, dy, upper.at(dy));
+        }
+    }
+
+    const detail::UpperSector lower{{sector.high.x, -sector.high.y}, {sector.low.x, -sector.low.y}}; // mirrored
+    const auto first_below = static_cast<std::int32_t>(std::ceil(y0 - 0.5)) - 1;
+    if (!lower.empty()) {
+        const auto last = static_cast<std::int32_t>(std::ceil(y0 - lower.top(radius) - 0.5));
+        for (std::int32_t j = first_below; j >= last; --j) {
+            const double dy = j + 0.5 - y0;
+            clipped(j, dy, lower.at(-dy));
+        }
+    }
+
+    if (first_above - first_below < 2) return;
+    // A row of centres exactly level with the sensor lies in directions 0 and pi.
+    const std::int32_t level = first_below + 1;
+    const Direction& low = sector.low;
+    const Direction& high = sector.high;
+    if (high.y > 0.0 && (low.y < 0.0 || (low.y == 0.0 && low.x > 0.0))) clipped(level, 0.0, {0.0, HUGE_VAL});
+    if (high.y < 0.0 && (low.y > 0.0 || (low.y == 0.0 && low.x < 0.0))) clipped(level, 0.0, {-HUGE_VAL, 0.0});
+}
+
+} // namespace scanloom::mapping

@@ -1,0 +1,199 @@
+#include "server/mapping/inverse_sensor_model.hpp"
+
+#include "common/scan/scan.hpp"
+#include "tests/support/inverse_sensor_oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace scanloom::mapping {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180.0;
+
+struct Case {
+    std::string shape;
+    BeamAngles angles;
+    double aperture = kDegree;
+    double range_min = 0.0;
+    double range_max = 3.0;
+    double thickness = 0.1;
+    double cell_size = 0.05;
+    Pose2 T_map_sensor;
+    std::vector<RangeMm> ranges;
+};
+
+using Verdicts = std::map<std::pair<int, int>, oracle::Verdict>;
+
+/// What the production kernel says; fails the test when a cell comes twice.
+Verdicts run_kernel(const Case& c) {
+    Verdicts verdicts;
+    const auto fan = make_beam_fan(c.angles, c.aperture);
+    const ModelGeometry geometry{c.range_min, c.range_max, c.thickness, c.cell_size};
+    inverse_sensor_model(fan, c.ranges, c.T_map_sensor, geometry, [&](Verdict verdict, int j, int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            const auto value = verdict == Verdict::kFree ? oracle::Verdict::kFree : oracle::Verdict::kOccupied;
+            EXPECT_TRUE(verdicts.emplace(std::pair(i, j), value).second)
+                << c.shape << ": cell " << i << ", " << j << " changes twice in one scan";
+        }
+    });
+    return verdicts;
+}
+
+oracle::Scene scene_of(const Case& c) {
+    oracle::Scene scene{{}, {}, c.range_min, c.range_max, c.thickness, 0.0, c.cell_size, c.T_map_sensor};
+    for (std::size_t b = 0; b < beam_count(c.angles); ++b) {
+        scene.beam_angles.push_back(beam_angle(c.angles, b));
+        const RangeMm mm = c.ranges[b];
+        scene.readings.push_back(mm == kInvalidRange ? NAN : mm == kNoReturn ? HUGE_VAL : mm / 1000.0);
+    }
+    scene.beta = std::max(c.aperture, beam_spacing(c.angles));
+    return scene;
+}
+
+/// Compares every cell around the sensor; counts the cells compared in `firm`.
+void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
+    const auto kernel = run_kernel(c);
+    const auto scene = scene_of(c);
+    const GridGeometry grid(c.cell_size);
+    const Cell centre = grid.cell_at({c.T_map_sensor.x, c.T_map_sensor.y});
+    const int reach = static_cast<int>(std::ceil((c.range_max + c.thickness) / c.cell_size)) + 2;
+    for (int j = centre.j - reach; j <= centre.j + reach; ++j) {
+        for (int i = centre.i - reach; i <= centre.i + reach; ++i) {
+            const auto expected = oracle::verdict_of_cell(scene, i, j);
+            if (!expected) continue;
+            const auto found = kernel.find({i, j});
+            const auto got = found == kernel.end() ? oracle::Verdict::kNothing : found->second;
+            ++firm;
+            ASSERT_EQ(static_cast<int>(got), static_cast<int>(*expected))
+                << c.shape << ": cell " << i << ", " << j << ", sensor at " << c.T_map_sensor.x << ", "
+                << c.T_map_sensor.y << ", yaw " << c.T_map_sensor.yaw << ", " << beam_count(c.angles) << " beams";
+        }
+    }
+}
+
+class RandomCases {
+public:
+    explicit RandomCases(unsigned seed) : random_(seed) {}
+
+    double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+    unsigned below(unsigned n) { return static_cast<unsigned>(random_() % n); }
+
+    BeamAngles angles(unsigned shape, std::string& name) {
+        switch (shape) {
+        case 0: name = "half-turn scanner"; return UniformAngles{-kPi / 2, kDegree, 180};
+        case 1: name = "full turn"; return UniformAngles{-kPi, 2 * kPi / 120, 120};
+        case 2: name = "full turn, first direction repeated"; return UniformAngles{0.0, 2 * kPi / 90, 91};
+        case 3: name = "clockwise"; return UniformAngles{kPi, -2 * kPi / 100, 100};
+        case 4: name = "sparse ring"; return UniformAngles{uniform(-4.0, 4.0), 2 * kPi / 16, 16};
+        case 5: name = "few wide beams"; return UniformAngles{uniform(-4.0, 4.0), kPi / 2, 2 + below(3)};
+        case 6: name = "one beam"; return UniformAngles{uniform(-4.0, 4.0), 1.0, 1};
+        case 7: name = "two opposite beams"; return UniformAngles{uniform(-4.0, 4.0), kPi, 2};
+        case 8: name = "270 degrees"; return UniformAngles{-0.75 * kPi, 1.5 * kPi / 200, 201};
+        case 9: {
+            name = "projected through a tangent";
+            ExplicitAngles list;
+            for (int i = -60; i <= 60; ++i) list.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
+            return list;
+        }
+        default: {
+            name = "any angles in any order";
+            ExplicitAngles list(1 + below(150));
+            for (double& angle : list) angle = uniform(-6.0, 6.0);
+            return list;
+        }
+        }
+    }
+
+    Case next(unsigned shape) {
+        Case c;
+        c.angles = angles(shape, c.shape);
+        c.cell_size = std::array{0.01, 0.05, 0.1, 0.5}[below(4)];
+        c.range_max = c.cell_size * uniform(4.0, 32.0);
+        c.range_min = below(2) == 0 ? 0.0 : c.range_max * uniform(0.0, 0.3);
+        c.thickness = below(2) == 0 ? 0.1 : c.cell_size * uniform(0.2, 6.0);
+        c.aperture = below(3) == 0 ? uniform(0.001, 1.5) : kDegree;
+        c.T_map_sensor = {uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-kPi, kPi)};
+        if (below(4) == 0) { // on cell centres and borders, looking along the axes
+            c.T_map_sensor = {(below(41) - 20.0) * c.cell_size / 2, (below(41) - 20.0) * c.cell_size / 2,
+                              below(8) * kPi / 4};
+        }
+        c.ranges.resize(beam_count(c.angles));
+        for (auto& range : c.ranges) {
+            const unsigned kind = below(10);
+            range = kind == 0 ? kInvalidRange : kind == 1 ? kNoReturn : to_range_mm(uniform(0.0, 1.15) * c.range_max);
+        }
+        return c;
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+TEST(InverseSensorModel, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
+    std::size_t firm = 0;
+    for (unsigned shape = 0; shape <= 10; ++shape) {
+        RandomCases cases(100 + shape);
+        for (int round = 0; round < 300; ++round) {
+            const Case c = cases.next(shape);
+            ASSERT_NO_FATAL_FAILURE(expect_equal_to_oracle(c, firm)) << "round " << round;
+        }
+    }
+    EXPECT_GT(firm, 1'000'000U) << "too few cells had a firm verdict for the comparison to mean anything";
+}
+
+/// A sensor in the middle of cell (0, 0), one beam along +x.
+Case one_beam(double reading_m) {
+    Case c;
+    c.shape = "one beam";
+    c.angles = UniformAngles{0.0, 1.0, 1};
+    c.aperture = 3 * kDegree;
+    c.cell_size = 0.1;
+    c.range_max = 2.0;
+    c.T_map_sensor = {0.05, 0.05, 0.0};
+    c.ranges = {to_range_mm(reading_m)};
+    return c;
+}
+
+oracle::Verdict cell(const Verdicts& verdicts, int i, int j) {
+    const auto found = verdicts.find({i, j});
+    return found == verdicts.end() ? oracle::Verdict::kNothing : found->second;
+}
+
+TEST(InverseSensorModel, FreesUpToTheHitAndMarksTheBand) {
+    const auto verdicts = run_kernel(one_beam(1.0));
+    EXPECT_EQ(cell(verdicts, 9, 0), oracle::Verdict::kFree);
+    EXPECT_EQ(cell(verdicts, 10, 0), oracle::Verdict::kOccupied);
+    EXPECT_EQ(cell(verdicts, 11, 0), oracle::Verdict::kNothing);
+    EXPECT_EQ(cell(verdicts, -1, 0), oracle::Verdict::kNothing) << "behind the sensor";
+}
+
+TEST(InverseSensorModel, AReadingBeyondTheRangeFreesTheWholeBeamAndMarksNothing) {
+    for (const double reading : {2.0, 2.5, HUGE_VAL}) {
+        const auto verdicts = run_kernel(one_beam(reading));
+        EXPECT_EQ(cell(verdicts, 19, 0), oracle::Verdict::kFree) << reading;
+        for (const auto& [at, verdict] : verdicts) EXPECT_EQ(verdict, oracle::Verdict::kFree) << reading;
+    }
+}
+
+TEST(InverseSensorModel, InvalidReadingsChangeNothing) {
+    for (const double reading : {0.0, -1.0, static_cast<double>(NAN)}) {
+        EXPECT_TRUE(run_kernel(one_beam(reading)).empty()) << reading;
+    }
+    auto too_near = one_beam(0.2);
+    too_near.range_min = 0.3;
+    EXPECT_TRUE(run_kernel(too_near).empty());
+}
+
+TEST(InverseSensorModel, ABandThinnerThanACellIsWidenedSoThatWallsSurvive) {
+    auto c = one_beam(1.0);
+    c.thickness = 0.001;
+    EXPECT_EQ(cell(run_kernel(c), 10, 0), oracle::Verdict::kOccupied);
+}
+
+} // namespace
+} // namespace scanloom::mapping

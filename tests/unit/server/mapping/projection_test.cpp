@@ -1,0 +1,181 @@
+#include "server/mapping/projection.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+namespace scanloom::mapping {
+namespace {
+
+Sensor laser() {
+    Sensor sensor;
+    sensor.id = 2;
+    sensor.angles = UniformAngles{-std::numbers::pi, 2 * std::numbers::pi / 90, 90};
+    sensor.range_max = 4.0;
+    return sensor;
+}
+
+std::vector<LogEntry> random_log(unsigned seed, std::size_t scans) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> metres(-8.0, 8.0);
+    std::vector<LogEntry> log{RobotJoined{0, "r0"}, SensorDescribed{0, laser()}};
+    for (std::uint64_t seq = 1; seq <= scans; ++seq) {
+        Scan scan;
+        scan.seq = seq;
+        scan.stamp = static_cast<double>(seq) * 0.1;
+        scan.sensor = 2;
+        scan.pose = {metres(random), metres(random), metres(random)};
+        for (int beam = 0; beam < 90; ++beam) scan.ranges.push_back(static_cast<RangeMm>(random() % 4500));
+        log.push_back(ScanTaken{0, std::move(scan)});
+    }
+    return log;
+}
+
+std::map<ChunkKey, std::vector<LogOdds>> cells_of(const OccupancyView& view) {
+    std::map<ChunkKey, std::vector<LogOdds>> cells;
+    view.visit({}, 0, [&](ChunkKey key, const OccupancyChunk& chunk) {
+        cells[key].assign(chunk.cells.begin(), chunk.cells.end());
+    });
+    return cells;
+}
+
+TEST(Projection, FollowsTheUpdateRuleCellByCell) {
+    Projection projection(*resolve({.cell_size = 0.1, .p_prior = 0.4}));
+    Sensor beam;
+    beam.angles = UniformAngles{0.0, 1.0, 1};
+    beam.range_max = 5.0;
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, beam}));
+    const double l0 = log_odds_of(0.4);
+    const double free_cell_steps[] = {l0 + (log_odds_of(0.1) - l0), l0 + 2 * (log_odds_of(0.1) - l0)};
+    for (std::uint64_t seq = 1; seq <= 10; ++seq) {
+        Scan scan{.seq = seq, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}};
+        ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+        const auto snapshot = projection.snapshot();
+        const auto* chunk = snapshot.occupancy.find({0, 0});
+        ASSERT_NE(chunk, nullptr);
+        const double expected =
+            seq <= 2 ? free_cell_steps[seq - 1]
+                     : std::max(log_odds_of(0.001), l0 + static_cast<double>(seq) * (log_odds_of(0.1) - l0));
+        EXPECT_NEAR(chunk->at({5, 0}) / kLogOddsScale, expected, 0.006);
+        EXPECT_EQ(chunk->at({5, 1}), kUnknownLogOdds);
+    }
+    const auto snapshot = projection.snapshot();
+    EXPECT_NEAR(probability_of(snapshot.occupancy.find({0, 0})->at({5, 0})), 0.001, 1e-6) << "clamped";
+    EXPECT_NEAR(probability_of(snapshot.occupancy.find({0, 0})->at({10, 0})), 0.999, 1e-6) << "clamped";
+}
+
+TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
+    Projection projection(*resolve({.cell_size = 0.1}));
+    Sensor beam;
+    beam.angles = UniformAngles{0.0, 1.0, 1};
+    beam.range_max = 5.0;
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, beam}));
+    ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
+    ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 2, .pose = {0.05, 0.05, 0.0}, .ranges = {2000}}}));
+    EXPECT_EQ(projection.snapshot().occupancy.find({0, 0})->at({10, 0}), 0);
+}
+
+TEST(Projection, SnapshotsTakenBetweenScansChangeNothing) {
+    const auto log = random_log(1, 60);
+    Projection plain{MapConfig{}};
+    Projection watched{MapConfig{}};
+    std::vector<Snapshot> kept;
+    for (const auto& entry : log) {
+        ASSERT_TRUE(plain.fold(entry));
+        ASSERT_TRUE(watched.fold(entry));
+        kept.push_back(watched.snapshot());
+    }
+    EXPECT_EQ(cells_of(plain.snapshot().occupancy), cells_of(watched.snapshot().occupancy));
+    Projection again{MapConfig{}};
+    for (std::size_t n = 0; n < log.size(); ++n) {
+        ASSERT_TRUE(again.fold(log[n]));
+        if (n % 13 == 0) {
+            EXPECT_EQ(cells_of(kept[n].occupancy), cells_of(again.snapshot().occupancy)) << "after entry " << n;
+            EXPECT_EQ(kept[n].robots.front().trajectory.size(), n < 2 ? 0 : n - 1);
+        }
+    }
+}
+
+TEST(Projection, ContinuesFromACheckpointToTheSameMap) {
+    const auto log = random_log(2, 900);
+    Projection whole{MapConfig{}};
+    for (const auto& entry : log) ASSERT_TRUE(whole.fold(entry));
+
+    Projection first{MapConfig{}};
+    for (std::size_t n = 0; n < 601; ++n) ASSERT_TRUE(first.fold(log[n]));
+    Projection second{MapConfig{}};
+    second.restore(first.state());
+    const auto saved = first.snapshot();
+    saved.occupancy.visit({}, 0, [&](ChunkKey key, const OccupancyChunk& chunk) {
+        second.restore_chunk(key, chunk.revision, chunk.cells);
+    });
+    const auto& trajectory = saved.robots.front().trajectory;
+    for (std::size_t n = 0; n < trajectory.size(); ++n) ASSERT_TRUE(second.restore_point(0, trajectory[n]));
+    for (std::size_t n = 601; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
+
+    const auto a = whole.snapshot();
+    const auto b = second.snapshot();
+    EXPECT_EQ(a.revision, b.revision);
+    EXPECT_EQ(a.bounds, b.bounds);
+    EXPECT_EQ(cells_of(a.occupancy), cells_of(b.occupancy));
+    EXPECT_EQ(a.robots.front().scan_count, b.robots.front().scan_count);
+    EXPECT_EQ(a.robots.front().pose, b.robots.front().pose);
+    ASSERT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
+    EXPECT_EQ(a.robots.front().trajectory[899], b.robots.front().trajectory[899]);
+    EXPECT_EQ(b.robots.front().trajectory.first_after(0), 0U);
+    EXPECT_EQ(b.robots.front().trajectory.first_after(452), 450U);
+    EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 900U);
+}
+
+TEST(Projection, EntriesThatCannotFollowAreRefusedAndLeaveItUnchanged) {
+    Projection projection{MapConfig{}};
+    const auto refuse = [&](const LogEntry& entry, const char* why) {
+        const auto before = projection.revision();
+        const auto folded = projection.fold(entry);
+        ASSERT_FALSE(folded) << why;
+        EXPECT_EQ(folded.error().code, Errc::kMalformed);
+        EXPECT_THAT(folded.error().message, testing::HasSubstr(why));
+        EXPECT_EQ(projection.revision(), before);
+    };
+    refuse(RobotJoined{1, "r"}, "robot 1 joins after 0 others");
+    refuse(SensorDescribed{0, laser()}, "a sensor of robot 0");
+    refuse(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}, "a scan of robot 0");
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    refuse(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}, "a scan of sensor 2");
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, laser()}));
+    refuse(ScanTaken{0, {.seq = 2, .sensor = 2, .ranges = {1}}}, "scan 2 of robot 'r' follows scan 0");
+}
+
+TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
+    Projection projection{MapConfig{}};
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, laser()}));
+    std::uint64_t seq = 0;
+    for (const std::size_t beams : {90U, 1U, 45U, 90U, 7U}) {
+        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, 2000)};
+        EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
+        scan.seq = ++seq;
+        ExplicitAngles angles(beams);
+        for (std::size_t b = 0; b < beams; ++b) angles[b] = 0.01 * static_cast<double>(b * b % 300);
+        scan.angles = angles;
+        EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
+    }
+    EXPECT_EQ(projection.snapshot().robots.front().scan_count, 10U);
+}
+
+TEST(Projection, AReachOfTooManyCellsIsRefusedByName) {
+    Sensor sensor = laser();
+    sensor.range_max = 81.0;
+    EXPECT_TRUE(check_reach(*resolve({.cell_size = 0.01}), sensor));
+    sensor.range_max = 82.0;
+    const auto refused = check_reach(*resolve({.cell_size = 0.01}), sensor);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, testing::StartsWith("range_max is 82"));
+}
+
+} // namespace
+} // namespace scanloom::mapping
