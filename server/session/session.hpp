@@ -1,0 +1,90 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/strand.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace scanloom::session {
+
+/// What a session is, for as long as it exists.
+struct SessionInfo {
+    store::SessionId id = 0;
+    std::string name;
+    double created = 0.0; ///< seconds since the epoch
+    mapping::MapConfig config;
+};
+
+/// What a session tells the link of a robot. Called on the session's strand: hand over, do not block.
+class RobotListener {
+public:
+    virtual ~RobotListener() = default;
+
+    /// Every scan up to durable_seq is in the log and in the map; `bytes` more of what was submitted
+    /// need no credit any longer.
+    virtual void on_durable(std::uint64_t durable_seq, std::size_t bytes) = 0;
+
+    /// The session will take nothing more from this link.
+    virtual void on_failed(const Error& error) = 0;
+};
+
+/// What a robot learns when it joins.
+struct Joined {
+    RobotIndex robot = 0;
+    std::uint64_t last_durable_seq = 0;
+};
+
+/// One session: the single writer of its log and of the maps woven from it.
+///
+/// A scan goes down: submit() -> (strand) checked against what came before -> appended to the ScanLog
+/// in groups -> durable -> folded into the Projection -> a new Snapshot published -> on_durable().
+/// Nothing is folded before it is durable, so that the maps never know more than the log.
+///
+/// Thread  every public function may be called from any thread; the work happens on the strand.
+class Session : public std::enable_shared_from_this<Session> {
+public:
+    /// A session whose projection has been recovered from the log up to its end.
+    Session(SessionInfo info, mapping::Projection projection, store::ScanLog& log, boost::asio::any_io_executor compute);
+
+    [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
+
+    /// The newest maps; they hold every scan acknowledged so far.
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const;
+
+    /// Whether the robot has a link at present.
+    [[nodiscard]] bool is_connected(RobotIndex robot) const;
+
+    /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
+    /// `done` is called once, on the strand. Errors: kGone, kStoreFailed, kShuttingDown, kTooLarge.
+    void join(std::string robot, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
+
+    /// Describes a sensor, for the scans submitted after it. `bytes` is given back through on_durable.
+    void submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::size_t bytes);
+
+    /// Adds scans. Those the log already has are dropped; a missing one fails the link (kOutOfOrder),
+    /// as do a scan of a sensor that was not described or with beams that do not fit it.
+    void submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes);
+
+    /// The link is gone; what it submitted stays.
+    void leave(std::shared_ptr<RobotListener> listener);
+
+    /// Fails every link with `reason`, takes nothing more, calls `done` when all that was submitted is
+    /// durable and the checkpoint written.
+    void close(Error reason, std::function<void()> done);
+
+private:
+};
+
+} // namespace scanloom::session
