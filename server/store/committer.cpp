@@ -1,0 +1,110 @@
+#include "server/store/committer.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <future>
+#include <utility>
+
+namespace scanloom::store {
+namespace {
+
+// More would make a write's first change wait longer without saving a noticeable part of an fsync.
+constexpr std::uint64_t kGroupBytesMax = std::uint64_t{8} << 20;
+
+} // namespace
+
+Committer::Committer(rocksdb::DB& database, std::string name)
+    : database_(database), name_(std::move(name)), thread_([this] { run(); }) {}
+
+Committer::~Committer() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    waiting_.notify_one();
+    thread_.join();
+}
+
+void Committer::submit(Change change) {
+    {
+        const std::lock_guard lock(mutex_);
+        stats_.queued_bytes += change.bytes;
+        queue_.push_back(std::move(change));
+    }
+    waiting_.notify_one();
+}
+
+Result<> Committer::submit_and_wait(Change change) {
+    assert(std::this_thread::get_id() != thread_.get_id());
+    // Shared: set_value() may still be returning when the waiter goes on.
+    const auto outcome = std::make_shared<std::promise<Result<>>>();
+    auto result_of_change = outcome->get_future();
+    change.done = [outcome](Result<> result) { outcome->set_value(std::move(result)); };
+    submit(std::move(change));
+    return result_of_change.get();
+}
+
+StoreStats Committer::stats() const {
+    const std::lock_guard lock(mutex_);
+    return stats_;
+}
+
+void Committer::run() {
+    for (Group group = next_group(); !group.empty(); group = next_group()) commit(std::move(group));
+}
+
+/// Waits for work; empty when there will be none any more.
+Committer::Group Committer::next_group() {
+    std::unique_lock lock(mutex_);
+    waiting_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+    Group group;
+    std::uint64_t bytes = 0;
+    while (!queue_.empty() && (group.empty() || bytes + queue_.front().bytes <= kGroupBytesMax)) {
+        bytes += queue_.front().bytes;
+        group.push_back(std::move(queue_.front()));
+        queue_.pop_front();
+    }
+    stats_.queued_bytes -= bytes;
+    return group;
+}
+
+void Committer::commit(Group group) {
+    rocksdb::WriteBatch batch;
+    std::vector<Result<>> results;
+    for (const Change& change : group) results.push_back(failed_ ? Result<>(*failed_) : change.add_to(batch));
+    if (batch.Count() > 0) {
+        const auto written = write(batch);
+        for (auto& result : results) {
+            if (result) result = written;
+        }
+    }
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        if (results[i]) count(group[i]);
+        group[i].done(std::move(results[i]));
+    }
+}
+
+Result<> Committer::write(rocksdb::WriteBatch& batch) {
+    rocksdb::WriteOptions options;
+    options.sync = true;
+    const auto status = database_.Write(options, &batch);
+    const std::lock_guard lock(mutex_);
+    if (status.ok()) {
+        ++stats_.synced_writes;
+        return {};
+    }
+    failed_ = Error{Errc::kStoreFailed,
+                    fmt::format("the store {} could not write ({}); it takes no changes until the server is restarted",
+                                name_, status.ToString())};
+    stats_.last_error = failed_->message;
+    return *failed_;
+}
+
+void Committer::count(const Change& change) {
+    const std::lock_guard lock(mutex_);
+    stats_.appends += change.appends;
+    stats_.entries += change.entries;
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "server/store/scan_log.hpp"
+
+#include <rocksdb/db.h>
+#include <rocksdb/write_batch.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace scanloom::store {
+
+/// One change of the store.
+struct Change {
+    std::uint64_t bytes = 0;   ///< about what it adds to the write
+    std::uint64_t appends = 0; ///< what to count when it is durable
+    std::uint64_t entries = 0;
+
+    /// Adds the change to the write, or refuses it and adds nothing. Called on the committer's thread, in order.
+    std::function<Result<>(rocksdb::WriteBatch&)> add_to;
+
+    /// Called once, on the committer's thread.
+    ScanLog::Done done;
+};
+
+/// The only writer of the database: one thread, one queue, one synced write after another.
+///
+/// As each write is synced before the next one begins, only the last write in RocksDB's log can be
+/// torn by a crash, which is what mend_write_ahead_log() relies on; and RocksDB fills its memtable
+/// only after the sync, so nothing reaches a table file before it is durable in the log.
+/// A failed write leaves the disk unknown: from then on every change fails.
+/// Thread  any.
+class Committer {
+public:
+    Committer(rocksdb::DB& database, std::string name);
+
+    /// Writes what waits, then stops.
+    ~Committer();
+
+    Committer(const Committer&) = delete;
+    Committer& operator=(const Committer&) = delete;
+
+    void submit(Change change);
+
+    /// The same, returning when it is durable or has failed. Not from within a `done`.
+    [[nodiscard]] Result<> submit_and_wait(Change change);
+
+    /// All but what is on disk.
+    [[nodiscard]] StoreStats stats() const;
+
+private:
+    using Group = std::vector<Change>;
+
+    void run();
+    [[nodiscard]] Group next_group();
+    void commit(Group group);
+    [[nodiscard]] Result<> write(rocksdb::WriteBatch& batch);
+    void count(const Change& change);
+
+    rocksdb::DB& database_;
+    const std::string name_;      // for messages
+    std::optional<Error> failed_; // committer's thread only; stats_.last_error is its public copy
+    mutable std::mutex mutex_;    // guards what follows
+    std::condition_variable waiting_;
+    std::deque<Change> queue_;
+    bool stopping_ = false;
+    StoreStats stats_;
+    std::thread thread_; // last: everything it uses exists
+};
+
+} // namespace scanloom::store

@@ -1,0 +1,103 @@
+#include "server/store/crash_recovery.hpp"
+
+#include "server/store/log_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error failure(std::string message) { return {Errc::kStoreFailed, std::move(message)}; }
+
+Result<std::string> contents_of(const fs::path& file) {
+    std::error_code problem;
+    const auto size = fs::file_size(file, problem);
+    if (problem) return failure(fmt::format("cannot read {} of the store: {}", file.native(), problem.message()));
+    std::string bytes(size, '\0');
+    std::ifstream in(file, std::ios::binary);
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) {
+        return failure(fmt::format("cannot read {} of the store; check the disk", file.native()));
+    }
+    return bytes;
+}
+
+Result<LogFileCheck> checked(const fs::path& file) {
+    const auto bytes = contents_of(file);
+    if (!bytes) return bytes.error();
+    auto check = check_log_file(*bytes);
+    if (check.damage) {
+        return failure(fmt::format("{} of the store is damaged at byte {}; restore the store from a backup",
+                                   file.native(), *check.damage));
+    }
+    return check;
+}
+
+/// The write-ahead log that was written last. Older ones were synced as a whole, and RocksDB
+/// recorded their sizes in its manifest.
+std::optional<fs::path> newest_write_ahead_log(const fs::path& directory) {
+    std::optional<fs::path> newest;
+    std::uint64_t newest_number = 0;
+    std::error_code problem;
+    for (fs::directory_iterator file(directory, problem); !problem && file != fs::directory_iterator();
+         file.increment(problem)) {
+        if (file->path().extension() != ".log") continue;
+        const std::string stem = file->path().stem().native();
+        std::uint64_t number = 0;
+        const auto [end, unread] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+        if (unread != std::errc() || end != stem.data() + stem.size() || (newest && number < newest_number)) continue;
+        newest = file->path();
+        newest_number = number;
+    }
+    return newest;
+}
+
+Result<> cut_off(const fs::path& file, std::size_t bytes) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    const bool done =
+        descriptor >= 0 && ::ftruncate(descriptor, static_cast<off_t>(bytes)) == 0 && ::fsync(descriptor) == 0;
+    const std::string problem = std::system_category().message(errno);
+    if (descriptor >= 0) ::close(descriptor);
+    if (done) return {};
+    return failure(fmt::format("cannot cut the unfinished write off {} of the store: {}", file.native(), problem));
+}
+
+/// RocksDB takes a damaged length near the manifest's end for its end, and would go on without the rest.
+Result<> check_manifest(const fs::path& directory) {
+    std::string name;
+    std::ifstream(directory / "CURRENT") >> name;
+    std::error_code problem;
+    if (name.empty() || !fs::exists(directory / name, problem)) return {}; // RocksDB reports it
+    const auto check = checked(directory / name);
+    if (!check) return check.error();
+    return {};
+}
+
+} // namespace
+
+Result<std::uint64_t> mend_after_crash(const LockedDirectory& directory) {
+    if (auto manifest = check_manifest(directory.path()); !manifest) return manifest.error();
+    const auto log = newest_write_ahead_log(directory.path());
+    if (!log) return std::uint64_t{0};
+    const auto check = checked(*log);
+    if (!check) return check.error();
+    std::error_code problem;
+    const auto size = fs::file_size(*log, problem);
+    if (problem) return failure(fmt::format("cannot read {} of the store: {}", log->native(), problem.message()));
+    if (check->whole_bytes == size) return std::uint64_t{0};
+    if (auto cut = cut_off(*log, check->whole_bytes); !cut) return cut.error();
+    return size - check->whole_bytes;
+}
+
+} // namespace scanloom::store

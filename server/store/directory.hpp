@@ -1,0 +1,36 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <filesystem>
+#include <utility>
+
+namespace scanloom::store {
+
+/// The store's directory, held by this process alone for as long as this lives.
+/// A lock of our own beside RocksDB's, as the directory is looked at and mended before RocksDB opens it.
+class LockedDirectory {
+public:
+    /// Creates the directory if need be.
+    /// Errors  kStoreFailed: it cannot be created, is no directory, cannot be written, is in use by
+    ///         another server, holds other files than a store, or a store that lost files.
+    [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory);
+
+    LockedDirectory(LockedDirectory&& other) noexcept
+        : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    LockedDirectory& operator=(LockedDirectory&&) = delete;
+    ~LockedDirectory();
+
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+private:
+    LockedDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+
+    std::filesystem::path path_;
+    int lock_; // file descriptor; the system lets the lock go with it, also after a crash
+};
+
+/// Bytes of all files in a directory.
+[[nodiscard]] std::uint64_t bytes_in(const std::filesystem::path& directory);
+
+} // namespace scanloom::store

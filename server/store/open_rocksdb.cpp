@@ -1,0 +1,121 @@
+#include "server/store/crash_recovery.hpp"
+#include "server/store/record.hpp"
+#include "server/store/rocksdb_options.hpp"
+#include "server/store/rocksdb_scan_log.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error failure(const fs::path& directory, std::string_view what) {
+    return {Errc::kStoreFailed, fmt::format("the store {} cannot be opened: {}", directory.native(), what)};
+}
+
+Error failure(const fs::path& directory, const rocksdb::Status& status) {
+    if (status.IsCorruption()) {
+        return failure(directory, fmt::format("it is damaged ({}); restore it from a backup", status.ToString()));
+    }
+    if (status.IsNoSpace()) return failure(directory, fmt::format("the disk is full ({})", status.ToString()));
+    return failure(directory, status.ToString());
+}
+
+/// A number the store keeps about itself; nothing if it was never written.
+Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs::path& directory,
+                                                 std::string_view key) {
+    std::string sealed_value;
+    const auto status = database.Get({}, rocksdb::Slice(key.data(), key.size()), &sealed_value);
+    if (status.IsNotFound()) return std::optional<std::uint64_t>{};
+    if (!status.ok()) return failure(directory, status);
+    const auto value = unsealed(key, sealed_value);
+    const auto number = value ? number_of(*value) : std::nullopt;
+    if (!number) return failure(directory, fmt::format("its record '{}' is damaged; restore it from a backup", key));
+    return number;
+}
+
+bool is_empty(rocksdb::DB& database) {
+    const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
+    iterator->SeekToFirst();
+    return !iterator->Valid() && iterator->status().ok();
+}
+
+Result<> write_format(rocksdb::DB& database, const fs::path& directory) {
+    rocksdb::WriteOptions options;
+    options.sync = true;
+    const std::string key(kFormatKey);
+    const auto status = database.Put(options, key, sealed(key, number_bytes(kFormatVersion)));
+    if (!status.ok()) return failure(directory, status);
+    return {};
+}
+
+Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
+    const auto version = read_number(database, directory, kFormatKey);
+    if (!version) return version.error();
+    if (!*version) {
+        if (is_empty(database)) return write_format(database, directory);
+        return failure(directory, "it is a RocksDB database, but not scanloom-server's; name another directory");
+    }
+    if (**version <= kFormatVersion) return {};
+    return Error{Errc::kUnsupportedVersion,
+                 fmt::format("the store {} was written by a newer scanloom-server (format {}, this one knows up to "
+                             "{}); update the server",
+                             directory.native(), **version, kFormatVersion)};
+}
+
+/// The last entry's revision, found by its key alone; 0 for an empty log.
+Result<Revision> end_of_log(rocksdb::Iterator& iterator, const fs::path& directory, SessionId session) {
+    const KeyRange range = entries_of(session);
+    iterator.SeekForPrev(range.end);
+    if (!iterator.status().ok()) return failure(directory, iterator.status());
+    if (!iterator.Valid() || iterator.key().compare(range.begin) < 0) return Revision{0};
+    const auto revision = revision_of(iterator.key().ToStringView());
+    if (!revision) return failure(directory, fmt::format("the log of session {} is damaged", session));
+    return *revision;
+}
+
+Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
+    LogEnds ends;
+    const auto next = read_number(database, directory, kNextSessionKey);
+    if (!next) return next.error();
+    ends.next_session = next->value_or(1);
+
+    const std::unique_ptr<rocksdb::Iterator> sessions(database.NewIterator({}));
+    const std::unique_ptr<rocksdb::Iterator> entries(database.NewIterator({}));
+    for (sessions->Seek(std::string(kSessionsBegin)); sessions->Valid(); sessions->Next()) {
+        const auto session = session_of(sessions->key().ToStringView());
+        if (!session) break;
+        if (*session >= ends.next_session) return failure(directory, "its count of sessions is damaged");
+        const auto end = end_of_log(*entries, directory, *session);
+        if (!end) return end.error();
+        ends.revisions.emplace(*session, *end);
+    }
+    if (!sessions->status().ok()) return failure(directory, sessions->status());
+    return ends;
+}
+
+} // namespace
+
+Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const StoreOptions& options) {
+    auto locked = LockedDirectory::open(directory);
+    if (!locked) return locked.error();
+    const auto dropped = mend_after_crash(*locked);
+    if (!dropped) return dropped.error();
+
+    rocksdb::DB* opened = nullptr;
+    const auto status = rocksdb::DB::Open(rocksdb_options(options), directory.native(), &opened);
+    std::unique_ptr<rocksdb::DB> database(opened);
+    if (!status.ok()) return failure(directory, status);
+
+    if (auto format = check_format(*database, directory); !format) return format.error();
+    auto ends = read_ends(*database, directory);
+    if (!ends) return ends.error();
+    return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped);
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,72 @@
+#include "server/store/rocksdb_options.hpp"
+
+#include <rocksdb/cache.h>
+#include <rocksdb/filter_policy.h>
+#include <rocksdb/table.h>
+
+#include <algorithm>
+
+namespace scanloom::store {
+namespace {
+
+/// The order in which changes become durable, and what recovery accepts.
+void set_durability(rocksdb::Options& rocksdb) {
+    rocksdb.create_if_missing = true; // LockedDirectory refuses a store that lost its CURRENT before
+    rocksdb.paranoid_checks = true;
+    // mend_after_crash() has cut off what a crash left unfinished; anything else amiss is damage.
+    rocksdb.wal_recovery_mode = rocksdb::WALRecoveryMode::kAbsoluteConsistency;
+    rocksdb.track_and_verify_wals_in_manifest = true;  // notices a lost or shortened older write-ahead log
+    rocksdb.recycle_log_file_num = 0;                  // stale records behind the end would look like later writes
+    rocksdb.wal_compression = rocksdb::kNoCompression; // check_log_file() reads plain records only
+    // Recovered entries go to a synced table file before anyone reads them: after a failed fsync, the
+    // write-ahead log may be whole in the system's cache only.
+    rocksdb.avoid_flush_during_recovery = false;
+    rocksdb.enable_pipelined_write = false; // the memtable is filled after the sync, see Committer
+    rocksdb.unordered_write = false;
+    rocksdb.max_bgerror_resume_count = 0; // a failed store stays failed until it is opened again
+}
+
+/// One column family for everything: one memtable and one write-ahead log, so that whatever is
+/// flushed, the disk holds a prefix of the changes. Families flushed one by one would need atomic_flush for that.
+void set_memory(rocksdb::Options& rocksdb, const StoreOptions& options) {
+    rocksdb.write_buffer_size = std::max<std::size_t>(options.memory_bytes / 8, 64 << 10);
+    rocksdb.max_write_buffer_number = 4; // with the cache: memory_bytes
+    rocksdb.max_open_files = 256;        // the rest of the usual 1024 descriptors is for sockets
+    rocksdb::BlockBasedTableOptions table;
+    table.block_cache = rocksdb::NewLRUCache(options.memory_bytes / 2);
+    table.cache_index_and_filter_blocks = true; // or they would grow with the store, outside of any bound
+    table.block_size = 32 << 10;                // entries are read in order; larger blocks compress better
+    rocksdb.table_factory.reset(rocksdb::NewBlockBasedTableFactory(table));
+}
+
+void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
+    rocksdb.compression = rocksdb::kLZ4Compression;
+    rocksdb.bottommost_compression = rocksdb::kZSTD; // nearly all of the log ends there and is seldom read again
+    rocksdb.level_compaction_dynamic_level_bytes = true;
+    rocksdb.target_file_size_base = rocksdb.write_buffer_size;
+    rocksdb.max_bytes_for_level_base = 4 * rocksdb.write_buffer_size;
+    rocksdb.max_background_jobs = 2;
+    rocksdb.bytes_per_sync = 1 << 20; // writes tables out steadily, not in one burst that delays the log's fsync
+    if (options.env != nullptr) rocksdb.env = options.env;
+}
+
+void set_reports(rocksdb::Options& rocksdb) {
+    rocksdb.info_log_level = rocksdb::InfoLogLevel::WARN_LEVEL;
+    rocksdb.max_log_file_size = 4 << 20;
+    rocksdb.keep_log_file_num = 4;
+    rocksdb.stats_dump_period_sec = 0;
+    rocksdb.stats_persist_period_sec = 0;
+}
+
+} // namespace
+
+rocksdb::Options rocksdb_options(const StoreOptions& options) {
+    rocksdb::Options rocksdb;
+    set_durability(rocksdb);
+    set_memory(rocksdb, options);
+    set_disk(rocksdb, options);
+    set_reports(rocksdb);
+    return rocksdb;
+}
+
+} // namespace scanloom::store

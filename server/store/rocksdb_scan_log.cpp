@@ -1,0 +1,249 @@
+#include "server/store/rocksdb_scan_log.hpp"
+
+#include "server/store/record.hpp"
+
+#include <fmt/format.h>
+#include <rocksdb/convenience.h>
+#include <rocksdb/experimental.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace scanloom::store {
+namespace {
+
+// What a change costs beside its own bytes; keeps a flood of empty ones within the bound of a group.
+constexpr std::uint64_t kChangeBytes = 64;
+
+struct SealedPair {
+    std::string key;
+    std::string value;
+};
+
+SealedPair sealed_pair(std::string key, std::string value) {
+    std::string sealed_value = sealed(key, std::move(value));
+    return {std::move(key), std::move(sealed_value)};
+}
+
+std::uint64_t bytes_of(const std::vector<SealedPair>& pairs) {
+    std::uint64_t bytes = kChangeBytes;
+    for (const auto& pair : pairs) bytes += pair.key.size() + pair.value.size();
+    return bytes;
+}
+
+Result<> put(rocksdb::WriteBatch& batch, const std::vector<SealedPair>& pairs) {
+    for (const auto& pair : pairs) {
+        if (const auto status = batch.Put(pair.key, pair.value); !status.ok()) {
+            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
+        }
+    }
+    return {};
+}
+
+Error no_such_session(SessionId session) {
+    return {Errc::kNotFound, fmt::format("the store has no session {}; it may have been removed", session)};
+}
+
+Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
+    return {Errc::kStoreFailed, fmt::format("the store {} cannot read session {}: {}; restore it from a backup or "
+                                            "remove the session",
+                                            store, session, status.ToString())};
+}
+
+Error damaged(const std::string& store, SessionId session, std::string_view what) {
+    return {Errc::kStoreFailed, fmt::format("the store {} is damaged: {} of session {}; restore it from a backup or "
+                                            "remove the session",
+                                            store, what, session)};
+}
+
+std::string_view view(const rocksdb::Slice& slice) { return {slice.data(), slice.size()}; }
+
+/// A whole log is read once, front to end: nothing of it is worth keeping in the cache.
+struct Scan {
+    explicit Scan(rocksdb::DB& database, const KeyRange& range)
+        : end(range.end), iterator(database.NewIterator(options(&end))) {}
+
+    static rocksdb::ReadOptions options(const rocksdb::Slice* end) {
+        rocksdb::ReadOptions read;
+        read.iterate_upper_bound = end;
+        read.fill_cache = false;
+        read.readahead_size = 1 << 20;
+        return read;
+    }
+
+    rocksdb::Slice end;
+    std::unique_ptr<rocksdb::Iterator> iterator;
+};
+
+} // namespace
+
+RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
+                               std::uint64_t torn_bytes_dropped)
+    : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
+      torn_bytes_dropped_(torn_bytes_dropped), committer_(*database_, name()) {}
+
+Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
+    SessionId created = 0;
+    Change change;
+    change.bytes = kChangeBytes + record.size();
+    change.add_to = [this, &created, record](rocksdb::WriteBatch& batch) -> Result<> {
+        created = ends_.next_session;
+        std::vector<SealedPair> pairs;
+        pairs.push_back(sealed_pair(session_key(created), std::string(record)));
+        pairs.push_back(sealed_pair(std::string(kNextSessionKey), number_bytes(created + 1)));
+        if (auto added = put(batch, pairs); !added) return added;
+        ends_.next_session = created + 1;
+        ends_.revisions.emplace(created, 0);
+        return {};
+    };
+    if (auto committed = committer_.submit_and_wait(std::move(change)); !committed) return committed.error();
+    return created;
+}
+
+Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
+    std::vector<StoredSession> found;
+    const KeyRange range{std::string(kSessionsBegin), std::string(kSessionsEnd)};
+    const Scan scan(*database_, range);
+    for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
+        const auto session = session_of(view(scan.iterator->key()));
+        const auto record = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
+        if (!session || !record) return damaged(name(), session.value_or(0), "the record");
+        found.push_back({*session, std::string(*record)});
+    }
+    if (const auto status = scan.iterator->status(); !status.ok()) {
+        return Error{Errc::kStoreFailed,
+                     fmt::format("the store {} cannot list its sessions: {}", name(), status.ToString())};
+    }
+    return found;
+}
+
+Result<> RocksdbScanLog::remove_session(SessionId session) {
+    Change change;
+    change.bytes = kChangeBytes;
+    change.add_to = [this, session](rocksdb::WriteBatch& batch) -> Result<> {
+        if (ends_.revisions.erase(session) == 0) return no_such_session(session);
+        auto status = batch.Delete(session_key(session));
+        for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
+            if (status.ok()) status = batch.DeleteRange(range.begin, range.end);
+        }
+        if (!status.ok()) {
+            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
+        }
+        return {};
+    };
+    if (auto committed = committer_.submit_and_wait(std::move(change)); !committed) return committed;
+    free_disk(session);
+    return {};
+}
+
+/// Drops the tables that hold nothing else at once; the rest goes with the next compactions. A failure
+/// costs space and no more: whatever is left belongs to no session.
+void RocksdbScanLog::free_disk(SessionId session) {
+    for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
+        const rocksdb::Slice begin(range.begin);
+        const rocksdb::Slice end(range.end);
+        rocksdb::DeleteFilesInRange(database_.get(), database_->DefaultColumnFamily(), &begin, &end, false)
+            .PermitUncheckedError();
+        rocksdb::experimental::SuggestCompactRange(database_.get(), &begin, &end).PermitUncheckedError();
+    }
+}
+
+void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::string> entries, Done done) {
+    // Sealed on the caller's thread: the committer is one for all sessions.
+    std::vector<SealedPair> pairs;
+    pairs.reserve(entries.size());
+    for (auto& entry : entries)
+        pairs.push_back(sealed_pair(entry_key(session, first + pairs.size()), std::move(entry)));
+
+    Change change;
+    change.bytes = bytes_of(pairs);
+    change.appends = 1;
+    change.entries = pairs.size();
+    change.add_to = [this, session, first, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
+        const auto end = ends_.revisions.find(session);
+        if (end == ends_.revisions.end()) return no_such_session(session);
+        if (first != end->second + 1) {
+            return Error{Errc::kConflict, fmt::format("an append to session {} begins with revision {}, but its log "
+                                                      "ends with {}",
+                                                      session, first, end->second)};
+        }
+        if (auto added = put(batch, pairs); !added) return added;
+        end->second += pairs.size();
+        return {};
+    };
+    change.done = std::move(done);
+    committer_.submit(std::move(change));
+}
+
+Result<> RocksdbScanLog::read(SessionId session, Revision after, const VisitEntry& visit) {
+    if (auto exists = check_session(session); !exists) return exists;
+    const KeyRange range = entries_of(session);
+    const Scan scan(*database_, range);
+    // Begins with the entry before, to see that the log reaches that far.
+    Revision expected = after == 0 ? 1 : after;
+    for (scan.iterator->Seek(entry_key(session, expected)); scan.iterator->Valid(); scan.iterator->Next()) {
+        const auto key = view(scan.iterator->key());
+        if (revision_of(key) != expected) {
+            return damaged(name(), session, fmt::format("the entry of revision {} is missing", expected));
+        }
+        const auto entry = unsealed(key, view(scan.iterator->value()));
+        if (!entry) return damaged(name(), session, fmt::format("the entry of revision {}", expected));
+        if (expected > after) {
+            if (auto visited = visit(expected, *entry); !visited) return visited;
+        }
+        ++expected;
+    }
+    if (const auto status = scan.iterator->status(); !status.ok()) {
+        return prefixed(fmt::format("at revision {}: ", expected), unreadable(name(), session, status));
+    }
+    if (expected == after) {
+        return damaged(name(), session, fmt::format("the log ends before revision {}", after));
+    }
+    return {};
+}
+
+Result<> RocksdbScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
+    std::vector<SealedPair> pairs;
+    pairs.reserve(parts.size());
+    for (auto& part : parts) pairs.push_back(sealed_pair(part_key(session, part.key), std::move(part.value)));
+
+    Change change;
+    change.bytes = bytes_of(pairs);
+    change.add_to = [this, session, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
+        if (!ends_.revisions.contains(session)) return no_such_session(session);
+        return put(batch, pairs);
+    };
+    return committer_.submit_and_wait(std::move(change));
+}
+
+Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& visit) {
+    if (auto exists = check_session(session); !exists) return exists;
+    const KeyRange range = parts_of(session);
+    const Scan scan(*database_, range);
+    for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
+        const auto part = part_of(view(scan.iterator->key()));
+        const auto value = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
+        if (!part || !value) return damaged(name(), session, "a part of the checkpoint");
+        if (auto visited = visit(*part, *value); !visited) return visited;
+    }
+    if (const auto status = scan.iterator->status(); !status.ok()) return unreadable(name(), session, status);
+    return {};
+}
+
+StoreStats RocksdbScanLog::stats() const {
+    StoreStats stats = committer_.stats();
+    stats.bytes_on_disk = bytes_in(directory_.path());
+    stats.torn_bytes_dropped = torn_bytes_dropped_;
+    return stats;
+}
+
+Result<> RocksdbScanLog::check_session(SessionId session) {
+    std::string record;
+    const auto status = database_->Get({}, session_key(session), &record);
+    if (status.ok()) return {};
+    if (status.IsNotFound()) return no_such_session(session);
+    return unreadable(name(), session, status);
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "server/store/committer.hpp"
+#include "server/store/directory.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <rocksdb/db.h>
+
+#include <map>
+#include <memory>
+
+namespace scanloom::store {
+
+/// Where each log ends and what the next session is called: what the next change is checked against.
+struct LogEnds {
+    SessionId next_session = 1;
+    std::map<SessionId, Revision> revisions; ///< of each session's last entry, 0 for an empty log
+};
+
+/// The scan log in RocksDB. Readers go to the database themselves; changes go through the committer.
+class RocksdbScanLog final : public ScanLog {
+public:
+    RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
+                   std::uint64_t torn_bytes_dropped);
+
+    [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
+    [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
+    [[nodiscard]] Result<> remove_session(SessionId session) override;
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
+    [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;
+    [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
+    [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
+    [[nodiscard]] StoreStats stats() const override;
+
+private:
+    [[nodiscard]] Result<> check_session(SessionId session);
+    [[nodiscard]] std::string name() const { return directory_.path().native(); }
+    void free_disk(SessionId session);
+
+    LockedDirectory directory_;
+    std::unique_ptr<rocksdb::DB> database_;
+    LogEnds ends_; // committer's thread only
+    std::uint64_t torn_bytes_dropped_;
+    Committer committer_; // last: it is stopped before anything it uses goes
+};
+
+} // namespace scanloom::store

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rocksdb {
+class Env;
+}
+
+namespace scanloom::store {
+
+/// A session's number in the store, from 1. Never reused, also not after deletion or restart.
+using SessionId = std::uint64_t;
+
+struct StoredSession {
+    SessionId id = 0;
+    std::string record; ///< opaque bytes
+
+    friend bool operator==(const StoredSession&, const StoredSession&) = default;
+};
+
+/// One named part of a session's checkpoint, for example one chunk of its map. Opaque bytes.
+struct CheckpointPart {
+    std::string key;
+    std::string value;
+
+    friend bool operator==(const CheckpointPart&, const CheckpointPart&) = default;
+};
+
+/// What the store did since it was opened, and what it holds.
+struct StoreStats {
+    std::uint64_t bytes_on_disk = 0;       ///< all files of the store
+    std::uint64_t appends = 0;             ///< calls of append() that became durable
+    std::uint64_t entries = 0;             ///< log entries that became durable
+    std::uint64_t synced_writes = 0;       ///< group commits, one fsync each
+    std::uint64_t queued_bytes = 0;        ///< waiting for the committer
+    std::uint64_t torn_bytes_dropped = 0;  ///< of a write the last crash cut short, never acknowledged
+    std::optional<std::string> last_error; ///< why nothing is written any more
+};
+
+/// The truth: every session's append-only log of entries, and checkpoints of what was woven from them.
+///
+/// Order   All changes (sessions, entries, checkpoints) take effect in the order in which they were
+///         handed over, and what a crash or power cut leaves is a prefix of them. So a checkpoint
+///         that survives is never ahead of the log, provided it was handed over after the entries
+///         it covers were; they need not be acknowledged yet.
+/// Errors  kNotFound: no such session, or it was removed. kConflict: an append that does not
+///         continue its session's log. kStoreFailed: reading or writing failed, or what was read
+///         is damaged. After one failed write or sync every change fails, until the store is
+///         opened again: what the disk holds is not known before that. Reading goes on.
+/// Thread  any, at the same time. Everything but append() and stats() may wait for the disk: keep
+///         it off the threads that serve sockets. From within `done` only append() may be called.
+class ScanLog {
+public:
+    using Done = std::function<void(Result<>)>;
+    using VisitEntry = std::function<Result<>(Revision, std::string_view)>;
+    using VisitPart = std::function<Result<>(std::string_view key, std::string_view value)>;
+
+    ScanLog() = default;
+    ScanLog(const ScanLog&) = delete;
+    ScanLog& operator=(const ScanLog&) = delete;
+
+    /// Writes what still waits, calls every `done`, and closes.
+    virtual ~ScanLog() = default;
+
+    /// Durable when it returns.
+    [[nodiscard]] virtual Result<SessionId> create_session(std::string_view record) = 0;
+
+    /// All sessions, by rising id.
+    [[nodiscard]] virtual Result<std::vector<StoredSession>> sessions() = 0;
+
+    /// Durable when it returns: record, entries and checkpoint are gone. The disk is freed in time.
+    [[nodiscard]] virtual Result<> remove_session(SessionId session) = 0;
+
+    /// Appends entries first, first + 1, ..., all or none of them.
+    ///
+    /// Pre     `first` is one past the session's last entry, 1 for an empty log.
+    /// Post    `done` is called exactly once, from the committer's thread, when the entries survive
+    ///         kill -9 and power loss, or have failed. It should be quick and must not throw.
+    ///         Everything that waits, of all sessions, becomes durable with one synced write.
+    /// Queue   "commit queue". append() never waits and never refuses: the capacity is the sum of
+    ///         the robots' credits, as credit is given back only when `done` was called.
+    ///         Its size is stats().queued_bytes.
+    virtual void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) = 0;
+
+    /// Visits the entries after `after` in order, of the log as it is now; stops at the visitor's error.
+    ///
+    /// Errors  kStoreFailed, naming session and revision: a damaged entry; a missing one; a log that
+    ///         ends before `after`, as a checkpoint ahead of its log would have it.
+    [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
+
+    /// Replaces the named parts, all or none of them; parts not named stay.
+    /// Takes its turn in the commit queue and returns when written.
+    [[nodiscard]] virtual Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) = 0;
+
+    /// Visits all parts by rising key; none if no checkpoint was written. Stops at the visitor's error.
+    [[nodiscard]] virtual Result<> read_checkpoint(SessionId session, const VisitPart& visit) = 0;
+
+    [[nodiscard]] virtual StoreStats stats() const = 0;
+};
+
+struct StoreOptions {
+    /// Bound of write buffers and block cache together. The default suits 1 GB of memory and 24 GB:
+    /// the log is read in order, so more cache would hardly be used, and the system caches files.
+    std::size_t memory_bytes = std::size_t{128} << 20;
+
+    /// The file layer, for tests that fail it. Null: the system's.
+    rocksdb::Env* env = nullptr;
+};
+
+/// Opens the store in a directory, creating both if there is nothing yet.
+///
+/// Errors  kStoreFailed: the directory cannot be used, is in use by another process, holds something
+///         else, or the store in it is damaged; the message names the file. kUnsupportedVersion: it
+///         was written by a newer program. A write that a crash cut short is no damage: it was never
+///         acknowledged and is dropped.
+[[nodiscard]] Result<std::unique_ptr<ScanLog>> open_rocksdb(const std::filesystem::path& directory,
+                                                            const StoreOptions& options = {});
+
+} // namespace scanloom::store
