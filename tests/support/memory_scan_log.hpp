@@ -1,0 +1,66 @@
+#pragma once
+
+#include "server/store/scan_log.hpp"
+
+#include <map>
+#include <mutex>
+#include <optional>
+
+namespace scanloom::store {
+
+/// A scan log in memory that fails and waits when told to.
+///
+/// Keeps ScanLog's contract but for two things: nothing survives the object, and `done` is called
+/// within append() (or release_completions()), so that tests need no thread and no waiting.
+/// Thread  any, at the same time; `done` and visitors run without the lock and may call back.
+class MemoryScanLog final : public ScanLog {
+public:
+    ~MemoryScanLog() override;
+
+    /// The next change and, as with a real disk, all that follow fail with this error.
+    void fail_from_next_change(Error error);
+
+    /// As opening the store again does: changes succeed again.
+    void reopen();
+
+    /// From now on appends wait, neither durable nor failed, until release_completions().
+    void hold_completions();
+    void release_completions();
+    [[nodiscard]] std::size_t held_completions() const;
+
+    [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
+    [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
+    [[nodiscard]] Result<> remove_session(SessionId session) override;
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
+    [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;
+    [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
+    [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
+    [[nodiscard]] StoreStats stats() const override;
+
+private:
+    struct Session {
+        std::string record;
+        std::vector<std::string> entries;
+        std::map<std::string, std::string> parts;
+    };
+    struct Append {
+        SessionId session;
+        Revision first;
+        std::vector<std::string> entries;
+        Done done;
+    };
+
+    [[nodiscard]] Result<> store(Append& append);
+    [[nodiscard]] Result<Session> copy_of(SessionId session) const;
+    void complete(std::vector<Append> appends);
+
+    mutable std::mutex mutex_; // guards all that follows
+    std::map<SessionId, Session> sessions_;
+    SessionId next_session_ = 1;
+    std::optional<Error> failed_;
+    bool holding_ = false;
+    std::vector<Append> held_;
+    StoreStats stats_;
+};
+
+} // namespace scanloom::store
