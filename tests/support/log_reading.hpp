@@ -1,0 +1,58 @@
+#pragma once
+
+#include "server/store/scan_log.hpp"
+
+#include <future>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// A scan log's calls as plain values, for tests that look at what is in it.
+namespace scanloom::store {
+
+inline Result<> append_and_wait(ScanLog& log, SessionId session, Revision first, std::vector<std::string> entries) {
+    const auto outcome = std::make_shared<std::promise<Result<>>>();
+    auto result = outcome->get_future();
+    log.append(session, first, std::move(entries),
+               [outcome](Result<> appended) { outcome->set_value(std::move(appended)); });
+    return result.get();
+}
+
+inline Result<std::vector<std::string>> entries_after(ScanLog& log, SessionId session, Revision after) {
+    std::vector<std::string> entries;
+    auto read = log.read(session, after, [&](Revision, std::string_view entry) -> Result<> {
+        entries.emplace_back(entry);
+        return {};
+    });
+    if (!read) return read.error();
+    return entries;
+}
+
+inline Result<std::map<std::string, std::string>> checkpoint_of(ScanLog& log, SessionId session) {
+    std::map<std::string, std::string> parts;
+    auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
+        parts.emplace(key, value);
+        return {};
+    });
+    if (!read) return read.error();
+    return parts;
+}
+
+/// An entry that only this session and revision has, up to 3 KB long.
+inline std::string distinct_entry(SessionId session, Revision revision) {
+    const std::string name = std::to_string(session) + "/" + std::to_string(revision) + ";";
+    std::string entry;
+    const std::size_t bytes = (session * 7919 + revision * 104729) % 3000;
+    do entry += name;
+    while (entry.size() < bytes);
+    return entry;
+}
+
+inline std::vector<std::string> distinct_entries(SessionId session, Revision first, std::size_t count) {
+    std::vector<std::string> entries;
+    for (std::size_t i = 0; i < count; ++i) entries.push_back(distinct_entry(session, first + i));
+    return entries;
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,228 @@
+#include "server/store/log_file.hpp"
+#include "server/store/scan_log.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+/// Files cut short by a crash, which must open, and damaged ones, which must not pass for whole.
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Revision kBatches = 12;
+constexpr Revision kBatchEntries = 5;
+
+/// A store killed after a dozen appends, all of them still in its write-ahead log.
+class KilledStore : public testing::Test {
+protected:
+    KilledStore() {
+        auto log = open_rocksdb(original()).value();
+        session_ = log->create_session("a session").value();
+        const auto write_ahead_log = only_file_like(original(), ".log");
+        ends_.push_back(fs::file_size(write_ahead_log));
+        for (Revision batch = 0; batch < kBatches; ++batch) {
+            const Revision first = 1 + batch * kBatchEntries;
+            append_and_wait(*log, session_, first, distinct_entries(session_, first, kBatchEntries)).value();
+            ends_.push_back(fs::file_size(write_ahead_log));
+        }
+        copy_store(original(), killed());
+    }
+
+    [[nodiscard]] fs::path original() const { return directory_.path() / "original"; }
+    [[nodiscard]] fs::path killed() const { return directory_.path() / "killed"; }
+    [[nodiscard]] fs::path copy() const { return directory_.path() / "copy"; }
+
+    /// Expects just the appends whose writes are wholly within the first `bytes`.
+    void expect_prefix(std::size_t bytes) {
+        const auto log = open_rocksdb(copy());
+        ASSERT_TRUE(log) << log.error().message;
+        if (bytes < ends_.front()) {
+            EXPECT_THAT((*log)->sessions().value(), IsEmpty());
+            return;
+        }
+        const auto whole =
+            static_cast<Revision>(std::upper_bound(ends_.begin(), ends_.end(), bytes) - ends_.begin()) - 1;
+        EXPECT_EQ(entries_after(**log, session_, 0).value(), distinct_entries(session_, 1, whole * kBatchEntries));
+        EXPECT_EQ((*log)->stats().torn_bytes_dropped > 0, bytes != ends_[whole]);
+        EXPECT_TRUE(append_and_wait(**log, session_, whole * kBatchEntries + 1, {"goes on"}));
+    }
+
+    TemporaryDirectory directory_;
+    SessionId session_ = 0;
+    std::vector<std::size_t> ends_; // of the write-ahead log, after the session and each append
+};
+
+TEST_F(KilledStore, OpensWithEverything) {
+    copy_store(killed(), copy());
+    expect_prefix(ends_.back());
+}
+
+TEST_F(KilledStore, ItsWriteAheadLogIsAsTheFormatSays) {
+    const auto check = check_log_file(bytes_of(only_file_like(killed(), ".log")));
+    EXPECT_FALSE(check.damage);
+    EXPECT_EQ(check.whole_bytes, ends_.back());
+}
+
+TEST_F(KilledStore, AWriteAheadLogCutOffAnywhereOpensWithItsWholeAppends) {
+    std::vector<std::size_t> cuts = {0, 1, ends_.front() - 1};
+    for (const std::size_t end : ends_) {
+        cuts.insert(cuts.end(), {end, end - 1});
+        if (end != ends_.back()) cuts.insert(cuts.end(), {end + 1, end + 7, end + 100});
+    }
+    std::mt19937 random(1);
+    for (int i = 0; i < 10; ++i) cuts.push_back(random() % ends_.back());
+    for (const std::size_t cut : cuts) {
+        SCOPED_TRACE("cut at " + std::to_string(cut));
+        copy_store(killed(), copy());
+        fs::resize_file(only_file_like(copy(), ".log"), cut);
+        expect_prefix(cut);
+    }
+}
+
+TEST_F(KilledStore, ALastWriteOfZerosOpensWithoutIt) {
+    copy_store(killed(), copy());
+    const auto file = only_file_like(copy(), ".log");
+    const std::size_t last = ends_[kBatches - 1];
+    write_bytes(file, bytes_of(file).substr(0, last + 20) + std::string(ends_.back() - last - 20, '\0'));
+    expect_prefix(last + 20);
+}
+
+TEST_F(KilledStore, AFlippedBitInTheWriteAheadLogIsReportedAndNothingChanged) {
+    std::vector<std::size_t> bytes;
+    for (const std::size_t end : ends_) { // each of a record's header
+        if (end != ends_.back()) bytes.insert(bytes.end(), {end, end + 4, end + 5, end + 6, end + 7});
+    }
+    std::mt19937 random(2);
+    for (int i = 0; i < 40; ++i) bytes.push_back(random() % ends_.back());
+    for (const std::size_t byte : bytes) {
+        SCOPED_TRACE("flipped in byte " + std::to_string(byte));
+        copy_store(killed(), copy());
+        const auto file = only_file_like(copy(), ".log");
+        flip_bit(file, byte, random() % 8);
+        const auto log = open_rocksdb(copy());
+        ASSERT_FALSE(log);
+        EXPECT_EQ(log.error().code, Errc::kStoreFailed);
+        EXPECT_THAT(log.error().message, HasSubstr(file.native()));
+        EXPECT_EQ(fs::file_size(file), ends_.back());
+    }
+}
+
+TEST_F(KilledStore, AFlippedBitInTheManifestIsReported) {
+    std::mt19937 random(3);
+    const auto size = fs::file_size(only_file_like(killed(), "MANIFEST-"));
+    for (int round = 0; round < 40; ++round) {
+        copy_store(killed(), copy());
+        const auto file = only_file_like(copy(), "MANIFEST-");
+        flip_bit(file, random() % size, random() % 8);
+        const auto log = open_rocksdb(copy());
+        ASSERT_FALSE(log);
+        EXPECT_THAT(log.error().message, HasSubstr(file.native()));
+    }
+}
+
+TEST_F(KilledStore, AMissingOrDamagedCurrentIsReported) {
+    for (const char* contents : {"", "MANIFEST-999999\n", "MANIFEST", "nonsense\n"}) {
+        copy_store(killed(), copy());
+        write_bytes(copy() / "CURRENT", contents);
+        const auto log = open_rocksdb(copy());
+        ASSERT_FALSE(log) << contents;
+        EXPECT_THAT(log.error().message, AnyOf(HasSubstr("CURRENT"), HasSubstr("MANIFEST"))) << contents;
+    }
+    copy_store(killed(), copy());
+    fs::remove(copy() / "CURRENT");
+    const auto log = open_rocksdb(copy());
+    ASSERT_FALSE(log);
+    EXPECT_THAT(log.error().message, HasSubstr("CURRENT is missing"));
+}
+
+/// A store whose entries are in table files.
+class TableStore : public testing::Test {
+protected:
+    static constexpr Revision kEntries = 1000;
+
+    TableStore() {
+        const auto path = directory_.path() / "original";
+        SessionId session = 0;
+        {
+            auto log = open_rocksdb(path).value();
+            session = log->create_session("a session").value();
+            append_and_wait(*log, session, 1, distinct_entries(session, 1, kEntries)).value();
+            log->write_checkpoint(session, {{"part", "value"}}).value();
+        }
+        open_rocksdb(path).value(); // recovery moves the write-ahead log's entries into a table
+        session_ = session;
+        copy_store(path, copy());
+    }
+
+    [[nodiscard]] fs::path copy() const { return directory_.path() / "copy"; }
+    void restore() const { copy_store(directory_.path() / "original", copy()); }
+
+    /// Opens and reads everything.
+    Result<std::vector<std::string>> read_all() {
+        auto log = open_rocksdb(copy());
+        if (!log) return log.error();
+        auto sessions = (*log)->sessions();
+        if (!sessions) return sessions.error();
+        auto checkpoint = checkpoint_of(**log, session_);
+        if (!checkpoint) return checkpoint.error();
+        EXPECT_EQ(checkpoint->at("part"), "value");
+        return entries_after(**log, session_, 0);
+    }
+
+    TemporaryDirectory directory_;
+    SessionId session_ = 0;
+};
+
+TEST_F(TableStore, ReadsBackWhole) { EXPECT_EQ(read_all().value(), distinct_entries(session_, 1, kEntries)); }
+
+TEST_F(TableStore, AFlippedBitInATableIsReportedOrHarmless) {
+    std::mt19937 random(4);
+    int reported = 0;
+    for (int round = 0; round < 60; ++round) {
+        restore();
+        const auto file = only_file_like(copy(), ".sst");
+        flip_bit(file, random() % fs::file_size(file), random() % 8);
+        const auto entries = read_all();
+        if (entries) {
+            EXPECT_EQ(*entries, distinct_entries(session_, 1, kEntries));
+            continue;
+        }
+        ++reported;
+        EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+        EXPECT_THAT(entries.error().message, HasSubstr(file.filename().native()));
+    }
+    EXPECT_GE(reported, 50) << "nearly all of a table is entries";
+}
+
+TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
+    auto file = only_file_like(copy(), ".sst");
+    fs::resize_file(file, fs::file_size(file) / 2);
+    EXPECT_THAT(read_all().error().message, HasSubstr(file.filename().native()));
+    restore();
+    fs::remove(file);
+    EXPECT_THAT(read_all().error().message, HasSubstr(file.filename().native()));
+}
+
+TEST_F(TableStore, AMissingWriteAheadLogIsReported) {
+    fs::remove(only_file_like(copy(), ".log"));
+    EXPECT_THAT(read_all().error().message, HasSubstr("write-ahead log"));
+}
+
+TEST_F(TableStore, AMissingManifestIsReported) {
+    const auto manifest = only_file_like(copy(), "MANIFEST-");
+    fs::remove(manifest);
+    EXPECT_THAT(read_all().error().message, HasSubstr(manifest.filename().native()));
+}
+
+} // namespace
+} // namespace scanloom::store

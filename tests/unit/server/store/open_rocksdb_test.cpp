@@ -1,0 +1,198 @@
+#include "server/store/record.hpp"
+#include "server/store/scan_log.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rocksdb/db.h>
+
+/// Opening a store: again, for the first time, and where there is none to be had.
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+std::string problem_of(const fs::path& directory) {
+    const auto log = open_rocksdb(directory);
+    return log ? "" : log.error().message;
+}
+
+/// Changes a store's keys behind its back.
+void write_raw(const fs::path& directory, const std::function<rocksdb::Status(rocksdb::DB&)>& change) {
+    rocksdb::Options options;
+    options.create_if_missing = true;
+    rocksdb::DB* opened = nullptr;
+    ASSERT_TRUE(rocksdb::DB::Open(options, directory.native(), &opened).ok());
+    const std::unique_ptr<rocksdb::DB> database(opened);
+    ASSERT_TRUE(change(*database).ok());
+}
+
+class OpenRocksdb : public testing::Test {
+protected:
+    TemporaryDirectory temporary_;
+    fs::path directory_ = temporary_.path() / "new" / "store";
+};
+
+TEST_F(OpenRocksdb, EverythingIsThereAfterReopening) {
+    SessionId session = 0;
+    {
+        auto log = open_rocksdb(directory_).value();
+        session = log->create_session("record").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, distinct_entries(session, 1, 50)));
+        ASSERT_TRUE(log->write_checkpoint(session, {{"k", "v"}}));
+    }
+    auto log = open_rocksdb(directory_).value();
+    EXPECT_THAT(log->sessions().value(), ElementsAre(StoredSession{session, "record"}));
+    EXPECT_EQ(entries_after(*log, session, 0).value(), distinct_entries(session, 1, 50));
+    EXPECT_THAT(checkpoint_of(*log, session).value(), ElementsAre(Pair("k", "v")));
+    EXPECT_EQ(append_and_wait(*log, session, 1, {"x"}).error().code, Errc::kConflict) << "it knows where the log ends";
+    EXPECT_TRUE(append_and_wait(*log, session, 51, {"x"}));
+    EXPECT_EQ(log->stats().torn_bytes_dropped, 0U);
+}
+
+TEST_F(OpenRocksdb, IdsAreNotReusedAfterRemovalAndReopening) {
+    const auto first = open_rocksdb(directory_).value()->create_session("a").value();
+    ASSERT_TRUE(open_rocksdb(directory_).value()->remove_session(first));
+    auto log = open_rocksdb(directory_).value();
+    EXPECT_THAT(log->sessions().value(), IsEmpty());
+    EXPECT_GT(log->create_session("b").value(), first);
+}
+
+TEST_F(OpenRocksdb, WhatWaitsIsWrittenBeforeClosing) {
+    constexpr Revision kAppends = 500;
+    auto log = open_rocksdb(directory_).value();
+    const auto session = log->create_session("a").value();
+    Revision done = 0;
+    for (Revision revision = 1; revision <= kAppends; ++revision) {
+        log->append(session, revision, distinct_entries(session, revision, 1),
+                    [&](Result<> result) { done += result ? 1 : 0; });
+    }
+    log.reset();
+    EXPECT_EQ(done, kAppends);
+    EXPECT_EQ(entries_after(*open_rocksdb(directory_).value(), session, 0).value(),
+              distinct_entries(session, 1, kAppends));
+}
+
+TEST_F(OpenRocksdb, ManyAppendsShareAnFsync) {
+    constexpr Revision kAppends = 500;
+    auto log = open_rocksdb(directory_).value();
+    const auto session = log->create_session("a").value();
+    for (Revision revision = 1; revision < kAppends; ++revision) log->append(session, revision, {"x"}, [](Result<>) {});
+    ASSERT_TRUE(append_and_wait(*log, session, kAppends, {"x"}));
+    EXPECT_LT(log->stats().synced_writes, kAppends / 2);
+    EXPECT_EQ(log->stats().entries, kAppends);
+    EXPECT_EQ(log->stats().queued_bytes, 0U);
+}
+
+TEST_F(OpenRocksdb, ADiskIsFreedAfterRemoval) {
+    StoreOptions options;
+    options.memory_bytes = 2 << 20; // 256 KB of write buffer: tables soon
+    auto log = open_rocksdb(directory_, options).value();
+    const auto session = log->create_session("a").value();
+    for (Revision first = 1; first < 8000; first += 100) {
+        ASSERT_TRUE(append_and_wait(*log, session, first, distinct_entries(session, first, 100)));
+    }
+    log = nullptr;
+    log = open_rocksdb(directory_, options).value();
+    const auto before = log->stats().bytes_on_disk;
+    ASSERT_TRUE(log->remove_session(session));
+    log = nullptr; // closing waits for what removes files
+    log = open_rocksdb(directory_, options).value();
+    EXPECT_LT(log->stats().bytes_on_disk, before / 2);
+}
+
+TEST_F(OpenRocksdb, AStoreInUseIsRefused) {
+    const auto log = open_rocksdb(directory_).value();
+    EXPECT_THAT(problem_of(directory_),
+                HasSubstr("the store " + directory_.native() + " is in use by another scanloom-server"));
+}
+
+TEST_F(OpenRocksdb, ANewerFormatIsRefused) {
+    { auto log = open_rocksdb(directory_).value(); }
+    const std::string key(kFormatKey);
+    write_raw(directory_, [&](rocksdb::DB& database) {
+        return database.Put({}, key, sealed(key, number_bytes(kFormatVersion + 1)));
+    });
+    const auto log = open_rocksdb(directory_);
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
+    EXPECT_THAT(log.error().message, HasSubstr("newer scanloom-server (format 2"));
+}
+
+TEST_F(OpenRocksdb, AnotherProgramsDatabaseIsRefused) {
+    fs::create_directories(directory_);
+    write_raw(directory_, [](rocksdb::DB& database) { return database.Put({}, "key", "value"); });
+    EXPECT_THAT(problem_of(directory_), HasSubstr("not scanloom-server's"));
+}
+
+TEST_F(OpenRocksdb, ADirectoryOfOtherFilesIsRefused) {
+    fs::create_directories(directory_);
+    write_bytes(directory_ / "holiday.jpg", "");
+    EXPECT_THAT(problem_of(directory_), AllOf(HasSubstr("holiday.jpg"), HasSubstr("name a directory of its own")));
+}
+
+TEST_F(OpenRocksdb, AFileIsNoDirectory) {
+    write_bytes(temporary_.path() / "file", "");
+    EXPECT_THAT(problem_of(temporary_.path() / "file"), HasSubstr("is not a directory"));
+    EXPECT_THAT(problem_of(temporary_.path() / "file" / "below"), HasSubstr("cannot create the store"));
+}
+
+TEST_F(OpenRocksdb, ADirectoryThatCannotBeMadeOrWrittenIsNamed) {
+    // /proc takes no files from anybody, not even from root.
+    EXPECT_THAT(problem_of("/proc/scanloom"), HasSubstr("cannot create the store /proc/scanloom"));
+    EXPECT_THAT(problem_of("/proc/self/fd"), HasSubstr("cannot write in the store /proc/self/fd"));
+}
+
+TEST_F(OpenRocksdb, AMissingEntryIsReportedWithItsRevision) {
+    SessionId session = 0;
+    {
+        auto log = open_rocksdb(directory_).value();
+        session = log->create_session("a").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, {"1", "2", "3", "4"}));
+    }
+    write_raw(directory_, [&](rocksdb::DB& database) { return database.Delete({}, entry_key(session, 3)); });
+    const auto entries = entries_after(*open_rocksdb(directory_).value(), session, 1);
+    ASSERT_FALSE(entries);
+    EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(entries.error().message, HasSubstr("the entry of revision 3 is missing of session 1"));
+}
+
+TEST_F(OpenRocksdb, AMixedUpEntryIsReportedWithItsRevision) {
+    SessionId session = 0;
+    {
+        auto log = open_rocksdb(directory_).value();
+        session = log->create_session("a").value();
+        ASSERT_TRUE(append_and_wait(*log, session, 1, {"1", "2", "3"}));
+        ASSERT_TRUE(log->write_checkpoint(session, {{"a", "1"}}));
+    }
+    write_raw(directory_, [&](rocksdb::DB& database) {
+        std::string value;
+        auto status = database.Get({}, entry_key(session, 1), &value);
+        if (status.ok()) status = database.Put({}, entry_key(session, 2), value);
+        if (status.ok()) status = database.Put({}, part_key(session, "a"), value);
+        return status;
+    });
+    auto log = open_rocksdb(directory_).value();
+    EXPECT_THAT(entries_after(*log, session, 0).error().message, HasSubstr("revision 2 of session 1"));
+    EXPECT_THAT(checkpoint_of(*log, session).error().message, HasSubstr("a part of the checkpoint of session 1"));
+}
+
+TEST_F(OpenRocksdb, ADamagedRecordIsReported) {
+    { ASSERT_TRUE(open_rocksdb(directory_).value()->create_session("a")); }
+    write_raw(directory_, [&](rocksdb::DB& database) { return database.Put({}, session_key(1), "nonsense"); });
+    EXPECT_THAT(open_rocksdb(directory_).value()->sessions().error().message, HasSubstr("the record of session 1"));
+    write_raw(directory_,
+              [&](rocksdb::DB& database) { return database.Put({}, std::string(kNextSessionKey), "nonsense"); });
+    EXPECT_THAT(problem_of(directory_), HasSubstr("its record 'n' is damaged"));
+}
+
+} // namespace
+} // namespace scanloom::store

@@ -1,0 +1,204 @@
+#include "server/store/scan_log.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+/// What every scan log keeps, whatever is behind it.
+namespace scanloom::store {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Pair;
+
+struct Memory {
+    MemoryScanLog log;
+    ScanLog& get() { return log; }
+};
+
+struct Rocksdb {
+    TemporaryDirectory directory;
+    std::unique_ptr<ScanLog> log = open_rocksdb(directory.path()).value();
+    ScanLog& get() { return *log; }
+};
+
+template <class Backend>
+class ScanLogContract : public testing::Test {
+protected:
+    Backend backend_;
+    ScanLog& log_ = backend_.get();
+};
+
+using Backends = testing::Types<Memory, Rocksdb>;
+TYPED_TEST_SUITE(ScanLogContract, Backends);
+
+TYPED_TEST(ScanLogContract, AFreshLogHasNoSessions) { EXPECT_THAT(this->log_.sessions().value(), IsEmpty()); }
+
+TYPED_TEST(ScanLogContract, SessionsAreListedByRisingIdWithTheirRecords) {
+    const std::string binary("\0\xff\n", 3);
+    const auto first = this->log_.create_session("one").value();
+    const auto second = this->log_.create_session(binary).value();
+    EXPECT_LT(first, second);
+    EXPECT_THAT(this->log_.sessions().value(), ElementsAre(StoredSession{first, "one"}, StoredSession{second, binary}));
+}
+
+TYPED_TEST(ScanLogContract, IdsAreNotReusedAfterRemoval) {
+    const auto first = this->log_.create_session("one").value();
+    ASSERT_TRUE(this->log_.remove_session(first));
+    EXPECT_GT(this->log_.create_session("two").value(), first);
+}
+
+TYPED_TEST(ScanLogContract, EntriesComeBackInOrderFromAnyRevision) {
+    const auto session = this->log_.create_session("s").value();
+    const auto other = this->log_.create_session("o").value();
+    const auto written = distinct_entries(session, 1, 700); // more than a byte counts
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {written.begin(), written.begin() + 300}));
+    ASSERT_TRUE(append_and_wait(this->log_, other, 1, {"other"}));
+    ASSERT_TRUE(append_and_wait(this->log_, session, 301, {written.begin() + 300, written.end()}));
+    for (const Revision after : {0, 1, 255, 256, 299, 300, 301, 699, 700}) {
+        const auto begin = written.begin() + static_cast<std::ptrdiff_t>(after);
+        EXPECT_EQ(entries_after(this->log_, session, after).value(), std::vector<std::string>(begin, written.end()))
+            << "after " << after;
+    }
+    EXPECT_THAT(entries_after(this->log_, other, 0).value(), ElementsAre("other"));
+}
+
+TYPED_TEST(ScanLogContract, RevisionsAreCountedFromOne) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b", "c"}));
+    std::vector<Revision> revisions;
+    ASSERT_TRUE(this->log_.read(session, 1, [&](Revision revision, std::string_view) -> Result<> {
+        revisions.push_back(revision);
+        return {};
+    }));
+    EXPECT_THAT(revisions, ElementsAre(2, 3));
+}
+
+TYPED_TEST(ScanLogContract, EmptyAndBinaryEntriesAreKeptAsTheyAre) {
+    const auto session = this->log_.create_session("").value();
+    const std::string binary("\0\0\xff\x80", 4);
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"", binary}));
+    EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("", binary));
+}
+
+TYPED_TEST(ScanLogContract, AnAppendThatDoesNotContinueTheLogIsRefusedAndChangesNothing) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b"}));
+    for (const Revision first : {0, 1, 2, 4}) {
+        const auto appended = append_and_wait(this->log_, session, first, {"x"});
+        ASSERT_FALSE(appended) << first;
+        EXPECT_EQ(appended.error().code, Errc::kConflict);
+        EXPECT_THAT(appended.error().message, HasSubstr("ends with 2"));
+    }
+    EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("a", "b"));
+    EXPECT_TRUE(append_and_wait(this->log_, session, 3, {"c"})) << "a refusal is no failure of the store";
+}
+
+TYPED_TEST(ScanLogContract, ReadingStopsAtTheVisitorsError) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b", "c"}));
+    int visits = 0;
+    const auto read = this->log_.read(session, 0, [&](Revision revision, std::string_view) -> Result<> {
+        ++visits;
+        if (revision == 2) return Error{Errc::kMalformed, "mine"};
+        return {};
+    });
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error(), (Error{Errc::kMalformed, "mine"}));
+    EXPECT_EQ(visits, 2);
+}
+
+TYPED_TEST(ScanLogContract, ReadingBeyondTheEndOfTheLogIsAnError) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b"}));
+    const auto entries = entries_after(this->log_, session, 3);
+    ASSERT_FALSE(entries);
+    EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(entries.error().message, HasSubstr("ends before revision 3"));
+}
+
+TYPED_TEST(ScanLogContract, PartsOfACheckpointThatAreNotNamedStay) {
+    const auto session = this->log_.create_session("s").value();
+    const auto other = this->log_.create_session("o").value();
+    EXPECT_THAT(checkpoint_of(this->log_, session).value(), IsEmpty());
+    ASSERT_TRUE(this->log_.write_checkpoint(session, {{"b", "1"}, {"a", "1"}, {"", "empty"}}));
+    ASSERT_TRUE(this->log_.write_checkpoint(session, {{"b", "2"}, {std::string("\0", 1), ""}}));
+    ASSERT_TRUE(this->log_.write_checkpoint(other, {{"a", "other"}}));
+    EXPECT_THAT(checkpoint_of(this->log_, session).value(),
+                ElementsAre(Pair("", "empty"), Pair(std::string("\0", 1), ""), Pair("a", "1"), Pair("b", "2")));
+}
+
+TYPED_TEST(ScanLogContract, ARemovedSessionIsGoneAndItsNeighboursAreNot) {
+    std::vector<SessionId> sessions;
+    for (const auto* record : {"a", "b", "c"}) {
+        sessions.push_back(this->log_.create_session(record).value());
+        ASSERT_TRUE(append_and_wait(this->log_, sessions.back(), 1, {record}));
+        ASSERT_TRUE(this->log_.write_checkpoint(sessions.back(), {{record, record}}));
+    }
+    const SessionId removed = sessions[1];
+    ASSERT_TRUE(this->log_.remove_session(removed));
+
+    EXPECT_EQ(this->log_.remove_session(removed).error().code, Errc::kNotFound);
+    EXPECT_EQ(append_and_wait(this->log_, removed, 2, {"x"}).error().code, Errc::kNotFound);
+    EXPECT_EQ(this->log_.write_checkpoint(removed, {}).error().code, Errc::kNotFound);
+    EXPECT_EQ(entries_after(this->log_, removed, 0).error().code, Errc::kNotFound);
+    EXPECT_EQ(checkpoint_of(this->log_, removed).error().code, Errc::kNotFound);
+    for (const auto& [id, record] : this->log_.sessions().value()) {
+        EXPECT_NE(id, removed);
+        EXPECT_THAT(entries_after(this->log_, id, 0).value(), ElementsAre(record));
+        EXPECT_THAT(checkpoint_of(this->log_, id).value(), ElementsAre(Pair(record, record)));
+    }
+}
+
+TYPED_TEST(ScanLogContract, ManyThreadsAppendToTheirSessionsAtOnce) {
+    constexpr std::size_t kThreads = 8;
+    constexpr Revision kAppends = 200;
+    std::vector<SessionId> sessions;
+    for (std::size_t i = 0; i < kThreads; ++i) sessions.push_back(this->log_.create_session("s").value());
+    std::atomic<std::uint64_t> done = 0;
+    const auto before = this->log_.stats();
+    {
+        std::vector<std::jthread> threads;
+        for (const SessionId session : sessions) {
+            threads.emplace_back([&, session] {
+                for (Revision revision = 1; revision < kAppends; ++revision) {
+                    this->log_.append(session, revision, distinct_entries(session, revision, 1),
+                                      [&](Result<> result) { done += result ? 1 : 0; });
+                }
+                done += append_and_wait(this->log_, session, kAppends, distinct_entries(session, kAppends, 1)) ? 1 : 0;
+            });
+        }
+    }
+    EXPECT_EQ(done, kThreads * kAppends) << "each done exactly once, all earlier ones before the last";
+    for (const SessionId session : sessions) {
+        EXPECT_EQ(entries_after(this->log_, session, 0).value(), distinct_entries(session, 1, kAppends));
+    }
+    EXPECT_EQ(this->log_.stats().appends - before.appends, kThreads * kAppends);
+    EXPECT_EQ(this->log_.stats().entries - before.entries, kThreads * kAppends);
+}
+
+TYPED_TEST(ScanLogContract, AnAppendOfNothingIsDone) {
+    const auto session = this->log_.create_session("s").value();
+    EXPECT_TRUE(append_and_wait(this->log_, session, 1, {}));
+    EXPECT_TRUE(append_and_wait(this->log_, session, 1, {"a"}));
+}
+
+TYPED_TEST(ScanLogContract, AVisitorMayAppend) {
+    const auto session = this->log_.create_session("s").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a"}));
+    ASSERT_TRUE(this->log_.read(session, 0, [&](Revision, std::string_view) -> Result<> {
+        return append_and_wait(this->log_, session, 2, {"b"});
+    }));
+    EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("a", "b"));
+}
+
+} // namespace
+} // namespace scanloom::store
