@@ -8,13 +8,14 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/strand.hpp>
 
-#include <atomic>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace scanloom::session {
@@ -56,7 +57,9 @@ struct Joined {
 class Session : public std::enable_shared_from_this<Session> {
 public:
     /// A session whose projection has been recovered from the log up to its end.
-    Session(SessionInfo info, mapping::Projection projection, store::ScanLog& log, boost::asio::any_io_executor compute);
+    /// `checkpointed` is the revision that its stored checkpoint holds.
+    Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
+            boost::asio::any_io_executor compute);
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
@@ -80,11 +83,69 @@ public:
     /// The link is gone; what it submitted stays.
     void leave(std::shared_ptr<RobotListener> listener);
 
-    /// Fails every link with `reason`, takes nothing more, calls `done` when all that was submitted is
-    /// durable and the checkpoint written.
+    /// Takes nothing more; when all that was submitted is durable and folded, fails every link with
+    /// `reason`, writes a checkpoint and calls `done`.
     void close(Error reason, std::function<void()> done);
 
 private:
+    /// What came in one frame of one robot: entries for the log, and the credit they hold.
+    struct Submission {
+        RobotIndex robot = 0;
+        std::vector<LogEntry> entries;
+        std::size_t bytes = 0;
+    };
+    using Group = std::vector<Submission>;
+
+    /// A robot's link and what has been received from it, durable or not yet.
+    struct Member {
+        std::string name;
+        std::shared_ptr<RobotListener> listener;
+        std::uint64_t received_seq = 0;
+        std::uint64_t durable_seq = 0;
+        std::map<std::uint32_t, Sensor> sensors;
+    };
+
+    template <class Work>
+    void on_strand(Work work);
+
+    [[nodiscard]] Result<Joined> do_join(const std::string& robot, std::shared_ptr<RobotListener> listener);
+    [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
+    void describe(Member& member, Sensor sensor, std::size_t bytes);
+    void take(Member& member, std::vector<Scan> scans, std::size_t bytes);
+    [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan) const;
+    void enqueue(Submission submission);
+    void append_next();
+    void on_appended(Group group, const Result<>& appended);
+    [[nodiscard]] Result<> fold(const Group& group);
+    void release(const Group& group);
+    void publish();
+    void fail(Member& member, const Error& error);
+    void fail_all(const Error& error);
+    void stop_writing(const Error& error);
+    void forget_what_is_not_durable();
+    void set_connected(RobotIndex robot, bool connected);
+    void write_checkpoint();
+    void finish_closing();
+
+    SessionInfo info_;
+    store::ScanLog& log_;
+    boost::asio::strand<boost::asio::any_io_executor> strand_;
+
+    // On the strand only.
+    mapping::Projection projection_;
+    std::vector<Member> members_;    // by RobotIndex
+    std::deque<Submission> waiting_; // bounded by the links' credits
+    Revision appended_ = 0;          // newest entry handed to the log
+    bool appending_ = false;
+    Revision checkpointed_ = 0;
+    bool checkpointing_ = false;
+    bool final_checkpoint_tried_ = false;
+    std::optional<Error> refusing_; // why nothing more is taken
+    std::function<void()> closed_;  // to be called when closing is done
+
+    mutable std::mutex published_mutex_; // guards the two below, held for a copy only
+    std::shared_ptr<const mapping::Snapshot> published_;
+    std::vector<bool> connected_;
 };
 
 } // namespace scanloom::session

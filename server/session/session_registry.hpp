@@ -26,8 +26,10 @@ public:
     /// `now` gives seconds since the epoch, for SessionInfo::created.
     SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now);
 
-    /// Weaves every stored session again: newest checkpoint, then the rest of its log.
-    /// Errors  the first session that cannot be recovered, with its name.
+    /// Weaves every stored session again: newest checkpoint, then the rest of its log. A session whose
+    /// log is damaged is left out and listed by damaged(); the others are not held up by it.
+    /// Errors  kStoreFailed: the sessions cannot be listed.
+    /// Pre     called once, before anything else, not from a thread of the compute executor.
     [[nodiscard]] Result<> recover();
 
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name) const;
@@ -35,19 +37,39 @@ public:
     /// By rising name.
     [[nodiscard]] std::vector<std::shared_ptr<Session>> list() const;
 
+    /// What could not be recovered: name and reason.
+    [[nodiscard]] std::map<std::string, Error> damaged() const;
+
     /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options);
 
-    /// Deletes the session, its log and its maps. Errors: kNotFound, kStoreFailed.
+    /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
+    /// Pre  not called from a thread of the compute executor that is its only one.
     [[nodiscard]] Result<> remove(std::string_view name);
 
     /// Refuses new sessions, closes all, returns when everything submitted is durable.
+    /// Pre  as for remove().
     void drain();
 
     [[nodiscard]] bool is_draining() const noexcept { return draining_; }
 
 private:
+    struct Damaged {
+        store::SessionId id = 0;
+        Error error;
+    };
+
+    void recover_one(const store::StoredSession& stored);
+
+    store::ScanLog& log_;
+    boost::asio::any_io_executor compute_;
+    std::function<double()> now_;
     std::atomic<bool> draining_ = false;
+
+    std::mutex changing_;             // held over create() and remove(), which write to the store first
+    mutable std::shared_mutex mutex_; // guards the maps below
+    std::map<std::string, std::shared_ptr<Session>, std::less<>> sessions_;
+    std::map<std::string, Damaged, std::less<>> damaged_;
 };
 
 } // namespace scanloom::session

@@ -1,0 +1,277 @@
+#include "server/ingest/robot_link.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/bind_cancellation_slot.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <type_traits>
+
+namespace scanloom::ingest {
+namespace asio = boost::asio;
+namespace {
+
+constexpr std::size_t kReadBytes = std::size_t{64} << 10;
+constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
+
+asio::awaitable<Result<session::Joined>> join(session::Session& session, std::string robot,
+                                              std::shared_ptr<session::RobotListener> listener) {
+    const auto executor = co_await asio::this_coro::executor;
+    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
+        [&](auto handler) {
+            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+            session.join(std::move(robot), std::move(listener), [shared, executor](Result<session::Joined> joined) {
+                asio::post(executor, [shared, joined] { std::move(*shared)(joined); });
+            });
+        },
+        asio::use_awaitable);
+}
+
+Error hung_up() { return {Errc::kUnreachable, "the robot closed the connection"}; }
+
+} // namespace
+
+bool is_retryable(Errc code) noexcept {
+    return code == Errc::kTimeout || code == Errc::kStoreFailed || code == Errc::kShuttingDown ||
+           code == Errc::kOutOfOrder;
+}
+
+RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
+    : socket_(std::move(socket)), services_(services), config_(config), written_(socket_.get_executor()),
+      deadline_timer_(socket_.get_executor()) {
+    written_.expires_at(std::chrono::steady_clock::time_point::max());
+    boost::system::error_code ignored;
+    const auto endpoint = socket_.remote_endpoint(ignored);
+    peer_ = fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+    socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+}
+
+asio::awaitable<void> RobotLink::run() {
+    const auto self = shared_from_this();
+    expect_something_within(config_.hello_deadline);
+    asio::co_spawn(
+        socket_.get_executor(), [self] { return self->watch_deadline(); }, asio::detached);
+    Result<> served;
+    try {
+        served = co_await serve();
+    } catch (const std::exception& exception) {
+        served = Error{Errc::kMalformed, fmt::format("this link failed unexpectedly: {}", exception.what())};
+    }
+    if (session_) session_->leave(self);
+    if (ended_by_) served = *ended_by_;
+    if (!served && served.error().code != Errc::kUnreachable) co_await farewell(served.error());
+    deadline_timer_.cancel();
+    boost::system::error_code ignored;
+    socket_.close(ignored);
+    spdlog::info("robot '{}' at {} left: {}", robot_, peer_,
+                 goodbye_ ? "goodbye"
+                 : served ? "end"
+                          : served.error().message);
+}
+
+/// The conversation, in the order in which it happens.
+asio::awaitable<Result<>> RobotLink::serve() {
+    auto first = co_await receive();
+    if (!first) co_return first.error();
+    auto* hello = std::get_if<wire::Hello>(&*first);
+    if (hello == nullptr) {
+        co_return Error{Errc::kMalformed,
+                        fmt::format("the first frame is a {}; a hello is expected", wire::name_of(*first))};
+    }
+    if (auto entered = co_await enter(std::move(*hello)); !entered) co_return entered.error();
+    while (!goodbye_) {
+        expect_something_within(config_.idle_deadline);
+        auto message = co_await receive();
+        if (!message) co_return message.error();
+        if (auto handled = handle(std::move(*message)); !handled) co_return handled.error();
+    }
+    co_return Result<>();
+}
+
+asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
+    robot_ = hello.robot;
+    auto session = co_await find_or_create(hello);
+    if (!session) co_return session.error();
+    const auto joined = co_await join(**session, hello.robot, shared_from_this());
+    if (!joined) co_return joined.error();
+    session_ = std::move(*session);
+    decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
+    spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
+                 joined->last_durable_seq, hello.client);
+    send(wire::Welcome{fmt::format("{:016x}", session_->info().id), joined->last_durable_seq,
+                       wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
+                                    static_cast<std::uint32_t>(kBeamsMax),
+                                    static_cast<std::uint32_t>(kScansPerBatchMax)},
+                       config_.credit_bytes});
+    co_return Result<>();
+}
+
+asio::awaitable<Result<std::shared_ptr<session::Session>>> RobotLink::find_or_create(const wire::Hello& hello) {
+    auto session = services_.sessions.find(hello.session);
+    if (!session && hello.create) {
+        auto created = co_await asio::co_spawn(
+            services_.may_wait,
+            [&]() -> asio::awaitable<Result<std::shared_ptr<session::Session>>> {
+                co_return services_.sessions.create(hello.session, *hello.create);
+            },
+            asio::use_awaitable);
+        if (created || created.error().code != Errc::kAlreadyExists) {
+            co_return created ? created : prefixed("hello.create.", created.error());
+        }
+        session = services_.sessions.find(hello.session); // another robot was quicker
+    }
+    if (!session) {
+        co_return Error{Errc::kNotFound,
+                        fmt::format("hello.session is '{}', which does not exist; create it first, or send "
+                                    "hello.create",
+                                    hello.session)};
+    }
+    if (hello.create) {
+        if (auto agrees = mapping::check_agreement(session->info().config, *hello.create); !agrees) {
+            co_return prefixed("hello.create: ", agrees.error());
+        }
+    }
+    co_return session;
+}
+
+asio::awaitable<Result<wire::Message>> RobotLink::receive() {
+    for (;;) {
+        if (ended_by_) co_return *ended_by_;
+        const auto body = decoder_.next();
+        if (!body) co_return body.error();
+        if (*body) {
+            frame_bytes_ = wire::kLengthPrefixBytes + (*body)->size();
+            co_return wire::decode(**body);
+        }
+        const auto room = decoder_.prepare(kReadBytes);
+        const auto [error, bytes] = co_await socket_.async_read_some(
+            asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
+        if (error) {
+            if (ended_by_) co_return *ended_by_;
+            co_return hung_up();
+        }
+        decoder_.commit(bytes);
+    }
+}
+
+Result<> RobotLink::handle(wire::Message message) {
+    const auto self = shared_from_this();
+    if (auto* sensor = std::get_if<Sensor>(&message)) {
+        session_->submit(self, std::move(*sensor), 0);
+        return {};
+    }
+    if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
+        if (auto ok = charge(frame_bytes_); !ok) return ok.error();
+        session_->submit(self, std::move(batch->scans), frame_bytes_);
+        return {};
+    }
+    if (const auto* ping = std::get_if<wire::Ping>(&message)) {
+        if (outbox_.size() > kReadBytes) return Error{Errc::kTooLarge, "too many pings without reading the pongs"};
+        send(wire::Pong{ping->nonce});
+        return {};
+    }
+    if (std::holds_alternative<wire::Pong>(message)) return {};
+    if (std::holds_alternative<wire::Goodbye>(message)) {
+        goodbye_ = true;
+        return {};
+    }
+    return Error{Errc::kMalformed,
+                 fmt::format("a {} frame is not for the server; after the hello it takes sensor_description, "
+                             "scan_batch, ping and goodbye",
+                             wire::name_of(message))};
+}
+
+Result<> RobotLink::charge(std::size_t bytes) {
+    under_way_ += bytes;
+    if (under_way_ <= config_.credit_bytes) return {};
+    return Error{Errc::kCreditExceeded,
+                 fmt::format("{} bytes of scan batches are under way, the credit is {}; wait for acks", under_way_,
+                             config_.credit_bytes)};
+}
+
+void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
+    asio::post(socket_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
+        self->under_way_ -= std::min(bytes, self->under_way_);
+        self->ack_ = wire::Ack{durable_seq, durable_seq, self->config_.credit_bytes};
+        if (!self->writing_) asio::co_spawn(self->socket_.get_executor(), self->write_outbox(), asio::detached);
+    });
+}
+
+void RobotLink::on_failed(const Error& error) {
+    asio::post(socket_.get_executor(), [self = shared_from_this(), error] { self->end(error); });
+}
+
+void RobotLink::end(const Error& error) {
+    if (ended_by_) return;
+    ended_by_ = error;
+    stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
+}
+
+void RobotLink::send(const wire::Message& message) {
+    wire::encode(message, outbox_);
+    if (!writing_) asio::co_spawn(socket_.get_executor(), write_outbox(), asio::detached);
+}
+
+/// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
+asio::awaitable<void> RobotLink::write_outbox() {
+    if (writing_) co_return;
+    const auto self = shared_from_this();
+    writing_ = true;
+    while (ack_ || !outbox_.empty()) {
+        if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), outbox_);
+        const std::string sending = std::exchange(outbox_, {});
+        const auto [error, bytes] = co_await asio::async_write(socket_, asio::buffer(sending), kAsTuple);
+        if (error) break;
+    }
+    writing_ = false;
+    written_.cancel();
+}
+
+/// Tells the robot why, and waits for it to hang up: closing at once with its bytes unread would
+/// reset the connection and take the error frame with it.
+asio::awaitable<void> RobotLink::farewell(const Error& error) {
+    ended_by_ = error;
+    expect_something_within(config_.farewell_deadline);
+    send(wire::LinkError{error, is_retryable(error.code)});
+    if (writing_) co_await written_.async_wait(kAsTuple);
+    boost::system::error_code ignored;
+    socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    for (;;) {
+        const auto room = decoder_.prepare(kReadBytes);
+        const auto [failed, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
+        if (failed) co_return;
+    }
+}
+
+void RobotLink::expect_something_within(std::chrono::steady_clock::duration time) {
+    deadline_ = std::chrono::steady_clock::now() + time;
+    if (deadline_ < deadline_timer_.expiry()) deadline_timer_.cancel(); // sooner than the watch would look
+}
+
+/// One timer a link, looked at when it runs out: a busy link moves only a time point.
+asio::awaitable<void> RobotLink::watch_deadline() {
+    const auto self = shared_from_this();
+    while (socket_.is_open()) {
+        deadline_timer_.expires_at(deadline_);
+        co_await deadline_timer_.async_wait(kAsTuple);
+        if (!socket_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
+        boost::system::error_code ignored;
+        if (ended_by_) { // the farewell took too long
+            socket_.close(ignored);
+            co_return;
+        }
+        expect_something_within(config_.farewell_deadline);
+        end({Errc::kTimeout, session_ ? "nothing was received for too long; send a ping now and then"
+                                      : "no hello was received in time"});
+    }
+}
+
+} // namespace scanloom::ingest

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "common/wire/frame_decoder.hpp"
+#include "common/wire/messages.hpp"
+#include "server/session/session.hpp"
+#include "server/session/session_registry.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace scanloom::ingest {
+
+struct LinkConfig {
+    std::chrono::steady_clock::duration hello_deadline = std::chrono::seconds(5);
+    std::chrono::steady_clock::duration idle_deadline = std::chrono::seconds(60); ///< a quiet robot sends pings
+    std::chrono::steady_clock::duration farewell_deadline = std::chrono::seconds(2);
+    std::size_t credit_bytes = std::size_t{2} << 20; ///< of ScanBatch frames under way; more than one frame
+};
+
+/// What a link reaches of the server.
+struct LinkServices {
+    session::SessionRegistry& sessions;
+    boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
+};
+
+/// One robot's connection, from the hello to the farewell.
+///
+/// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
+/// go to the session, acks come back -> goodbye, an error, or the end of the connection.
+/// A fault ends this link with an Error frame and disturbs no other.
+/// Thread  run() and everything private on the socket's strand; the listener's calls from any thread.
+class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
+public:
+    /// Pre: the socket's executor is a strand.
+    RobotLink(boost::asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config);
+
+    [[nodiscard]] boost::asio::any_io_executor executor() { return socket_.get_executor(); }
+
+    /// Serves the robot to the end. Never throws.
+    boost::asio::awaitable<void> run();
+
+    void on_durable(std::uint64_t durable_seq, std::size_t bytes) override;
+    void on_failed(const Error& error) override;
+
+private:
+    boost::asio::awaitable<Result<>> serve();
+    boost::asio::awaitable<Result<>> enter(wire::Hello hello);
+    boost::asio::awaitable<Result<std::shared_ptr<session::Session>>> find_or_create(const wire::Hello& hello);
+    boost::asio::awaitable<Result<wire::Message>> receive();
+    [[nodiscard]] Result<> handle(wire::Message message);
+    [[nodiscard]] Result<> charge(std::size_t bytes);
+    boost::asio::awaitable<void> watch_deadline();
+    boost::asio::awaitable<void> write_outbox();
+    boost::asio::awaitable<void> farewell(const Error& error);
+    void send(const wire::Message& message);
+    void end(const Error& error);
+    void expect_something_within(std::chrono::steady_clock::duration time);
+
+    boost::asio::ip::tcp::socket socket_;
+    LinkServices services_;
+    LinkConfig config_;
+    std::string peer_;
+
+    wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
+    std::size_t frame_bytes_ = 0; // of the frame last received, with its length prefix
+    std::shared_ptr<session::Session> session_;
+    std::string robot_;
+    std::size_t under_way_ = 0; // bytes submitted and not yet durable
+    bool goodbye_ = false;
+
+    std::string outbox_;           // bounded: answers to what was read, and at most one ack
+    std::optional<wire::Ack> ack_; // the newest, not yet in the outbox
+    bool writing_ = false;
+    boost::asio::steady_timer written_; // never runs out; cancelled when the outbox is empty
+
+    std::optional<Error> ended_by_; // why the link ends, when not by the peer
+    boost::asio::cancellation_signal stop_reading_;
+    boost::asio::steady_timer deadline_timer_;
+    std::chrono::steady_clock::time_point deadline_;
+};
+
+/// Whether the same hello may succeed later.
+[[nodiscard]] bool is_retryable(Errc code) noexcept;
+
+} // namespace scanloom::ingest

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+/// What a projection keeps in the store, so that recovery folds only the rest of the log.
+///
+/// Parts, in the order in which the store visits them, integers little-endian:
+///   head                     weaving version, revision, bounds
+///   robot/<index>            last seq, scan count, name
+///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
+///   track/<index>/<block>    512 points of a trajectory
+///   weave/occupancy/<chunk>  revision and cells of one chunk
+/// <index>, <block> and the like are fixed-width hexadecimal.
+namespace scanloom::session {
+
+/// The parts that changed after `since`; all of them for 0.
+/// Pre  snapshot and state were taken at the same revision.
+[[nodiscard]] std::vector<store::CheckpointPart>
+checkpoint_parts(const mapping::Snapshot& snapshot, const mapping::ProjectionState& state, Revision since);
+
+/// Rebuilds a projection from the parts of a checkpoint, fed one by one in rising order of keys.
+class CheckpointReader {
+public:
+    explicit CheckpointReader(const mapping::MapConfig& config) : projection_(config) {}
+
+    /// Errors  kMalformed: the part is damaged; kUnsupportedVersion: it was woven by another version,
+    ///         whose maps may differ. Either way: weave from the log instead.
+    [[nodiscard]] Result<> add(std::string_view key, std::string_view value);
+
+    /// The projection as of the checkpoint; a blank one when there was no part.
+    [[nodiscard]] mapping::Projection finish() &&;
+
+private:
+    void begin_weaving();
+
+    mapping::Projection projection_;
+    mapping::ProjectionState state_;
+    bool weaving_ = false; // the state is complete and in the projection
+};
+
+} // namespace scanloom::session

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/store/scan_log.hpp"
+
+namespace scanloom::session {
+
+/// A session woven again, up to the end of its log.
+struct Recovered {
+    mapping::Projection projection;
+    Revision checkpointed = 0; ///< revision of the checkpoint it began from, 0 for none
+};
+
+/// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used.
+/// Errors  kStoreFailed, kMalformed: the log is damaged; the message names the entry.
+[[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session,
+                                        const mapping::MapConfig& config);
+
+} // namespace scanloom::session

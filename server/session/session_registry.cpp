@@ -1,0 +1,148 @@
+#include "server/session/session_registry.hpp"
+
+#include "common/scan/limits.hpp"
+#include "common/wire/log_codec.hpp"
+#include "server/session/recovery.hpp"
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <future>
+#include <latch>
+
+namespace scanloom::session {
+
+SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now)
+    : log_(log), compute_(std::move(compute)), now_(std::move(now)) {}
+
+Result<> SessionRegistry::recover() {
+    const auto stored = log_.sessions();
+    if (!stored) return stored.error();
+    std::latch done(static_cast<std::ptrdiff_t>(stored->size()));
+    for (const auto& session : *stored) {
+        boost::asio::post(compute_, [this, &session, &done] {
+            recover_one(session);
+            done.count_down();
+        });
+    }
+    done.wait();
+    return {};
+}
+
+void SessionRegistry::recover_one(const store::StoredSession& stored) {
+    std::string name = fmt::format("#{:016x}", stored.id); // until its record has told
+    const auto weave = [&]() -> Result<std::shared_ptr<Session>> {
+        const auto record = wire::decode_session(stored.record);
+        if (!record) return record.error();
+        name = record->name;
+        const auto config = mapping::resolve(record->options);
+        if (!config) return config.error();
+        auto recovered = session::recover(log_, stored.id, *config);
+        if (!recovered) return recovered.error();
+        return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
+                                         std::move(recovered->projection), recovered->checkpointed, log_, compute_);
+    };
+    auto session = weave();
+    const std::unique_lock lock(mutex_);
+    if (session) {
+        sessions_[name] = std::move(*session);
+        return;
+    }
+    spdlog::error("session '{}' cannot be recovered: {}", name, session.error().message);
+    damaged_[name] = {stored.id, session.error()};
+}
+
+std::shared_ptr<Session> SessionRegistry::find(std::string_view name) const {
+    const std::shared_lock lock(mutex_);
+    const auto found = sessions_.find(name);
+    return found == sessions_.end() ? nullptr : found->second;
+}
+
+std::vector<std::shared_ptr<Session>> SessionRegistry::list() const {
+    const std::shared_lock lock(mutex_);
+    std::vector<std::shared_ptr<Session>> sessions;
+    sessions.reserve(sessions_.size());
+    for (const auto& [name, session] : sessions_) sessions.push_back(session);
+    return sessions;
+}
+
+std::map<std::string, Error> SessionRegistry::damaged() const {
+    const std::shared_lock lock(mutex_);
+    std::map<std::string, Error> reasons;
+    for (const auto& [name, damaged] : damaged_) reasons.emplace(name, damaged.error);
+    return reasons;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options) {
+    if (!is_valid_name(name)) {
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("name is not a valid session name; use 1 to {} characters of A-Z a-z 0-9 _ -", kNameBytesMax)};
+    }
+    const auto config = mapping::resolve(options);
+    if (!config) return config.error();
+
+    const std::lock_guard changing(changing_);
+    if (draining_)
+        return Error{Errc::kShuttingDown,
+                     "the server is shutting down and makes no new sessions; try again when it is back"};
+    {
+        const std::shared_lock lock(mutex_);
+        if (sessions_.contains(name)) {
+            return Error{Errc::kAlreadyExists,
+                         fmt::format("session '{}' exists already; choose another name or delete it first", name)};
+        }
+        if (damaged_.contains(name)) {
+            return Error{
+                Errc::kAlreadyExists,
+                fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
+        }
+    }
+    const double created = now_();
+    const auto id =
+        log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
+    if (!id) return id.error();
+    auto session = std::make_shared<Session>(SessionInfo{*id, std::string(name), created, *config},
+                                             mapping::Projection(*config), 0, log_, compute_);
+    const std::unique_lock lock(mutex_);
+    sessions_.emplace(name, session);
+    return session;
+}
+
+Result<> SessionRegistry::remove(std::string_view name) {
+    const std::lock_guard changing(changing_);
+    store::SessionId id = 0;
+    if (const auto session = find(name)) {
+        id = session->info().id;
+        std::promise<void> closed;
+        session->close({Errc::kGone, fmt::format("session '{}' was deleted", name)}, [&closed] { closed.set_value(); });
+        closed.get_future().wait();
+    } else {
+        const std::shared_lock lock(mutex_);
+        const auto damaged = damaged_.find(name);
+        if (damaged == damaged_.end()) {
+            return Error{Errc::kNotFound, fmt::format("there is no session '{}'", name)};
+        }
+        id = damaged->second.id;
+    }
+    if (auto removed = log_.remove_session(id); !removed) return removed.error();
+    const std::unique_lock lock(mutex_);
+    if (const auto session = sessions_.find(name); session != sessions_.end()) sessions_.erase(session);
+    if (const auto damaged = damaged_.find(name); damaged != damaged_.end()) damaged_.erase(damaged);
+    return {};
+}
+
+void SessionRegistry::drain() {
+    const std::lock_guard changing(changing_);
+    draining_ = true;
+    const auto sessions = list();
+    std::latch closed(static_cast<std::ptrdiff_t>(sessions.size()));
+    for (const auto& session : sessions) {
+        session->close({Errc::kShuttingDown, "the server is shutting down; connect again when it is back"},
+                       [&closed] { closed.count_down(); });
+    }
+    closed.wait();
+}
+
+} // namespace scanloom::session
