@@ -1,0 +1,43 @@
+#include "common/scan/limits.hpp"
+#include "common/wire/frame_decoder.hpp"
+#include "common/wire/messages.hpp"
+#include "tests/fuzz/check.hpp"
+
+namespace scanloom::wire {
+namespace {
+
+/// What decode() promises of every message it lets through.
+void check_scan_batch(const ScanBatch& batch) {
+    fuzz::check(!batch.scans.empty() && batch.scans.size() <= kScansPerBatchMax, "a batch has 1 to 1024 scans");
+    for (const Scan& scan : batch.scans) {
+        fuzz::check(is_finite(scan.pose), "poses are finite");
+        fuzz::check(!scan.ranges.empty() && scan.ranges.size() <= kBeamsMax, "a scan has 1 to 4096 beams");
+        fuzz::check(scan.intensities.empty() || scan.intensities.size() == scan.ranges.size(), "intensities fit");
+        fuzz::check(!scan.angles || beam_count(*scan.angles) == scan.ranges.size(), "angles fit");
+    }
+}
+
+} // namespace
+} // namespace scanloom::wire
+
+/// Input: one frame body.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const std::string_view body(reinterpret_cast<const char*>(data), size);
+    const auto message = wire::decode(body);
+    if (!message) {
+        fuzz::check(!message.error().message.empty(), "every error says what is wrong");
+        return 0;
+    }
+    if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) wire::check_scan_batch(*batch);
+
+    // Compared as bytes, not as values: a NaN in hello.create is for the server to refuse, and differs from itself.
+    std::string once;
+    wire::encode(*message, once);
+    const auto again = wire::decode(std::string_view(once).substr(wire::kLengthPrefixBytes));
+    fuzz::check(again.has_value(), "what was let through once is let through again");
+    std::string twice;
+    wire::encode(*again, twice);
+    fuzz::check(once == twice, "encoding and decoding change nothing");
+    return 0;
+}
