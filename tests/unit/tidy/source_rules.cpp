@@ -1,0 +1,184 @@
+#include "tests/unit/tidy/source_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace scanloom::tidy {
+namespace {
+
+using Names = std::vector<std::string_view>;
+
+/// A folder and the other folders it may include.
+struct Folder {
+    std::string_view path;
+    Names may_include;
+    bool pure = false; ///< knows no socket, file, clock, thread, protobuf or log
+};
+
+// The arrows of ARCHITECTURE.md. A new folder needs a row here; what a row does not name is forbidden.
+const std::vector<Folder> kFolders = {
+    {.path = "common/error", .may_include = {}, .pure = true},
+    {.path = "common/geometry", .may_include = {}, .pure = true},
+    {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
+    {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
+
+    {.path = "server/mapping", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "server/store", .may_include = {"common", "server/mapping"}},
+    {.path = "server/session", .may_include = {"common", "server/mapping", "server/store"}},
+    {.path = "server/tiles", .may_include = {"common/error", "common/geometry", "common/scan", "server/mapping"}},
+    {.path = "server/ingest", .may_include = {"common", "server/mapping", "server/session", "server/store"}},
+    {.path = "server/http",
+     .may_include = {"common", "server/mapping", "server/session", "server/store", "server/tiles"}},
+    {.path = "server/app", .may_include = {"common", "server"}},
+
+    {.path = "robot_client/sim", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "robot_client/drive",
+     .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/sim"},
+     .pure = true},
+    {.path = "robot_client/source",
+     .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/drive", "robot_client/sim"}},
+    {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source"}},
+    {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
+};
+
+/// Headers that only some folders may include.
+struct Package {
+    std::string_view header; ///< what the header's name starts with
+    Names folders;
+};
+
+const std::vector<Package> kPackages = {
+    {"scanloom/v1/", {"common/wire"}},
+    {"google/protobuf/", {"common/wire"}},
+    {"opencv2/", {"server/tiles"}},
+    {"rocksdb/", {"server/store"}},
+    {"prometheus/", {"server"}},
+    {"spdlog/", {"server/session", "server/ingest", "server/http", "server/app", "robot_client/app"}},
+    {"boost/asio",
+     {"server/session", "server/ingest", "server/http", "server/app", "robot_client/uplink", "robot_client/app"}},
+    {"boost/beast", {"server/http", "server/app"}},
+    {"boost/iostreams/", {"robot_client/source"}},
+    {"CLI/", {"server/app", "robot_client/app"}},
+};
+
+// How a file, socket, clock, thread or log shows among the standard headers.
+const Names kOutsideWorld = {
+    "barrier",    "chrono",       "condition_variable",
+    "cstdio",     "ctime",        "filesystem",
+    "fstream",    "future",       "iostream",
+    "latch",      "mutex",        "print",
+    "semaphore",  "shared_mutex", "stdio.h",
+    "stop_token", "syncstream",   "thread",
+    "time.h",     "unistd.h",
+};
+
+/// "server" and "server/mapping" both hold "server/mapping/cell.hpp"; "server/map" does not.
+bool holds(std::string_view folder, std::string_view path) {
+    return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
+}
+
+bool any_holds(const Names& folders, std::string_view path) {
+    return std::ranges::any_of(folders, [&](std::string_view folder) { return holds(folder, path); });
+}
+
+/// The header of an #include line, without its quotes or brackets.
+std::optional<std::string_view> included(std::string_view line) {
+    constexpr std::string_view kDirective = "#include ";
+    if (!line.starts_with(kDirective) || line.size() < kDirective.size() + 2) return std::nullopt;
+    line.remove_prefix(kDirective.size() + 1);
+    return line.substr(0, line.find_first_of("\">"));
+}
+
+std::optional<std::string> forbidden_arrow(const Folder& folder, std::string_view header) {
+    const bool ours = any_holds({"common", "server", "robot_client", "tests"}, header);
+    if (ours && !holds(folder.path, header) && !any_holds(folder.may_include, header)) {
+        return fmt::format("{} may not include {}", folder.path, header);
+    }
+    for (const auto& package : kPackages) {
+        if (header.starts_with(package.header) && !any_holds(package.folders, folder.path)) {
+            return fmt::format("{} may not include {}; only {} may", folder.path, header,
+                               fmt::join(package.folders, ", "));
+        }
+    }
+    const bool outside = std::ranges::find(kOutsideWorld, header) != kOutsideWorld.end() || header.starts_with("sys/");
+    if (folder.pure && outside) {
+        return fmt::format("{} is pure and may not include {}: files, clocks, threads and logs stay outside",
+                           folder.path, header);
+    }
+    return std::nullopt;
+}
+
+template <class Visit>
+void for_each_line(std::string_view text, Visit visit) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const auto end = std::min(text.find('\n'), text.size());
+        visit(number, text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+}
+
+void check_includes(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
+    if (!any_holds({"common", "server", "robot_client"}, path)) return;
+    const auto folder = std::ranges::find_if(kFolders, [&](const Folder& row) { return holds(row.path, path); });
+    if (folder == kFolders.end()) {
+        complaints.push_back(fmt::format("{}: its folder has no row in tests/unit/tidy/source_rules.cpp", path));
+        return;
+    }
+    for_each_line(text, [&](std::size_t number, std::string_view line) {
+        const auto header = included(line);
+        if (!header) return;
+        if (auto forbidden = forbidden_arrow(*folder, *header)) {
+            complaints.push_back(fmt::format("{}:{}: {}", path, number, *forbidden));
+        }
+    });
+}
+
+struct Habit {
+    std::string_view word;
+    std::string_view where; ///< what the path starts with
+    std::string_view instead;
+};
+
+// Spelt in halves, so that this file keeps the rules itself.
+const std::vector<Habit> kForbiddenWords = {
+    {"sleep_"
+     "for",
+     "tests/", "wait for what you expect; a test that sleeps is slow or flaky"},
+    {"sleep_"
+     "until",
+     "tests/", "wait for what you expect; a test that sleeps is slow or flaky"},
+    {"DISABLED"
+     "_",
+     "tests/", "mend the test or remove it"},
+    {"TO"
+     "DO",
+     "", "do it, or file it where the project keeps its plans"},
+    {"FIX"
+     "ME",
+     "", "mend it, or file it where the project keeps its plans"},
+};
+
+void check_words(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
+    for_each_line(text, [&](std::size_t number, std::string_view line) {
+        for (const auto& habit : kForbiddenWords) {
+            if (!path.starts_with(habit.where) || line.find(habit.word) == std::string_view::npos) continue;
+            complaints.push_back(fmt::format("{}:{}: {}: {}", path, number, habit.word, habit.instead));
+        }
+    });
+}
+
+} // namespace
+
+std::vector<std::string> complaints_about(std::string_view path, std::string_view text) {
+    std::vector<std::string> complaints;
+    if (path.ends_with(".hpp") && !text.starts_with("#pragma once\n")) {
+        complaints.push_back(fmt::format("{}: a header starts with #pragma once", path));
+    }
+    if (path.ends_with(".hpp") || path.ends_with(".cpp")) check_includes(path, text, complaints);
+    check_words(path, text, complaints);
+    return complaints;
+}
+
+} // namespace scanloom::tidy

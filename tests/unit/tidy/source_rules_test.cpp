@@ -1,0 +1,120 @@
+#include "tests/unit/tidy/source_rules.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace scanloom::tidy {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> including(std::string_view path, std::string_view header) {
+    return complaints_about(path, fmt::format("int first_line;\n#include {}\n", header));
+}
+
+TEST(SourceRules, ServerAndRobotMayNotIncludeOneAnother) {
+    EXPECT_THAT(including("server/app/main.cpp", "\"robot_client/sim/world.hpp\""),
+                ElementsAre("server/app/main.cpp:2: server/app may not include robot_client/sim/world.hpp"));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"server/mapping/cell.hpp\""),
+                ElementsAre(HasSubstr("may not include server/mapping/cell.hpp")));
+}
+
+TEST(SourceRules, CommonMayIncludeNeitherServerNorRobot) {
+    EXPECT_THAT(including("common/wire/messages.cpp", "\"server/mapping/cell.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("common/scan/scan.cpp", "\"robot_client/sim/world.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("common/scan/scan.cpp", "\"common/wire/messages.hpp\""), testing::SizeIs(1));
+}
+
+TEST(SourceRules, ProductionCodeMayNotIncludeTests) {
+    EXPECT_THAT(including("server/store/log_file.cpp", "\"tests/support/memory_scan_log.hpp\""), testing::SizeIs(1));
+}
+
+TEST(SourceRules, ProtobufStopsAtTheWire) {
+    EXPECT_THAT(including("common/wire/messages.cpp", "\"scanloom/v1/frame.pb.h\""), IsEmpty());
+    EXPECT_THAT(including("server/ingest/link.cpp", "\"scanloom/v1/frame.pb.h\""),
+                ElementsAre(HasSubstr("only common/wire may")));
+    EXPECT_THAT(including("server/store/record.cpp", "<google/protobuf/arena.h>"), testing::SizeIs(1));
+}
+
+TEST(SourceRules, OpenCvStaysInTiles) {
+    EXPECT_THAT(including("server/tiles/png.cpp", "<opencv2/imgcodecs.hpp>"), IsEmpty());
+    EXPECT_THAT(including("server/http/tile.cpp", "<opencv2/imgcodecs.hpp>"), testing::SizeIs(1));
+}
+
+TEST(SourceRules, PureFoldersKnowNothingOfTheOutsideWorld) {
+    for (const auto* header : {"<chrono>", "<thread>", "<mutex>", "<fstream>", "<iostream>", "<sys/socket.h>",
+                               "<unistd.h>", "<spdlog/spdlog.h>", "<boost/asio/ip/tcp.hpp>", "<rocksdb/db.h>"}) {
+        EXPECT_THAT(including("server/mapping/cell.cpp", header), testing::SizeIs(1)) << header;
+        EXPECT_THAT(including("common/geometry/pose2.hpp", header), Not(IsEmpty())) << header;
+    }
+    EXPECT_THAT(including("server/mapping/cell.cpp", "<vector>"), IsEmpty());
+    EXPECT_THAT(including("server/session/session.cpp", "<thread>"), IsEmpty());
+}
+
+TEST(SourceRules, ANewFolderNeedsARow) {
+    EXPECT_THAT(including("server/gossip/peer.cpp", "<vector>"), ElementsAre(HasSubstr("has no row")));
+}
+
+TEST(SourceRules, HeadersStartWithPragmaOnce) {
+    EXPECT_THAT(complaints_about("tests/support/a.hpp", "#include <vector>\n"), ElementsAre(HasSubstr("#pragma once")));
+    EXPECT_THAT(complaints_about("tests/support/a.hpp", "#pragma once\n"), IsEmpty());
+    EXPECT_THAT(complaints_about("tests/support/a.cpp", "#include <vector>\n"), IsEmpty());
+}
+
+TEST(SourceRules, TestsDoNotSleepAndNothingIsPutOff) {
+    EXPECT_THAT(complaints_about("tests/unit/a_test.cpp", "std::this_thread::sleep_"
+                                                          "for(1s);\n"),
+                testing::SizeIs(1));
+    EXPECT_THAT(complaints_about("tests/unit/a_test.cpp", "TEST(A, DISABLED"
+                                                          "_B)\n"),
+                testing::SizeIs(1));
+    EXPECT_THAT(complaints_about("web/src/main.ts", "a();\n// TO"
+                                                    "DO: b\n"),
+                ElementsAre(HasSubstr("web/src/main.ts:2")));
+    EXPECT_THAT(complaints_about("cmake/a.cmake", "# FIX"
+                                                  "ME\n"),
+                testing::SizeIs(1));
+}
+
+bool is_source(const fs::path& path) {
+    const std::vector<std::string> endings = {".cpp",  ".hpp", ".proto", ".ts", ".mjs", ".js",  ".css",
+                                              ".html", ".sh",  ".cmake", ".md", ".yml", ".yaml"};
+    return std::ranges::find(endings, path.extension().string()) != endings.end() ||
+           path.filename() == "CMakeLists.txt" || path.filename() == "scanloom" || path.filename() == "Dockerfile";
+}
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Folders whose files are made or fetched.
+bool is_foreign(const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    return name == "build" || name == "dist" || name == "node_modules" || name.starts_with('.');
+}
+
+TEST(SourceRules, ThisTreeKeepsThem) {
+    const fs::path root = SOURCE_TREE;
+    std::size_t files = 0;
+    for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
+        if (entry->is_directory() && is_foreign(entry->path())) entry.disable_recursion_pending();
+        if (!entry->is_regular_file() || !is_source(entry->path())) continue;
+        const std::string path = entry->path().lexically_relative(root).generic_string();
+        for (const auto& complaint : complaints_about(path, contents(entry->path()))) ADD_FAILURE() << complaint;
+        ++files;
+    }
+    EXPECT_GT(files, 50U) << "the tree was not found at " << root;
+}
+
+} // namespace
+} // namespace scanloom::tidy
