@@ -1,0 +1,99 @@
+/** Debian's Chromium on the viewer's page, and what a test asks of that page. */
+import { mkdir } from 'node:fs/promises';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const kFlags = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+
+/** Folders and programs, as CTest passes them. */
+export const kWebDirectory = required('SCANLOOM_WEB_DIR');
+const kPictureDirectory = required('SCANLOOM_PICTURE_DIR');
+
+export function required(name) {
+  const value = process.env[name];
+  if (!value) throw new Error(`${name} is not set: run these tests with ctest -L e2e`);
+  return value;
+}
+
+export function launchBrowser() {
+  return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: kFlags });
+}
+
+/**
+ * A fresh page, with nothing cached.
+ *
+ * @returns the page and its complaints: script errors, violations of the security policy, requests to elsewhere
+ */
+export async function openPage(browser, address, { hash = '', size = [1280, 800], scheme = 'light', scale = 1 } = {}) {
+  const context = await browser.newContext({
+    viewport: { width: size[0], height: size[1] },
+    colorScheme: scheme,
+    deviceScaleFactor: scale,
+    hasTouch: size[0] < 700,
+  });
+  const page = await context.newPage();
+  page.setDefaultTimeout(30_000);
+  const complaints = [];
+  page.on('pageerror', (error) => complaints.push(`script error: ${error.stack ?? error}`));
+  page.on('console', (message) => {
+    if (message.text().includes('Content Security Policy')) complaints.push(message.text());
+  });
+  page.on('request', (request) => {
+    const url = new URL(request.url());
+    if (!['data:', 'blob:'].includes(url.protocol) && url.origin !== new URL(address).origin) {
+      complaints.push(`request to elsewhere: ${url}`);
+    }
+  });
+  await page.goto(address + hash);
+  return { page, complaints };
+}
+
+/** Waits until an element says something that matches. */
+export async function says(page, selector, pattern) {
+  await page.waitForFunction(
+    ([where, source]) => new RegExp(source).test(document.querySelector(where)?.textContent ?? ''),
+    [selector, pattern.source],
+  );
+}
+
+export async function textOf(page, selector) {
+  return (await page.textContent(selector)) ?? '';
+}
+
+/** How many pixels of the map's canvases have this colour, alpha left aside. */
+export function countPixels(page, [red, green, blue]) {
+  return page.evaluate(
+    (wanted) => {
+      let found = 0;
+      for (const canvas of document.querySelectorAll('#map canvas')) {
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        for (let at = 0; at < data.length; at += 4) {
+          if (data[at + 3] > 200 && wanted.every((part, band) => Math.abs(data[at + band] - part) < 12)) found += 1;
+        }
+      }
+      return found;
+    },
+    [red, green, blue],
+  );
+}
+
+/** What the style sheet calls a colour, as [red, green, blue]. */
+export function colourOf(page, name) {
+  return page.evaluate((property) => {
+    const hex = getComputedStyle(document.documentElement).getPropertyValue(property).trim();
+    return [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16));
+  }, name);
+}
+
+export async function keepPicture(page, name) {
+  await mkdir(kPictureDirectory, { recursive: true });
+  await page.screenshot({ path: join(kPictureDirectory, `${name}.png`) });
+}

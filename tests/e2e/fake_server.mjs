@@ -1,0 +1,208 @@
+/**
+ * A server whose every answer the test decides: the states that a real one is only in by misfortune.
+ * It speaks the part of the HTTP API that the viewer reads, and sends the headers that the real one sends.
+ */
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { extname, join, normalize } from 'node:path';
+import { encodeGreyPng } from './png.mjs';
+
+const kNativeZoom = 9;
+const kTileSize = 256;
+const kMediaTypes = {
+  '.html': 'text/html; charset=utf-8',
+  '.js': 'text/javascript; charset=utf-8',
+  '.css': 'text/css; charset=utf-8',
+  '.svg': 'image/svg+xml',
+};
+const kSecurityHeaders = {
+  'Content-Security-Policy':
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self'",
+  'X-Content-Type-Options': 'nosniff',
+};
+
+/** A session as the test shapes it; cells are painted tile by tile at the native zoom. */
+export class FakeSession {
+  constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z' } = {}) {
+    Object.assign(this, { name, id, cellSize, created });
+    this.revision = 0;
+    this.bounds = null;
+    this.robots = [];
+    this.tracks = new Map();
+    this.tiles = new Map();
+  }
+
+  /** Gives a whole native tile one probability of occupation, in percent, and touches what lies above it. */
+  paint(x, y, percent) {
+    this.revision += 1;
+    for (let z = kNativeZoom; z >= 0; --z) {
+      const shift = kNativeZoom - z;
+      this.tiles.set(`${z}/${x >> shift}/${y >> shift}`, { revision: this.revision, percent });
+    }
+    this.cover(x, y);
+  }
+
+  /** A scan taken here. */
+  move(robot, x, y, yaw) {
+    this.revision += 1;
+    let known = this.robots.find(({ name }) => name === robot);
+    if (!known) this.robots.push((known = { name: robot, connected: true, scans: 0, last_seq: 0, stamp: 0, pose: null }));
+    known.scans += 1;
+    known.last_seq += 1;
+    known.pose = { x, y, yaw };
+    const track = this.tracks.get(robot) ?? [];
+    track.push({ revision: this.revision, point: [x, y] });
+    this.tracks.set(robot, track);
+  }
+
+  cover(x, y) {
+    const side = kTileSize * this.cellSize;
+    const box = { min_x: (x - 256) * side, max_x: (x - 255) * side, min_y: (255 - y) * side, max_y: (256 - y) * side };
+    const old = this.bounds ?? box;
+    this.bounds = {
+      min_x: Math.min(old.min_x, box.min_x),
+      min_y: Math.min(old.min_y, box.min_y),
+      max_x: Math.max(old.max_x, box.max_x),
+      max_y: Math.max(old.max_y, box.max_y),
+    };
+  }
+
+  toJson() {
+    return {
+      name: this.name,
+      id: this.id,
+      created: this.created,
+      revision: this.revision,
+      scans: this.robots.reduce((sum, { scans }) => sum + scans, 0),
+      config: { cell_size: this.cellSize },
+      layers: ['occupancy'],
+      bounds: this.bounds,
+      robots: this.robots,
+    };
+  }
+
+  changes(since) {
+    const tiles = [];
+    for (const [key, { revision }] of this.tiles) {
+      const [z, x, y] = key.split('/').map(Number);
+      if (revision > since) tiles.push({ z, x, y, revision });
+    }
+    return { layer: 'occupancy', since, revision: this.revision, tiles };
+  }
+
+  trajectory(since) {
+    const features = [];
+    for (const [robot, track] of this.tracks) {
+      const coordinates = track.filter(({ revision }) => revision > since).map(({ point }) => point);
+      if (coordinates.length === 0) continue;
+      const type = coordinates.length < 2 ? 'MultiPoint' : 'LineString';
+      const properties = { robot, points: coordinates.length };
+      features.push({ type: 'Feature', id: robot, properties, geometry: { type, coordinates } });
+    }
+    return { type: 'FeatureCollection', frame_id: 'map', units: 'm', revision: this.revision, features };
+  }
+}
+
+export class FakeServer {
+  sessions = new Map();
+  /** Path and query of every tile asked for, in order. */
+  tileRequests = [];
+  /** When set, {status, title, detail}: what every request to the API is answered with. */
+  failure = null;
+
+  static async start(webDirectory) {
+    const fake = new FakeServer(webDirectory);
+    await fake.listen(0);
+    return fake;
+  }
+
+  constructor(webDirectory) {
+    this.webDirectory = webDirectory;
+  }
+
+  get address() {
+    return `http://127.0.0.1:${this.port}/`;
+  }
+
+  add(session) {
+    this.sessions.set(session.name, session);
+    return session;
+  }
+
+  async listen(port) {
+    this.server = createServer((request, response) => void this.answer(request, response));
+    await new Promise((resolve) => this.server.listen(port, '127.0.0.1', resolve));
+    this.port = this.server.address().port;
+  }
+
+  /** Vanishes as a crashed process does: no more connections, and the open ones break. */
+  async vanish() {
+    const closed = new Promise((resolve) => this.server.close(resolve));
+    this.server.closeAllConnections();
+    await closed;
+  }
+
+  async comeBack() {
+    await this.listen(this.port);
+  }
+
+  async answer(request, response) {
+    const url = new URL(request.url, this.address);
+    try {
+      if (url.pathname.startsWith('/api/')) this.answerApi(url, response);
+      else await this.answerFile(url, response);
+    } catch (error) {
+      problem(response, 500, 'Internal error', String(error));
+    }
+  }
+
+  async answerFile(url, response) {
+    const path = normalize(url.pathname === '/' ? '/index.html' : url.pathname);
+    const body = await readFile(join(this.webDirectory, path)).catch(() => null);
+    if (!body) return problem(response, 404, 'Not found', path);
+    response.writeHead(200, { 'Content-Type': kMediaTypes[extname(path)], ...kSecurityHeaders });
+    response.end(body);
+  }
+
+  answerApi(url, response) {
+    if (this.failure) return problem(response, this.failure.status, this.failure.title, this.failure.detail);
+    const [, , , , encodedName, ...rest] = url.pathname.split('/');
+    if (encodedName === undefined) {
+      return json(response, { sessions: [...this.sessions.values()].map((each) => each.toJson()), next: null });
+    }
+    const session = this.sessions.get(decodeURIComponent(encodedName));
+    if (!session) return problem(response, 404, 'Not found', 'no such session');
+    const since = Number(url.searchParams.get('since') ?? 0);
+    if (rest.length === 0) return json(response, session.toJson());
+    if (rest[0] === 'changes') return json(response, session.changes(since));
+    if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
+    if (rest[0] === 'tiles') return this.answerTile(session, rest.slice(2), url, response);
+    return problem(response, 404, 'Not found', url.pathname);
+  }
+
+  answerTile(session, [z, x, file], url, response) {
+    this.tileRequests.push(url.pathname + url.search);
+    const [y, kind] = file.split('.');
+    const percent = session.tiles.get(`${z}/${x}/${y}`)?.percent;
+    const headers = { 'Cache-Control': url.searchParams.has('v') ? 'public, max-age=31536000, immutable' : 'no-cache' };
+    const cells = new Uint8Array(kTileSize * kTileSize);
+    if (kind === 'bin') {
+      response.writeHead(200, { 'Content-Type': 'application/octet-stream', ...headers });
+      response.end(cells.fill(percent ?? 255));
+    } else {
+      response.writeHead(200, { 'Content-Type': 'image/png', ...headers });
+      const level = percent === undefined ? 128 : Math.round(255 - 2.55 * percent);
+      response.end(encodeGreyPng(kTileSize, kTileSize, cells.fill(level)));
+    }
+  }
+}
+
+function json(response, value) {
+  response.writeHead(200, { 'Content-Type': 'application/json', 'Cache-Control': 'no-cache' });
+  response.end(JSON.stringify(value));
+}
+
+function problem(response, status, title, detail) {
+  response.writeHead(status, { 'Content-Type': 'application/problem+json' });
+  response.end(JSON.stringify({ type: 'about:blank', title, status, detail }));
+}

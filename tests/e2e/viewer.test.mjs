@@ -1,0 +1,266 @@
+/** The viewer against a server that does what each test wants. */
+import assert from 'node:assert/strict';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { colourOf, countPixels, keepPicture, kWebDirectory, launchBrowser, openPage, says, textOf } from './browser.mjs';
+import { FakeServer, FakeSession } from './fake_server.mjs';
+
+const kHostile = '<img src=x onerror="document.title=1">';
+
+describe('the viewer', { timeout: 180_000 }, () => {
+  let browser;
+  let server;
+  let page;
+  let complaints = [];
+
+  const open = async (options) => ({ page, complaints } = await openPage(browser, server.address, options));
+
+  before(async () => (browser = await launchBrowser()));
+  after(() => browser?.close());
+  beforeEach(async () => (server = await FakeServer.start(kWebDirectory)));
+  afterEach(async () => {
+    await page?.context().close();
+    await server.vanish().catch(() => {});
+    assert.deepEqual(complaints, []);
+  });
+
+  it('says how to begin a session, and opens the first one by itself', async () => {
+    await open();
+    await says(page, '#notice', /No sessions yet.*scanloom-robot --server 127\.0\.0\.1:7447/s);
+    await keepPicture(page, 'no-sessions');
+    painted('first');
+    await says(page, '#sessions', /first/);
+    await page.waitForSelector('#notice', { state: 'hidden' });
+    assert.equal(new URL(page.url()).hash, '#session=first');
+  });
+
+  it('keeps the choice in the address, over a reload', async () => {
+    painted('one');
+    painted('two');
+    await open();
+    await page.click('#sessions a:has-text("two")');
+    await page.waitForFunction(() => document.title.startsWith('two'));
+    await page.reload();
+    await page.waitForSelector('#sessions a[aria-current]:has-text("two")');
+    await page.goBack();
+    await page.waitForSelector('#sessions a[aria-current]:has-text("one")');
+  });
+
+  it('never turns a name into markup', async () => {
+    const session = painted(kHostile);
+    session.move(kHostile, 1, 1, 0);
+    await open();
+    await says(page, '#robots .row-name', /<img/);
+    server.failure = { status: 500, title: kHostile, detail: '<b>broken</b>' };
+    await says(page, '#status', /<b>broken<\/b>/);
+    server.failure = null;
+    await says(page, '#status', /^$/);
+    server.sessions.clear();
+    await says(page, '#notice', /deleted/);
+    assert.equal(await page.locator('img, b').count(), 0);
+    assert.match(await page.title(), /^<img/);
+  });
+
+  it('fetches only tiles that hold anything, and of those only what changed', async () => {
+    const session = painted('map');
+    session.paint(257, 255, 10);
+    await open();
+    await tilesShown();
+    const first = tilePaths();
+    assert.equal(first.length, new Set(first).size, 'no tile is fetched twice');
+    assert.ok(first.every((path) => session.tiles.has(path)), 'no request for empty space');
+    server.tileRequests.length = 0;
+    session.paint(257, 255, 90);
+    await occupiedShown();
+    const again = tilePaths();
+    assert.deepEqual(again, [again.find((path) => path.endsWith('/257/255')) ?? again[0]]);
+    assert.match(server.tileRequests[0], new RegExp(`\\?v=${session.revision}&`));
+  });
+
+  it('shows no blank frame while tiles change', async () => {
+    const session = painted('map');
+    await open();
+    await tilesShown();
+    await page.evaluate(() => {
+      window.emptiest = Infinity;
+      window.frames = 0;
+      const look = () => {
+        const canvas = document.querySelector('#map canvas');
+        const { data } = canvas.getContext('2d').getImageData(canvas.width / 2, canvas.height / 2, 40, 40);
+        let drawn = 0;
+        for (let at = 3; at < data.length; at += 4) drawn += data[at] > 0 ? 1 : 0;
+        window.emptiest = Math.min(window.emptiest, drawn);
+        window.frames += 1;
+        requestAnimationFrame(look);
+      };
+      look();
+    });
+    for (let round = 0; round < 6; ++round) {
+      session.paint(256, 255, 10 + round);
+      const version = `.png?v=${session.revision}&`;
+      const fetched = page.waitForResponse((response) => response.url().includes(version));
+      await fetched;
+    }
+    const { emptiest, frames } = await page.evaluate(() => ({ emptiest: window.emptiest, frames: window.frames }));
+    assert.ok(frames > 6, `only ${frames} frames were looked at`);
+    assert.equal(emptiest, 1600);
+  });
+
+  it('tells place, cell and value under the cursor', async () => {
+    painted('map', 83);
+    await open();
+    await tilesShown();
+    await page.hover('#map');
+    await says(page, '#cursor-value', /^83 % occupied$/);
+    const [x, y] = await Promise.all(['#cursor-x', '#cursor-y'].map(async (id) => Number(await textOf(page, id))));
+    const [i, j] = (await textOf(page, '#cursor-cell')).split(', ').map(Number);
+    // The one tile spans 12.8 m from the origin up and right, and is fitted in the middle of the map.
+    assert.ok(Math.abs(x - 6.4) < 0.2 && Math.abs(y - 6.4) < 0.2, `${x}, ${y}`);
+    assert.ok(Math.abs(x / 0.05 - i) <= 1.2 && Math.abs(y / 0.05 - j) <= 1.2, `${i}, ${j}`);
+    await page.mouse.move(310, 400);
+    await says(page, '#cursor-value', /^unknown$/);
+  });
+
+  it('can be used by keyboard alone', async () => {
+    painted('one', 40);
+    await open();
+    await tilesShown();
+    for (let step = 0; step < 12; ++step) {
+      await page.keyboard.press('Tab');
+      if (await page.evaluate(() => document.activeElement.id === 'map')) break;
+    }
+    await page.waitForSelector('#crosshair:not([hidden])');
+    await says(page, '#cursor-value', /^40 % occupied$/);
+    const before = await textOf(page, '#cursor-x');
+    await page.keyboard.press('ArrowRight');
+    await page.waitForFunction((old) => document.querySelector('#cursor-x').textContent !== old, before);
+  });
+
+  it('says that it is offline, and comes back by itself', async () => {
+    const session = painted('map');
+    await open();
+    await tilesShown();
+    await server.vanish();
+    await says(page, '#status', /No connection/);
+    assert.ok((await countPixels(page, await colourOf(page, '--cell-free'))) > 0, 'the map stays');
+    await keepPicture(page, 'offline');
+    session.paint(256, 255, 100);
+    await server.comeBack();
+    await says(page, '#status', /Connected again/);
+    await occupiedShown();
+    await says(page, '#status', /^$/);
+  });
+
+  it('shows the sentence of an error, and goes on when it is over', async () => {
+    painted('map');
+    server.failure = { status: 503, title: 'Store not open', detail: 'recovering' };
+    await open();
+    await says(page, '#status', /Store not open: recovering/);
+    server.failure = null;
+    await tilesShown();
+    await says(page, '#status', /^$/);
+  });
+
+  it('says that a session was deleted, and shows its successor of the same name afresh', async () => {
+    const session = painted('map', 0);
+    session.move('r1', 1, 1, 0);
+    await open();
+    await tilesShown();
+    server.sessions.delete('map');
+    await says(page, '#notice', /was deleted/);
+    await keepPicture(page, 'deleted');
+    painted('map', 100, 'another-id');
+    await occupiedShown();
+    await page.waitForSelector('#notice', { state: 'hidden' });
+    assert.equal(await page.locator('[data-robot]').count(), 0, 'the old robot is gone');
+    // Made anew between two looks, with as many revisions as before: only the id tells.
+    painted('map', 0, 'a-third-id');
+    await freeShown();
+  });
+
+  it('waits for a session that is not there yet', async () => {
+    painted('other');
+    await open({ hash: '#session=later' });
+    await says(page, '#notice', /no session later/);
+    painted('later');
+    await tilesShown();
+  });
+
+  it('fits a phone, and opens its panel by a button', async () => {
+    painted('map').move('r1', 6, 6, 1);
+    await open({ size: [390, 844], scale: 2 });
+    await tilesShown();
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing overflows');
+    assert.equal(await page.isVisible('#sessions'), false);
+    await page.click('#panel-toggle');
+    assert.equal(await page.isVisible('#sessions'), true);
+    await page.tap('#map');
+    await says(page, '#cursor-value', /% occupied/);
+  });
+
+  it('follows a robot until the person moves the map', async () => {
+    const session = painted('map');
+    session.move('r1', 2, 2, 0);
+    await open();
+    await page.click('.follow');
+    await page.focus('#map');
+    session.move('r1', 3, 4, 0);
+    await page.click('.follow[aria-pressed="true"]', { trial: true });
+    await page.waitForFunction(() => /x 3\.00, y 4\.00/.test(document.querySelector('[data-role=pose]').textContent));
+    await page.mouse.move(700, 400);
+    await says(page, '#cursor-x', /\d/);
+    await page.mouse.down();
+    await page.mouse.move(740, 420, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForSelector('.follow[aria-pressed="false"]');
+  });
+
+  it('takes on the colours of the dark', async () => {
+    painted('map', 0);
+    await open({ scheme: 'dark' });
+    await tilesShown();
+    const dark = await colourOf(page, '--cell-free');
+    await page.emulateMedia({ colorScheme: 'light' });
+    await freeShown();
+    assert.notDeepEqual(await colourOf(page, '--cell-free'), dark);
+  });
+
+  /** A session with one tile right above the origin. */
+  function painted(name, percent = 0, id = `id-${name}`) {
+    const session = server.add(new FakeSession(name, id));
+    session.paint(256, 255, percent);
+    return session;
+  }
+
+  function tilePaths() {
+    return server.tileRequests
+      .filter((path) => path.includes('.png'))
+      .map((path) => /occupancy\/(\d+\/\d+\/\d+)\.png/.exec(path)[1]);
+  }
+
+  async function tilesShown() {
+    await coloured('--cell-free', '--cell-occupied');
+  }
+
+  async function freeShown() {
+    await coloured('--cell-free');
+  }
+
+  async function occupiedShown() {
+    await coloured('--cell-occupied');
+  }
+
+  /** Waits until the map shows one of these colours, or a mixture with the background. */
+  async function coloured(...names) {
+    const colours = await Promise.all(names.map((name) => colourOf(page, name)));
+    await page.waitForFunction((wanted) => {
+      for (const canvas of document.querySelectorAll('#map canvas')) {
+        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+        for (let at = 0; at < data.length; at += 40) {
+          if (data[at + 3] < 20) continue;
+          if (wanted.some((colour) => colour.every((part, band) => Math.abs(data[at + band] - part) < 12))) return true;
+        }
+      }
+      return false;
+    }, colours);
+  }
+});

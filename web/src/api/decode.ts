@@ -1,0 +1,120 @@
+/** From parsed JSON to values: each function throws a MalformedAnswer that names the first field that is not as agreed. */
+import type { Bounds, Changes, Point, Pose, Robot, Session, SessionPage, TileChange, Track, Trajectory } from './types';
+
+export class MalformedAnswer extends Error {
+  override name = 'MalformedAnswer';
+}
+
+type Fields = Record<string, unknown>;
+
+export function decodeSessionPage(json: unknown): SessionPage {
+  const page = fields(json, 'sessions');
+  return {
+    sessions: list(page['sessions'], 'sessions').map(decodeSession),
+    next: typeof page['next'] === 'string' ? page['next'] : null,
+  };
+}
+
+export function decodeSession(json: unknown): Session {
+  const session = fields(json, 'session');
+  const cellSize = number(fields(session['config'], 'config')['cell_size'], 'config.cell_size');
+  if (cellSize <= 0) throw new MalformedAnswer('config.cell_size is not positive');
+  return {
+    name: text(session['name'], 'name'),
+    id: text(session['id'], 'id'),
+    created: text(session['created'], 'created'),
+    revision: number(session['revision'], 'revision'),
+    scans: number(session['scans'], 'scans'),
+    cellSize,
+    bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),
+    robots: list(session['robots'], 'robots').map(decodeRobot),
+  };
+}
+
+export function decodeChanges(json: unknown): Changes {
+  const changes = fields(json, 'changes');
+  return {
+    revision: number(changes['revision'], 'revision'),
+    tiles: list(changes['tiles'], 'tiles').map(decodeTileChange),
+  };
+}
+
+export function decodeTrajectory(json: unknown): Trajectory {
+  const collection = fields(json, 'trajectory');
+  return {
+    revision: number(collection['revision'], 'revision'),
+    tracks: list(collection['features'], 'features').map(decodeTrack),
+  };
+}
+
+function decodeRobot(json: unknown): Robot {
+  const robot = fields(json, 'robots[]');
+  return {
+    name: text(robot['name'], 'robots[].name'),
+    connected: robot['connected'] === true,
+    scans: number(robot['scans'], 'robots[].scans'),
+    pose: robot['pose'] == null ? null : decodePose(robot['pose']),
+  };
+}
+
+function decodePose(json: unknown): Pose {
+  const pose = fields(json, 'pose');
+  return { x: number(pose['x'], 'pose.x'), y: number(pose['y'], 'pose.y'), yaw: number(pose['yaw'], 'pose.yaw') };
+}
+
+function decodeBounds(json: unknown): Bounds {
+  const bounds = fields(json, 'bounds');
+  return {
+    minX: number(bounds['min_x'], 'bounds.min_x'),
+    minY: number(bounds['min_y'], 'bounds.min_y'),
+    maxX: number(bounds['max_x'], 'bounds.max_x'),
+    maxY: number(bounds['max_y'], 'bounds.max_y'),
+  };
+}
+
+function decodeTileChange(json: unknown): TileChange {
+  const tile = fields(json, 'tiles[]');
+  return {
+    z: number(tile['z'], 'tiles[].z'),
+    x: number(tile['x'], 'tiles[].x'),
+    y: number(tile['y'], 'tiles[].y'),
+    revision: number(tile['revision'], 'tiles[].revision'),
+  };
+}
+
+function decodeTrack(json: unknown): Track {
+  const feature = fields(json, 'features[]');
+  const properties = fields(feature['properties'], 'features[].properties');
+  const geometry = feature['geometry'] == null ? {} : fields(feature['geometry'], 'features[].geometry');
+  return {
+    robot: text(properties['robot'], 'features[].properties.robot'),
+    points: list(geometry['coordinates'] ?? [], 'features[].geometry.coordinates').map(decodePoint),
+  };
+}
+
+function decodePoint(json: unknown): Point {
+  const [x, y] = list(json, 'coordinates[]');
+  return [number(x, 'coordinates[].x'), number(y, 'coordinates[].y')];
+}
+
+function fields(value: unknown, where: string): Fields {
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) {
+    throw new MalformedAnswer(`${where} is not an object`);
+  }
+  return value as Fields;
+}
+
+function list(value: unknown, where: string): unknown[] {
+  if (!Array.isArray(value)) throw new MalformedAnswer(`${where} is not a list`);
+  return value;
+}
+
+function number(value: unknown, where: string): number {
+  if (typeof value !== 'number' || !Number.isFinite(value)) throw new MalformedAnswer(`${where} is not a number`);
+  return value;
+}
+
+function text(value: unknown, where: string): string {
+  if (typeof value !== 'string') throw new MalformedAnswer(`${where} is not a text`);
+  return value;
+}

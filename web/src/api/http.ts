@@ -1,0 +1,76 @@
+/** One GET, with a deadline, and its failures as two kinds of error. */
+
+const kDeadlineMs = 10_000;
+
+/** The server could not be reached, or did not answer in time. */
+export class Unreachable extends Error {
+  override name = 'Unreachable';
+}
+
+/** The server answered, but not with what was asked for. */
+export class Refused extends Error {
+  override name = 'Refused';
+
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+/**
+ * Asks for a resource of this server.
+ *
+ * @param path relative to the page, so that the viewer works below any prefix
+ * @throws Unreachable, Refused, or the signal's reason when the caller gave up
+ */
+export async function get(path: string, signal: AbortSignal): Promise<Response> {
+  let response: Response;
+  try {
+    const deadline = AbortSignal.timeout(kDeadlineMs);
+    response = await fetch(new URL(path, document.baseURI), { signal: AbortSignal.any([signal, deadline]) });
+  } catch (error) {
+    signal.throwIfAborted();
+    throw new Unreachable('the server does not answer', { cause: error });
+  }
+  if (!response.ok) throw new Refused(response.status, await reason(response));
+  return response;
+}
+
+/** Like get, for JSON; a body cut off half-way counts as unreachable. */
+export async function getJson(path: string, signal: AbortSignal): Promise<unknown> {
+  const body = await readBody(await get(path, signal), signal, (response) => response.text());
+  try {
+    return JSON.parse(body);
+  } catch {
+    throw new Refused(200, `the answer to ${path} is not JSON`);
+  }
+}
+
+export async function readBody<T>(
+  response: Response,
+  signal: AbortSignal,
+  read: (response: Response) => Promise<T>,
+): Promise<T> {
+  try {
+    return await read(response);
+  } catch (error) {
+    signal.throwIfAborted();
+    throw new Unreachable('the answer broke off', { cause: error });
+  }
+}
+
+/** The sentence of an application/problem+json body, or the bare status. */
+async function reason(response: Response): Promise<string> {
+  const bare = `status ${response.status}`;
+  try {
+    const problem: unknown = await response.json();
+    if (typeof problem !== 'object' || problem === null) return bare;
+    const { title, detail } = problem as Record<string, unknown>;
+    const said = [title, detail].filter((part) => typeof part === 'string' && part !== '');
+    return said.length > 0 ? said.join(': ') : bare;
+  } catch {
+    return bare;
+  }
+}

@@ -1,0 +1,66 @@
+/** What the server says, as values of this program. Lengths are metres, angles radians, in the session's map frame. */
+
+export interface Bounds {
+  minX: number;
+  minY: number;
+  maxX: number;
+  maxY: number;
+}
+
+export interface Pose {
+  x: number;
+  y: number;
+  yaw: number;
+}
+
+export interface Robot {
+  name: string;
+  connected: boolean;
+  scans: number;
+  pose: Pose | null;
+}
+
+export interface Session {
+  name: string;
+  /** Changes when a session is deleted and another is made under its name. */
+  id: string;
+  created: string;
+  /** Rises with every scan. */
+  revision: number;
+  scans: number;
+  cellSize: number;
+  /** Null while nothing has been seen. */
+  bounds: Bounds | null;
+  robots: Robot[];
+}
+
+export interface SessionPage {
+  sessions: Session[];
+  next: string | null;
+}
+
+/** A tile of the XYZ scheme (y down) and the revision that touched it last. */
+export interface TileChange {
+  z: number;
+  x: number;
+  y: number;
+  revision: number;
+}
+
+export interface Changes {
+  revision: number;
+  tiles: TileChange[];
+}
+
+export type Point = [x: number, y: number];
+
+/** A part of one robot's path, oldest position first. */
+export interface Track {
+  robot: string;
+  points: Point[];
+}
+
+export interface Trajectory {
+  revision: number;
+  tracks: Track[];
+}

@@ -1,0 +1,99 @@
+/** Builds the page's parts and connects them; what each does is its own file's matter. */
+import { fetchSessions } from './api/api';
+import type { Session } from './api/types';
+import { hashOfSession, sessionOfHash } from './address';
+import { byId } from './dom';
+import { Camera } from './map/camera';
+import { createMap, MapView } from './map/map_view';
+import { Cursor } from './panel/cursor';
+import { Facts } from './panel/facts';
+import { Notice } from './panel/notice';
+import { RobotList } from './panel/robot_list';
+import { SessionList } from './panel/session_list';
+import { Status } from './panel/status';
+import { poll, type Pace } from './poll';
+import { onThemeChange, readTheme } from './theme';
+import { Viewer } from './viewer';
+import './style.css';
+
+const kSessionsPace: Pace = { visibleMs: 2_000, hiddenMs: 15_000 };
+
+const target = byId('map', HTMLElement);
+const map = createMap(target);
+const mapView = new MapView(map, readTheme());
+const notice = new Notice(byId('notice', HTMLElement));
+const status = new Status(byId('status', HTMLElement));
+const sessionList = new SessionList(byId('sessions', HTMLElement));
+const robotList = new RobotList(byId('robots', HTMLElement), mapView, (robot) => follow(robot));
+const camera = new Camera(map, target, (robot) => robotList.setFollowed(robot));
+const cursor = new Cursor(map, target, {
+  box: byId('cursor', HTMLElement),
+  x: byId('cursor-x', HTMLElement),
+  y: byId('cursor-y', HTMLElement),
+  cell: byId('cursor-cell', HTMLElement),
+  value: byId('cursor-value', HTMLElement),
+  crosshair: byId('crosshair', HTMLElement),
+});
+const viewer = new Viewer({
+  map: mapView,
+  camera,
+  cursor,
+  facts: new Facts(byId('facts', HTMLElement)),
+  robots: robotList,
+  notice,
+  status,
+  details: byId('details', HTMLElement),
+});
+
+function follow(robot: string | null): void {
+  if (robot === null) camera.free();
+  else camera.follow(robot);
+}
+
+/** Follows the page's address. */
+function openChosen(): void {
+  const name = sessionOfHash(location.hash);
+  if (name === null) return;
+  document.title = `${name} \u2013 Scanloom`;
+  sessionList.choose(name);
+  viewer.watch(name);
+}
+
+/** Without a choice, the session where something happens, or else the newest. */
+function chooseFrom(sessions: Session[]): void {
+  const newestFirst = [...sessions].sort((a, b) => b.created.localeCompare(a.created));
+  const live = newestFirst.find(({ robots }) => robots.some(({ connected }) => connected));
+  const choice = live ?? newestFirst[0];
+  if (!choice) {
+    notice.show({ kind: 'no-sessions', host: location.hostname });
+    return;
+  }
+  history.replaceState(null, '', hashOfSession(choice.name));
+  openChosen();
+}
+
+async function refreshSessions(signal: AbortSignal): Promise<void> {
+  const sessions = await fetchSessions(signal);
+  sessionList.show(sessions);
+  byId('no-sessions', HTMLElement).hidden = sessions.length > 0;
+  if (sessionOfHash(location.hash) === null) chooseFrom(sessions);
+}
+
+function connectControls(): void {
+  byId('zoom-in', HTMLButtonElement).addEventListener('click', () => camera.zoomBy(1));
+  byId('zoom-out', HTMLButtonElement).addEventListener('click', () => camera.zoomBy(-1));
+  byId('fit', HTMLButtonElement).addEventListener('click', () => camera.fit());
+  const toggle = byId('panel-toggle', HTMLButtonElement);
+  toggle.addEventListener('click', () => {
+    const open = toggle.getAttribute('aria-expanded') !== 'true';
+    toggle.setAttribute('aria-expanded', String(open));
+    byId('panel', HTMLElement).classList.toggle('open', open);
+  });
+}
+
+connectControls();
+onThemeChange((theme) => mapView.setTheme(theme));
+window.addEventListener('hashchange', openChosen);
+notice.show({ kind: 'loading' });
+openChosen();
+void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => status.settle('sessions', error));

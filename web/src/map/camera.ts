@@ -1,0 +1,121 @@
+/** What part of the map is in view: all of it, what the person chose, or where a robot is. */
+import { containsExtent, type Extent } from 'ol/extent';
+import type Map from 'ol/Map';
+import type { Bounds, Robot } from '../api/types';
+
+type Aim = { kind: 'everything' } | { kind: 'free' } | { kind: 'robot'; name: string };
+
+const kPaddingPx = 56;
+const kMoveMs = 250;
+/** Nothing is shown larger than this by itself: metres per pixel for a room of a few metres. */
+const kFitResolutionMin = 0.01;
+/** Bounds that outgrow the view are fitted with this much room to grow, so that the view does not creep. */
+const kRoomToGrow = 0.15;
+
+export class Camera {
+  private aim: Aim = { kind: 'everything' };
+  private bounds: Bounds | null = null;
+  private robots: Robot[] = [];
+  private fitted = false;
+
+  constructor(
+    private readonly map: Map,
+    target: HTMLElement,
+    private readonly aimed: (robot: string | null) => void,
+  ) {
+    map.on('pointerdrag', () => this.free());
+    map.on('change:size', () => this.update());
+    for (const zooming of ['wheel', 'dblclick']) target.addEventListener(zooming, () => this.zoomed(), { passive: true });
+    target.addEventListener('keydown', ({ key }) => {
+      if (key.startsWith('Arrow')) this.free();
+      else if (key === '+' || key === '-') this.zoomed();
+    });
+  }
+
+  get followed(): string | null {
+    return this.aim.kind === 'robot' ? this.aim.name : null;
+  }
+
+  /** Another session: back to showing everything. */
+  reset(): void {
+    this.bounds = null;
+    this.robots = [];
+    this.fitted = false;
+    this.setAim({ kind: 'everything' });
+  }
+
+  see(bounds: Bounds | null, robots: Robot[]): void {
+    this.bounds = bounds;
+    this.robots = robots;
+    this.update();
+  }
+
+  /** Shows everything, and keeps doing so while the map grows. */
+  fit(): void {
+    this.setAim({ kind: 'everything' });
+    if (this.bounds) this.fitTo(this.bounds, 0);
+  }
+
+  follow(robot: string): void {
+    this.setAim({ kind: 'robot', name: robot });
+    this.update();
+  }
+
+  /** The person moves the view: leave it to them. */
+  free(): void {
+    if (this.aim.kind !== 'free') this.setAim({ kind: 'free' });
+  }
+
+  zoomBy(levels: number): void {
+    this.zoomed();
+    const view = this.map.getView();
+    const zoom = view.getZoom();
+    if (zoom !== undefined) view.animate({ zoom: zoom + levels, duration: kMoveMs });
+  }
+
+  /** Zooming while a robot is followed goes on following it. */
+  private zoomed(): void {
+    if (this.aim.kind === 'everything') this.free();
+  }
+
+  private setAim(aim: Aim): void {
+    this.aim = aim;
+    this.aimed(this.followed);
+  }
+
+  private update(): void {
+    if (!this.map.getSize()) return;
+    if (this.aim.kind === 'robot') this.centreOn(this.aim.name);
+    if (!this.bounds) return;
+    if (!this.fitted || (this.aim.kind === 'everything' && !this.inView(this.bounds))) {
+      this.fitTo(this.bounds, this.fitted ? kRoomToGrow : 0);
+    }
+  }
+
+  private centreOn(name: string): void {
+    const pose = this.robots.find((robot) => robot.name === name)?.pose;
+    if (pose) this.map.getView().animate({ center: [pose.x, pose.y], duration: kMoveMs, easing: (t) => t });
+  }
+
+  private fitTo(bounds: Bounds, room: number): void {
+    const dx = (bounds.maxX - bounds.minX) * room;
+    const dy = (bounds.maxY - bounds.minY) * room;
+    const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
+    this.map.getView().fit(extent, {
+      padding: [kPaddingPx, kPaddingPx, kPaddingPx, kPaddingPx],
+      minResolution: kFitResolutionMin,
+      duration: this.fitted ? kMoveMs : 0,
+    });
+    this.fitted = true;
+  }
+
+  private inView(bounds: Bounds): boolean {
+    const view = this.map.getView();
+    // An animation under way already goes there.
+    return view.getAnimating() || containsExtent(view.calculateExtent(this.map.getSize()), extentOf(bounds));
+  }
+}
+
+function extentOf({ minX, minY, maxX, maxY }: Bounds): Extent {
+  return [minX, minY, maxX, maxY];
+}

@@ -1,0 +1,75 @@
+/** The robots where they were last seen, each with its heading and name. */
+import type { Coordinate } from 'ol/coordinate';
+import Feature from 'ol/Feature';
+import PointGeometry from 'ol/geom/Point';
+import VectorLayer from 'ol/layer/Vector';
+import VectorSource from 'ol/source/Vector';
+import Fill from 'ol/style/Fill';
+import Stroke from 'ol/style/Stroke';
+import Style from 'ol/style/Style';
+import Text from 'ol/style/Text';
+import type { Robot } from '../api/types';
+import type { RobotColours } from '../robot_colours';
+import type { Theme } from '../theme';
+import { drawMarker } from './marker';
+
+export class RobotsLayer {
+  private readonly source = new VectorSource<Feature<PointGeometry>>();
+  readonly layer: VectorLayer;
+  private robots: Robot[] = [];
+
+  constructor(
+    private readonly colours: RobotColours,
+    private theme: Theme,
+  ) {
+    this.layer = new VectorLayer({ source: this.source, updateWhileAnimating: true, updateWhileInteracting: true });
+  }
+
+  show(robots: Robot[]): void {
+    this.robots = robots;
+    const seen = new Set<string>();
+    for (const robot of robots) {
+      if (!robot.pose) continue;
+      seen.add(robot.name);
+      const feature = this.featureOf(robot.name);
+      feature.setGeometry(new PointGeometry([robot.pose.x, robot.pose.y]));
+      feature.setStyle(this.styleOf(robot, robot.pose.yaw));
+    }
+    for (const feature of this.source.getFeatures()) {
+      if (!seen.has(String(feature.getId()))) this.source.removeFeature(feature);
+    }
+  }
+
+  setTheme(theme: Theme): void {
+    this.theme = theme;
+    this.show(this.robots);
+  }
+
+  private featureOf(robot: string): Feature<PointGeometry> {
+    const known = this.source.getFeatureById(robot);
+    if (known instanceof Feature) return known;
+    const feature = new Feature<PointGeometry>();
+    feature.setId(robot);
+    this.source.addFeature(feature);
+    return feature;
+  }
+
+  private styleOf(robot: Robot, yaw: number): Style[] {
+    const colour = this.theme.robots[this.colours.indexOf(robot.name)] ?? this.theme.ink;
+    const look = { yaw, colour, halo: this.theme.halo, filled: robot.connected };
+    return [
+      new Style({
+        renderer: (at, { context, pixelRatio }) => drawMarker(context, at as Coordinate, look, pixelRatio),
+      }),
+      new Style({
+        text: new Text({
+          text: robot.name,
+          font: '600 12px system-ui, sans-serif',
+          offsetY: -24,
+          fill: new Fill({ color: this.theme.ink }),
+          stroke: new Stroke({ color: this.theme.halo, width: 4 }),
+        }),
+      }),
+    ];
+  }
+}

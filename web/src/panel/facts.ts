@@ -1,0 +1,30 @@
+/** The chosen session in numbers. */
+import type { Session } from '../api/types';
+import { el, setText } from '../dom';
+import * as format from '../format';
+
+const kFacts: [label: string, read: (session: Session) => string][] = [
+  ['Scans', ({ scans }) => format.count(scans)],
+  ['Area', ({ bounds }) => (bounds ? format.area(bounds) : 'nothing seen yet')],
+  ['Cell', ({ cellSize }) => format.cellSize(cellSize)],
+  ['Begun', ({ created }) => format.moment(created)],
+];
+
+export class Facts {
+  private readonly values: HTMLElement[];
+
+  constructor(list: HTMLElement) {
+    this.values = kFacts.map(([label]) => {
+      const value = el('dd', { class: 'numeric' });
+      list.append(el('div', {}, el('dt', {}, label), value));
+      return value;
+    });
+  }
+
+  show(session: Session): void {
+    kFacts.forEach(([, read], index) => {
+      const value = this.values[index];
+      if (value) setText(value, read(session));
+    });
+  }
+}

@@ -1,0 +1,69 @@
+/** What stands in the place of the map while there is none to show. */
+import { el } from '../dom';
+
+export type NoticeState =
+  | { kind: 'none' }
+  | { kind: 'loading' }
+  | { kind: 'no-sessions'; host: string }
+  | { kind: 'missing'; name: string }
+  | { kind: 'deleted'; name: string }
+  | { kind: 'empty'; name: string };
+
+export class Notice {
+  private shown = '';
+
+  constructor(private readonly card: HTMLElement) {}
+
+  show(state: NoticeState): void {
+    const fingerprint = JSON.stringify(state);
+    if (fingerprint === this.shown) return;
+    this.shown = fingerprint;
+    this.card.hidden = state.kind === 'none';
+    this.card.dataset['state'] = state.kind;
+    this.card.replaceChildren(...contentOf(state));
+  }
+}
+
+function contentOf(state: NoticeState): Node[] {
+  switch (state.kind) {
+    case 'none':
+      return [];
+    case 'loading':
+      return [el('p', {}, 'Loading\u2026')];
+    case 'no-sessions':
+      return [
+        el('h2', {}, 'No sessions yet'),
+        el('p', {}, 'A session begins when a robot connects. Start a simulated one:'),
+        el('pre', { tabindex: '0', 'aria-label': 'Command' }, el('code', {}, robotCommand(state.host))),
+        el('p', {}, 'It appears here by itself.'),
+      ];
+    case 'missing':
+      return [
+        el('h2', {}, 'No such session'),
+        el('p', {}, 'There is no session ', named(state.name), '. Choose another, or wait: it opens as soon as a robot begins it.'),
+      ];
+    case 'deleted':
+      return [
+        el('h2', {}, 'Session deleted'),
+        el('p', {}, 'The session ', named(state.name), ' was deleted on the server. Choose another one.'),
+      ];
+    case 'empty':
+      return [
+        el('h2', {}, 'Nothing seen yet'),
+        el('p', {}, 'The session ', named(state.name), ' is open and waits for the first scan.'),
+      ];
+  }
+}
+
+function named(name: string): HTMLElement {
+  return el('strong', { dir: 'auto' }, name);
+}
+
+/** @param host where the page came from; robots usually connect to the same machine, on their own port */
+function robotCommand(host: string): string {
+  return [
+    `build/bin/scanloom-robot --server ${host}:7447 \\`,
+    '    --session demo --robot r1 \\',
+    '    simulate --world office --drive wall_follower --seed 1',
+  ].join('\n');
+}

@@ -1,0 +1,68 @@
+/** The robots of the chosen session; each can be followed. */
+import type { Robot } from '../api/types';
+import { el, KeyedList, setText, type Row } from '../dom';
+import * as format from '../format';
+import type { RobotColours } from '../robot_colours';
+
+export interface RobotListSource {
+  pathLength(robot: string): number;
+}
+
+interface RobotRow extends Row {
+  swatch: HTMLElement;
+  detail: HTMLElement;
+  place: HTMLElement;
+  follow: HTMLButtonElement;
+}
+
+export class RobotList {
+  private readonly rows: KeyedList<Robot, RobotRow>;
+  private robots: Robot[] = [];
+  private colours: RobotColours | null = null;
+  private followed: string | null = null;
+
+  constructor(
+    list: HTMLElement,
+    private readonly source: RobotListSource,
+    private readonly follow: (robot: string | null) => void,
+  ) {
+    this.rows = new KeyedList(list, ({ name }) => name, (robot) => this.createRow(robot), (row, robot) => this.update(row, robot));
+  }
+
+  show(robots: Robot[], colours: RobotColours): void {
+    this.robots = robots;
+    this.colours = colours;
+    this.rows.show(robots);
+  }
+
+  clear(): void {
+    this.robots = [];
+    this.rows.show([]);
+  }
+
+  setFollowed(robot: string | null): void {
+    this.followed = robot;
+    this.rows.show(this.robots);
+  }
+
+  private createRow({ name }: Robot): RobotRow {
+    const swatch = el('span', { class: 'swatch' });
+    const detail = el('span', { class: 'row-detail' });
+    const place = el('span', { class: 'row-detail numeric', 'data-role': 'pose' });
+    const follow = el('button', { type: 'button', class: 'follow', 'aria-label': `Follow ${name}` }, 'Follow');
+    follow.addEventListener('click', () => this.follow(this.followed === name ? null : name));
+    const title = el('span', { class: 'row-name', dir: 'auto' }, name);
+    return { element: el('li', { class: 'robot' }, swatch, title, follow, detail, place), swatch, detail, place, follow };
+  }
+
+  private update(row: RobotRow, robot: Robot): void {
+    row.element.dataset['robot'] = robot.name;
+    row.swatch.dataset['colour'] = String(this.colours?.indexOf(robot.name) ?? 0);
+    row.swatch.classList.toggle('hollow', !robot.connected);
+    const travelled = format.length(this.source.pathLength(robot.name));
+    setText(row.detail, `${robot.connected ? 'connected' : 'away'} \u00b7 ${format.counted(robot.scans, 'scan')} \u00b7 ${travelled}`);
+    setText(row.place, robot.pose ? format.pose(robot.pose) : 'no position yet');
+    row.follow.disabled = !robot.pose;
+    row.follow.setAttribute('aria-pressed', String(robot.name === this.followed));
+  }
+}

@@ -1,0 +1,46 @@
+/** The sessions to choose from. */
+import type { Session } from '../api/types';
+import { hashOfSession } from '../address';
+import { el, KeyedList, setText, type Row } from '../dom';
+import { counted } from '../format';
+
+interface SessionRow extends Row {
+  link: HTMLAnchorElement;
+  summary: HTMLElement;
+  live: HTMLElement;
+}
+
+export class SessionList {
+  private readonly rows: KeyedList<Session, SessionRow>;
+  private chosen: string | null = null;
+  private sessions: Session[] = [];
+
+  constructor(list: HTMLElement) {
+    this.rows = new KeyedList(list, ({ name }) => name, createRow, (row, session) => this.update(row, session));
+  }
+
+  show(sessions: Session[]): void {
+    this.sessions = sessions;
+    this.rows.show(sessions);
+  }
+
+  choose(name: string): void {
+    this.chosen = name;
+    this.rows.show(this.sessions);
+  }
+
+  private update(row: SessionRow, session: Session): void {
+    setText(row.summary, `${counted(session.scans, 'scan')} \u00b7 ${counted(session.robots.length, 'robot')}`);
+    row.live.hidden = !session.robots.some(({ connected }) => connected);
+    if (session.name === this.chosen) row.link.setAttribute('aria-current', 'true');
+    else row.link.removeAttribute('aria-current');
+  }
+}
+
+function createRow(session: Session): SessionRow {
+  const summary = el('span', { class: 'row-detail' });
+  const live = el('span', { class: 'live' }, 'live');
+  const name = el('span', { class: 'row-name', dir: 'auto' }, session.name);
+  const link = el('a', { href: hashOfSession(session.name), class: 'row' }, name, live, summary);
+  return { element: el('li', {}, link), link, summary, live };
+}

@@ -1,0 +1,66 @@
+/** Whether the server can be heard: silent while all is well. */
+import { MalformedAnswer } from '../api/decode';
+import { Refused, Unreachable } from '../api/http';
+import { setText } from '../dom';
+
+export type Trouble = { kind: 'offline' | 'error'; text: string };
+
+const kReassureMs = 3_000;
+
+export class Status {
+  private readonly troubles = new Map<string, Trouble>();
+  private timer = 0;
+  private wasOffline = false;
+
+  constructor(private readonly line: HTMLElement) {}
+
+  /**
+   * @param source which of the page's questions this is about; each has its own outcome
+   * @param error null when it was answered
+   */
+  settle(source: string, error: unknown): void {
+    if (error === null) this.troubles.delete(source);
+    else this.troubles.set(source, troubleOf(error));
+    this.show();
+  }
+
+  /** That question is asked no longer. */
+  forget(source: string): void {
+    this.troubles.delete(source);
+    this.show();
+  }
+
+  private show(): void {
+    const all = [...this.troubles.values()];
+    const worst = all.find(({ kind }) => kind === 'offline') ?? all[0];
+    if (worst) {
+      clearTimeout(this.timer);
+      this.wasOffline ||= worst.kind === 'offline';
+      this.say(worst.kind, worst.text);
+    } else if (this.wasOffline) {
+      this.wasOffline = false;
+      this.say('well', 'Connected again.');
+      this.timer = window.setTimeout(() => this.say('silent', ''), kReassureMs);
+    } else if (this.line.dataset['state'] !== 'well') {
+      this.say('silent', '');
+    }
+  }
+
+  private say(state: string, text: string): void {
+    this.line.dataset['state'] = state;
+    setText(this.line, text);
+  }
+}
+
+export function troubleOf(error: unknown): Trouble {
+  if (error instanceof Unreachable) {
+    return { kind: 'offline', text: 'No connection to the server. Trying again by itself; the map shows what was last seen.' };
+  }
+  if (error instanceof Refused) {
+    return { kind: 'error', text: `The server reports an error: ${error.message}. Trying again.` };
+  }
+  if (error instanceof MalformedAnswer) {
+    return { kind: 'error', text: `The server's answer cannot be read: ${error.message}. Is it of the same version?` };
+  }
+  return { kind: 'error', text: `Something in this page failed: ${String(error)}. Reloading may help.` };
+}

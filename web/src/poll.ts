@@ -1,0 +1,57 @@
+/** Asking again and again, politely: slower while nobody looks, and ever slower while the server is away. */
+
+export interface Pace {
+  visibleMs: number;
+  hiddenMs: number;
+}
+
+const kBackoffMaxMs = 5_000;
+
+/**
+ * Runs the task, waits, and runs it again until the signal aborts; never two runs at once.
+ * Coming back to the page, or the network coming back, ends a wait early.
+ *
+ * @param settled told after every run: null, or what went wrong
+ */
+export async function poll(
+  task: (signal: AbortSignal) => Promise<void>,
+  pace: Pace,
+  signal: AbortSignal,
+  settled: (error: unknown) => void,
+): Promise<void> {
+  let failures = 0;
+  while (!signal.aborted) {
+    try {
+      await task(signal);
+      failures = 0;
+      settled(null);
+    } catch (error) {
+      if (signal.aborted) return;
+      failures += 1;
+      settled(error);
+    }
+    const everyMs = document.hidden ? pace.hiddenMs : pace.visibleMs;
+    await pause(backoff(everyMs, failures), signal);
+  }
+}
+
+/** Doubles with every failure in a row, up to a few seconds. */
+export function backoff(everyMs: number, failures: number): number {
+  if (failures === 0) return everyMs;
+  return Math.max(everyMs, Math.min(kBackoffMaxMs, everyMs * 2 ** failures));
+}
+
+function pause(durationMs: number, signal: AbortSignal): Promise<void> {
+  return new Promise((resolve) => {
+    const done = new AbortController();
+    const finish = (): void => {
+      clearTimeout(timer);
+      done.abort();
+      resolve();
+    };
+    const timer = setTimeout(finish, durationMs);
+    signal.addEventListener('abort', finish, { signal: done.signal });
+    window.addEventListener('online', finish, { signal: done.signal });
+    document.addEventListener('visibilitychange', () => document.hidden || finish(), { signal: done.signal });
+  });
+}
