@@ -32,6 +32,17 @@ export function length(metres: number): string {
   return `${decimal(metres, metres >= 100 ? 0 : 1)} m`;
 }
 
+/** A length with no more digits than it needs: "0.5 m", "20 m", "2 km". */
+export function roundLength(metres: number): string {
+  return metres >= 1000 ? `${metres / 1000} km` : `${Number(metres.toPrecision(3))} m`;
+}
+
+/** Cuts what would cover too much of the map. */
+export function shortened(text: string, lengthMax: number): string {
+  const letters = [...text];
+  return letters.length <= lengthMax ? text : `${letters.slice(0, lengthMax - 1).join('')}\u2026`;
+}
+
 /** "5 cm", "12.5 cm", "1 m". */
 export function cellSize(metres: number): string {
   return metres < 1 ? `${Number((metres * 100).toFixed(2))} cm` : `${Number(metres.toFixed(3))} m`;

@@ -2,13 +2,14 @@
 import { fetchSessions } from './api/api';
 import type { Session } from './api/types';
 import { hashOfSession, sessionOfHash } from './address';
-import { byId } from './dom';
+import { byId, setText } from './dom';
 import { Camera } from './map/camera';
 import { createMap, MapView } from './map/map_view';
 import { Cursor } from './panel/cursor';
 import { Facts } from './panel/facts';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
+import { showScale } from './panel/scale_bar';
 import { SessionList } from './panel/session_list';
 import { Status } from './panel/status';
 import { poll, type Pace } from './poll';
@@ -18,6 +19,7 @@ import './style.css';
 
 const kSessionsPace: Pace = { visibleMs: 2_000, hiddenMs: 15_000 };
 
+const panelToggle = byId('panel-toggle', HTMLButtonElement);
 const target = byId('map', HTMLElement);
 const map = createMap(target);
 const mapView = new MapView(map, readTheme());
@@ -43,6 +45,7 @@ const viewer = new Viewer({
   notice,
   status,
   details: byId('details', HTMLElement),
+  noRobots: byId('no-robots', HTMLElement),
 });
 
 function follow(robot: string | null): void {
@@ -55,6 +58,7 @@ function openChosen(): void {
   const name = sessionOfHash(location.hash);
   if (name === null) return;
   document.title = `${name} \u2013 Scanloom`;
+  setText(byId('chosen', HTMLElement), name);
   sessionList.choose(name);
   viewer.watch(name);
 }
@@ -83,17 +87,22 @@ function connectControls(): void {
   byId('zoom-in', HTMLButtonElement).addEventListener('click', () => camera.zoomBy(1));
   byId('zoom-out', HTMLButtonElement).addEventListener('click', () => camera.zoomBy(-1));
   byId('fit', HTMLButtonElement).addEventListener('click', () => camera.fit());
-  const toggle = byId('panel-toggle', HTMLButtonElement);
-  toggle.addEventListener('click', () => {
-    const open = toggle.getAttribute('aria-expanded') !== 'true';
-    toggle.setAttribute('aria-expanded', String(open));
-    byId('panel', HTMLElement).classList.toggle('open', open);
-  });
+  panelToggle.addEventListener('click', () => setPanel(panelToggle.getAttribute('aria-expanded') !== 'true'));
 }
 
+/** Matters on a phone only, where the panel covers most of the map. */
+function setPanel(open: boolean): void {
+  panelToggle.setAttribute('aria-expanded', String(open));
+  byId('panel', HTMLElement).classList.toggle('open', open);
+}
+
+showScale(map, byId('scale', HTMLElement));
 connectControls();
 onThemeChange((theme) => mapView.setTheme(theme));
-window.addEventListener('hashchange', openChosen);
+window.addEventListener('hashchange', () => {
+  setPanel(false);
+  openChosen();
+});
 notice.show({ kind: 'loading' });
 openChosen();
 void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => status.settle('sessions', error));

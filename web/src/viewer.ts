@@ -22,6 +22,7 @@ export interface ViewerParts {
   notice: Notice;
   status: Status;
   details: HTMLElement;
+  noRobots: HTMLElement;
 }
 
 const kSource = 'session';
@@ -83,6 +84,7 @@ export class Viewer {
     this.parts.camera.see(session.bounds, session.robots);
     this.parts.facts.show(session);
     this.parts.robots.show(session.robots, this.colours);
+    this.parts.noRobots.hidden = session.robots.length > 0;
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });
   }
 

@@ -5,7 +5,9 @@ import type { Bounds, Robot } from '../api/types';
 
 type Aim = { kind: 'everything' } | { kind: 'free' } | { kind: 'robot'; name: string };
 
+/** Room around what is fitted, for the tools in the corners. */
 const kPaddingPx = 56;
+const kPaddingShareMax = 0.08;
 const kMoveMs = 250;
 /** Nothing is shown larger than this by itself: metres per pixel for a room of a few metres. */
 const kFitResolutionMin = 0.01;
@@ -101,8 +103,10 @@ export class Camera {
     const dx = (bounds.maxX - bounds.minX) * room;
     const dy = (bounds.maxY - bounds.minY) * room;
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
+    const [width = 0, height = 0] = this.map.getSize() ?? [];
+    const padding = Math.min(kPaddingPx, kPaddingShareMax * Math.min(width, height));
     this.map.getView().fit(extent, {
-      padding: [kPaddingPx, kPaddingPx, kPaddingPx, kPaddingPx],
+      padding: [padding, padding, padding, padding],
       minResolution: kFitResolutionMin,
       duration: this.fitted ? kMoveMs : 0,
     });

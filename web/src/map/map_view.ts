@@ -1,5 +1,4 @@
 /** The map: its view, its layers, and what of a session is drawn on it. */
-import ScaleLine from 'ol/control/ScaleLine';
 import { defaults as defaultInteractions } from 'ol/interaction/defaults';
 import OlMap from 'ol/Map';
 import Projection from 'ol/proj/Projection';
@@ -30,7 +29,7 @@ interface Scene {
 export function createMap(target: HTMLElement): OlMap {
   return new OlMap({
     target,
-    controls: [new ScaleLine({ className: 'scale-bar', minWidth: 72 })],
+    controls: [],
     interactions: defaultInteractions({ altShiftDragRotate: false, pinchRotate: false }),
   });
 }

@@ -50,7 +50,7 @@ export class PathLayer {
 
   private styleOf(robot: string): Style {
     const color = this.theme.robots[this.colours.indexOf(robot)];
-    return new Style({ stroke: new Stroke({ color, width: 2, lineJoin: 'round', lineCap: 'round' }) });
+    return new Style({ stroke: new Stroke({ color, width: 1.5, lineJoin: 'round', lineCap: 'round' }) });
   }
 }
 

@@ -9,9 +9,12 @@ import Stroke from 'ol/style/Stroke';
 import Style from 'ol/style/Style';
 import Text from 'ol/style/Text';
 import type { Robot } from '../api/types';
+import { shortened } from '../format';
 import type { RobotColours } from '../robot_colours';
 import type { Theme } from '../theme';
 import { drawMarker } from './marker';
+
+const kLabelLengthMax = 24;
 
 export class RobotsLayer {
   private readonly source = new VectorSource<Feature<PointGeometry>>();
@@ -63,7 +66,7 @@ export class RobotsLayer {
       }),
       new Style({
         text: new Text({
-          text: robot.name,
+          text: shortened(robot.name, kLabelLengthMax),
           font: '600 12px system-ui, sans-serif',
           offsetY: -24,
           fill: new Fill({ color: this.theme.ink }),

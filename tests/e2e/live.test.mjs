@@ -1,0 +1,77 @@
+/** The whole way: a robot streams to the real server, and a person watches the map grow. */
+import assert from 'node:assert/strict';
+import { after, before, describe, it } from 'node:test';
+import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, textOf } from './browser.mjs';
+import { Server, startRobot, stop } from './programs.mjs';
+
+const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '4'];
+
+describe('a robot that streams to the server', { timeout: 240_000 }, () => {
+  let server;
+  let robot;
+  let browser;
+  let page;
+  let complaints;
+
+  before(async () => {
+    server = await Server.start();
+    browser = await launchBrowser();
+    ({ page, complaints } = await openPage(browser, server.address));
+  });
+
+  after(async () => {
+    await browser?.close();
+    if (robot) await stop(robot);
+    await server?.stop();
+  });
+
+  it('opens its session in the page that was waiting for it', async () => {
+    await says(page, '#notice', /No sessions yet/);
+    robot = startRobot(server, 'demo', 'r1', kSource);
+    await page.waitForSelector('#notice', { state: 'hidden' });
+    await page.waitForSelector('[data-robot="r1"]');
+    assert.match(page.url(), /#session=demo$/);
+  });
+
+  it('makes tiles change, each fetched again under its new version', async () => {
+    const versions = new Map();
+    for (let changed = 0; changed < 3; ) {
+      const answer = await page.waitForResponse((response) => /\/tiles\/occupancy\/.*\.png\?/.test(response.url()));
+      assert.equal(answer.status(), 200);
+      const url = new URL(answer.url());
+      const version = Number(url.searchParams.get('v'));
+      const last = versions.get(url.pathname);
+      if (last !== undefined) {
+        assert.ok(version > last, `${url.pathname} fetched again at version ${version}`);
+        changed += 1;
+      }
+      versions.set(url.pathname, version);
+    }
+  });
+
+  it('moves on the page, and draws its path', async () => {
+    const pose = '[data-robot="r1"] [data-role="pose"]';
+    const before = await textOf(page, pose);
+    await page.waitForFunction(([at, old]) => document.querySelector(at)?.textContent !== old, [pose, before]);
+    await says(page, '[data-robot="r1"] .row-detail', /connected .* [1-9]\d*\.\d m/);
+    assert.ok((await countPixels(page, await colourOf(page, '--robot-0'))) > 100, 'marker and path are drawn');
+  });
+
+  it('is followed, and what lies beneath it is read as free', async () => {
+    await page.click('[data-robot="r1"] .follow');
+    await page.focus('#map');
+    await page.hover('#map');
+    await says(page, '#cursor-value', /^\d+ % occupied$/);
+    assert.match(await textOf(page, '#cursor-x'), /^\u2212?\d+\.\d\d$/);
+    await page.click('#fit');
+  });
+
+  it('leaves a picture of what was seen', async () => {
+    await says(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
+    await keepPicture(page, 'live-light');
+    await page.emulateMedia({ colorScheme: 'dark' });
+    await page.waitForResponse((response) => response.url().includes('.png?'));
+    await keepPicture(page, 'live-dark');
+    assert.deepEqual(complaints, []);
+  });
+});

@@ -1,0 +1,65 @@
+/** The real server and robot, as processes of the test. */
+import { spawn } from 'node:child_process';
+import { mkdtemp, rm } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { kWebDirectory, required } from './browser.mjs';
+
+const kBinDirectory = required('SCANLOOM_BIN_DIR');
+
+/** A server on free ports with an empty store of its own. */
+export class Server {
+  static async start() {
+    const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
+    const child = start('scanloom-server', [
+      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, '--web', kWebDirectory],
+    ]);
+    const ready = await readyLine(child);
+    return new Server(child, store, ready.robot_port, ready.http_port);
+  }
+
+  constructor(child, store, robotPort, httpPort) {
+    Object.assign(this, { child, store, robotPort, httpPort });
+  }
+
+  get address() {
+    return `http://127.0.0.1:${this.httpPort}/`;
+  }
+
+  async stop() {
+    await stop(this.child);
+    await rm(this.store, { recursive: true, force: true });
+  }
+}
+
+export function startRobot(server, session, robot, source) {
+  return start('scanloom-robot', [
+    ...['--server', `127.0.0.1:${server.robotPort}`, '--session', session, '--robot', robot, ...source],
+  ]);
+}
+
+/** Asks the process to end, and waits until it has. */
+export async function stop(child) {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  const ended = new Promise((resolve) => child.once('exit', resolve));
+  child.kill('SIGTERM');
+  await ended;
+}
+
+function start(program, args) {
+  const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', 'inherit'] });
+  child.on('error', (error) => console.error(`${program} cannot be started: ${error.message}`));
+  return child;
+}
+
+function readyLine(child) {
+  return new Promise((resolve, reject) => {
+    createInterface({ input: child.stdout }).on('line', (line) => {
+      const event = JSON.parse(line);
+      if (event.event === 'ready') resolve(event);
+    });
+    child.once('error', reject);
+    child.once('exit', (code) => reject(new Error(`scanloom-server ended with ${code} before it was ready`)));
+  });
+}

@@ -1,0 +1,13 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { hashOfSession, sessionOfHash } from '../../../web/src/address';
+
+describe('the address', () => {
+  it('gives back any name that it was given', () => {
+    for (const name of ['intel', 'a_b-1', '<b>&#=+ %\u00e9']) assert.equal(sessionOfHash(hashOfSession(name)), name);
+  });
+
+  it('chooses nothing when it says nothing', () => {
+    for (const hash of ['', '#', '#session=', '#other=1']) assert.equal(sessionOfHash(hash), null);
+  });
+});

@@ -1,0 +1,71 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import {
+  decodeChanges,
+  decodeSession,
+  decodeSessionPage,
+  decodeTrajectory,
+  MalformedAnswer,
+} from '../../../../web/src/api/decode';
+
+function session(): Record<string, unknown> {
+  return {
+    name: 'intel',
+    id: '000000000000002a',
+    created: '2026-11-21T09:00:00Z',
+    revision: 911,
+    scans: 910,
+    config: { cell_size: 0.05, p_occupied: 0.9 },
+    layers: ['occupancy'],
+    bounds: { min_x: -20.1, min_y: -3.2, max_x: 18, max_y: 30 },
+    robots: [{ name: 'r1', connected: true, scans: 910, last_seq: 910, stamp: 1.5, pose: { x: 1, y: 2, yaw: 0.1 } }],
+  };
+}
+
+describe('decoding', () => {
+  it('reads a session as the server writes it', () => {
+    assert.deepEqual(decodeSession(session()), {
+      name: 'intel',
+      id: '000000000000002a',
+      created: '2026-11-21T09:00:00Z',
+      revision: 911,
+      scans: 910,
+      cellSize: 0.05,
+      bounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
+      robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 } }],
+    });
+  });
+
+  it('takes a session in which nothing was seen', () => {
+    const empty = decodeSession({ ...session(), bounds: null, robots: [{ name: 'r', scans: 0, pose: null }] });
+    assert.equal(empty.bounds, null);
+    assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null }]);
+  });
+
+  it('names the field that is not as agreed', () => {
+    const broken: [unknown, RegExp][] = [
+      [null, /session is not an object/],
+      [{ ...session(), name: 7 }, /name is not a text/],
+      [{ ...session(), revision: '911' }, /revision is not a number/],
+      [{ ...session(), config: { cell_size: 0 } }, /config.cell_size is not positive/],
+      [{ ...session(), robots: {} }, /robots is not a list/],
+      [{ ...session(), robots: [{ name: 'r', scans: 1, pose: { x: 1 } }] }, /pose.y is not a number/],
+    ];
+    for (const [json, message] of broken) assert.throws(() => decodeSession(json), message);
+    assert.throws(() => decodeSessionPage([]), MalformedAnswer);
+    assert.throws(() => decodeChanges({ revision: 1, tiles: [{ z: 9, x: 1, y: 1 }] }), /tiles\[\].revision/);
+  });
+
+  it('reads a path of one point as well as a line', () => {
+    const feature = (type: string, coordinates: number[][]): unknown => ({
+      type: 'Feature',
+      id: 'r1',
+      properties: { robot: 'r1', points: coordinates.length },
+      geometry: { type, coordinates },
+    });
+    for (const [type, coordinates] of [['MultiPoint', [[1, 2]]], ['LineString', [[1, 2], [3, 4]]]] as const) {
+      const json = { revision: 3, features: [feature(type, coordinates as unknown as number[][])] };
+      assert.deepEqual(decodeTrajectory(json), { revision: 3, tracks: [{ robot: 'r1', points: coordinates }] });
+    }
+  });
+});

@@ -1,0 +1,18 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { TileVersions } from '../../../../web/src/map/versions';
+
+describe('tile versions', () => {
+  it('know nothing of a tile that was never touched', () => {
+    assert.equal(new TileVersions().get(9, 1, 2), undefined);
+  });
+
+  it('keep the newest revision of each tile, whatever the order of arrival', () => {
+    const versions = new TileVersions();
+    versions.apply([{ z: 9, x: 1, y: 2, revision: 7 }]);
+    versions.apply([{ z: 9, x: 1, y: 2, revision: 5 }, { z: 8, x: 1, y: 2, revision: 6 }]);
+    assert.equal(versions.get(9, 1, 2), 7);
+    assert.equal(versions.get(8, 1, 2), 6);
+    assert.equal(versions.get(9, 2, 1), undefined);
+  });
+});

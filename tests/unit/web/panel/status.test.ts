@@ -1,0 +1,15 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { Refused, Unreachable } from '../../../../web/src/api/http';
+import { troubleOf } from '../../../../web/src/panel/status';
+
+describe('trouble', () => {
+  it('tells a server that is away from one that refuses', () => {
+    assert.equal(troubleOf(new Unreachable('x')).kind, 'offline');
+    assert.equal(troubleOf(new Refused(503, 'x')).kind, 'error');
+  });
+
+  it('repeats what the server said', () => {
+    assert.match(troubleOf(new Refused(503, 'Store not open: recovering')).text, /Store not open: recovering/);
+  });
+});
