@@ -1,0 +1,54 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Settings of a program from three places: a flag beats the environment, which beats the file of --config.
+/// Only option parsers include this header.
+namespace scanloom {
+
+/// --cell-size is SCANLOOM_CELL_SIZE.
+[[nodiscard]] inline std::string environment_name(std::string_view option) {
+    std::string name = "SCANLOOM_";
+    for (const char c : option) name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return name;
+}
+
+/// TOML without what the environment sets: CLI11 by itself would let the file win.
+class EnvironmentFirstToml final : public CLI::ConfigTOML {
+public:
+    [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+        auto settings = CLI::ConfigTOML::from_config(input);
+        std::erase_if(settings, [](const CLI::ConfigItem& item) {
+            const char* value = std::getenv(environment_name(item.name).c_str());
+            return value != nullptr && *value != '\0';
+        });
+        return settings;
+    }
+};
+
+/// Call it after all options and subcommands were added. Unknown settings in the file are errors.
+inline void read_settings_from_environment_and_file(CLI::App& app) {
+    const auto name_options = [](CLI::App& level) {
+        for (CLI::Option* option : level.get_options()) {
+            if (!option->get_lnames().empty() && option->get_configurable()) {
+                option->envname(environment_name(option->get_lnames().front()));
+            }
+        }
+    };
+    name_options(app);
+    for (CLI::App* source : app.get_subcommands({})) name_options(*source);
+    app.config_formatter(std::make_shared<EnvironmentFirstToml>());
+    app.allow_config_extras(CLI::config_extras_mode::error);
+    app.set_config("--config", "", "TOML file with settings")->envname(environment_name("config"));
+}
+
+} // namespace scanloom

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string_view>
+
+/// What every program of the project shares with its user.
+namespace scanloom {
+
+/// As CMake's project() has it; set by the build.
+inline constexpr std::string_view kVersion = SCANLOOM_VERSION;
+
+enum ExitCode : int {
+    kExitDone = 0,
+    kExitFailed = 1,
+    kExitUsage = 2, ///< flags, environment or configuration file
+};
+
+} // namespace scanloom

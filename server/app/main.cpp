@@ -1,0 +1,40 @@
+#include "server/app/options.hpp"
+#include "server/app/server.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+#include <iostream>
+
+namespace {
+
+using namespace scanloom;
+
+int run(const app::ServerOptions& options) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("scanloom-server"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_level(spdlog::level::from_str(options.log_level));
+    auto server = app::Server::open(options);
+    auto ended = server ? (*server)->run() : Result<>(server.error());
+    if (ended) return kExitDone;
+    std::cerr << "scanloom-server: " << ended.error().message << '\n';
+    return kExitFailed;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto options = app::read_options(argc, argv);
+        if (const auto* leave = std::get_if<app::Leave>(&options)) {
+            (leave->code == kExitDone ? std::cout : std::cerr) << leave->text << (leave->code == kExitDone ? "" : "\n");
+            return leave->code;
+        }
+        return run(std::get<app::ServerOptions>(options));
+    } catch (const std::exception& failure) {
+        std::cerr << "scanloom-server: " << failure.what() << '\n';
+        return kExitFailed;
+    }
+}

@@ -1,0 +1,120 @@
+#include "server/app/options.hpp"
+
+#include "common/app/environment_first.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <thread>
+
+namespace scanloom::app {
+namespace {
+
+constexpr const char* kAbout = "Keeps the scans of robots in a durable log and serves the maps woven from it.\n"
+                               "Prints one line of JSON with its ports when it is ready.";
+constexpr const char* kFooter = "Every option may also stand in the file of --config (TOML) or in the environment "
+                                "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.";
+
+/// As the parser fills it, before it is settled.
+struct Raw {
+    std::string listen = "127.0.0.1:7447";
+    std::string http = "127.0.0.1:8080";
+    std::string store;
+};
+
+/// Beside the build's programs, or where a package puts it.
+std::filesystem::path default_web() {
+    std::error_code ignored;
+    const auto programs = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+    const auto installed = programs.parent_path() / "share" / "scanloom" / "web";
+    return std::filesystem::exists(installed, ignored) ? installed : programs.parent_path() / "web";
+}
+
+void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
+    app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")->capture_default_str();
+    app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
+    app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
+    app.add_option("--web", options.web, "Directory of the viewer's files");
+    app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    app.add_option("--log-level", options.log_level, "How much is told on standard error")
+        ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+        ->capture_default_str();
+    app.add_flag("--insecure", options.insecure, "Listen beyond this machine, although anybody there may send and read");
+}
+
+Result<> settle(const Raw& raw, ServerOptions& options) {
+    const auto listen = parse_endpoint(raw.listen);
+    if (!listen) return prefixed("--listen ", listen.error());
+    options.listen = *listen;
+    const auto http = parse_endpoint(raw.http);
+    if (!http) return prefixed("--http ", http.error());
+    options.http = *http;
+    if (raw.store.find("://") != std::string::npos) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
+    }
+    options.store = raw.store;
+    return check_guarded(options);
+}
+
+Leave usage_error(std::string what) {
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    return {kExitUsage, fmt::format("scanloom-server: {}; see scanloom-server --help", what)};
+}
+
+} // namespace
+
+std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv) {
+    ServerOptions options;
+    options.threads = std::max(1U, std::thread::hardware_concurrency());
+    options.web = default_web();
+    Raw raw;
+
+    CLI::App app(kAbout, "scanloom-server");
+    app.footer(kFooter);
+    app.set_version_flag("--version", fmt::format("scanloom-server {}", kVersion));
+    add_options(app, options, raw);
+    read_settings_from_environment_and_file(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& reason) {
+        if (reason.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usage_error(reason.what());
+        const bool is_help = reason.get_name() == "CallForHelp";
+        return Leave{kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+    }
+    if (auto settled = settle(raw, options); !settled) return usage_error(settled.error().message);
+    return options;
+}
+
+Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text) {
+    const Error malformed{Errc::kInvalidField,
+                          fmt::format("'{}' is not an address and port; write 127.0.0.1:8080 or [::1]:8080", text)};
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos) return malformed;
+    std::string host = text.substr(0, colon);
+    if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+    boost::system::error_code failed;
+    const auto address = boost::asio::ip::make_address(host, failed);
+    std::uint16_t port = 0;
+    const char* end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data() + colon + 1, end, port);
+    if (failed || error != std::errc{} || stopped != end) return malformed;
+    return boost::asio::ip::tcp::endpoint(address, port);
+}
+
+Result<> check_guarded(const ServerOptions& options) {
+    if (options.insecure) return {};
+    for (const auto& endpoint : {options.listen, options.http}) {
+        if (endpoint.address().is_loopback()) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("{} can be reached from other machines and nothing guards it; listen on 127.0.0.1, or say "
+                                 "--insecure if everybody there may send and read",
+                                 endpoint.address().to_string())};
+    }
+    return {};
+}
+
+} // namespace scanloom::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "common/app/program.hpp"
+#include "common/error/error.hpp"
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+namespace scanloom::app {
+
+/// What scanloom-server can be told, by flag, SCANLOOM_* variable or TOML file, in that order.
+struct ServerOptions {
+    boost::asio::ip::tcp::endpoint listen; ///< robots
+    boost::asio::ip::tcp::endpoint http;   ///< people and programs
+    std::filesystem::path store;
+    std::filesystem::path web;             ///< the viewer's files
+    std::size_t threads = 1;               ///< that weave, and as many that answer requests
+    std::string log_level = "info";
+    bool insecure = false;                 ///< listen beyond loopback without a guard
+};
+
+/// Nothing to run: how to end, and what to say (on standard error when the code is not 0).
+struct Leave {
+    ExitCode code = kExitDone;
+    std::string text;
+};
+
+[[nodiscard]] std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv);
+
+/// "127.0.0.1:8080", "[::1]:0". Errors: kInvalidField.
+[[nodiscard]] Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text);
+
+/// Errors  kInvalidField: an endpoint beyond loopback without --insecure.
+[[nodiscard]] Result<> check_guarded(const ServerOptions& options);
+
+} // namespace scanloom::app

@@ -1,0 +1,111 @@
+#include "server/app/server.hpp"
+
+#include "common/app/program.hpp"
+
+#include <boost/asio/post.hpp>
+#include <boost/json/object.hpp>
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <thread>
+#include <vector>
+
+namespace scanloom::app {
+namespace asio = boost::asio;
+namespace {
+
+/// For robots and viewers to take their last answers; whoever has not by then is cut off.
+constexpr auto kPatience = std::chrono::seconds(15);
+
+double seconds_since_epoch() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
+    return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+}
+
+} // namespace
+
+Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log)
+    : options_(options), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
+      serving_(std::max<std::size_t>(2, options.threads)), // a request that waits for the disk must not hold up all others
+      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), patience_(io_) {}
+
+Server::~Server() {
+    // Nothing may run any more when the parts go, last part first.
+    io_.stop();
+    serving_.join();
+    weaving_.join();
+}
+
+Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
+    auto log = store::open_rocksdb(options.store);
+    if (!log) return log.error();
+    std::unique_ptr<Server> server(new Server(options, std::move(*log)));
+    if (auto listening = server->listen(); !listening) return listening.error();
+    return server;
+}
+
+Result<> Server::listen() {
+    try {
+        ingest_ = std::make_unique<ingest::IngestServer>(
+            io_, options_.listen, ingest::LinkServices{sessions_, serving_.get_executor()}, ingest::IngestConfig{});
+    } catch (const boost::system::system_error& failure) {
+        return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
+                                                     text_of(options_.listen), failure.code().message())};
+    }
+    return {};
+}
+
+Result<> Server::run() {
+    wait_for_signal();
+    http_->start();
+    std::vector<std::jthread> threads;
+    for (std::size_t n = 0; n < 1 + options_.threads / 4; ++n) threads.emplace_back([this] { io_.run(); });
+    if (auto recovered = sessions_.recover(); !recovered) {
+        io_.stop();
+        return recovered.error();
+    }
+    recovered_ = true;
+    ingest_->start();
+    announce();
+    threads.clear(); // joins: until drain() has let everything come to its end
+    spdlog::info("stopped");
+    return {};
+}
+
+void Server::announce() const {
+    boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
+    std::cout << boost::json::serialize(ready) << std::endl;
+    spdlog::info("robots: {}:{}, people: http://{}:{}/, store: {}", options_.listen.address().to_string(), ingest_->port(),
+                 options_.http.address().to_string(), http_->port(), options_.store.string());
+}
+
+void Server::wait_for_signal() {
+    signals_.emplace(io_, SIGTERM, SIGINT);
+    signals_->async_wait([this](const boost::system::error_code& error, int) {
+        if (!error) drain();
+    });
+}
+
+/// Stops accepting robots; lets every session make durable and acknowledge what it was given; then
+/// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
+void Server::drain() {
+    spdlog::info("draining: acknowledging what is durable");
+    ingest_->stop();
+    patience_.expires_after(kPatience);
+    patience_.async_wait([this](const boost::system::error_code& error) {
+        if (!error) io_.stop();
+    });
+    asio::post(serving_, [this, busy = asio::make_work_guard(io_)] {
+        sessions_.drain();
+        http_->stop([this] { patience_.cancel(); });
+    });
+}
+
+} // namespace scanloom::app

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/app/options.hpp"
+#include "server/http/server.hpp"
+#include "server/ingest/ingest_server.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+namespace scanloom::app {
+
+/// The parts of scanloom-server, and what connects them.
+///
+///   io        sockets only: frames and requests come in, answers go out
+///   weaving   the sessions' strands: everything that changes a map
+///   serving   answers to HTTP requests, and what waits for the disk
+///
+/// Thread  open() and run() from the main thread.
+class Server {
+public:
+    /// Opens the store and the ports. Errors: one sentence that says what to do.
+    [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options);
+
+    ~Server();
+
+    /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains.
+    /// Errors  the sessions cannot be listed.
+    [[nodiscard]] Result<> run();
+
+private:
+    Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log);
+
+    [[nodiscard]] Result<> listen();
+    void announce() const;
+    void wait_for_signal();
+    void drain();
+
+    ServerOptions options_;
+    std::unique_ptr<store::ScanLog> log_;
+    metrics::Metrics metrics_;
+    boost::asio::io_context io_;
+    boost::asio::thread_pool weaving_;
+    boost::asio::thread_pool serving_;
+    session::SessionRegistry sessions_;
+    std::unique_ptr<ingest::IngestServer> ingest_;
+    std::shared_ptr<http::Server> http_;
+    std::optional<boost::asio::signal_set> signals_;
+    boost::asio::steady_timer patience_;
+    std::atomic<bool> recovered_ = false;
+};
+
+} // namespace scanloom::app
