@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace scanloom::tiles {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Bytes ready to be served, which several answers may share.
+using SharedBytes = std::shared_ptr<const Bytes>;
+
+} // namespace scanloom::tiles

@@ -1,0 +1,58 @@
+#include "server/tiles/chunk_reduction.hpp"
+
+#include <algorithm>
+
+namespace scanloom::tiles {
+namespace {
+
+using mapping::kChunkSide;
+using mapping::LogOdds;
+
+// Salience falls with p up to even odds and rises beyond, so that of a block's cells only the highest and the
+// lowest known one matter. Both are found by plain integer minima and maxima, which compilers vectorise.
+
+/// Numbers that order like log-odds, but with the unknown cell last instead of first.
+constexpr std::uint16_t unknown_last(LogOdds cell) noexcept {
+    return static_cast<std::uint16_t>(static_cast<std::uint16_t>(cell) + 0x7FFFU);
+}
+static_assert(unknown_last(mapping::kUnknownLogOdds) == 0xFFFF && unknown_last(-32767) == 0);
+
+/// What a column of some rows of a chunk holds at most and at least.
+struct ColumnRange {
+    std::array<LogOdds, kChunkSide> high;
+    std::array<std::uint16_t, kChunkSide> low; // as unknown_last()
+};
+
+ColumnRange fold_rows(const LogOdds* cells, std::int32_t rows) noexcept {
+    ColumnRange range;
+    range.high.fill(mapping::kUnknownLogOdds);
+    range.low.fill(unknown_last(mapping::kUnknownLogOdds));
+    for (std::int32_t row = 0; row < rows; ++row, cells += kChunkSide) {
+        for (std::size_t i = 0; i < kChunkSide; ++i) {
+            range.high[i] = std::max(range.high[i], cells[i]);
+            range.low[i] = std::min(range.low[i], unknown_last(cells[i]));
+        }
+    }
+    return range;
+}
+
+} // namespace
+
+ReducedChunk reduce(const mapping::OccupancyChunk& chunk, std::int32_t block) {
+    const auto& salience = salience_table();
+    ReducedChunk reduced;
+    reduced.side = kChunkSide / block;
+    auto* pixel = reduced.pixels.data();
+    for (std::int32_t j = 0; j < kChunkSide; j += block) {
+        const auto range = fold_rows(&chunk.at({0, j}), block);
+        for (std::int32_t i = 0; i < kChunkSide; i += block) {
+            const auto high = *std::max_element(range.high.begin() + i, range.high.begin() + i + block);
+            const auto low = *std::min_element(range.low.begin() + i, range.low.begin() + i + block);
+            const auto low_bits = static_cast<std::uint16_t>(low - 0x7FFFU);
+            *pixel++ = std::max(salience[static_cast<std::uint16_t>(high)], salience[low_bits]);
+        }
+    }
+    return reduced;
+}
+
+} // namespace scanloom::tiles

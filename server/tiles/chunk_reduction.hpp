@@ -1,0 +1,25 @@
+#pragma once
+
+#include "server/mapping/occupancy_layer.hpp"
+#include "server/tiles/occupancy_percent.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace scanloom::tiles {
+
+/// A chunk at a coarser scale, bottom row first: side * side saliences are in use.
+struct ReducedChunk {
+    std::array<Salience, std::size_t{mapping::kChunkSide} * mapping::kChunkSide> pixels;
+    std::int32_t side = 0; ///< pixels, 64 .. 1
+
+    [[nodiscard]] Salience at(std::int32_t column, std::int32_t row) const noexcept {
+        return pixels[static_cast<std::size_t>(row * side + column)];
+    }
+};
+
+/// The greatest salience of each block of cells.
+/// Pre: block, the cells along its side, is a power of two from 1 to 64.
+[[nodiscard]] ReducedChunk reduce(const mapping::OccupancyChunk& chunk, std::int32_t block);
+
+} // namespace scanloom::tiles

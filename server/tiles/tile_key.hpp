@@ -1,0 +1,55 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/mapping/cell.hpp"
+
+#include <cstdint>
+#include <string_view>
+
+namespace scanloom::tiles {
+
+inline constexpr std::uint32_t kZoomNative = 9; ///< the finest zoom: one pixel is one cell
+inline constexpr std::int32_t kTileSide = 256;  ///< pixels
+inline constexpr std::int32_t kTiledCellsHalf = kTileSide << (kZoomNative - 1);
+
+/// The cells that tiles can show: the square at zoom 0, centred on the world origin. Cells beyond it are
+/// mapped, and in map images, but in no tile.
+inline constexpr mapping::CellBox kTiledCells{-kTiledCellsHalf, -kTiledCellsHalf, kTiledCellsHalf, kTiledCellsHalf};
+
+/// One tile of the XYZ pyramid: tile (0, 0) is the top-left one, x grows to the right, y DOWN (the world's
+/// y grows up). Zoom z has 2^z by 2^z tiles; zoom 0 is one tile of all kTiledCells; at zoom 9 pixel (px, py)
+/// is cell (256 x + px - 65536, 65535 - (256 y + py)), and a pixel of zoom z is 2^(9 - z) cells wide.
+struct TileKey {
+    std::uint32_t zoom = 0;
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+
+    friend bool operator==(const TileKey&, const TileKey&) = default;
+};
+
+/// Along each side of a pixel. Pre: zoom <= kZoomNative.
+[[nodiscard]] constexpr std::int32_t cells_per_pixel(std::uint32_t zoom) noexcept {
+    return std::int32_t{1} << (kZoomNative - zoom);
+}
+
+/// The cells a tile shows. Pre: the tile exists.
+[[nodiscard]] constexpr mapping::CellBox cells_of(TileKey key) noexcept {
+    const std::int32_t side = kTileSide * cells_per_pixel(key.zoom);
+    const std::int32_t left = -kTiledCellsHalf + static_cast<std::int32_t>(key.x) * side;
+    const std::int32_t top = kTiledCellsHalf - static_cast<std::int32_t>(key.y) * side;
+    return {left, top - side, left + side, top};
+}
+
+/// The tile of a zoom that shows a cell. Pre: the cell is in kTiledCells.
+[[nodiscard]] constexpr TileKey tile_of(mapping::Cell cell, std::uint32_t zoom) noexcept {
+    const std::int32_t side = kTileSide * cells_per_pixel(zoom);
+    return {zoom, static_cast<std::uint32_t>((cell.i + kTiledCellsHalf) / side),
+            static_cast<std::uint32_t>((kTiledCellsHalf - 1 - cell.j) / side)};
+}
+
+/// A tile's address as it stands in a URL. Each number has one spelling: digits, no sign, no leading zeros.
+/// Errors  kInvalidField: not a whole number so written; kNotFound: a number (also a negative one, or one
+///         of any length) for which there is no tile.
+[[nodiscard]] Result<TileKey> parse_tile_key(std::string_view zoom, std::string_view x, std::string_view y);
+
+} // namespace scanloom::tiles

@@ -1,0 +1,135 @@
+#include "server/tiles/ros_map.hpp"
+
+#include "server/tiles/occupancy_percent.hpp"
+#include "tests/support/random_map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace scanloom::tiles {
+namespace {
+
+/// nav_msgs/OccupancyGrid as far as map servers fill it.
+struct Grid {
+    double resolution = 0.0;
+    double origin_x = 0.0;
+    double origin_y = 0.0;
+    int width = 0;
+    int height = 0;
+    std::vector<int> data; ///< bottom row first: -1 unknown, 0 free, 100 occupied
+};
+
+enum class Server { kRos1, kNav2 };
+
+/// What a map server makes of a pair of files in trinary mode.
+class MapServer {
+public:
+    MapServer(const Bytes& pgm, const std::string& yaml) : pgm_(pgm.begin(), pgm.end()) {
+        std::istringstream lines(yaml);
+        for (std::string line; std::getline(lines, line);) {
+            const auto colon = line.find(": ");
+            keys_[line.substr(0, colon)] = line.substr(colon + 2);
+        }
+    }
+
+    [[nodiscard]] Grid load(Server server) const {
+        Grid grid;
+        const auto pixels = read_pgm(grid.width, grid.height);
+        grid.resolution = std::stod(keys_.at("resolution"));
+        double yaw = 1.0;
+        EXPECT_EQ(std::sscanf(keys_.at("origin").c_str(), "[%lf, %lf, %lf]", &grid.origin_x, &grid.origin_y, &yaw), 3);
+        EXPECT_EQ(yaw, 0.0);
+        EXPECT_EQ(keys_.at("mode"), "trinary");
+        EXPECT_EQ(keys_.at("image"), "map.pgm");
+        for (int row = grid.height - 1; row >= 0; --row) {
+            for (int column = 0; column < grid.width; ++column) {
+                grid.data.push_back(value_of(pixels[static_cast<std::size_t>(row * grid.width + column)], server));
+            }
+        }
+        return grid;
+    }
+
+private:
+    std::string read_pgm(int& width, int& height) const {
+        std::istringstream in(pgm_);
+        std::string magic;
+        std::string comment;
+        int depth = 0;
+        std::getline(in, magic);
+        std::getline(in, comment);
+        in >> width >> height >> depth;
+        EXPECT_EQ(magic, "P5");
+        EXPECT_THAT(comment, testing::StartsWith("# CREATOR: "));
+        EXPECT_EQ(depth, 255);
+        EXPECT_EQ(in.get(), '\n');
+        const auto pixels = pgm_.substr(static_cast<std::size_t>(in.tellg()));
+        EXPECT_EQ(pixels.size(), static_cast<std::size_t>(width * height));
+        return pixels;
+    }
+
+    [[nodiscard]] int value_of(char pixel, Server server) const {
+        const double v = static_cast<unsigned char>(pixel);
+        const double p = keys_.at("negate") == "1" ? v / 255.0 : (255.0 - v) / 255.0;
+        const double occupied = std::stod(keys_.at("occupied_thresh"));
+        const double free = std::stod(keys_.at("free_thresh"));
+        if (server == Server::kRos1) return p > occupied ? 100 : p < free ? 0 : -1;
+        return p >= occupied ? 100 : p <= free ? 0 : -1;
+    }
+
+    std::string pgm_;
+    std::map<std::string, std::string> keys_;
+};
+
+TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
+    testing_support::HandMadeMap map;
+    std::mt19937 random(31);
+    for (std::int32_t j = -33; j < 80; ++j) {
+        for (std::int32_t i = -120; i < 17; ++i) map.set({i, j}, testing_support::random_cell(random));
+    }
+    const auto snapshot = map.snapshot(1, {.cell_size = 0.05});
+    const auto image = render_map(snapshot, map_frame(snapshot, {}).value());
+    const MapServer files(map_pgm(image), map_yaml(image.frame));
+
+    for (const auto server : {Server::kRos1, Server::kNav2}) {
+        const auto grid = files.load(server);
+        EXPECT_DOUBLE_EQ(grid.resolution, 0.05);
+        EXPECT_DOUBLE_EQ(grid.origin_x, -6.0);
+        EXPECT_DOUBLE_EQ(grid.origin_y, -1.65);
+        ASSERT_EQ(grid.width, 137);
+        ASSERT_EQ(grid.height, 113);
+        std::size_t counts[3] = {};
+        for (std::int32_t n = 0; n < 137 * 113; ++n) {
+            const mapping::Cell cell{-120 + n % 137, -33 + n / 137};
+            const auto l = snapshot.occupancy.find(mapping::chunk_of(cell))->at(cell);
+            const double percent = std::round(100.0 * mapping::probability_of(l));
+            const bool unknown = l == mapping::kUnknownLogOdds;
+            const int expected = unknown ? -1 : percent >= 65 ? 100 : percent <= 25 ? 0 : -1;
+            ASSERT_EQ(grid.data[static_cast<std::size_t>(n)], expected) << cell.i << ", " << cell.j;
+            ++counts[expected == 100 ? 2 : expected + 1];
+        }
+        EXPECT_THAT(counts, testing::Each(testing::Gt(50U))) << "unknown, free and occupied were all tried";
+    }
+}
+
+TEST(RosMap, TheGreysAreThoseOfMapSaver) {
+    const MapImage image{{{0, 0, 6, 1}, 0.05}, {0, 25, 26, 64, 65, 255}};
+    const auto pgm = map_pgm(image);
+    const std::string header = "P5\n# CREATOR: Scanloom 0.050 m/pix\n6 1\n255\n";
+    ASSERT_EQ(std::string(pgm.begin(), pgm.end() - 6), header);
+    EXPECT_EQ(Bytes(pgm.end() - 6, pgm.end()), (Bytes{254, 254, 205, 205, 0, 205}));
+}
+
+TEST(RosMap, TheYamlIsExactlyThis) {
+    EXPECT_EQ(map_yaml({{-401, 0, 10, 10}, 0.05}), "image: map.pgm\n"
+                                                   "mode: trinary\n"
+                                                   "resolution: 0.05\n"
+                                                   "origin: [-20.05, 0, 0]\n"
+                                                   "negate: 0\n"
+                                                   "occupied_thresh: 0.65\n"
+                                                   "free_thresh: 0.196\n");
+}
+
+} // namespace
+} // namespace scanloom::tiles
