@@ -210,7 +210,7 @@ TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
     EXPECT_THAT(read_all().error().message, HasSubstr(file.filename().native()));
     restore();
     fs::remove(file);
-    EXPECT_THAT(read_all().error().message, HasSubstr(file.filename().native()));
+    EXPECT_THAT(read_all().error().message, HasSubstr(file.stem().native()));
 }
 
 TEST_F(TableStore, AMissingWriteAheadLogIsReported) {

@@ -128,7 +128,7 @@ TEST(LogFile, AHoleBeforeALaterWriteIsDamage) {
 
 TEST(LogFile, AMissingPieceIsDamage) {
     std::string file = kLarge.file;
-    file.erase(kBlockBytes, kBlockBytes);
+    file.erase(0, kBlockBytes);
     EXPECT_TRUE(check_log_file(file).damage);
 }
 
