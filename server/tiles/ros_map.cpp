@@ -30,12 +30,13 @@ Bytes map_pgm(const MapImage& image) {
 }
 
 std::string map_yaml(const MapFrame& frame) {
+    // 15 digits drop the last bits' noise of cell * cell_size: -5.05, not -5.050000000000001.
     // Unknown is p = 50 / 255 = 0.19608 to those who load it: just above free_thresh.
     const auto origin = frame.origin();
     return fmt::format("image: map.pgm\n"
                        "mode: trinary\n"
-                       "resolution: {}\n"
-                       "origin: [{}, {}, 0]\n"
+                       "resolution: {:.15g}\n"
+                       "origin: [{:.15g}, {:.15g}, 0]\n"
                        "negate: 0\n"
                        "occupied_thresh: 0.65\n"
                        "free_thresh: 0.196\n",

@@ -122,10 +122,10 @@ TEST(RosMap, TheGreysAreThoseOfMapSaver) {
 }
 
 TEST(RosMap, TheYamlIsExactlyThis) {
-    EXPECT_EQ(map_yaml({{-401, 0, 10, 10}, 0.05}), "image: map.pgm\n"
+    EXPECT_EQ(map_yaml({{-101, 0, 10, 10}, 0.05}), "image: map.pgm\n"
                                                    "mode: trinary\n"
                                                    "resolution: 0.05\n"
-                                                   "origin: [-20.05, 0, 0]\n"
+                                                   "origin: [-5.05, 0, 0]\n"
                                                    "negate: 0\n"
                                                    "occupied_thresh: 0.65\n"
                                                    "free_thresh: 0.196\n");

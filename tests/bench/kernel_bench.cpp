@@ -1,0 +1,137 @@
+#include "server/mapping/digest.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/tiles/changes.hpp"
+#include "server/tiles/map_image.hpp"
+#include "server/tiles/occupancy_tile.hpp"
+#include "tests/bench/float_grid.hpp"
+#include "tests/support/room_scans.hpp"
+
+#include <benchmark/benchmark.h>
+
+// What weaving a scan and showing a map cost, on the reference laser in a room of 10 x 10 m. Times are per scan;
+// the argument is the cell size in millimetres. FloatGrid is the plain mapper that Integrate is compared with.
+
+namespace scanloom::bench {
+namespace {
+
+using mapping::Snapshot;
+
+double cell_size_of(const benchmark::State& state) { return static_cast<double>(state.range(0)) * 0.001; }
+
+const std::vector<Scan>& scans() {
+    static const auto scans = testing_support::room_scans(100);
+    return scans;
+}
+
+/// A layer and what it needs to take scans of the reference laser.
+class Weaver {
+public:
+    explicit Weaver(double cell_size_m) : layer_(config_of(cell_size_m)), geometry_{0.0, 5.0, 0.1, cell_size_m} {}
+
+    void integrate() {
+        const Scan& scan = scans()[revision_ % scans().size()];
+        benchmark::DoNotOptimize(layer_.integrate(fan_, scan.ranges, scan.pose, geometry_, ++revision_));
+    }
+    void take_snapshot() { benchmark::DoNotOptimize(layer_.snapshot()); }
+
+private:
+    static mapping::MapConfig config_of(double cell_size_m) {
+        mapping::MapConfig config;
+        config.cell_size = cell_size_m;
+        return config;
+    }
+
+    mapping::BeamFan fan_ = mapping::make_beam_fan(testing_support::reference_laser().angles, 0.0174533);
+    mapping::OccupancyLayer layer_;
+    mapping::ModelGeometry geometry_;
+    Revision revision_ = 0;
+};
+
+void Integrate(benchmark::State& state) {
+    Weaver weaver(cell_size_of(state));
+    for (auto _ : state) weaver.integrate();
+}
+
+void IntegrateAndSnapshot(benchmark::State& state) {
+    Weaver weaver(cell_size_of(state));
+    for (auto _ : state) {
+        weaver.integrate();
+        weaver.take_snapshot(); // so that the next scan copies each chunk it touches
+    }
+}
+
+void FloatGridBresenham(benchmark::State& state) {
+    FloatGrid grid(12.0, cell_size_of(state));
+    const Sensor laser = testing_support::reference_laser();
+    std::size_t next = 0;
+    for (auto _ : state) {
+        grid.integrate(scans()[next++ % scans().size()], laser);
+        benchmark::DoNotOptimize(grid.cells().data());
+        benchmark::ClobberMemory();
+    }
+}
+
+/// Rooms side by side, 40 x 40 m, as 16 robots would map them at once.
+Snapshot sixteen_rooms(double cell_size_m) {
+    mapping::MapConfig config;
+    config.cell_size = cell_size_m;
+    mapping::Projection projection(config);
+    for (std::uint32_t room = 0; room < 16; ++room) {
+        benchmark::DoNotOptimize(projection.fold(RobotJoined{room, "robot"}));
+        benchmark::DoNotOptimize(projection.fold(SensorDescribed{room, testing_support::reference_laser()}));
+        for (Scan scan : scans()) {
+            scan.pose.x += 10.0 * (room % 4) - 15.0;
+            scan.pose.y += 10.0 * (room / 4) - 15.0;
+            benchmark::DoNotOptimize(projection.fold(ScanTaken{room, std::move(scan)}));
+        }
+    }
+    return projection.snapshot();
+}
+
+const Snapshot& shown_map() {
+    static const Snapshot snapshot = sixteen_rooms(0.05);
+    return snapshot;
+}
+
+tiles::TileKey tile_at_origin(const benchmark::State& state) {
+    return tiles::tile_of({0, 0}, static_cast<std::uint32_t>(state.range(0)));
+}
+
+void Tile(benchmark::State& state) {
+    const Snapshot& map = shown_map();
+    for (auto _ : state) benchmark::DoNotOptimize(tiles::occupancy_tile(map, tile_at_origin(state)));
+}
+
+void TilePng(benchmark::State& state) {
+    const Snapshot& map = shown_map();
+    for (auto _ : state) benchmark::DoNotOptimize(tiles::occupancy_tile_png(map, tile_at_origin(state)));
+}
+
+void ChangedTiles(benchmark::State& state) {
+    const Snapshot& map = shown_map();
+    const auto since = map.revision - static_cast<Revision>(state.range(0));
+    for (auto _ : state) benchmark::DoNotOptimize(tiles::changed_tiles(map, since));
+}
+
+void MapPng(benchmark::State& state) {
+    const Snapshot& map = shown_map();
+    const auto frame = tiles::map_frame(map, {}).value();
+    for (auto _ : state) benchmark::DoNotOptimize(tiles::map_png(tiles::render_map(map, frame)));
+}
+
+void Digest(benchmark::State& state) {
+    const Snapshot& map = shown_map();
+    for (auto _ : state) benchmark::DoNotOptimize(mapping::digest_of(map.occupancy));
+}
+
+BENCHMARK(Integrate)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
+BENCHMARK(IntegrateAndSnapshot)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
+BENCHMARK(FloatGridBresenham)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
+BENCHMARK(Tile)->ArgName("zoom")->Arg(9)->Arg(7)->Arg(3)->Arg(0)->Unit(benchmark::kMicrosecond);
+BENCHMARK(TilePng)->ArgName("zoom")->Arg(9)->Arg(7)->Arg(3)->Arg(0)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ChangedTiles)->ArgName("revisions")->Arg(1)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(MapPng)->Unit(benchmark::kMillisecond);
+BENCHMARK(Digest)->Unit(benchmark::kMillisecond);
+
+} // namespace
+} // namespace scanloom::bench
