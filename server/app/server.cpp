@@ -31,10 +31,11 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 } // namespace
 
-Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log)
+Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web)
     : options_(options), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)), // a request that waits for the disk must not hold up all others
-      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), patience_(io_) {}
+      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
+      patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -46,7 +47,9 @@ Server::~Server() {
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
     auto log = store::open_rocksdb(options.store);
     if (!log) return log.error();
-    std::unique_ptr<Server> server(new Server(options, std::move(*log)));
+    auto web = http::load_web_files(options.web);
+    if (!web) return web.error();
+    std::unique_ptr<Server> server(new Server(options, std::move(*log), std::move(*web)));
     if (auto listening = server->listen(); !listening) return listening.error();
     return server;
 }
@@ -59,6 +62,13 @@ Result<> Server::listen() {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
     }
+    http::ServerConfig config;
+    config.endpoint = options_.http;
+    auto http = http::Server::listen(io_, serving_.get_executor(), config,
+                                     [this](const http::Request& request) { return api_.answer(request); },
+                                     metrics_.http());
+    if (!http) return http.error();
+    http_ = std::move(*http);
     return {};
 }
 
@@ -71,7 +81,7 @@ Result<> Server::run() {
         io_.stop();
         return recovered.error();
     }
-    recovered_ = true;
+    api_.set_recovered();
     ingest_->start();
     announce();
     threads.clear(); // joins: until drain() has let everything come to its end

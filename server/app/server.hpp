@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/app/options.hpp"
+#include "server/http/api.hpp"
 #include "server/http/server.hpp"
 #include "server/ingest/ingest_server.hpp"
 #include "server/metrics/metrics.hpp"
@@ -13,7 +14,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] Result<> run();
 
 private:
-    Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log);
+    Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web);
 
     [[nodiscard]] Result<> listen();
     void announce() const;
@@ -52,11 +52,11 @@ private:
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
     session::SessionRegistry sessions_;
+    http::Api api_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;
     boost::asio::steady_timer patience_;
-    std::atomic<bool> recovered_ = false;
 };
 
 } // namespace scanloom::app
