@@ -8,12 +8,16 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/arena.h>
+#include <google/protobuf/stubs/logging.h>
 
 #include <cmath>
 #include <numbers>
 
 namespace scanloom::wire {
 namespace {
+
+/// Protobuf would write a line to stderr for every bad string that anyone sends; decode() reports them already.
+[[maybe_unused]] auto* const kEarlierLogHandler = google::protobuf::SetLogHandler(nullptr);
 
 struct ErrorCodePair {
     Errc errc;

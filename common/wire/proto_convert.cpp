@@ -140,8 +140,8 @@ Result<Sensor> from_proto(const v1::SensorDescription& proto) {
     }
     sensor.range_min = proto.range_min();
     sensor.range_max = proto.range_max();
-    if (!(sensor.range_min >= 0.0)) {
-        return invalid_field(fmt::format("range_min is {}; 0 metres or more are needed", sensor.range_min));
+    if (!(sensor.range_min >= 0.0 && sensor.range_min <= kRangeMax)) {
+        return invalid_field(fmt::format("range_min is {}; 0 to {} metres are possible", sensor.range_min, kRangeMax));
     }
     if (!(sensor.range_max > sensor.range_min && sensor.range_max <= kRangeMax)) {
         return invalid_field(fmt::format("range_max is {}; more than range_min ({}) and at most {} metres are needed",

@@ -1,0 +1,36 @@
+#include "common/scan/beam_angles.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom {
+namespace {
+
+TEST(BeamAngles, UniformOnesRiseByTheIncrementFromTheFirst) {
+    const BeamAngles angles = UniformAngles{-1.5, 0.25, 13};
+    EXPECT_EQ(beam_count(angles), 13U);
+    for (std::size_t beam = 0; beam < 13; ++beam) {
+        EXPECT_DOUBLE_EQ(beam_angle(angles, beam), -1.5 + 0.25 * static_cast<double>(beam));
+    }
+}
+
+TEST(BeamAngles, UniformOnesFallForASensorThatTurnsClockwise) {
+    const BeamAngles angles = UniformAngles{1.0, -0.5, 3};
+    EXPECT_DOUBLE_EQ(beam_angle(angles, 0), 1.0);
+    EXPECT_DOUBLE_EQ(beam_angle(angles, 2), 0.0);
+}
+
+TEST(BeamAngles, ExplicitOnesAreTakenInTheirOrder) {
+    const BeamAngles angles = ExplicitAngles{0.5, -2.0, 7.0};
+    EXPECT_EQ(beam_count(angles), 3U);
+    EXPECT_EQ(beam_angle(angles, 0), 0.5);
+    EXPECT_EQ(beam_angle(angles, 1), -2.0);
+    EXPECT_EQ(beam_angle(angles, 2), 7.0) << "not normalised";
+}
+
+TEST(BeamAngles, NoneAreNoBeams) {
+    EXPECT_EQ(beam_count(UniformAngles{}), 0U);
+    EXPECT_EQ(beam_count(ExplicitAngles{}), 0U);
+}
+
+} // namespace
+} // namespace scanloom

@@ -1,0 +1,224 @@
+#include "common/scan/limits.hpp"
+#include "common/wire/messages.hpp"
+#include "tests/unit/common/wire/example_messages.hpp"
+
+#include "scanloom/v1/frame.pb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+/// Every value a frame can spoil, and the error that names it.
+namespace scanloom::wire {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void expect_refused(std::string_view body, Errc code, const std::string& beginning) {
+    const auto decoded = decode(body);
+    ASSERT_FALSE(decoded) << "instead of: " << beginning;
+    EXPECT_EQ(decoded.error().code, code) << decoded.error().message;
+    EXPECT_THAT(decoded.error().message, testing::StartsWith(beginning));
+}
+
+template <class Value>
+struct Spoilt {
+    void (*spoil)(Value&);
+    const char* beginning;
+    Errc code = Errc::kInvalidField;
+};
+
+TEST(BadHello, IsRefusedByTheNameOfItsField) {
+    const Spoilt<Hello> kSpoilt[] = {
+        {[](Hello& h) { h.protocol_version = 0; }, "hello.protocol_version is 0;", Errc::kUnsupportedVersion},
+        {[](Hello& h) { h.protocol_version = 2; }, "hello.protocol_version is 2;", Errc::kUnsupportedVersion},
+        {[](Hello& h) { h.robot = ""; }, "hello.robot is not a valid name"},
+        {[](Hello& h) { h.robot = "a b"; }, "hello.robot is not a valid name"},
+        {[](Hello& h) { h.robot = std::string(65, 'a'); }, "hello.robot is not a valid name"},
+        {[](Hello& h) { h.robot = std::string("a\0b", 3); }, "hello.robot is not a valid name"},
+        {[](Hello& h) { h.session = ""; }, "hello.session is not a valid name"},
+        {[](Hello& h) { h.session = "../etc"; }, "hello.session is not a valid name"},
+        {[](Hello& h) { h.session = "caf\xc3\xa9"; }, "hello.session is not a valid name"},
+        {[](Hello& h) { h.client = std::string(129, 'c'); }, "hello.client has 129 bytes", Errc::kTooLarge},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        Hello hello = example_hello();
+        spoilt.spoil(hello);
+        expect_refused(body_of(hello), spoilt.code, spoilt.beginning);
+    }
+}
+
+TEST(BadHello, ANameThatIsNoTextIsMalformed) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_hello())));
+    std::string body = frame.SerializeAsString();
+    body.replace(body.find("robot-1"), 7, "\xff\xfe\xff\xfe\xff\xfe\xff");
+    expect_refused(body, Errc::kMalformed, "");
+}
+
+TEST(BadSensor, IsRefusedByTheNameOfItsField) {
+    const Spoilt<Sensor> kSpoilt[] = {
+        {[](Sensor& s) { s.id = 64; }, "sensor_description.sensor is 64;"},
+        {[](Sensor& s) { s.name = std::string(65, 'n'); }, "sensor_description.name has 65 bytes", Errc::kTooLarge},
+        {[](Sensor& s) { s.mount.x = kNan; }, "sensor_description.mount.x is nan;"},
+        {[](Sensor& s) { s.mount.y = -kInfinity; }, "sensor_description.mount.y is -inf;"},
+        {[](Sensor& s) { s.mount.yaw = kInfinity; }, "sensor_description.mount.yaw is inf;"},
+        {[](Sensor& s) { s.aperture = kNan; }, "sensor_description.aperture is nan;"},
+        {[](Sensor& s) { s.aperture = -0.1; }, "sensor_description.aperture is -0.1;"},
+        {[](Sensor& s) { s.aperture = 3.2; }, "sensor_description.aperture is 3.2;"},
+        {[](Sensor& s) { s.range_min = kNan; }, "sensor_description.range_min is nan;"},
+        {[](Sensor& s) { s.range_min = -1.0; }, "sensor_description.range_min is -1;"},
+        {[](Sensor& s) { s.range_min = kInfinity; }, "sensor_description.range_min is inf;"},
+        {[](Sensor& s) { s.range_max = kNan; }, "sensor_description.range_max is nan;"},
+        {[](Sensor& s) { s.range_max = kInfinity; }, "sensor_description.range_max is inf;"},
+        {[](Sensor& s) { s.range_max = s.range_min; }, "sensor_description.range_max is 0.0625;"},
+        {[](Sensor& s) { s.range_max = 1001.0; }, "sensor_description.range_max is 1001;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        Sensor sensor = example_sensor();
+        spoilt.spoil(sensor);
+        expect_refused(body_of(sensor), spoilt.code, spoilt.beginning);
+    }
+}
+
+TEST(BadSensor, KindMustBeKnown) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
+    for (const int kind : {0, 3, -1}) {
+        frame.mutable_sensor_description()->set_kind(static_cast<v1::SensorKind>(kind));
+        expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                       "sensor_description.kind is " + std::to_string(kind) + ";");
+    }
+}
+
+struct SpoiltAngles {
+    BeamAngles angles;
+    const char* message;
+    Errc code = Errc::kInvalidField;
+};
+
+const SpoiltAngles kSpoiltAngles[] = {
+    {UniformAngles{kNan, 0.1, 3}, "angles.uniform.first is nan;"},
+    {UniformAngles{kInfinity, 0.1, 3}, "angles.uniform.first is inf;"},
+    {UniformAngles{100.0, 0.1, 3}, "angles.uniform.first is 100;"},
+    {UniformAngles{0.0, kNan, 3}, "angles.uniform.increment is nan;"},
+    {UniformAngles{0.0, -kInfinity, 3}, "angles.uniform.increment is -inf;"},
+    {UniformAngles{0.0, 0.0, 3}, "angles.uniform.increment is 0;"},
+    {UniformAngles{0.0, 3.2, 3}, "angles.uniform spans 6.400 rad over 3 beams, more than a full turn"},
+    {UniformAngles{0.0, -3.2, 3}, "angles.uniform spans 6.400 rad over 3 beams, more than a full turn"},
+    {UniformAngles{0.0, 0.1, 0}, "angles describe 0 beams;"},
+    {UniformAngles{0.0, 1e-5, 4097}, "angles describe 4097 beams, at most 4096", Errc::kTooLarge},
+    {UniformAngles{0.0, 1e-9, 4'294'967'295U}, "angles describe 4294967295 beams, at most 4096", Errc::kTooLarge},
+    {ExplicitAngles{}, "angles describe 0 beams;"},
+    {ExplicitAngles(4097, 0.1), "angles describe 4097 beams, at most 4096", Errc::kTooLarge},
+    {ExplicitAngles{0.0, kNan, 0.1}, "angles.explicit.angles[1] is nan;"},
+    {ExplicitAngles{0.0, 0.1, kInfinity}, "angles.explicit.angles[2] is inf;"},
+    {ExplicitAngles{-50.0, 0.1, 0.2}, "angles.explicit.angles[0] is -50;"},
+};
+
+TEST(BadAngles, OfASensorAreRefusedByName) {
+    for (const auto& spoilt : kSpoiltAngles) {
+        Sensor sensor = example_sensor();
+        sensor.angles = spoilt.angles;
+        expect_refused(body_of(sensor), spoilt.code, std::string("sensor_description.") + spoilt.message);
+    }
+}
+
+TEST(BadAngles, OfAScanAreRefusedByNameAndPlace) {
+    for (const auto& spoilt : kSpoiltAngles) {
+        ScanBatch batch = example_batch();
+        batch.scans[2].angles = spoilt.angles;
+        expect_refused(body_of(batch), spoilt.code, std::string("scan_batch.scans[2].") + spoilt.message);
+    }
+}
+
+TEST(BadAngles, OfNeitherKindAreRefused) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
+    frame.mutable_sensor_description()->clear_angles();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                   "sensor_description.angles are neither uniform nor explicit");
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_batch())));
+    frame.mutable_scan_batch()->mutable_scans(1)->mutable_angles()->Clear();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                   "scan_batch.scans[1].angles are neither uniform nor explicit");
+}
+
+TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
+    const Spoilt<Scan> kSpoilt[] = {
+        {[](Scan& s) { s.seq = 0; }, "seq is 0;"},
+        {[](Scan& s) { s.stamp = kNan; }, "stamp is nan;"},
+        {[](Scan& s) { s.stamp = kInfinity; }, "stamp is inf;"},
+        {[](Scan& s) { s.pose.x = kNan; }, "pose.x is nan;"},
+        {[](Scan& s) { s.pose.x = kInfinity; }, "pose.x is inf;"},
+        {[](Scan& s) { s.pose.y = -kInfinity; }, "pose.y is -inf;"},
+        {[](Scan& s) { s.pose.yaw = kNan; }, "pose.yaw is nan;"},
+        {[](Scan& s) { s.pose.x = 1.1e6; }, "pose.x is 1.1e+06;"},
+        {[](Scan& s) { s.pose.y = -1e300; }, "pose.y is -1e+300;"},
+        {[](Scan& s) { s.odometry->x = kNan; }, "odometry.x is nan;"},
+        {[](Scan& s) { s.odometry->yaw = -kInfinity; }, "odometry.yaw is -inf;"},
+        {[](Scan& s) { s.ranges.clear(); }, "ranges is empty;"},
+        {[](Scan& s) { s.ranges.assign(4097, 1000); }, "ranges has 4097 beams, at most 4096", Errc::kTooLarge},
+        {[](Scan& s) { s.ranges.assign(100'000, 1000); }, "ranges has 100000 beams, at most 4096", Errc::kTooLarge},
+        {[](Scan& s) { s.intensities.pop_back(); }, "intensities has 2 values for 3 ranges;"},
+        {[](Scan& s) { s.intensities.push_back(1); }, "intensities has 4 values for 3 ranges;"},
+        {[](Scan& s) { s.angles = ExplicitAngles{0.1}; }, "angles describe 1 beams, ranges has 3;"},
+        {[](Scan& s) {
+             s.angles = UniformAngles{0.0, 0.1, 4};
+         },
+         "angles describe 4 beams, ranges has 3;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        for (const std::size_t place : {0U, 3U}) {
+            ScanBatch batch = example_batch();
+            spoilt.spoil(batch.scans[place]);
+            expect_refused(body_of(batch), spoilt.code,
+                           "scan_batch.scans[" + std::to_string(place) + "]." + spoilt.beginning);
+        }
+    }
+}
+
+TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
+    expect_refused(body_of(ScanBatch{}), Errc::kInvalidField, "scan_batch.scans is empty;");
+    expect_refused(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax + 1, example_scan())}), Errc::kTooLarge,
+                   "scan_batch.scans has 1025 scans, at most 1024");
+}
+
+TEST(BadCorrection, IsRefusedByTheNameOfItsField) {
+    expect_refused(body_of(Correction{{0.0, kNan, 0.0}, 1}), Errc::kInvalidField, "correction.T_map_odom.y is nan;");
+}
+
+TEST(CheckScan, UniformAnglesOfTheSensorMustNotPassAFullTurn) {
+    Sensor sensor = example_sensor();
+    sensor.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 360.0, 180};
+    Scan scan = example_scan();
+    scan.angles.reset();
+    for (const std::size_t beams : {1U, 179U, 360U, 361U}) {
+        scan.ranges.assign(beams, 1000);
+        EXPECT_TRUE(check_scan(scan, sensor)) << beams;
+    }
+    scan.ranges.assign(362, 1000);
+    const auto refused = check_scan(scan, sensor);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kInvalidField);
+    EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 362 beams, which span 6.301 rad"));
+}
+
+TEST(CheckScan, ExplicitAnglesOfTheSensorNeedARangeEach) {
+    Sensor sensor = example_sensor();
+    sensor.angles = ExplicitAngles{0.1, 0.2, 0.4};
+    Scan scan = example_scan();
+    scan.angles.reset();
+    EXPECT_TRUE(check_scan(scan, sensor));
+    scan.ranges.pop_back();
+    const auto refused = check_scan(scan, sensor);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 2 beams, sensor 63 has 3 explicit angles;"));
+    scan.angles = ExplicitAngles{0.1, 0.2};
+    EXPECT_TRUE(check_scan(scan, sensor)) << "its own angles are what counts";
+}
+
+} // namespace
+} // namespace scanloom::wire

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "common/wire/frame_decoder.hpp"
+#include "common/wire/messages.hpp"
+
+#include <string>
+
+/// Messages with every field set, to be spoilt by the tests.
+namespace scanloom::wire {
+
+inline Sensor example_sensor() {
+    Sensor sensor;
+    sensor.id = 63;
+    sensor.kind = SensorKind::kSonar;
+    sensor.name = "front, left";
+    sensor.mount = {0.25, -0.125, 3.0};
+    sensor.angles = UniformAngles{-1.5, 0.015625, 180};
+    sensor.aperture = 0.25;
+    sensor.range_min = 0.0625;
+    sensor.range_max = 81.875;
+    return sensor;
+}
+
+inline Scan example_scan(std::uint64_t seq = 1) {
+    Scan scan;
+    scan.seq = seq;
+    scan.stamp = 976052857.28;
+    scan.sensor = 63;
+    scan.pose = {1.5, -2.25, 0.5};
+    scan.odometry = Pose2{-7.0, 8.0, -3.0};
+    scan.ranges = {1000, kInvalidRange, kNoReturn};
+    scan.intensities = {0, 255, 4'000'000'000U};
+    scan.angles = ExplicitAngles{-0.5, 0.0, 0.25};
+    return scan;
+}
+
+inline ScanBatch example_batch() { return {{example_scan(7), example_scan(8), example_scan(9), example_scan(10)}}; }
+
+inline Hello example_hello() {
+    Hello hello;
+    hello.robot = "robot-1";
+    hello.session = "Intel_Lab";
+    hello.token = "secret";
+    hello.create = SessionOptions{0.1, 0.8, 0.2, 0.5, 0.01, 0.99, 0.25, 0.125};
+    hello.client = "a robot 1.0";
+    return hello;
+}
+
+/// The body of the frame that holds the message, as the decoder would hand it out.
+inline std::string body_of(const Message& message) {
+    std::string frame;
+    encode(message, frame);
+    return frame.substr(kLengthPrefixBytes);
+}
+
+} // namespace scanloom::wire

@@ -1,0 +1,97 @@
+#include "common/wire/log_codec.hpp"
+
+#include "tests/unit/common/wire/example_messages.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace scanloom::wire {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::vector<LogEntry> one_of_each() {
+    return {RobotJoined{3, "robot-1"}, SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}};
+}
+
+TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
+    for (const auto& entry : one_of_each()) {
+        const auto decoded = decode_entry(encode_entry(entry));
+        ASSERT_TRUE(decoded) << decoded.error().message;
+        EXPECT_EQ(*decoded, entry);
+    }
+}
+
+TEST(LogCodec, AnEntryOfTheWireIsTheSameAfterTheLogAsBefore) {
+    Scan scan = example_scan();
+    scan.pose.yaw = -9.0;
+    const auto batch = std::get<ScanBatch>(decode(body_of(ScanBatch{{scan}})).value());
+    const LogEntry entry = ScanTaken{0, batch.scans[0]};
+    EXPECT_EQ(decode_entry(encode_entry(entry)).value(), entry) << "normalising a pose again changes nothing";
+}
+
+TEST(LogCodec, EveryTruncationOfAnEntryIsReported) {
+    for (const auto& entry : one_of_each()) {
+        const std::string bytes = encode_entry(entry);
+        for (std::size_t kept = 0; kept < bytes.size(); ++kept) {
+            const auto decoded = decode_entry(std::string_view(bytes).substr(0, kept));
+            ASSERT_FALSE(decoded) << kept << " of " << bytes.size();
+            EXPECT_EQ(decoded.error().code, Errc::kMalformed);
+            EXPECT_THAT(decoded.error().message, StartsWith("a log entry in the store cannot be read"));
+        }
+    }
+}
+
+TEST(LogCodec, DamagedBytesAreReadOrReportedButNeverWorse) {
+    std::mt19937 random(5);
+    for (const auto& entry : one_of_each()) {
+        const std::string bytes = encode_entry(entry);
+        for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+            std::string flipped = bytes;
+            flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+            const auto decoded = decode_entry(flipped);
+            EXPECT_TRUE(decoded || !decoded.error().message.empty());
+        }
+    }
+    for (int round = 0; round < 20'000; ++round) {
+        std::string bytes(random() % 100, '\0');
+        for (char& byte : bytes) byte = static_cast<char>(random());
+        const auto decoded = decode_entry(bytes);
+        EXPECT_TRUE(decoded || !decoded.error().message.empty());
+    }
+}
+
+TEST(LogCodec, ValuesThatNoRobotCouldSendAreReportedByName) {
+    Scan scan = example_scan();
+    scan.pose.x = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(decode_entry(encode_entry(ScanTaken{0, scan})).error().message, StartsWith("scan_taken.pose.x is nan"));
+    Sensor sensor = example_sensor();
+    sensor.range_max = -1.0;
+    EXPECT_THAT(decode_entry(encode_entry(SensorDescribed{0, sensor})).error().message,
+                StartsWith("sensor_described.range_max is -1"));
+}
+
+TEST(LogCodec, ASessionComesBackAsItWas) {
+    const SessionRecord record{"Intel_Lab", 1.75e9, {.cell_size = 0.1, .p_prior = 0.4}};
+    const auto decoded = decode_session(encode_session(record));
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->name, record.name);
+    EXPECT_EQ(decoded->created, record.created);
+    EXPECT_EQ(decoded->options, record.options);
+}
+
+TEST(LogCodec, ADamagedSessionIsReported) {
+    std::string bytes = encode_session({"Intel_Lab", 1.75e9, {.cell_size = 0.1}});
+    bytes.pop_back();
+    const auto decoded = decode_session(bytes);
+    ASSERT_FALSE(decoded);
+    EXPECT_EQ(decoded.error().code, Errc::kMalformed);
+    EXPECT_THAT(decoded.error().message, HasSubstr("a session in the store cannot be read"));
+}
+
+} // namespace
+} // namespace scanloom::wire

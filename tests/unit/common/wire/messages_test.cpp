@@ -1,0 +1,169 @@
+#include "common/wire/messages.hpp"
+
+#include "common/scan/limits.hpp"
+#include "tests/unit/common/wire/example_messages.hpp"
+
+#include "scanloom/v1/frame.pb.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace scanloom::wire {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<Message> one_of_each() {
+    return {example_hello(),
+            Welcome{"00000000000000ff", 13631, Limits{1U << 20, 4096, 1024}, 2U << 20},
+            example_sensor(),
+            example_batch(),
+            Ack{17, 16, 1U << 21},
+            LinkError{{Errc::kInvalidField, "scan_batch.scans[3].pose.x is nan"}, true},
+            Ping{0xFEDCBA9876543210U},
+            Pong{42},
+            Goodbye{"every scan is acknowledged"},
+            Correction{{1.0, 2.0, -0.5}, 99}};
+}
+
+TEST(Messages, EveryKindSurvivesTheWire) {
+    const auto messages = one_of_each();
+    ASSERT_EQ(messages.size(), std::variant_size_v<Message>);
+    for (std::size_t kind = 0; kind < messages.size(); ++kind) {
+        ASSERT_EQ(messages[kind].index(), kind);
+        const auto decoded = decode(body_of(messages[kind]));
+        ASSERT_TRUE(decoded) << name_of(messages[kind]) << ": " << decoded.error().message;
+        EXPECT_EQ(*decoded, messages[kind]) << name_of(messages[kind]);
+    }
+}
+
+TEST(Messages, AreNamedAsTheirFrameFields) {
+    const auto* frame = v1::Frame::descriptor();
+    for (const auto& message : one_of_each()) {
+        const auto* field = frame->FindFieldByName(std::string(name_of(message)));
+        ASSERT_NE(field, nullptr) << name_of(message);
+        v1::Frame proto;
+        ASSERT_TRUE(proto.ParseFromString(body_of(message)));
+        EXPECT_EQ(static_cast<int>(proto.body_case()), field->number());
+    }
+}
+
+TEST(Messages, WhatIsOptionalMayBeAbsent) {
+    Hello hello = example_hello();
+    hello.create.reset();
+    hello.token.clear();
+    hello.client.clear();
+    EXPECT_EQ(decode(body_of(hello)).value(), Message(hello));
+    hello.create = SessionOptions{.p_min = 0.0};
+    EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 is not an absent one";
+
+    Scan scan = example_scan();
+    scan.odometry.reset();
+    scan.intensities.clear();
+    scan.angles.reset();
+    EXPECT_EQ(decode(body_of(ScanBatch{{scan}})).value(), Message(ScanBatch{{scan}}));
+    Sensor sensor = example_sensor();
+    sensor.angles = ExplicitAngles{3.0, -1.0};
+    EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
+}
+
+TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
+    for (const Errc code :
+         {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField, Errc::kNotFound,
+          Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout, Errc::kReplaced, Errc::kGone,
+          Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized}) {
+        const Message message = LinkError{{code, "why"}, false};
+        EXPECT_EQ(decode(body_of(message)).value(), message) << name_of(code);
+    }
+}
+
+TEST(Messages, YawsAreNormalisedWhereTheyEnter) {
+    Scan scan = example_scan();
+    scan.pose.yaw = 7.0;
+    const auto decoded = decode(body_of(ScanBatch{{scan}})).value();
+    EXPECT_DOUBLE_EQ(std::get<ScanBatch>(decoded).scans[0].pose.yaw, 7.0 - 2.0 * std::numbers::pi);
+}
+
+TEST(Messages, TheLargestScanAndTheLargestBatchArePossible) {
+    Scan scan = example_scan();
+    scan.ranges.assign(kBeamsMax, 1000);
+    scan.intensities.assign(kBeamsMax, 7);
+    scan.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 4095.0, kBeamsMax};
+    EXPECT_TRUE(decode(body_of(ScanBatch{{scan}}))) << "the first direction may be repeated at the end of the turn";
+    EXPECT_TRUE(decode(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax, example_scan())})));
+}
+
+TEST(Messages, AFrameWithoutABodyIsMalformed) {
+    const std::string unknown_field = "\xfa\x01\x02hi"; // field 31, as a newer version may have
+    for (const std::string& body : {std::string(), unknown_field}) {
+        const auto decoded = decode(body);
+        ASSERT_FALSE(decoded);
+        EXPECT_EQ(decoded.error().code, Errc::kMalformed);
+        EXPECT_THAT(decoded.error().message, HasSubstr("a frame without a body"));
+    }
+}
+
+TEST(Messages, FieldsOfANewerVersionAreSkipped) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(Ping{5})));
+    const std::string body = frame.SerializeAsString() + "\xfa\x01\x02hi";
+    EXPECT_EQ(decode(body).value(), Message(Ping{5}));
+}
+
+/// What decode() gives for arbitrary bytes: a message whose values are checked, or an error with a sentence.
+void expect_decoded_or_explained(std::string_view body) {
+    const auto decoded = decode(body);
+    if (!decoded) {
+        EXPECT_FALSE(decoded.error().message.empty());
+        return;
+    }
+    const auto* batch = std::get_if<ScanBatch>(&*decoded);
+    if (batch == nullptr) return;
+    for (const auto& scan : batch->scans) {
+        EXPECT_TRUE(is_finite(scan.pose) && std::isfinite(scan.stamp));
+        EXPECT_TRUE(!scan.ranges.empty() && scan.ranges.size() <= kBeamsMax);
+        EXPECT_TRUE(scan.intensities.empty() || scan.intensities.size() == scan.ranges.size());
+    }
+}
+
+TEST(Messages, EveryTruncationIsDecodedOrExplained) {
+    for (const auto& message : one_of_each()) {
+        const std::string body = body_of(message);
+        for (std::size_t bytes = 0; bytes < body.size(); ++bytes) {
+            SCOPED_TRACE(std::string(name_of(message)) + " cut to " + std::to_string(bytes));
+            const auto decoded = decode(std::string_view(body).substr(0, bytes));
+            EXPECT_FALSE(decoded) << "the one field of a frame is cut short";
+        }
+    }
+}
+
+TEST(Messages, EveryFlippedBitIsDecodedOrExplained) {
+    for (const auto& message : one_of_each()) {
+        const std::string body = body_of(message);
+        for (std::size_t bit = 0; bit < body.size() * 8; ++bit) {
+            std::string flipped = body;
+            flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+            expect_decoded_or_explained(flipped);
+        }
+    }
+}
+
+TEST(Messages, RandomBytesAreDecodedOrExplained) {
+    std::mt19937 random(3);
+    for (int round = 0; round < 20'000; ++round) {
+        std::string body(random() % 200, '\0');
+        for (char& byte : body) byte = static_cast<char>(random());
+        expect_decoded_or_explained(body);
+    }
+}
+
+TEST(Messages, DeeplyNestedGroupsAreRefusedNotFollowed) {
+    const auto decoded = decode(std::string(100'000, '\x0b')); // start of group 1, again and again
+    ASSERT_FALSE(decoded);
+    EXPECT_EQ(decoded.error().code, Errc::kMalformed);
+}
+
+} // namespace
+} // namespace scanloom::wire
