@@ -7,6 +7,7 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 namespace scanloom::session {
@@ -47,12 +48,9 @@ private:
     bool failed_ = false;
 };
 
-Error damaged(std::string_view key) {
-    return {Errc::kMalformed,
-            fmt::format("checkpoint part '{}' is damaged; the map is woven from the log instead", key)};
-}
+Error damaged(std::string_view key) { return {Errc::kMalformed, fmt::format("checkpoint part '{}' is damaged", key)}; }
 
-/// The hexadecimal numbers between the slashes of a key, after its first word.
+/// The hexadecimal numbers between the slashes of what follows a key's prefix.
 std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     std::vector<std::uint32_t> numbers;
     while (!key.empty()) {
@@ -126,59 +124,76 @@ std::vector<store::CheckpointPart> checkpoint_parts(const mapping::Snapshot& sna
     return parts;
 }
 
-Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
-    PartReader reader(value);
-    if (key == "head") {
-        const auto version = reader.take<std::uint32_t>();
-        state_.revision = reader.take<Revision>();
-        state_.bounds.i_begin = reader.take<std::int32_t>();
-        state_.bounds.j_begin = reader.take<std::int32_t>();
-        state_.bounds.i_end = reader.take<std::int32_t>();
-        state_.bounds.j_end = reader.take<std::int32_t>();
-        if (!reader.complete()) return damaged(key);
-        if (version == mapping::kWeavingVersion) return {};
-        return Error{Errc::kUnsupportedVersion,
-                     fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
-                                 mapping::kWeavingVersion)};
-    }
+const CheckpointReader::Kind CheckpointReader::kKinds[4] = {
+    {"robot/", 1, &CheckpointReader::add_robot},
+    {"sensor/", 2, &CheckpointReader::add_sensor},
+    {"track/", 2, &CheckpointReader::add_points},
+    {"weave/occupancy/", 2, &CheckpointReader::add_chunk},
+};
 
-    constexpr std::string_view kWeave = "weave/occupancy/";
-    const bool is_chunk = key.starts_with(kWeave);
-    const auto numbers = numbers_in(key.substr(std::min(is_chunk ? kWeave.size() : key.find('/') + 1, key.size())));
-    if (!numbers || numbers->empty()) return damaged(key);
-    if (key.starts_with("robot/")) {
-        if ((*numbers)[0] != state_.robots.size()) return damaged(key);
-        auto& robot = state_.robots.emplace_back();
-        robot.last_seq = reader.take<std::uint64_t>();
-        robot.scan_count = reader.take<std::uint64_t>();
-        robot.name = reader.rest();
-        return reader.failed() ? Result<>(damaged(key)) : Result<>();
-    }
-    if (key.starts_with("sensor/")) {
-        auto entry = wire::decode_entry(value);
-        if (!entry || (*numbers)[0] >= state_.robots.size()) return damaged(key);
-        const auto* described = std::get_if<SensorDescribed>(&*entry);
-        if (described == nullptr) return damaged(key);
-        state_.robots[(*numbers)[0]].sensors.push_back(described->sensor);
-        return {};
-    }
-    begin_weaving();
-    if (key.starts_with("track/")) {
-        while (!reader.complete()) {
-            const auto point = reader.take<mapping::TrajectoryPoint>();
-            if (reader.failed() || !projection_.restore_point((*numbers)[0], point)) return damaged(key);
-        }
-        return {};
-    }
-    if (is_chunk && numbers->size() == 2) {
-        const auto revision = reader.take<Revision>();
-        const auto cells = reader.take<decltype(mapping::OccupancyChunk::cells)>();
-        if (!reader.complete()) return damaged(key);
-        projection_.restore_chunk({static_cast<std::int32_t>((*numbers)[0]), static_cast<std::int32_t>((*numbers)[1])},
-                                  revision, cells);
-        return {};
+Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
+    if (key == "head") return add_head(value);
+    for (const auto& kind : kKinds) {
+        if (!key.starts_with(kind.prefix)) continue;
+        const auto numbers = numbers_in(key.substr(kind.prefix.size()));
+        if (numbers && numbers->size() == kind.numbers && (this->*kind.add)(*numbers, value)) return {};
     }
     return damaged(key);
+}
+
+Result<> CheckpointReader::add_head(std::string_view value) {
+    PartReader part(value);
+    const auto version = part.take<std::uint32_t>();
+    state_.revision = part.take<Revision>();
+    state_.bounds.i_begin = part.take<std::int32_t>();
+    state_.bounds.j_begin = part.take<std::int32_t>();
+    state_.bounds.i_end = part.take<std::int32_t>();
+    state_.bounds.j_end = part.take<std::int32_t>();
+    if (!part.complete()) return damaged("head");
+    if (version == mapping::kWeavingVersion) return {};
+    return Error{Errc::kUnsupportedVersion,
+                 fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
+                             mapping::kWeavingVersion)};
+}
+
+bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value) {
+    if (numbers[0] != state_.robots.size()) return false;
+    PartReader part(value);
+    auto& robot = state_.robots.emplace_back();
+    robot.last_seq = part.take<std::uint64_t>();
+    robot.scan_count = part.take<std::uint64_t>();
+    robot.name = part.rest();
+    return !part.failed();
+}
+
+bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value) {
+    auto entry = wire::decode_entry(value);
+    if (!entry || numbers[0] >= state_.robots.size()) return false;
+    auto* described = std::get_if<SensorDescribed>(&*entry);
+    if (described == nullptr) return false;
+    state_.robots[numbers[0]].sensors.push_back(std::move(described->sensor));
+    return true;
+}
+
+bool CheckpointReader::add_points(const Numbers& numbers, std::string_view value) {
+    begin_weaving();
+    PartReader part(value);
+    while (!part.complete()) {
+        const auto point = part.take<mapping::TrajectoryPoint>();
+        if (part.failed() || !projection_.restore_point(numbers[0], point)) return false;
+    }
+    return true;
+}
+
+bool CheckpointReader::add_chunk(const Numbers& numbers, std::string_view value) {
+    begin_weaving();
+    PartReader part(value);
+    const auto revision = part.take<Revision>();
+    const auto cells = part.take<decltype(mapping::OccupancyChunk::cells)>();
+    if (!part.complete()) return false;
+    projection_.restore_chunk({static_cast<std::int32_t>(numbers[0]), static_cast<std::int32_t>(numbers[1])}, revision,
+                              cells);
+    return true;
 }
 
 void CheckpointReader::begin_weaving() {
@@ -186,8 +201,13 @@ void CheckpointReader::begin_weaving() {
     weaving_ = true;
 }
 
-mapping::Projection CheckpointReader::finish() && {
+Result<mapping::Projection> CheckpointReader::finish() && {
     begin_weaving();
+    for (const auto& robot : projection_.snapshot().robots) {
+        if (robot.trajectory.size() == robot.scan_count) continue;
+        return Error{Errc::kMalformed, fmt::format("the checkpoint has {} poses of robot '{}', which took {} scans",
+                                                   robot.trajectory.size(), robot.name, robot.scan_count)};
+    }
     return std::move(projection_);
 }
 

@@ -4,7 +4,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/store/scan_log.hpp"
 
-#include <optional>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -34,9 +34,25 @@ public:
     [[nodiscard]] Result<> add(std::string_view key, std::string_view value);
 
     /// The projection as of the checkpoint; a blank one when there was no part.
-    [[nodiscard]] mapping::Projection finish() &&;
+    /// Errors  kMalformed: parts are missing.
+    [[nodiscard]] Result<mapping::Projection> finish() &&;
 
 private:
+    using Numbers = std::vector<std::uint32_t>; // those in a key
+
+    /// A kind of part, told by how its key begins; `add` is false when the part is damaged.
+    struct Kind {
+        std::string_view prefix;
+        std::size_t numbers;
+        bool (CheckpointReader::*add)(const Numbers& numbers, std::string_view value);
+    };
+    static const Kind kKinds[4];
+
+    [[nodiscard]] Result<> add_head(std::string_view value);
+    [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_points(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_chunk(const Numbers& numbers, std::string_view value);
     void begin_weaving();
 
     mapping::Projection projection_;

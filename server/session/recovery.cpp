@@ -23,9 +23,10 @@ Result<Recovered> from_checkpoint(store::ScanLog& log, store::SessionId session,
         session, [&](std::string_view key, std::string_view value) { return reader.add(key, value); });
     if (!read) return read.error();
     auto projection = std::move(reader).finish();
-    const Revision checkpointed = projection.revision();
-    if (auto folded = fold_rest(log, session, projection); !folded) return folded.error();
-    return Recovered{std::move(projection), checkpointed};
+    if (!projection) return projection.error();
+    const Revision checkpointed = projection->revision();
+    if (auto folded = fold_rest(log, session, *projection); !folded) return folded.error();
+    return Recovered{std::move(*projection), checkpointed};
 }
 
 } // namespace

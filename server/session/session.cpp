@@ -47,29 +47,39 @@ void Session::on_strand(Work work) {
 
 void Session::join(std::string robot, std::shared_ptr<RobotListener> listener,
                    std::function<void(Result<Joined>)> done) {
-    on_strand([robot = std::move(robot), listener = std::move(listener),
-               done = std::move(done)](Session& self) mutable { done(self.do_join(robot, std::move(listener))); });
+    on_strand([robot = std::move(robot), joining = Joining{std::move(listener), std::move(done)}](
+                  Session& self) mutable { self.do_join(robot, std::move(joining)); });
 }
 
-Result<Joined> Session::do_join(const std::string& robot, std::shared_ptr<RobotListener> listener) {
-    if (refusing_) return *refusing_;
+void Session::do_join(const std::string& robot, Joining joining) {
+    if (refusing_) return joining.done(*refusing_);
     auto member = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == robot; });
     const auto index = static_cast<RobotIndex>(member - members_.begin());
     if (member == members_.end()) {
         if (members_.size() >= kRobotsMax) {
-            return Error{Errc::kTooLarge,
-                         fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
-                                     info_.name, members_.size())};
+            return joining.done(Error{
+                Errc::kTooLarge, fmt::format("session '{}' has {} robots already, the most it can hold; use another "
+                                             "session",
+                                             info_.name, members_.size())});
         }
         members_.emplace_back().name = robot;
         enqueue({index, {RobotJoined{index, robot}}, 0});
-    } else if (member->listener) {
+    } else {
         fail(*member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
                                                     robot, info_.name)});
     }
-    members_[index].listener = std::move(listener);
-    set_connected(index, true);
-    return Joined{index, members_[index].durable_seq};
+    members_[index].joining = std::move(joining);
+    admit(index);
+}
+
+/// Lets the link in that waits to become the robot's, once nothing of the earlier ones is under way.
+void Session::admit(RobotIndex robot) {
+    auto& member = members_[robot];
+    if (!member.joining || member.under_way > 0) return;
+    const auto joining = *std::exchange(member.joining, std::nullopt);
+    member.listener = joining.listener;
+    set_connected(robot, true);
+    joining.done(Joined{robot, member.durable_seq});
 }
 
 void Session::leave(std::shared_ptr<RobotListener> listener) {
@@ -129,6 +139,7 @@ void Session::take(Member& member, std::vector<Scan> scans, std::size_t bytes) {
         Scan& scan = scans[n];
         if (scan.seq <= member.received_seq) continue; // sent again after a reconnect: the log has it
         if (auto ok = check_next(member, scan); !ok) {
+            enqueue(std::move(submission)); // the scans before it have been received and count as such
             return fail(member, prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error()));
         }
         member.received_seq = scan.seq;
@@ -153,6 +164,7 @@ Result<> Session::check_next(const Member& member, const Scan& scan) const {
 }
 
 void Session::enqueue(Submission submission) {
+    ++members_[submission.robot].under_way;
     waiting_.push_back(std::move(submission));
     append_next();
 }
@@ -184,6 +196,7 @@ void Session::append_next() {
 void Session::on_appended(Group group, const Result<>& appended) {
     appending_ = false;
     if (!appended) return stop_writing(appended.error());
+    if (broken_) return finish_closing();
     append_next(); // the disk works while this group is folded
     if (auto folded = fold(group); !folded) return stop_writing(folded.error());
     publish();
@@ -214,16 +227,21 @@ void Session::publish() {
 /// Gives back the credit of a group: one message a robot.
 void Session::release(const Group& group) {
     std::map<RobotIndex, std::size_t> bytes;
-    for (const auto& submission : group) bytes[submission.robot] += submission.bytes;
+    for (const auto& submission : group) {
+        bytes[submission.robot] += submission.bytes;
+        --members_[submission.robot].under_way;
+    }
     for (const auto& [robot, released] : bytes) {
         const auto& member = members_[robot];
         if (member.listener) member.listener->on_durable(member.durable_seq, released);
+        admit(robot);
     }
 }
 
 // When things go wrong, and the end
 
 void Session::fail(Member& member, const Error& error) {
+    if (const auto joining = std::exchange(member.joining, std::nullopt)) joining->done(error);
     if (!member.listener) return;
     const auto listener = std::move(member.listener);
     member.listener.reset();
@@ -240,6 +258,7 @@ void Session::fail_all(const Error& error) {
 void Session::stop_writing(const Error& error) {
     spdlog::error("session '{}': {}", info_.name, error.message);
     refusing_ = error;
+    broken_ = true;
     waiting_.clear();
     fail_all(error);
     forget_what_is_not_durable();
@@ -253,6 +272,7 @@ void Session::forget_what_is_not_durable() {
         auto& member = members_[n];
         member.name = state.robots[n].name;
         member.received_seq = member.durable_seq = state.robots[n].last_seq;
+        member.under_way = 0;
         member.sensors.clear();
         for (const auto& sensor : state.robots[n].sensors) member.sensors[sensor.id] = sensor;
     }
@@ -276,7 +296,7 @@ void Session::write_checkpoint() {
 
 void Session::close(Error reason, std::function<void()> done) {
     on_strand([reason = std::move(reason), done = std::move(done)](Session& self) mutable {
-        self.refusing_ = std::move(reason);
+        if (!self.refusing_) self.refusing_ = std::move(reason);
         self.closed_ = std::move(done);
         self.finish_closing();
     });
@@ -286,7 +306,7 @@ void Session::close(Error reason, std::function<void()> done) {
 void Session::finish_closing() {
     if (!closed_ || appending_ || !waiting_.empty() || checkpointing_) return;
     fail_all(*refusing_);
-    if (projection_.revision() > checkpointed_ && refusing_->code != Errc::kStoreFailed && !final_checkpoint_tried_) {
+    if (projection_.revision() > checkpointed_ && !broken_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return write_checkpoint();
     }

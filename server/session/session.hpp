@@ -70,7 +70,9 @@ public:
     [[nodiscard]] bool is_connected(RobotIndex robot) const;
 
     /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
-    /// `done` is called once, on the strand. Errors: kGone, kStoreFailed, kShuttingDown, kTooLarge.
+    /// `done` is called once, on the strand, when everything the robot's earlier links submitted is
+    /// durable: so last_durable_seq is exact, and no more than one link's credit is under way.
+    /// Errors  kReplaced, kGone, kStoreFailed, kShuttingDown, kTooLarge.
     void join(std::string robot, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
     /// Describes a sensor, for the scans submitted after it. `bytes` is given back through on_durable.
@@ -96,10 +98,18 @@ private:
     };
     using Group = std::vector<Submission>;
 
+    /// A link that waits until what the robot's earlier links submitted is durable.
+    struct Joining {
+        std::shared_ptr<RobotListener> listener;
+        std::function<void(Result<Joined>)> done;
+    };
+
     /// A robot's link and what has been received from it, durable or not yet.
     struct Member {
         std::string name;
         std::shared_ptr<RobotListener> listener;
+        std::optional<Joining> joining;
+        std::size_t under_way = 0; // submissions enqueued and not released
         std::uint64_t received_seq = 0;
         std::uint64_t durable_seq = 0;
         std::map<std::uint32_t, Sensor> sensors;
@@ -108,7 +118,8 @@ private:
     template <class Work>
     void on_strand(Work work);
 
-    [[nodiscard]] Result<Joined> do_join(const std::string& robot, std::shared_ptr<RobotListener> listener);
+    void do_join(const std::string& robot, Joining joining);
+    void admit(RobotIndex robot);
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     void describe(Member& member, Sensor sensor, std::size_t bytes);
     void take(Member& member, std::vector<Scan> scans, std::size_t bytes);
@@ -141,6 +152,7 @@ private:
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why nothing more is taken
+    bool broken_ = false;           // the log failed: what it holds is unknown, nothing more is written
     std::function<void()> closed_;  // to be called when closing is done
 
     mutable std::mutex published_mutex_; // guards the two below, held for a copy only

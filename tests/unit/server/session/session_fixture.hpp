@@ -1,0 +1,112 @@
+#pragma once
+
+#include "common/wire/log_codec.hpp"
+#include "server/mapping/digest.hpp"
+#include "server/session/recovery.hpp"
+#include "server/session/session.hpp"
+#include "tests/support/log_reading.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::session {
+
+using testing_support::random_scan;
+using testing_support::random_scans;
+using testing_support::small_laser;
+
+/// A link that keeps what it was told.
+struct RecordedLink : RobotListener {
+    void on_durable(std::uint64_t seq, std::size_t bytes) override {
+        durable_seqs.push_back(seq);
+        bytes_released += bytes;
+    }
+    void on_failed(const Error& error) override { failures.push_back(error); }
+
+    [[nodiscard]] std::uint64_t durable_seq() const { return durable_seqs.empty() ? 0 : durable_seqs.back(); }
+
+    std::vector<std::uint64_t> durable_seqs;
+    std::size_t bytes_released = 0;
+    std::vector<Error> failures;
+};
+
+/// A session over a log in memory. Nothing happens but in run(), on the test's own thread.
+class SessionTest : public testing::Test {
+protected:
+    void SetUp() override {
+        id_ = log_.create_session("a record that nobody reads").value();
+        start_session();
+    }
+
+    /// As after a restart: what is in the log is all that is known.
+    void start_session() {
+        auto recovered = recover(log_, id_, config_).value();
+        session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
+                                             recovered.checkpointed, log_, compute_.get_executor());
+    }
+
+    void run() {
+        compute_.restart();
+        compute_.run();
+    }
+
+    /// A join that has not been answered keeps std::nullopt in it.
+    struct Join {
+        std::shared_ptr<RecordedLink> link = std::make_shared<RecordedLink>();
+        std::shared_ptr<std::optional<Result<Joined>>> answer = std::make_shared<std::optional<Result<Joined>>>();
+    };
+
+    Join begin_join(const std::string& robot) {
+        Join join;
+        session_->join(robot, join.link,
+                       [answer = join.answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
+        run();
+        return join;
+    }
+
+    /// The link of a robot that has joined and, by default, described its laser.
+    std::shared_ptr<RecordedLink> join(const std::string& robot, bool describe = true) {
+        const auto join = begin_join(robot);
+        EXPECT_TRUE(join.answer->has_value() && join.answer->value()) << robot;
+        if (describe) session_->submit(join.link, small_laser(), 0);
+        run();
+        return join.link;
+    }
+
+    std::uint64_t last_durable_seq_on_joining(const std::string& robot) {
+        return begin_join(robot).answer->value().value().last_durable_seq;
+    }
+
+    [[nodiscard]] std::vector<LogEntry> logged() {
+        std::vector<LogEntry> entries;
+        for (const auto& bytes : store::entries_after(log_, id_, 0).value()) {
+            entries.push_back(wire::decode_entry(bytes).value());
+        }
+        return entries;
+    }
+
+    /// The map that folding the whole log gives.
+    [[nodiscard]] std::string digest_of_log() {
+        mapping::Projection projection(config_);
+        for (const auto& entry : logged()) EXPECT_TRUE(projection.fold(entry));
+        return mapping::digest_of(projection.snapshot().occupancy);
+    }
+
+    [[nodiscard]] std::string digest() const { return mapping::digest_of(session_->snapshot()->occupancy); }
+
+    boost::asio::io_context compute_;
+    store::MemoryScanLog log_;
+    store::SessionId id_ = 0;
+    mapping::MapConfig config_;
+    std::shared_ptr<Session> session_;
+};
+
+} // namespace scanloom::session

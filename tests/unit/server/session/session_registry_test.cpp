@@ -1,0 +1,239 @@
+#include "server/session/session_registry.hpp"
+
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+
+#include <future>
+#include <thread>
+
+namespace scanloom::session {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+/// A link that other threads talk to: tests wait for what it is told.
+struct AwaitedLink : RobotListener {
+    void on_durable(std::uint64_t seq, std::size_t) override {
+        const std::lock_guard lock(mutex);
+        durable_seq = seq;
+        told.notify_all();
+    }
+    void on_failed(const Error& error) override {
+        const std::lock_guard lock(mutex);
+        failure = error;
+        told.notify_all();
+    }
+    void wait_for_seq(std::uint64_t seq) {
+        std::unique_lock lock(mutex);
+        told.wait(lock, [&] { return durable_seq >= seq; });
+    }
+    Error wait_for_failure() {
+        std::unique_lock lock(mutex);
+        told.wait(lock, [&] { return failure.has_value(); });
+        return *failure;
+    }
+
+    std::mutex mutex;
+    std::condition_variable told;
+    std::uint64_t durable_seq = 0;
+    std::optional<Error> failure;
+};
+
+Result<Joined> join_and_wait(Session& session, const std::string& robot, std::shared_ptr<RobotListener> link) {
+    const auto promise = std::make_shared<std::promise<Result<Joined>>>();
+    auto joined = promise->get_future();
+    session.join(robot, std::move(link), [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
+    return joined.get();
+}
+
+/// A registry with a pool of threads, as in the server; calls that wait come from the test's thread.
+class SessionRegistryTest : public testing::Test {
+protected:
+    ~SessionRegistryTest() override { compute_.join(); }
+
+    void restart() {
+        registry_ = std::make_unique<SessionRegistry>(log_, compute_.get_executor(), [] { return 1000.5; });
+        ASSERT_TRUE(registry_->recover());
+    }
+
+    std::shared_ptr<AwaitedLink> stream(Session& session, const std::string& robot, std::size_t scans) {
+        auto link = std::make_shared<AwaitedLink>();
+        EXPECT_TRUE(join_and_wait(session, robot, link));
+        session.submit(link, small_laser(), 0);
+        for (std::uint64_t seq = 1; seq <= scans; ++seq) session.submit(link, {random_scan(7, seq)}, 0);
+        link->wait_for_seq(scans);
+        return link;
+    }
+
+    store::MemoryScanLog log_;
+    boost::asio::thread_pool compute_{2};
+    std::unique_ptr<SessionRegistry> registry_ =
+        std::make_unique<SessionRegistry>(log_, compute_.get_executor(), [] { return 1000.5; });
+};
+
+std::vector<std::string> names_of(const std::vector<std::shared_ptr<Session>>& sessions) {
+    std::vector<std::string> names;
+    for (const auto& session : sessions) names.push_back(session->info().name);
+    return names;
+}
+
+TEST_F(SessionRegistryTest, ACreatedSessionIsFoundAndListedByName) {
+    const auto b = registry_->create("b", {.cell_size = 0.1});
+    ASSERT_TRUE(b);
+    ASSERT_TRUE(registry_->create("a", {}));
+    EXPECT_EQ(registry_->find("b"), *b);
+    EXPECT_EQ(registry_->find("c"), nullptr);
+    EXPECT_THAT(names_of(registry_->list()), ElementsAre("a", "b"));
+    EXPECT_EQ((*b)->info().config.cell_size, 0.1);
+    EXPECT_EQ((*b)->info().created, 1000.5);
+}
+
+TEST_F(SessionRegistryTest, ANameIsTakenOnlyOnce) {
+    ASSERT_TRUE(registry_->create("a", {}));
+    const auto again = registry_->create("a", {});
+    ASSERT_FALSE(again);
+    EXPECT_EQ(again.error().code, Errc::kAlreadyExists);
+    EXPECT_THAT(log_.sessions().value(), SizeIs(1));
+}
+
+TEST_F(SessionRegistryTest, BadNamesAndSettingsAreRefusedByFieldAndMakeNothing) {
+    for (const char* name : {"", "a/b", "../a", "caf\xc3\xa9"}) {
+        const auto refused = registry_->create(name, {});
+        ASSERT_FALSE(refused) << name;
+        EXPECT_EQ(refused.error().code, Errc::kInvalidField);
+        EXPECT_THAT(refused.error().message, StartsWith("name is not a valid session name"));
+    }
+    for (const double cell_size : {0.0, -1.0, 1e-9, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+        const auto refused = registry_->create("a", {.cell_size = cell_size});
+        ASSERT_FALSE(refused) << cell_size;
+        EXPECT_EQ(refused.error().code, Errc::kInvalidField);
+        EXPECT_THAT(refused.error().message, StartsWith("cell_size is "));
+    }
+    EXPECT_THAT(registry_->list(), IsEmpty());
+    EXPECT_THAT(log_.sessions().value(), IsEmpty());
+}
+
+TEST_F(SessionRegistryTest, ASessionThatTheStoreRefusesIsNotThere) {
+    log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
+    const auto refused = registry_->create("a", {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kStoreFailed);
+    EXPECT_EQ(registry_->find("a"), nullptr);
+}
+
+TEST_F(SessionRegistryTest, EverySessionComesBackAfterARestart) {
+    std::map<std::string, std::string> digests;
+    for (int n = 0; n < 12; ++n) {
+        const auto name = "s" + std::to_string(n);
+        const auto session = registry_->create(name, {.cell_size = 0.05 + 0.01 * n}).value();
+        stream(*session, "r", static_cast<std::size_t>(5 * n));
+        digests[name] = mapping::digest_of(session->snapshot()->occupancy);
+    }
+    registry_->drain();
+    restart();
+    ASSERT_THAT(registry_->list(), SizeIs(12));
+    for (const auto& session : registry_->list()) {
+        EXPECT_EQ(mapping::digest_of(session->snapshot()->occupancy), digests.at(session->info().name));
+        EXPECT_EQ(session->info().created, 1000.5);
+    }
+    EXPECT_DOUBLE_EQ(registry_->find("s3")->info().config.cell_size, 0.05 + 0.01 * 3);
+    const auto joined = join_and_wait(*registry_->find("s3"), "r", std::make_shared<AwaitedLink>());
+    EXPECT_EQ(joined->last_durable_seq, 15U);
+    registry_->drain();
+}
+
+TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
+    ASSERT_TRUE(registry_->create("before", {}));
+    const auto bad = registry_->create("bad", {}).value();
+    ASSERT_TRUE(registry_->create("after", {}));
+    ASSERT_TRUE(store::append_and_wait(log_, bad->info().id, 1, {"no entry"}));
+    ASSERT_TRUE(log_.create_session("no record"));
+    restart();
+    EXPECT_THAT(names_of(registry_->list()), ElementsAre("after", "before"));
+    const auto damaged = registry_->damaged();
+    ASSERT_THAT(damaged, SizeIs(2));
+    EXPECT_THAT(damaged.at("bad").message, HasSubstr("log entry 1: "));
+    EXPECT_THAT(damaged.at("#0000000000000004").message, HasSubstr("a session in the store cannot be read"));
+
+    const auto again = registry_->create("bad", {});
+    ASSERT_FALSE(again);
+    EXPECT_THAT(again.error().message, HasSubstr("exists but is damaged"));
+    ASSERT_TRUE(registry_->remove("bad"));
+    EXPECT_TRUE(registry_->create("bad", {}));
+    ASSERT_TRUE(registry_->remove("#0000000000000004"));
+    EXPECT_THAT(registry_->damaged(), IsEmpty());
+}
+
+TEST_F(SessionRegistryTest, ARemovedSessionIsGoneFromTheStoreToo) {
+    const auto session = registry_->create("a", {}).value();
+    stream(*session, "r", 10);
+    ASSERT_TRUE(registry_->remove("a"));
+    EXPECT_EQ(registry_->find("a"), nullptr);
+    EXPECT_THAT(log_.sessions().value(), IsEmpty());
+    EXPECT_EQ(session->snapshot()->robots[0].last_seq, 10U) << "whoever still holds it may read";
+    const auto again = registry_->remove("a");
+    ASSERT_FALSE(again);
+    EXPECT_EQ(again.error().code, Errc::kNotFound);
+    EXPECT_NE(registry_->create("a", {}).value()->info().id, session->info().id);
+}
+
+TEST_F(SessionRegistryTest, RemovingWhileARobotStreamsTellsItAndDisturbsNoOther) {
+    const auto doomed = registry_->create("doomed", {}).value();
+    const auto other = registry_->create("other", {}).value();
+    const auto link = stream(*doomed, "r", 1);
+    std::atomic<bool> stop = false;
+    std::thread robot([&] {
+        for (std::uint64_t seq = 2; !stop; ++seq) doomed->submit(link, {random_scan(7, seq)}, 0);
+    });
+    ASSERT_TRUE(registry_->remove("doomed"));
+    EXPECT_EQ(link->wait_for_failure().code, Errc::kGone);
+    stop = true;
+    robot.join();
+    stream(*other, "r", 20);
+    EXPECT_EQ(join_and_wait(*doomed, "r", std::make_shared<AwaitedLink>()).error().code, Errc::kGone);
+}
+
+TEST_F(SessionRegistryTest, DrainingMakesEverythingDurableAndRefusesTheNew) {
+    std::vector<std::shared_ptr<AwaitedLink>> links;
+    for (int n = 0; n < 5; ++n) {
+        const auto session = registry_->create("s" + std::to_string(n), {}).value();
+        links.push_back(stream(*session, "r", 1));
+        session->submit(links.back(), random_scans(7, 2, 30), 0);
+    }
+    EXPECT_FALSE(registry_->is_draining());
+    registry_->drain();
+    EXPECT_TRUE(registry_->is_draining());
+    for (const auto& link : links) {
+        EXPECT_EQ(link->durable_seq, 31U);
+        EXPECT_EQ(link->wait_for_failure().code, Errc::kShuttingDown);
+    }
+    EXPECT_EQ(registry_->create("late", {}).error().code, Errc::kShuttingDown);
+    registry_->drain();
+    ASSERT_TRUE(registry_->remove("s0")) << "what has been drained can still be deleted";
+}
+
+TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
+    std::vector<std::thread> threads;
+    std::atomic<int> created = 0;
+    std::atomic<int> removed = 0;
+    for (int thread = 0; thread < 4; ++thread) {
+        threads.emplace_back([&] {
+            for (int n = 0; n < 50; ++n) {
+                const auto name = "s" + std::to_string(n % 3);
+                if (registry_->create(name, {})) ++created;
+                if (registry_->remove(name)) ++removed;
+            }
+        });
+    }
+    for (auto& thread : threads) thread.join();
+    EXPECT_EQ(static_cast<std::size_t>(created - removed), registry_->list().size());
+    EXPECT_EQ(registry_->list().size(), log_.sessions()->size());
+}
+
+} // namespace
+} // namespace scanloom::session

@@ -1,0 +1,203 @@
+#include "tests/unit/server/session/session_fixture.hpp"
+
+/// What a session takes from its robots, and what it answers.
+namespace scanloom::session {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+TEST_F(SessionTest, ARobotsFirstJoinBeginsAtNothing) {
+    const auto join = begin_join("r");
+    ASSERT_TRUE(join.answer->has_value());
+    EXPECT_EQ(join.answer->value().value().robot, 0U);
+    EXPECT_EQ(join.answer->value().value().last_durable_seq, 0U);
+    EXPECT_TRUE(session_->is_connected(0));
+    EXPECT_THAT(logged(), ElementsAre(LogEntry(RobotJoined{0, "r"})));
+    EXPECT_THAT(join.link->failures, IsEmpty());
+}
+
+TEST_F(SessionTest, EveryScanIsLoggedThenWovenThenAcknowledged) {
+    const auto link = join("r");
+    session_->submit(link, random_scans(1, 1, 3), 100);
+    run();
+    ASSERT_THAT(logged(), SizeIs(5));
+    EXPECT_EQ(logged()[1], LogEntry(SensorDescribed{0, small_laser()}));
+    EXPECT_EQ(logged()[4], LogEntry(ScanTaken{0, random_scan(1, 3)}));
+    EXPECT_EQ(session_->snapshot()->revision, 5U);
+    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 3U);
+    EXPECT_EQ(digest(), digest_of_log());
+    EXPECT_EQ(link->durable_seq(), 3U);
+    EXPECT_EQ(link->bytes_released, 100U);
+}
+
+TEST_F(SessionTest, ARobotThatComesBackContinuesAfterItsLastDurableScan) {
+    const auto first = join("r");
+    session_->submit(first, random_scans(1, 1, 3), 10);
+    session_->leave(first);
+    run();
+    EXPECT_FALSE(session_->is_connected(0));
+    const auto again = begin_join("r");
+    EXPECT_EQ(again.answer->value().value().last_durable_seq, 3U);
+    EXPECT_EQ(again.answer->value().value().robot, 0U);
+    session_->submit(again.link, random_scans(1, 4, 2), 10);
+    run();
+    EXPECT_EQ(again.link->durable_seq(), 5U) << "its sensor is known from before";
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
+TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
+    const auto link = join("r");
+    session_->submit(link, random_scans(1, 1, 4), 40);
+    run();
+    session_->submit(link, random_scans(1, 2, 3), 30);
+    run();
+    EXPECT_THAT(logged(), SizeIs(6));
+    EXPECT_EQ(link->bytes_released, 70U);
+    session_->submit(link, random_scans(1, 3, 4), 50); // two known, two new
+    run();
+    EXPECT_THAT(logged(), SizeIs(8));
+    EXPECT_EQ(link->durable_seq(), 6U);
+    EXPECT_EQ(link->bytes_released, 120U);
+    EXPECT_THAT(link->failures, IsEmpty());
+}
+
+TEST_F(SessionTest, AMissingScanFailsThatLinkOnly) {
+    const auto faulty = join("faulty");
+    const auto healthy = join("healthy");
+    session_->submit(faulty, random_scans(1, 2, 1), 10);
+    session_->submit(healthy, random_scans(2, 1, 2), 10);
+    run();
+    ASSERT_THAT(faulty->failures, SizeIs(1));
+    EXPECT_EQ(faulty->failures[0].code, Errc::kOutOfOrder);
+    EXPECT_THAT(faulty->failures[0].message, StartsWith("scan_batch.scans[0].seq is 2, 1 is the next"));
+    EXPECT_FALSE(session_->is_connected(0));
+    EXPECT_TRUE(session_->is_connected(1));
+    EXPECT_EQ(healthy->durable_seq(), 2U);
+    EXPECT_THAT(healthy->failures, IsEmpty());
+}
+
+TEST_F(SessionTest, ScansBeforeAMissingOneAreKeptAndTheRobotContinuesAfterThem) {
+    const auto link = join("r");
+    auto scans = random_scans(1, 1, 5);
+    scans.erase(scans.begin() + 2);
+    session_->submit(link, scans, 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[2].seq is 4, 3 is the next"));
+    const auto again = begin_join("r");
+    EXPECT_EQ(again.answer->value().value().last_durable_seq, 2U);
+    session_->submit(again.link, random_scans(1, 3, 3), 10);
+    run();
+    EXPECT_EQ(again.link->durable_seq(), 5U);
+    EXPECT_EQ(session_->snapshot()->robots[0].scan_count, 5U);
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
+TEST_F(SessionTest, AScanOfASensorThatWasNotDescribedFailsTheLink) {
+    const auto link = join("r", false);
+    session_->submit(link, random_scans(1, 1, 1), 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_EQ(link->failures[0].code, Errc::kInvalidField);
+    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[0].sensor is 2, which was not described"));
+}
+
+TEST_F(SessionTest, AScanThatDoesNotFitItsSensorFailsTheLink) {
+    const auto link = join("r");
+    auto scans = random_scans(1, 1, 2);
+    scans[1].ranges.assign(38, 1000);
+    session_->submit(link, scans, 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[1].ranges has 38 beams, which span 6.458 rad"));
+}
+
+TEST_F(SessionTest, ASensorThatReachesTooFarForTheCellsFailsTheLink) {
+    const auto link = join("r");
+    Sensor sensor = small_laser();
+    sensor.range_max = 1000.0;
+    session_->submit(link, sensor, 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_THAT(link->failures[0].message, StartsWith("sensor_description.range_max is 1000 metres"));
+}
+
+TEST_F(SessionTest, ASensorDescribedAgainIsLoggedOnlyWhenItChanged) {
+    const auto link = join("r");
+    ASSERT_THAT(logged(), SizeIs(2));
+    session_->submit(link, small_laser(), 70);
+    run();
+    EXPECT_THAT(logged(), SizeIs(2));
+    EXPECT_EQ(link->bytes_released, 70U);
+    Sensor moved = small_laser();
+    moved.mount.x = 0.5;
+    session_->submit(link, moved, 0);
+    session_->submit(link, small_laser(), 0);
+    run();
+    EXPECT_THAT(logged(), ElementsAre(testing::_, testing::_, LogEntry(SensorDescribed{0, moved}),
+                                      LogEntry(SensorDescribed{0, small_laser()})));
+}
+
+TEST_F(SessionTest, SeveralRobotsShareOneMap) {
+    std::vector<std::shared_ptr<RecordedLink>> links;
+    for (const char* name : {"a", "b", "c"}) links.push_back(join(name));
+    for (std::uint64_t seq = 1; seq <= 20; ++seq) {
+        for (unsigned robot = 0; robot < 3; ++robot) session_->submit(links[robot], {random_scan(robot, seq)}, 10);
+    }
+    run();
+    for (const auto& link : links) {
+        EXPECT_EQ(link->durable_seq(), 20U);
+        EXPECT_EQ(link->bytes_released, 200U);
+    }
+    const auto snapshot = session_->snapshot();
+    ASSERT_THAT(snapshot->robots, SizeIs(3));
+    EXPECT_EQ(snapshot->robots[1].name, "b");
+    EXPECT_EQ(snapshot->robots[1].trajectory.size(), 20U);
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
+TEST_F(SessionTest, ANewLinkReplacesTheRobotsEarlierOne) {
+    const auto first = join("r");
+    const auto second = join("r");
+    ASSERT_THAT(first->failures, SizeIs(1));
+    EXPECT_EQ(first->failures[0].code, Errc::kReplaced);
+    session_->submit(first, random_scans(1, 1, 1), 10); // was still under way
+    session_->leave(first);
+    run();
+    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 0U);
+    EXPECT_TRUE(session_->is_connected(0));
+    session_->submit(second, random_scans(1, 1, 1), 10);
+    run();
+    EXPECT_EQ(second->durable_seq(), 1U);
+    EXPECT_THAT(second->failures, IsEmpty());
+}
+
+TEST_F(SessionTest, ALinkThatNeverJoinedIsIgnored) {
+    const auto stranger = std::make_shared<RecordedLink>();
+    session_->submit(stranger, small_laser(), 10);
+    session_->submit(stranger, random_scans(1, 1, 1), 10);
+    session_->leave(stranger);
+    run();
+    EXPECT_THAT(logged(), IsEmpty());
+    EXPECT_THAT(stranger->failures, IsEmpty());
+}
+
+TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
+    std::vector<Join> joins;
+    for (int n = 0; n < 1025; ++n) {
+        joins.emplace_back();
+        session_->join("r" + std::to_string(n), joins.back().link,
+                       [answer = joins.back().answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
+    }
+    run();
+    EXPECT_TRUE(joins[1023].answer->value());
+    EXPECT_EQ(joins[1024].answer->value().error().code, Errc::kTooLarge);
+    EXPECT_THAT(joins[1024].answer->value().error().message, HasSubstr("1024 robots already"));
+}
+
+} // namespace
+} // namespace scanloom::session
