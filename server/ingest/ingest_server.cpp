@@ -14,14 +14,13 @@ namespace scanloom::ingest {
 namespace asio = boost::asio;
 namespace {
 
-asio::awaitable<void> turn_away(asio::ip::tcp::socket socket, std::size_t links_max) {
-    std::string frame;
-    wire::encode(wire::LinkError{{Errc::kTooLarge,
-                                  fmt::format("{} robots are connected, the most this server takes; try again later",
-                                              links_max)},
-                                 true},
-                 frame);
-    co_await asio::async_write(socket, asio::buffer(frame), asio::as_tuple(asio::use_awaitable));
+/// Links beyond the limit that are open at the same time to say so; more are closed without a word.
+constexpr std::size_t kTurnedAwayMax = 64;
+
+wire::LinkError too_many(std::size_t links) {
+    return {
+        {Errc::kTooLarge, fmt::format("{} robots are connected, the most this server takes; try again later", links)},
+        true};
 }
 
 } // namespace
@@ -52,16 +51,16 @@ asio::awaitable<void> IngestServer::accept() {
             co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
             continue;
         }
-        if (open_ >= config_.links_max) {
-            spdlog::warn("a robot was turned away: {} links are open, the most allowed", open_);
-            const auto executor = socket.get_executor();
-            asio::co_spawn(executor, turn_away(std::move(socket), config_.links_max), asio::detached);
-            continue;
-        }
+        const bool full = open_ >= config_.links_max;
+        if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
+        if (open_ >= config_.links_max + kTurnedAwayMax) continue;
         ++open_;
         auto link = std::make_shared<RobotLink>(std::move(socket), services_, config_.link);
         asio::co_spawn(
-            link->executor(), [link] { return link->run(); },
+            link->executor(),
+            [link, full, links_max = config_.links_max] {
+                return full ? link->turn_away(too_many(links_max)) : link->run();
+            },
             asio::bind_executor(acceptor_.get_executor(), [this](std::exception_ptr) { --open_; }));
     }
 }

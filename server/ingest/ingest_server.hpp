@@ -40,7 +40,7 @@ private:
     std::uint16_t port_;
     LinkServices services_;
     IngestConfig config_;
-    std::size_t open_ = 0; // on the acceptor's strand
+    std::size_t open_ = 0; // links, also those being turned away; on the acceptor's strand
 };
 
 } // namespace scanloom::ingest

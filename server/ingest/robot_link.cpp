@@ -20,6 +20,11 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10;
+
+/// Sensor descriptions under way besides the credit, which is for scans: twice what 64 sensors of 4096 explicit
+/// angles take.
+constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
+
 constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 
 asio::awaitable<Result<session::Joined>> join(session::Session& session, std::string robot,
@@ -29,13 +34,15 @@ asio::awaitable<Result<session::Joined>> join(session::Session& session, std::st
         [&](auto handler) {
             auto shared = std::make_shared<decltype(handler)>(std::move(handler));
             session.join(std::move(robot), std::move(listener), [shared, executor](Result<session::Joined> joined) {
-                asio::post(executor, [shared, joined] { std::move(*shared)(joined); });
+                asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
             });
         },
         asio::use_awaitable);
 }
 
-Error hung_up() { return {Errc::kUnreachable, "the robot closed the connection"}; }
+Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the connection"}; }
+
+wire::LinkError in_words(const Error& error) { return {error, is_retryable(error.code)}; }
 
 } // namespace
 
@@ -57,8 +64,7 @@ RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const 
 asio::awaitable<void> RobotLink::run() {
     const auto self = shared_from_this();
     expect_something_within(config_.hello_deadline);
-    asio::co_spawn(
-        socket_.get_executor(), [self] { return self->watch_deadline(); }, asio::detached);
+    start_watch();
     Result<> served;
     try {
         served = co_await serve();
@@ -67,14 +73,19 @@ asio::awaitable<void> RobotLink::run() {
     }
     if (session_) session_->leave(self);
     if (ended_by_) served = *ended_by_;
-    if (!served && served.error().code != Errc::kUnreachable) co_await farewell(served.error());
-    deadline_timer_.cancel();
-    boost::system::error_code ignored;
-    socket_.close(ignored);
+    if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
+    hang_up();
     spdlog::info("robot '{}' at {} left: {}", robot_, peer_,
                  goodbye_ ? "goodbye"
                  : served ? "end"
                           : served.error().message);
+}
+
+asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
+    expect_something_within(config_.farewell_deadline);
+    start_watch();
+    co_await farewell(std::move(why));
+    hang_up();
 }
 
 /// The conversation, in the order in which it happens.
@@ -86,6 +97,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
         co_return Error{Errc::kMalformed,
                         fmt::format("the first frame is a {}; a hello is expected", wire::name_of(*first))};
     }
+    expect_something_within(config_.idle_deadline); // of us: the session's disk may be slow
     if (auto entered = co_await enter(std::move(*hello)); !entered) co_return entered.error();
     while (!goodbye_) {
         expect_something_within(config_.idle_deadline);
@@ -123,10 +135,15 @@ asio::awaitable<Result<std::shared_ptr<session::Session>>> RobotLink::find_or_cr
                 co_return services_.sessions.create(hello.session, *hello.create);
             },
             asio::use_awaitable);
-        if (created || created.error().code != Errc::kAlreadyExists) {
-            co_return created ? created : prefixed("hello.create.", created.error());
-        }
+        if (created) co_return created;
+        if (created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
+        if (created.error().code != Errc::kAlreadyExists) co_return created;
         session = services_.sessions.find(hello.session); // another robot was quicker
+    }
+    if (!session && services_.sessions.damaged().contains(hello.session)) {
+        co_return Error{Errc::kConflict, fmt::format("hello.session is '{}', whose log is damaged; delete the session "
+                                                     "first, or choose another name",
+                                                     hello.session)};
     }
     if (!session) {
         co_return Error{Errc::kNotFound,
@@ -156,7 +173,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
             asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
         if (error) {
             if (ended_by_) co_return *ended_by_;
-            co_return hung_up();
+            co_return closed_by_robot();
         }
         decoder_.commit(bytes);
     }
@@ -165,11 +182,12 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
 Result<> RobotLink::handle(wire::Message message) {
     const auto self = shared_from_this();
     if (auto* sensor = std::get_if<Sensor>(&message)) {
-        session_->submit(self, std::move(*sensor), 0);
+        if (auto ok = charge_description(); !ok) return ok.error();
+        session_->submit(self, std::move(*sensor), frame_bytes_);
         return {};
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
-        if (auto ok = charge(frame_bytes_); !ok) return ok.error();
+        if (auto ok = charge_batch(); !ok) return ok.error();
         session_->submit(self, std::move(batch->scans), frame_bytes_);
         return {};
     }
@@ -189,17 +207,30 @@ Result<> RobotLink::handle(wire::Message message) {
                              wire::name_of(message))};
 }
 
-Result<> RobotLink::charge(std::size_t bytes) {
-    under_way_ += bytes;
-    if (under_way_ <= config_.credit_bytes) return {};
+Result<> RobotLink::charge_batch() {
+    under_way_ += frame_bytes_;
+    if (under_way_ <= config_.credit_bytes + described_) return {};
     return Error{Errc::kCreditExceeded,
-                 fmt::format("{} bytes of scan batches are under way, the credit is {}; wait for acks", under_way_,
-                             config_.credit_bytes)};
+                 fmt::format("{} bytes of scan batches are under way, the credit is {}; wait for acks",
+                             under_way_ - described_, config_.credit_bytes)};
+}
+
+/// Descriptions need no credit, but what waits for the disk is bounded all the same.
+Result<> RobotLink::charge_description() {
+    under_way_ += frame_bytes_;
+    described_ += frame_bytes_;
+    if (described_ <= config_.credit_bytes + kDescriptionBytesMax) return {};
+    return Error{Errc::kCreditExceeded,
+                 fmt::format("{} bytes of sensor descriptions are under way, at most {} are allowed; describe a "
+                             "sensor only when it has changed",
+                             described_, config_.credit_bytes + kDescriptionBytesMax)};
 }
 
 void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
     asio::post(socket_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
         self->under_way_ -= std::min(bytes, self->under_way_);
+        self->described_ = std::min(self->described_, self->under_way_);
+        if (self->last_words_) return;
         self->ack_ = wire::Ack{durable_seq, durable_seq, self->config_.credit_bytes};
         if (!self->writing_) asio::co_spawn(self->socket_.get_executor(), self->write_outbox(), asio::detached);
     });
@@ -216,8 +247,13 @@ void RobotLink::end(const Error& error) {
 }
 
 void RobotLink::send(const wire::Message& message) {
+    put_ack_into_outbox(); // what was acknowledged first is told first
     wire::encode(message, outbox_);
     if (!writing_) asio::co_spawn(socket_.get_executor(), write_outbox(), asio::detached);
+}
+
+void RobotLink::put_ack_into_outbox() {
+    if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), outbox_);
 }
 
 /// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
@@ -226,7 +262,7 @@ asio::awaitable<void> RobotLink::write_outbox() {
     const auto self = shared_from_this();
     writing_ = true;
     while (ack_ || !outbox_.empty()) {
-        if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), outbox_);
+        put_ack_into_outbox();
         const std::string sending = std::exchange(outbox_, {});
         const auto [error, bytes] = co_await asio::async_write(socket_, asio::buffer(sending), kAsTuple);
         if (error) break;
@@ -237,10 +273,11 @@ asio::awaitable<void> RobotLink::write_outbox() {
 
 /// Tells the robot why, and waits for it to hang up: closing at once with its bytes unread would
 /// reset the connection and take the error frame with it.
-asio::awaitable<void> RobotLink::farewell(const Error& error) {
-    ended_by_ = error;
+asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
+    ended_by_ = why.error;
     expect_something_within(config_.farewell_deadline);
-    send(wire::LinkError{error, is_retryable(error.code)});
+    send(why);
+    last_words_ = true;
     if (writing_) co_await written_.async_wait(kAsTuple);
     boost::system::error_code ignored;
     socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
@@ -249,6 +286,17 @@ asio::awaitable<void> RobotLink::farewell(const Error& error) {
         const auto [failed, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
         if (failed) co_return;
     }
+}
+
+void RobotLink::hang_up() {
+    deadline_timer_.cancel();
+    boost::system::error_code ignored;
+    socket_.close(ignored);
+}
+
+void RobotLink::start_watch() {
+    asio::co_spawn(
+        socket_.get_executor(), [self = shared_from_this()] { return self->watch_deadline(); }, asio::detached);
 }
 
 void RobotLink::expect_something_within(std::chrono::steady_clock::duration time) {
@@ -269,8 +317,9 @@ asio::awaitable<void> RobotLink::watch_deadline() {
             co_return;
         }
         expect_something_within(config_.farewell_deadline);
-        end({Errc::kTimeout, session_ ? "nothing was received for too long; send a ping now and then"
-                                      : "no hello was received in time"});
+        end({Errc::kTimeout, session_         ? "nothing was received for too long; send a ping now and then"
+                             : robot_.empty() ? "no hello was received in time"
+                                              : "the session's disk is too slow; try again later"});
     }
 }
 

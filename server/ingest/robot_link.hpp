@@ -48,6 +48,9 @@ public:
     /// Serves the robot to the end. Never throws.
     boost::asio::awaitable<void> run();
 
+    /// Only tells the robot why it is not served, in place of run(). Never throws.
+    boost::asio::awaitable<void> turn_away(wire::LinkError why);
+
     void on_durable(std::uint64_t durable_seq, std::size_t bytes) override;
     void on_failed(const Error& error) override;
 
@@ -57,11 +60,15 @@ private:
     boost::asio::awaitable<Result<std::shared_ptr<session::Session>>> find_or_create(const wire::Hello& hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
     [[nodiscard]] Result<> handle(wire::Message message);
-    [[nodiscard]] Result<> charge(std::size_t bytes);
+    [[nodiscard]] Result<> charge_batch();
+    [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
     boost::asio::awaitable<void> write_outbox();
-    boost::asio::awaitable<void> farewell(const Error& error);
+    boost::asio::awaitable<void> farewell(wire::LinkError why);
+    void start_watch();
+    void hang_up();
     void send(const wire::Message& message);
+    void put_ack_into_outbox();
     void end(const Error& error);
     void expect_something_within(std::chrono::steady_clock::duration time);
 
@@ -75,11 +82,13 @@ private:
     std::shared_ptr<session::Session> session_;
     std::string robot_;
     std::size_t under_way_ = 0; // bytes submitted and not yet durable
+    std::size_t described_ = 0; // at least as many of them as are of sensor descriptions, never more than all
     bool goodbye_ = false;
 
     std::string outbox_;           // bounded: answers to what was read, and at most one ack
     std::optional<wire::Ack> ack_; // the newest, not yet in the outbox
     bool writing_ = false;
+    bool last_words_ = false;           // the error is in the outbox; nothing may follow it
     boost::asio::steady_timer written_; // never runs out; cancelled when the outbox is empty
 
     std::optional<Error> ended_by_; // why the link ends, when not by the peer
