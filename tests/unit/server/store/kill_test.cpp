@@ -99,7 +99,7 @@ TEST(Kill, NothingAcknowledgedIsLostWhereverTheWriterIsKilled) {
     Reported reported;
     for (unsigned round = 0; round < kRounds; ++round) {
         SCOPED_TRACE("round " + std::to_string(round));
-        write_and_kill(temporary.path(), round, random() % 600, reported);
+        write_and_kill(temporary.path(), round, random() % 300, reported);
         if (testing::Test::HasFailure()) return;
         const auto log = open_rocksdb(temporary.path());
         ASSERT_TRUE(log) << log.error().message;
