@@ -78,12 +78,13 @@ public:
 
     void run(const std::atomic<bool>& stop) {
         Revision next = 1;
-        for (int step = 0; !stop && step < 100'000; ++step) {
+        for (int step = 0; !stop; ++step) {
             const std::size_t count = 1 + next % 7;
             const Revision last = next + count - 1;
             log_.append(session, next, distinct_entries(session, next, count), [this, last](Result<> result) {
                 EXPECT_TRUE(result);
                 acknowledged = last;
+                acknowledged.notify_all();
             });
             next += count;
             if (step % 10 == 9) {
@@ -110,42 +111,59 @@ Revision revision_in(const std::string& part) {
     return revision;
 }
 
+/// What must be found after one power cut.
+struct PowerCut {
+    struct Session {
+        SessionId id;
+        Revision acknowledged;
+        Revision checkpointed;
+    };
+    fs::path picture;
+    std::vector<Session> sessions;
+};
+
+void expect_recovered(const PowerCut& cut) {
+    const auto log = open_rocksdb(cut.picture);
+    ASSERT_TRUE(log) << log.error().message;
+    for (const auto& session : cut.sessions) {
+        const auto entries = entries_after(**log, session.id, 0).value();
+        EXPECT_GE(entries.size(), session.acknowledged);
+        EXPECT_EQ(entries, distinct_entries(session.id, 1, entries.size()));
+        auto checkpoint = checkpoint_of(**log, session.id).value();
+        EXPECT_LE(revision_in(checkpoint["a"]), entries.size()) << "a checkpoint ahead of its log";
+        EXPECT_GE(revision_in(checkpoint["a"]), session.checkpointed);
+        EXPECT_EQ(revision_in(checkpoint["a"]), revision_in(checkpoint["b"])) << "all parts or none";
+    }
+}
+
 TEST_F(FaultyDisk, APowerCutLosesNothingAcknowledgedAndNoCheckpointIsAheadOfItsLog) {
-    constexpr int kCuts = 25;
+    constexpr std::size_t kCuts = 25;
     options_.memory_bytes = 1 << 20; // tables and compactions all the time
     std::mt19937 random(9);
-    const auto log = open_rocksdb(directory_, options_).value();
-    Writer one(*log);
-    Writer two(*log);
-    std::atomic<bool> stop = false;
-    std::jthread thread_one([&] { one.run(stop); });
-    std::jthread thread_two([&] { two.run(stop); });
-    for (int cut = 0; cut < kCuts; ++cut) {
-        SCOPED_TRACE("cut " + std::to_string(cut));
-        const auto appends = log->stats().appends;
-        while (log->stats().appends < appends + random() % 50) std::this_thread::yield();
-        const std::pair<Writer*, Revision> seen[] = {{&one, one.acknowledged}, {&two, two.acknowledged}};
-        const std::pair<Writer*, Revision> written[] = {{&one, one.checkpointed}, {&two, two.checkpointed}};
-        const fs::path picture = temporary_.path() / ("cut" + std::to_string(cut));
-        disk_.files->picture_of_power_cut(directory_, picture, random);
-
-        auto recovered = open_rocksdb(picture);
-        EXPECT_TRUE(recovered) << recovered.error().message;
-        if (!recovered) break;
-        for (std::size_t i = 0; i < 2; ++i) {
-            const auto& [writer, acknowledged] = seen[i];
-            const auto entries = entries_after(**recovered, writer->session, 0).value();
-            EXPECT_GE(entries.size(), acknowledged);
-            EXPECT_EQ(entries, distinct_entries(writer->session, 1, entries.size()));
-            auto checkpoint = checkpoint_of(**recovered, writer->session).value();
-            EXPECT_LE(revision_in(checkpoint["a"]), entries.size());
-            EXPECT_GE(revision_in(checkpoint["a"]), written[i].second);
-            EXPECT_EQ(revision_in(checkpoint["a"]), revision_in(checkpoint["b"])) << "all parts or none";
+    std::vector<PowerCut> cuts;
+    {
+        const auto log = open_rocksdb(directory_, options_).value();
+        Writer one(*log);
+        Writer two(*log);
+        std::atomic<bool> stop = false;
+        std::jthread thread_one([&] { one.run(stop); });
+        std::jthread thread_two([&] { two.run(stop); });
+        while (cuts.size() < kCuts) {
+            const Revision next_cut = one.acknowledged + random() % 100;
+            while (one.acknowledged < next_cut) one.acknowledged.wait(one.acknowledged);
+            PowerCut cut{temporary_.path() / ("cut" + std::to_string(cuts.size())), {}};
+            for (const auto* writer : {&one, &two}) {
+                cut.sessions.push_back({writer->session, writer->acknowledged, writer->checkpointed});
+            }
+            disk_.files->picture_of_power_cut(directory_, cut.picture, random);
+            cuts.push_back(std::move(cut));
         }
-        recovered->reset();
-        fs::remove_all(picture);
+        stop = true;
     }
-    stop = true;
+    for (const PowerCut& cut : cuts) {
+        SCOPED_TRACE(cut.picture.filename());
+        expect_recovered(cut);
+    }
 }
 
 } // namespace
