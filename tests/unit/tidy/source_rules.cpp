@@ -28,9 +28,11 @@ const std::vector<Folder> kFolders = {
     {.path = "server/store", .may_include = {"common", "server/mapping"}},
     {.path = "server/session", .may_include = {"common", "server/mapping", "server/store"}},
     {.path = "server/tiles", .may_include = {"common/error", "common/geometry", "common/scan", "server/mapping"}},
-    {.path = "server/ingest", .may_include = {"common", "server/mapping", "server/session", "server/store"}},
+    {.path = "server/metrics", .may_include = {"common/error"}},
+    {.path = "server/ingest",
+     .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/store"}},
     {.path = "server/http",
-     .may_include = {"common", "server/mapping", "server/session", "server/store", "server/tiles"}},
+     .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/store", "server/tiles"}},
     {.path = "server/app", .may_include = {"common", "server"}},
 
     {.path = "robot_client/sim", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},

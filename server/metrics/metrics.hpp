@@ -1,0 +1,68 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <prometheus/counter.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::metrics {
+
+/// What the robots' links count. Thread: any.
+class IngestCounters {
+public:
+    explicit IngestCounters(prometheus::Registry& registry);
+
+    prometheus::Gauge& links_open;
+    prometheus::Counter& scans_received;   ///< well-formed scans that arrived
+    prometheus::Counter& scans_applied;    ///< in the log and in the map
+    prometheus::Counter& scans_duplicates; ///< sent again after a reconnect and dropped
+
+    /// Scans or frames that were refused, by the reason. Pre: one of the enumerators of Errc.
+    [[nodiscard]] prometheus::Counter& rejected(Errc reason) const {
+        return *rejected_[static_cast<std::size_t>(reason)];
+    }
+
+private:
+    std::vector<prometheus::Counter*> rejected_; // by Errc
+};
+
+/// What the HTTP server counts. Thread: any.
+class HttpCounters {
+public:
+    explicit HttpCounters(prometheus::Registry& registry);
+
+    prometheus::Gauge& connections_open;
+    prometheus::Counter& connections_refused; ///< because too many were open
+    prometheus::Histogram& request_seconds;   ///< from the whole request to the start of its answer
+
+    /// Answers by class of status. Pre: 100 <= status < 600.
+    [[nodiscard]] prometheus::Counter& answered(unsigned status) const { return *by_class_[status / 100 - 1]; }
+
+private:
+    std::array<prometheus::Counter*, 5> by_class_;
+};
+
+/// Owns every counter of the process. Labels are fixed lists, never names that users choose.
+class Metrics {
+public:
+    explicit Metrics(std::string_view version);
+
+    [[nodiscard]] IngestCounters& ingest() noexcept { return ingest_; }
+    [[nodiscard]] HttpCounters& http() noexcept { return http_; }
+
+    [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const { return registry_.Collect(); }
+
+private:
+    prometheus::Registry registry_;
+    IngestCounters ingest_{registry_};
+    HttpCounters http_{registry_};
+};
+
+} // namespace scanloom::metrics

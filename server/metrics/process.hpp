@@ -1,0 +1,14 @@
+#pragma once
+
+#include <prometheus/metric_family.h>
+
+#include <vector>
+
+namespace scanloom::metrics {
+
+/// The process_* metrics that Prometheus expects of every program: CPU seconds, resident and virtual
+/// bytes, open and possible file descriptors, start time. What the system does not tell is left out.
+/// Source  proc(5): /proc/self/stat, /proc/stat, /proc/self/fd.
+[[nodiscard]] std::vector<prometheus::MetricFamily> process_families();
+
+} // namespace scanloom::metrics
