@@ -1,0 +1,95 @@
+#include "server/http/api.hpp"
+
+#include "server/http/handlers/changes.hpp"
+#include "server/http/handlers/digest.hpp"
+#include "server/http/handlers/health.hpp"
+#include "server/http/handlers/map_files.hpp"
+#include "server/http/handlers/metrics.hpp"
+#include "server/http/handlers/openapi.hpp"
+#include "server/http/handlers/sessions.hpp"
+#include "server/http/handlers/tile.hpp"
+#include "server/http/handlers/tilejson.hpp"
+#include "server/http/handlers/trajectory.hpp"
+#include "server/http/handlers/viewer.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
+#include "server/http/problem.hpp"
+#include "server/http/router.hpp"
+#include "server/http/target.hpp"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace scanloom::http {
+namespace {
+
+bool needs_sessions(Operation operation) {
+    switch (operation) {
+    case Operation::kViewer:
+    case Operation::kViewerAsset:
+    case Operation::kLivez:
+    case Operation::kReadyz:
+    case Operation::kMetrics:
+    case Operation::kOpenapi: return false;
+    default: return true;
+    }
+}
+
+} // namespace
+
+Response Api::answer(const Request& request) {
+    const auto path = instance_of(request.target);
+    const auto target = parse_target(request.target);
+    if (!target) return problem(target.error(), path);
+
+    const auto routing = find_route(request.method, target->segments);
+    if (std::holds_alternative<NoSuchPath>(routing)) {
+        return problem(Error{Errc::kNotFound, "there is nothing at this path; /openapi.json lists what there is"},
+                       path);
+    }
+    if (const auto* refused = std::get_if<MethodNotAllowed>(&routing)) {
+        return problem(Status::method_not_allowed,
+                       fmt::format("{} is not possible here; use one of {}", in_quotes(request.method), refused->allow),
+                       path)
+            .set("Allow", refused->allow);
+    }
+    if (request.method == "POST" && !is_json(request.content_type)) {
+        return problem(
+            Status::unsupported_media_type,
+            fmt::format("the body is {}; send Content-Type: application/json", in_quotes(request.content_type)), path);
+    }
+    auto response = call(std::get<Match>(routing), *target, request);
+    return response ? std::move(*response) : problem(response.error(), path);
+}
+
+Result<Response> Api::call(const Match& match, const Target& target, const Request& request) {
+    if (needs_sessions(match.operation) && !recovered_) {
+        return Error{Errc::kShuttingDown, "the sessions are still being recovered from the store; try again soon"};
+    }
+    const Call call{request, match.arguments, target.query};
+    switch (match.operation) {
+    case Operation::kViewer: return get_viewer(web_, call);
+    case Operation::kViewerAsset: return get_viewer_asset(web_, call);
+    case Operation::kLivez: return get_livez(call);
+    case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, call);
+    case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, call);
+    case Operation::kOpenapi: return get_openapi(call);
+    case Operation::kListSessions: return list_sessions(sessions_, call);
+    case Operation::kCreateSession: return create_session(sessions_, call);
+    case Operation::kGetSession: return get_session(sessions_, call);
+    case Operation::kDeleteSession: return delete_session(sessions_, call);
+    case Operation::kTilePng: return get_tile_png(sessions_, call);
+    case Operation::kTileBin: return get_tile_bin(sessions_, call);
+    case Operation::kTileJson: return get_tilejson(sessions_, call);
+    case Operation::kChanges: return get_changes(sessions_, call);
+    case Operation::kMapPng: return get_map_png(sessions_, call);
+    case Operation::kMapPgm: return get_map_pgm(sessions_, call);
+    case Operation::kMapYaml: return get_map_yaml(sessions_, call);
+    case Operation::kDigest: return get_digest(sessions_, call);
+    case Operation::kTrajectory: return get_trajectory(sessions_, call);
+    }
+    return Error{Errc::kNotFound, "this operation has no handler"};
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "server/http/request.hpp"
+#include "server/http/response.hpp"
+#include "server/http/web_files.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <atomic>
+#include <utility>
+
+namespace scanloom::http {
+
+struct Match;
+struct Target;
+
+/// From a request to its answer: target -> route -> handler. Here each handler is given what it uses.
+/// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
+class Api {
+public:
+    Api(session::SessionRegistry& sessions, const store::ScanLog& log, const metrics::Metrics& metrics, WebFiles web)
+        : sessions_(sessions), log_(log), metrics_(metrics), web_(std::move(web)) {}
+
+    /// From now on the sessions are served; before, whoever asks for them is told to wait.
+    void set_recovered() noexcept { recovered_ = true; }
+
+    /// Every failure is an answer too: application/problem+json.
+    [[nodiscard]] Response answer(const Request& request);
+
+private:
+    [[nodiscard]] Result<Response> call(const Match& match, const Target& target, const Request& request);
+
+    session::SessionRegistry& sessions_;
+    const store::ScanLog& log_;
+    const metrics::Metrics& metrics_;
+    const WebFiles web_;
+    std::atomic<bool> recovered_ = false;
+};
+
+} // namespace scanloom::http

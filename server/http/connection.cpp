@@ -1,0 +1,221 @@
+#include "server/http/connection.hpp"
+
+#include "server/http/host.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/problem.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/buffers_suffix.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/read.hpp>
+#include <fmt/chrono.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <chrono>
+#include <ctime>
+
+namespace scanloom::http {
+namespace {
+
+namespace beast = boost::beast;
+namespace net = boost::asio;
+
+constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
+constexpr std::size_t kReadBytes = 4096;
+constexpr std::size_t kLingerBytesMax = 256 * 1024;
+
+std::string date_now() { return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(std::time(nullptr))); }
+
+std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// The answer to bytes that are no request we read; nothing when there is nobody to answer.
+std::optional<Response> refusal_of(beast::error_code reason) {
+    using beast::http::error;
+    if (reason == error::header_limit || reason == error::buffer_overflow) {
+        return problem(Status::request_header_fields_too_large, "the header is too large; send fewer or shorter fields",
+                       "");
+    }
+    if (reason == error::body_limit) {
+        return problem(Status::payload_too_large, "the body is too large; send less", "");
+    }
+    const bool is_protocol = reason.category() == beast::http::make_error_code(error::end_of_stream).category();
+    if (!is_protocol || reason == error::end_of_stream || reason == error::partial_message) return std::nullopt;
+    return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
+}
+
+Request request_of(beast::http::request<beast::http::string_body>&& message) {
+    Request request;
+    request.method = view(message.method_string());
+    request.target = view(message.target());
+    request.content_type = view(message[beast::http::field::content_type]);
+    const auto [begin, end] = message.equal_range(beast::http::field::if_none_match);
+    for (auto field = begin; field != end; ++field) {
+        if (!request.if_none_match.empty()) request.if_none_match += ", ";
+        request.if_none_match += view(field->value());
+    }
+    request.body = std::move(message.body());
+    return request;
+}
+
+/// The boundary at which a fault of ours costs one answer and nothing else.
+Response answer_guarded(const Answer& answer, const Request& request) {
+    try {
+        return answer(request);
+    } catch (const std::exception& failure) {
+        spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());
+        return problem(Status::internal_server_error, "the server failed to answer; its log says why",
+                       instance_of(request.target));
+    }
+}
+
+} // namespace
+
+Connection::Connection(net::ip::tcp::socket socket, std::shared_ptr<const Service> service)
+    : stream_(std::move(socket)), buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
+}
+
+net::awaitable<void> Connection::run() {
+    // g++ 12 loses `this` where a condition mixes && and co_await: one co_await a statement in this file.
+    bool open = true;
+    while (open && !stopping_) {
+        open = co_await wait_for_request();
+        if (open) open = co_await serve_request();
+    }
+    if (must_linger_) co_await linger();
+    stream_.close();
+}
+
+void Connection::stop() {
+    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+        self->stopping_ = true;
+        if (self->idle_) self->stream_.cancel();
+    });
+}
+
+void Connection::abort() {
+    net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->stream_.close(); });
+}
+
+net::awaitable<bool> Connection::wait_for_request() {
+    if (buffer_.size() > 0) co_return true; // pipelined
+    idle_ = true;
+    stream_.expires_after(service_->config.idle);
+    const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+    idle_ = false;
+    buffer_.commit(size);
+    co_return !error;
+}
+
+/// @return whether the connection can take another request.
+net::awaitable<bool> Connection::serve_request() {
+    Parser parser;
+    parser.header_limit(service_->config.header_bytes_max);
+    parser.body_limit(service_->config.body_bytes_max);
+    stream_.expires_after(service_->config.header);
+    const auto [error, size] = co_await beast::http::async_read_header(stream_, buffer_, parser, kAwaitTuple);
+    if (error) {
+        co_await refuse(error);
+        co_return false;
+    }
+    if (const auto refusal = refusal_of(parser)) {
+        co_await write(*refusal, true, false);
+        co_return false;
+    }
+    const bool is_whole = co_await read_body(parser);
+    if (!is_whole) co_return false;
+
+    const bool keep_alive = parser.get().keep_alive();
+    const bool with_body = parser.get().method() != beast::http::verb::head;
+    const auto begin = std::chrono::steady_clock::now();
+    const Response response = co_await compute(request_of(parser.release()));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    service_->counters.request_seconds.Observe(seconds.count());
+    co_return co_await write(response, with_body, keep_alive && !stopping_);
+}
+
+/// What is wrong with a request whose body is therefore not read.
+std::optional<Response> Connection::refusal_of(const Parser& parser) const {
+    using beast::http::field;
+    const auto& message = parser.get();
+    const auto path = instance_of(view(message.target()));
+    if (message.count(field::transfer_encoding) > 0) {
+        return problem(Status::length_required, "a Transfer-Encoding is not accepted; send a Content-Length", path);
+    }
+    if (message.count(field::host) > 1 || (message.count(field::host) == 0 && message.version() >= 11)) {
+        return problem(Status::bad_request, "a request has exactly one Host field", path);
+    }
+    const auto host = view(message[field::host]);
+    if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
+        return problem(Status::misdirected_request,
+                       fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(host)),
+                       path);
+    }
+    return std::nullopt;
+}
+
+/// @return false when the connection cannot be used any more.
+net::awaitable<bool> Connection::read_body(Parser& parser) {
+    if (parser.is_done()) co_return true;
+    if (beast::iequals(parser.get()[beast::http::field::expect], "100-continue")) {
+        const bool asked = co_await write_all("HTTP/1.1 100 Continue\r\n\r\n", {});
+        if (!asked) co_return false;
+    }
+    stream_.expires_after(service_->config.body);
+    const auto [error, size] = co_await beast::http::async_read(stream_, buffer_, parser, kAwaitTuple);
+    if (error) co_await refuse(error);
+    co_return !error;
+}
+
+/// Off this thread, which serves other sockets too.
+net::awaitable<Response> Connection::compute(Request request) {
+    auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
+        co_return answer_guarded(service->answer, request);
+    };
+    co_return co_await net::co_spawn(service_->compute, std::move(work), net::use_awaitable);
+}
+
+net::awaitable<void> Connection::refuse(beast::error_code reason) {
+    if (const auto refusal = http::refusal_of(reason)) co_await write(*refusal, true, false);
+}
+
+/// @return whether the connection can take another request.
+net::awaitable<bool> Connection::write(const Response& response, bool with_body, bool keep_alive) {
+    service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
+    const std::string head = head_text(response, keep_alive, date_now());
+    const bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
+    must_linger_ = written && !keep_alive;
+    co_return written&& keep_alive;
+}
+
+/// A deadline for each piece, so that a large answer may take its time as long as somebody reads it.
+net::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
+    const std::array<net::const_buffer, 2> whole = {net::buffer(head), net::buffer(body)};
+    beast::buffers_suffix<std::array<net::const_buffer, 2>> rest(whole);
+    while (beast::buffer_bytes(rest) > 0) {
+        stream_.expires_after(service_->config.write);
+        const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
+        if (error) co_return false;
+        rest.consume(size);
+    }
+    co_return true;
+}
+
+/// Closing a socket with unread bytes resets it, and a peer still sending would never see the answer.
+/// So: say that nothing more comes, and read on for a while.
+net::awaitable<void> Connection::linger() {
+    beast::error_code ignored;
+    stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+    stream_.expires_after(service_->config.linger);
+    std::array<char, kReadBytes> rubbish;
+    for (std::size_t total = 0; total < kLingerBytesMax;) {
+        const auto [error, size] = co_await stream_.async_read_some(net::buffer(rubbish), kAwaitTuple);
+        if (error) break;
+        total += size;
+    }
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "server/http/request.hpp"
+#include "server/http/response.hpp"
+#include "server/http/server_config.hpp"
+#include "server/metrics/metrics.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace scanloom::http {
+
+/// Computes the answer to a request. Called on several threads at once.
+using Answer = std::function<Response(const Request&)>;
+
+/// What all connections of a server share.
+struct Service {
+    ServerConfig config;
+    bool check_host = true;
+    boost::asio::any_io_executor compute; ///< answers are computed here
+    Answer answer;
+    metrics::HttpCounters& counters;
+};
+
+/// One connection: reads a request, has it answered, writes the answer, and again, in order.
+///
+/// No request with Transfer-Encoding is read. Nothing here needs one, and Beast 1.81 throws
+/// std::length_error at long chunked trailers.
+/// Thread  everything runs on the socket's executor, a strand; stop() and abort() may be called from any.
+class Connection : public std::enable_shared_from_this<Connection> {
+public:
+    Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<const Service> service);
+
+    /// Serves until the peer hangs up, a deadline passes, the peer breaks the protocol, or stop().
+    [[nodiscard]] boost::asio::awaitable<void> run();
+
+    /// Answers the request under way, if there is one, and closes.
+    void stop();
+
+    /// Closes at once.
+    void abort();
+
+private:
+    using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+    [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
+    [[nodiscard]] boost::asio::awaitable<bool> serve_request();
+    [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
+    [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
+    [[nodiscard]] boost::asio::awaitable<Response> compute(Request request);
+    [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
+    [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, bool with_body, bool keep_alive);
+    [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
+    [[nodiscard]] boost::asio::awaitable<void> linger();
+
+    boost::beast::tcp_stream stream_;
+    boost::beast::flat_buffer buffer_;
+    std::shared_ptr<const Service> service_;
+    bool idle_ = false;
+    bool stopping_ = false;
+    bool must_linger_ = false; // the peer may still have the last answer to read
+};
+
+} // namespace scanloom::http

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "server/http/handlers/call.hpp"
+#include "server/http/response.hpp"
+#include "server/session/session_registry.hpp"
+
+namespace scanloom::http {
+
+/// GET .../changes?layer&since: every tile of every zoom that was touched after revision `since`.
+/// A `since` beyond the revision now says that the session was made anew: no tile is newer.
+[[nodiscard]] Result<Response> get_changes(const session::SessionRegistry& sessions, const Call& call);
+
+} // namespace scanloom::http

@@ -1,0 +1,56 @@
+#include "server/http/handlers/metrics.hpp"
+
+#include "server/metrics/families.hpp"
+#include "server/metrics/process.hpp"
+
+#include <iterator>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+using Families = std::vector<prometheus::MetricFamily>;
+using metrics::counter_now;
+using metrics::gauge_now;
+
+Families store_families(const store::StoreStats& stats) {
+    const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
+    return {
+        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(stats.bytes_on_disk)),
+        gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
+        gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
+        counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
+        counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),
+        counter_now("scanloom_store_synced_writes_total", "Group commits, one fsync each.",
+                    number(stats.synced_writes)),
+        counter_now("scanloom_store_torn_bytes_dropped_total", "Bytes of a write that the last crash cut short.",
+                    number(stats.torn_bytes_dropped)),
+    };
+}
+
+Families session_families(const session::SessionRegistry& sessions) {
+    return {
+        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.list().size())),
+        gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
+                  static_cast<double>(sessions.damaged().size())),
+    };
+}
+
+void append(Families& to, Families from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+} // namespace
+
+Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
+                             const store::ScanLog& log, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    Families families = counted.collect();
+    append(families, session_families(sessions));
+    append(families, store_families(log.stats()));
+    append(families, metrics::process_families());
+    return ok("text/plain; version=0.0.4; charset=utf-8", Body(metrics::to_text(families)))
+        .set("Cache-Control", kNotKept);
+}
+
+} // namespace scanloom::http

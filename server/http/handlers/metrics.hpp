@@ -1,0 +1,15 @@
+#pragma once
+
+#include "server/http/handlers/call.hpp"
+#include "server/http/response.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/store/scan_log.hpp"
+
+namespace scanloom::http {
+
+/// GET /metrics: what was counted, and what the process, the store and the sessions say of themselves.
+[[nodiscard]] Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
+                                           const store::ScanLog& log, const Call& call);
+
+} // namespace scanloom::http

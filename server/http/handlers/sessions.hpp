@@ -1,0 +1,21 @@
+#pragma once
+
+#include "server/http/handlers/call.hpp"
+#include "server/http/response.hpp"
+#include "server/session/session_registry.hpp"
+
+namespace scanloom::http {
+
+/// GET /api/v1/sessions: by rising name, at most `limit` (1..1000, default 100) names after `after`.
+[[nodiscard]] Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call);
+
+/// POST /api/v1/sessions
+[[nodiscard]] Result<Response> create_session(session::SessionRegistry& sessions, const Call& call);
+
+/// GET /api/v1/sessions/{session}
+[[nodiscard]] Result<Response> get_session(const session::SessionRegistry& sessions, const Call& call);
+
+/// DELETE /api/v1/sessions/{session}
+[[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, const Call& call);
+
+} // namespace scanloom::http

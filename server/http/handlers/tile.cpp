@@ -1,0 +1,74 @@
+#include "server/http/handlers/tile.hpp"
+
+#include "server/http/conditional.hpp"
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/number.hpp"
+#include "server/tiles/occupancy_tile.hpp"
+#include "server/tiles/tile_version.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace scanloom::http {
+namespace {
+
+/// Which version of a tile is asked for.
+struct Version {
+    std::optional<Revision> revision;
+    std::optional<std::string_view> session_tag;
+};
+
+Result<Version> parse_version(const Query& query) {
+    if (auto ok = query.check_only({"v", "id"}); !ok) return ok.error();
+    Version version{.revision = std::nullopt, .session_tag = query.find("id")};
+    if (const auto text = query.find("v")) {
+        version.revision = parse_integer<Revision>(*text);
+        if (!version.revision) {
+            return Error{Errc::kInvalidField, fmt::format("v is {}; a revision is needed", in_quotes(*text))};
+        }
+    }
+    return version;
+}
+
+/// Whether the tile as it is now is the tile of that version for ever: nothing changed it since, and
+/// that revision has been reached.
+bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
+    return version.revision && *version.revision >= tile && *version.revision <= now &&
+           version.session_tag.value_or(tag) == tag;
+}
+
+using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, tiles::TileKey);
+
+Result<Response> get_tile(const session::SessionRegistry& sessions, const Call& call, std::string_view content_type,
+                          Render render) {
+    const auto version = parse_version(call.query);
+    if (!version) return version.error();
+    const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
+    if (!key) return key.error();
+    const auto session = find_session(sessions, call);
+    if (!session) return session.error();
+    const auto& layer = call.arguments["layer"];
+    if (auto ok = check_layer(layer); !ok) return ok.error();
+
+    const auto snapshot = (*session)->snapshot();
+    const auto tag = session_tag((*session)->info());
+    const Revision revision = tiles::tile_revision(*snapshot, *key);
+    const auto etag = tiles::etag_of(tag, layer, *key, revision);
+    const auto kept = is_final(*version, tag, revision, snapshot->revision) ? kImmutable : kRevalidate;
+    if (if_none_match_has(call.request.if_none_match, etag)) return not_modified(etag, kept);
+    return ok(content_type, Body(render(*snapshot, *key))).set("ETag", etag).set("Cache-Control", kept);
+}
+
+} // namespace
+
+Result<Response> get_tile_png(const session::SessionRegistry& sessions, const Call& call) {
+    return get_tile(sessions, call, "image/png", tiles::occupancy_tile_png);
+}
+
+Result<Response> get_tile_bin(const session::SessionRegistry& sessions, const Call& call) {
+    return get_tile(sessions, call, "application/octet-stream", tiles::occupancy_tile);
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,45 @@
+#include "server/http/handlers/tilejson.hpp"
+
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/tiles/extent.hpp"
+#include "server/tiles/tile_key.hpp"
+
+#include <boost/json/array.hpp>
+#include <boost/json/object.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::http {
+namespace {
+
+boost::json::array corners(const tiles::Extent& extent) {
+    return {extent.min_x, extent.min_y, extent.max_x, extent.max_y};
+}
+
+} // namespace
+
+Result<Response> get_tilejson(const session::SessionRegistry& sessions, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(sessions, call);
+    if (!session) return session.error();
+    const auto& layer = call.arguments["layer"];
+    if (auto known = check_layer(layer); !known) return known.error();
+
+    const auto& info = (*session)->info();
+    const double cell_size = info.config.cell_size;
+    const auto seen = (*session)->snapshot()->bounds;
+    const auto address = fmt::format("/api/v1/sessions/{}/tiles/{}/{{z}}/{{x}}/{{y}}.png", info.name, layer);
+    return ok(boost::json::object{
+        {"tilejson", "3.0.0"},
+        {"name", info.name},
+        {"scheme", "xyz"},
+        {"tiles", boost::json::array{address}},
+        {"vector_layers", boost::json::array{}},
+        {"minzoom", 0},
+        {"maxzoom", tiles::kZoomNative},
+        {"cell_size", cell_size},
+        {"extent", corners(tiles::tiled_extent(cell_size))},
+        {"bounds_m", seen.empty() ? boost::json::value() : corners(tiles::extent_of(seen, cell_size))},
+        {"frame_id", "map"}});
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "server/http/handlers/call.hpp"
+#include "server/http/response.hpp"
+#include "server/session/session_registry.hpp"
+
+namespace scanloom::http {
+
+/// GET .../trajectory.geojson?since: where each robot was, one feature a robot, in metres of the map
+/// frame (RFC 7946 knows only degrees; the foreign members say so).
+[[nodiscard]] Result<Response> get_trajectory(const session::SessionRegistry& sessions, const Call& call);
+
+} // namespace scanloom::http

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace scanloom::http {
+
+/// Everything that can be asked for; what each does is in api.cpp.
+enum class Operation {
+    kViewer,
+    kViewerAsset,
+    kLivez,
+    kReadyz,
+    kMetrics,
+    kOpenapi,
+    kListSessions,
+    kCreateSession,
+    kGetSession,
+    kDeleteSession,
+    kTilePng,
+    kTileBin,
+    kTileJson,
+    kChanges,
+    kMapPng,
+    kMapPgm,
+    kMapYaml,
+    kDigest,
+    kTrajectory,
+};
+
+/// A method and a path that one operation answers. A segment of the pattern is literal, or "{name}"
+/// with an optional ending ("{y}.png"), which matches any text before that ending.
+struct Route {
+    std::string_view method; ///< a GET route also answers HEAD
+    std::string_view pattern;
+    Operation operation;
+};
+
+[[nodiscard]] std::span<const Route> routes() noexcept;
+
+/// What the named segments of a pattern matched.
+class Arguments {
+public:
+    void add(std::string_view name, std::string value) { values_.emplace_back(name, std::move(value)); }
+
+    /// Pre: the route's pattern has this name.
+    [[nodiscard]] const std::string& operator[](std::string_view name) const;
+
+private:
+    std::vector<std::pair<std::string_view, std::string>> values_;
+};
+
+struct Match {
+    Operation operation;
+    Arguments arguments;
+};
+
+struct NoSuchPath {};
+
+/// The path exists, but not with this method.
+struct MethodNotAllowed {
+    std::string allow; ///< for the Allow field: "GET, HEAD, DELETE"
+};
+
+using Routing = std::variant<Match, NoSuchPath, MethodNotAllowed>;
+
+/// Finds the operation for a method and the decoded segments of a path.
+[[nodiscard]] Routing find_route(std::string_view method, const std::vector<std::string>& segments);
+
+} // namespace scanloom::http

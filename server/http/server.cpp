@@ -1,0 +1,137 @@
+#include "server/http/server.hpp"
+
+#include "server/http/problem.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+namespace scanloom::http {
+
+namespace net = boost::asio;
+using net::ip::tcp;
+
+Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, net::any_io_executor compute, ServerConfig config,
+                                               Answer answer, metrics::HttpCounters& counters) {
+    const auto endpoint = config.endpoint;
+    const bool check_host = endpoint.address().is_loopback() || !config.host_names.empty();
+    auto service = std::make_shared<const Service>(
+        Service{std::move(config), check_host, std::move(compute), std::move(answer), counters});
+    std::shared_ptr<Server> server(new Server(io, std::move(service)));
+    if (const auto failed = server->bind()) {
+        return Error{Errc::kUnreachable,
+                     fmt::format("cannot listen for HTTP on {}:{}: {}; choose another address or port",
+                                 endpoint.address().to_string(), endpoint.port(), failed.message())};
+    }
+    return server;
+}
+
+Server::Server(net::io_context& io, std::shared_ptr<const Service> service)
+    : io_(io), service_(std::move(service)), strand_(net::make_strand(io)), acceptor_(strand_), timer_(strand_) {}
+
+boost::system::error_code Server::bind() {
+    const auto& endpoint = service_->config.endpoint;
+    boost::system::error_code failed;
+    acceptor_.open(endpoint.protocol(), failed);
+    if (!failed) acceptor_.set_option(tcp::acceptor::reuse_address(true), failed);
+    if (!failed) acceptor_.bind(endpoint, failed);
+    if (!failed) acceptor_.listen(net::socket_base::max_listen_connections, failed);
+    if (!failed) port_ = acceptor_.local_endpoint(failed).port();
+    return failed;
+}
+
+void Server::start() {
+    net::dispatch(strand_, [self = shared_from_this()] {
+        self->accepting_ = true;
+        net::co_spawn(self->strand_, self->accept_loop(), net::detached);
+    });
+}
+
+void Server::stop(std::function<void()> done) {
+    net::dispatch(strand_, [self = shared_from_this(), done = std::move(done)]() mutable {
+        self->done_ = std::move(done);
+        boost::system::error_code ignored;
+        self->acceptor_.close(ignored);
+        self->timer_.expires_after(self->service_->config.drain); // also ends a pause in accepting
+        self->timer_.async_wait([self](boost::system::error_code cancelled) {
+            if (cancelled) return;
+            for (const auto& connection : self->connections_) connection->abort();
+        });
+        for (const auto& connection : self->connections_) connection->stop();
+        self->call_done_when_empty();
+    });
+}
+
+net::awaitable<void> Server::accept_loop() {
+    const auto self = shared_from_this();
+    while (acceptor_.is_open()) {
+        auto [failed, socket] =
+            co_await acceptor_.async_accept(net::make_strand(io_), net::as_tuple(net::use_awaitable));
+        if (!acceptor_.is_open()) break;
+        if (!failed) {
+            take(std::move(socket));
+            continue;
+        }
+        // Out of file descriptors, most likely: some are given back in time.
+        spdlog::warn("cannot accept an HTTP connection: {}", failed.message());
+        timer_.expires_after(std::chrono::milliseconds(100));
+        co_await timer_.async_wait(net::as_tuple(net::use_awaitable));
+    }
+    accepting_ = false;
+    call_done_when_empty();
+}
+
+void Server::take(tcp::socket socket) {
+    if (connections_.size() >= service_->config.connections_max) return refuse(std::move(socket));
+    boost::system::error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    const auto executor = socket.get_executor();
+    auto connection = std::make_shared<Connection>(std::move(socket), service_);
+    connections_.insert(connection);
+    service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
+    net::co_spawn(executor, serve(std::move(connection)), net::detached);
+}
+
+/// Says why, as far as that is possible without waiting: nothing may pile up here.
+void Server::refuse(tcp::socket socket) {
+    service_->counters.connections_refused.Increment();
+    const auto response = problem(Status::service_unavailable, "too many connections are open; try again later", "");
+    const auto text = head_text(response, false, "") + std::string(response.body.bytes());
+    boost::system::error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.write_some(net::buffer(text), ignored);
+    socket.shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+net::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
+    const auto self = shared_from_this();
+    try {
+        co_await connection->run();
+    } catch (const std::exception& failure) {
+        spdlog::error("an HTTP connection failed and was closed: {}", failure.what());
+    }
+    net::post(strand_, [self, connection] { self->forget(connection); });
+}
+
+void Server::forget(const std::shared_ptr<Connection>& connection) {
+    connections_.erase(connection);
+    service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
+    call_done_when_empty();
+}
+
+void Server::call_done_when_empty() {
+    if (!done_ || accepting_ || !connections_.empty()) return;
+    timer_.cancel();
+    std::exchange(done_, nullptr)();
+}
+
+} // namespace scanloom::http

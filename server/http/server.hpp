@@ -1,0 +1,73 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/http/connection.hpp"
+#include "server/http/server_config.hpp"
+#include "server/metrics/metrics.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+
+namespace scanloom::http {
+
+/// Listens, and runs one coroutine per connection.
+///
+/// Queue   "connections": at most config.connections_max, each with one request at a time, which
+///         also bounds what waits for the compute executor. One more connection is answered 503.
+/// Thread  any. The counters must outlive the server's work on both executors.
+class Server : public std::enable_shared_from_this<Server> {
+public:
+    /// Binds; connections wait until start().
+    ///
+    /// `compute` is where answers are computed. It must not be the executor the sessions work on, as
+    /// deleting a session waits for that session.
+    /// Errors  kUnreachable, naming the endpoint: it is taken, or not an address of this machine.
+    [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io,
+                                                                boost::asio::any_io_executor compute,
+                                                                ServerConfig config, Answer answer,
+                                                                metrics::HttpCounters& counters);
+
+    /// The port that is bound.
+    [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+
+    void start();
+
+    /// Accepts nothing more, closes idle connections, answers the requests under way, and calls `done`
+    /// (on the I/O executor) when the last connection is closed. After config.drain the rest is cut off.
+    /// Pre  called once, after start().
+    void stop(std::function<void()> done);
+
+private:
+    Server(boost::asio::io_context& io, std::shared_ptr<const Service> service);
+
+    [[nodiscard]] boost::system::error_code bind();
+    [[nodiscard]] boost::asio::awaitable<void> accept_loop();
+    [[nodiscard]] boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
+    void take(boost::asio::ip::tcp::socket socket);
+    void refuse(boost::asio::ip::tcp::socket socket);
+    void forget(const std::shared_ptr<Connection>& connection);
+    void call_done_when_empty();
+
+    boost::asio::io_context& io_;
+    std::shared_ptr<const Service> service_;
+    boost::asio::strand<boost::asio::io_context::executor_type> strand_;
+    std::uint16_t port_ = 0;
+
+    // On the strand only.
+    boost::asio::ip::tcp::acceptor acceptor_;
+    boost::asio::steady_timer timer_; // a pause in accepting; then the end of draining
+    std::set<std::shared_ptr<Connection>> connections_;
+    bool accepting_ = false;
+    std::function<void()> done_; // set while stopping
+};
+
+} // namespace scanloom::http

@@ -1,0 +1,82 @@
+#include "server/http/target.hpp"
+
+#include "server/http/in_quotes.hpp"
+
+#include <boost/url/parse.hpp>
+#include <boost/url/url_view.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace scanloom::http {
+namespace {
+
+bool has_control_character(std::string_view text) {
+    return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
+/// Decoding happens once and after splitting, so that "%2F" never becomes a border between segments.
+Result<std::vector<std::string>> parse_segments(std::string_view path) {
+    std::vector<std::string> segments;
+    for (std::size_t begin = 1; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('/', begin), path.size());
+        auto segment = boost::urls::pct_string_view(path.substr(begin, end - begin)).decode();
+        if (segment == "." || segment == ".." || segment.find_first_of("/\\") != std::string::npos ||
+            has_control_character(segment)) {
+            return Error{Errc::kMalformed, fmt::format("the path has the segment {}; write the path of a resource "
+                                                       "plainly, without dots or encoded slashes",
+                                                       in_quotes(segment))};
+        }
+        segments.push_back(std::move(segment));
+        begin = end + 1;
+    }
+    return segments;
+}
+
+Result<Query> parse_query(const boost::urls::url_view& url) {
+    std::vector<std::pair<std::string, std::string>> parameters;
+    for (const auto& parameter : url.params()) {
+        if (std::ranges::any_of(parameters, [&](const auto& seen) { return seen.first == parameter.key; })) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("the parameter {} is given twice; give it once", in_quotes(parameter.key))};
+        }
+        parameters.emplace_back(parameter.key, parameter.value);
+    }
+    return Query(std::move(parameters));
+}
+
+} // namespace
+
+std::optional<std::string_view> Query::find(std::string_view name) const {
+    const auto found = std::ranges::find(parameters_, name, &std::pair<std::string, std::string>::first);
+    if (found == parameters_.end()) return std::nullopt;
+    return found->second;
+}
+
+Result<> Query::check_only(std::initializer_list<std::string_view> known) const {
+    for (const auto& [name, value] : parameters_) {
+        if (std::ranges::find(known, name) != known.end()) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("the parameter {} is unknown here; {}", in_quotes(name),
+                                 known.size() == 0 ? "this address takes none"
+                                                   : fmt::format("possible are {}", fmt::join(known, ", ")))};
+    }
+    return {};
+}
+
+Result<Target> parse_target(std::string_view text) {
+    const auto url = boost::urls::parse_origin_form(text);
+    if (!url) {
+        return Error{Errc::kMalformed, fmt::format("the request target {} is not a path with an optional query; "
+                                                   "encode special characters with %",
+                                                   in_quotes(text))};
+    }
+    auto segments = parse_segments(url->encoded_path());
+    if (!segments) return segments.error();
+    auto query = parse_query(*url);
+    if (!query) return query.error();
+    return Target{std::move(*segments), std::move(*query)};
+}
+
+} // namespace scanloom::http

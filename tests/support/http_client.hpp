@@ -1,0 +1,96 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include <cctype>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace scanloom::testing_support {
+
+/// An HTTP answer, taken apart without the code it tests.
+struct HttpAnswer {
+    int status = 0; ///< 0: the connection ended before a whole answer
+    std::map<std::string, std::string> fields;
+    std::string body;
+};
+
+/// A blocking connection that sends whatever bytes it is given. Nothing waits longer than 30 s, so
+/// that a server which hangs fails a test instead of stopping all.
+class HttpClient {
+public:
+    explicit HttpClient(std::uint16_t port) : socket_(io_) {
+        socket_.connect({boost::asio::ip::address_v4::loopback(), port});
+        const timeval deadline{.tv_sec = 30, .tv_usec = 0};
+        ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof(deadline));
+        ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof(deadline));
+    }
+
+    /// What does not get through is not sent: the server may hang up at any time.
+    void send(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const auto sent = ::send(socket_.native_handle(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+            if (sent <= 0) return;
+            bytes.remove_prefix(static_cast<std::size_t>(sent));
+        }
+    }
+
+    /// Reads one answer. Pre: for HEAD, `with_body` is false.
+    [[nodiscard]] HttpAnswer read(bool with_body = true) {
+        HttpAnswer answer;
+        std::size_t end = 0;
+        while ((end = buffer_.find("\r\n\r\n")) == std::string::npos) {
+            if (!receive()) return answer;
+        }
+        answer.fields = fields_of(std::string_view(buffer_).substr(0, end));
+        const int status = std::stoi(buffer_.substr(9, 3));
+        buffer_.erase(0, end + 4);
+        const auto length = answer.fields.find("content-length");
+        const std::size_t size = with_body && length != answer.fields.end() ? std::stoul(length->second) : 0;
+        while (buffer_.size() < size) {
+            if (!receive()) return answer;
+        }
+        answer.body = buffer_.substr(0, size);
+        buffer_.erase(0, size);
+        answer.status = status;
+        return answer;
+    }
+
+    /// Whether the server hangs up without saying anything more.
+    [[nodiscard]] bool is_closed() { return buffer_.empty() && !receive(); }
+
+    void shutdown_send() { ::shutdown(socket_.native_handle(), SHUT_WR); }
+
+private:
+    /// @return false at the end of the stream.
+    bool receive() {
+        char bytes[4096];
+        const auto size = ::recv(socket_.native_handle(), bytes, sizeof(bytes), 0);
+        if (size <= 0) return false;
+        buffer_.append(bytes, static_cast<std::size_t>(size));
+        return true;
+    }
+
+    static std::map<std::string, std::string> fields_of(std::string_view head) {
+        std::map<std::string, std::string> fields;
+        for (auto line = head.find("\r\n"); line != std::string_view::npos; line = head.find("\r\n", line + 2)) {
+            const auto colon = head.find(": ", line);
+            std::string name(head.substr(line + 2, colon - line - 2));
+            for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            fields[name] = head.substr(colon + 2, head.find("\r\n", colon) - colon - 2);
+        }
+        return fields;
+    }
+
+    boost::asio::io_context io_;
+    boost::asio::ip::tcp::socket socket_;
+    std::string buffer_;
+};
+
+} // namespace scanloom::testing_support

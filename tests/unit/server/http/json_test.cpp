@@ -1,0 +1,130 @@
+#include "server/http/json_read.hpp"
+#include "server/http/json_text.hpp"
+#include "server/http/number.hpp"
+
+#include <boost/json/array.hpp>
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace scanloom::http {
+namespace {
+
+using testing::HasSubstr;
+using testing::Optional;
+
+TEST(JsonContentType, OnlyJsonIsJson) {
+    for (const auto* type :
+         {"application/json", "Application/JSON", "application/json; charset=utf-8", "application/json ;x"}) {
+        EXPECT_TRUE(is_json(type)) << type;
+    }
+    for (const auto* type :
+         {"", "text/plain", "application/json5", "application/x-www-form-urlencoded", ";application/json"}) {
+        EXPECT_FALSE(is_json(type)) << type;
+    }
+}
+
+TEST(JsonObject, WhatIsNoObjectIsRefused) {
+    for (const auto* body : {"", "{", "[]", "null", "1", "\"a\"", "{\"a\":}", "{\"a\":1,}", "{'a':1}", "{\"a\":1} x",
+                             "{\"a\":NaN}", "{\"a\":01}", "// a\n{}", "{\"a\":\"\xFF\"}", "{\"a\":\"\n\"}"}) {
+        const auto object = parse_json_object(body);
+        ASSERT_FALSE(object) << body;
+        EXPECT_EQ(object.error().code, Errc::kMalformed) << body;
+    }
+}
+
+TEST(JsonObject, DepthIsBounded) {
+    const std::string deep = "{\"a\":" + std::string(30'000, '[') + std::string(30'000, ']') + "}";
+    EXPECT_FALSE(parse_json_object(deep));
+    EXPECT_TRUE(parse_json_object("{\"a\":[[[[[[]]]]]]}"));
+    EXPECT_FALSE(parse_json_object("{\"a\":[[[[[[[[[]]]]]]]]]}"));
+}
+
+TEST(JsonObject, UnknownMembersAreRefusedByName) {
+    constexpr std::array<std::string_view, 2> kKnown = {"name", "cell_size"};
+    const auto object = parse_json_object(R"({"name":"a","cellsize":1})");
+    ASSERT_TRUE(object);
+    const auto checked = check_members(*object, kKnown);
+    ASSERT_FALSE(checked);
+    EXPECT_EQ(checked.error().code, Errc::kInvalidField);
+    EXPECT_THAT(checked.error().message, AllOf(HasSubstr("\"cellsize\""), HasSubstr("name, cell_size")));
+}
+
+TEST(JsonText, MustBeThereAndAString) {
+    const auto object = parse_json_object(R"({"name":"a","other":7,"none":null})").value();
+    EXPECT_EQ(read_text(object, "name").value(), "a");
+    for (const auto* name : {"other", "none", "missing"}) {
+        const auto text = read_text(object, name);
+        ASSERT_FALSE(text) << name;
+        EXPECT_EQ(text.error().code, Errc::kInvalidField);
+        EXPECT_THAT(text.error().message, HasSubstr(name));
+    }
+}
+
+TEST(JsonNumber, IsAFiniteNumberOrAbsent) {
+    const auto object = parse_json_object(R"({"i":3,"d":0.05,"n":-2,"u":18446744073709551615})").value();
+    EXPECT_THAT(read_number(object, "i").value(), Optional(3.0));
+    EXPECT_THAT(read_number(object, "d").value(), Optional(0.05));
+    EXPECT_THAT(read_number(object, "n").value(), Optional(-2.0));
+    EXPECT_THAT(read_number(object, "u").value(), Optional(18446744073709551615.0));
+    EXPECT_EQ(read_number(object, "missing").value(), std::nullopt);
+}
+
+TEST(JsonNumber, OtherTypesAreRefusedByName) {
+    for (const auto* value : {"\"1\"", "true", "null", "[]", "{}"}) {
+        const auto object = parse_json_object("{\"cell_size\":" + std::string(value) + "}").value();
+        const auto number = read_number(object, "cell_size");
+        ASSERT_FALSE(number) << value;
+        EXPECT_EQ(number.error().code, Errc::kInvalidField);
+        EXPECT_THAT(number.error().message, HasSubstr("cell_size"));
+    }
+}
+
+TEST(JsonNumber, WhatOverflowsIsRefused) {
+    for (const auto* value : {"1e999", "-1e999", "1e99999999999999999999"}) {
+        const auto object = parse_json_object("{\"cell_size\":" + std::string(value) + "}");
+        EXPECT_FALSE(object && read_number(*object, "cell_size")) << value;
+    }
+}
+
+TEST(JsonWriter, NumbersReadAsPeopleWriteThem) {
+    EXPECT_EQ(json_text(boost::json::array{0.05, 1.0, -20.1, 1e-9, std::uint64_t{7}, -3}), "[0.05,1,-20.1,1e-09,7,-3]");
+}
+
+TEST(JsonWriter, WhatIsNotFiniteIsNull) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(json_text(boost::json::array{kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}),
+              "[null,null,null]");
+}
+
+TEST(JsonWriter, WhatItWritesIsReadAgainUnchanged) {
+    const boost::json::value value = {{"a \"quoted\"\n\x01", {1, -2, 0.1, 1e300, 5e-324, true, nullptr, "\xC3\xA9"}},
+                                      {"empty", boost::json::array{}},
+                                      {"nested", {{"x", {{"y", boost::json::object{}}}}}}};
+    EXPECT_EQ(boost::json::parse(json_text(value)), value);
+}
+
+TEST(Number, IntegersAreDigitsAndClampedToWhatFits) {
+    EXPECT_EQ(parse_integer<std::uint64_t>("42"), 42U);
+    EXPECT_EQ(parse_integer<std::uint64_t>("99999999999999999999999"), std::numeric_limits<std::uint64_t>::max());
+    EXPECT_EQ(parse_integer<std::int64_t>("-99999999999999999999999"), std::numeric_limits<std::int64_t>::min());
+    for (const auto* text : {"", " 1", "1 ", "+1", "0x1", "1.0", "1e3", "-", "-1"}) {
+        EXPECT_EQ(parse_integer<std::uint64_t>(text), std::nullopt) << text;
+    }
+}
+
+TEST(Number, RealsAreFinite) {
+    EXPECT_EQ(parse_real("-1.5e1"), -15.0);
+    for (const auto* text : {"", "nan", "inf", "-inf", "1e999", "1,5", " 1", "+1", "0x10", "1."}) {
+        const bool is_odd = std::string_view(text) == "1.";
+        EXPECT_EQ(parse_real(text).has_value(), is_odd) << text;
+    }
+}
+
+} // namespace
+} // namespace scanloom::http

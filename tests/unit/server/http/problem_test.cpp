@@ -1,0 +1,84 @@
+#include "server/http/problem.hpp"
+
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::http {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+boost::json::object body_of(const Response& response) { return boost::json::parse(response.body.bytes()).as_object(); }
+
+TEST(Problem, HoldsTheMembersOfTheRfc) {
+    const auto response = problem(Error{Errc::kNotFound, "there is no \"x\""}, "/api/v1/sessions/x");
+    EXPECT_EQ(response.status, Status::not_found);
+    EXPECT_EQ(response.get("Content-Type"), "application/problem+json");
+    EXPECT_EQ(body_of(response), (boost::json::object{{"type", "urn:scanloom:error:not_found"},
+                                                      {"title", "Not found"},
+                                                      {"status", 404},
+                                                      {"detail", "there is no \"x\""},
+                                                      {"instance", "/api/v1/sessions/x"}}));
+}
+
+TEST(Problem, StatusOfEachErrorIsInOneTable) {
+    EXPECT_EQ(status_of(Errc::kMalformed), Status::bad_request);
+    EXPECT_EQ(status_of(Errc::kInvalidField), Status::bad_request);
+    EXPECT_EQ(status_of(Errc::kUnauthorized), Status::unauthorized);
+    EXPECT_EQ(status_of(Errc::kNotFound), Status::not_found);
+    EXPECT_EQ(status_of(Errc::kAlreadyExists), Status::conflict);
+    EXPECT_EQ(status_of(Errc::kGone), Status::gone);
+    EXPECT_EQ(status_of(Errc::kTooLarge), Status::payload_too_large);
+    EXPECT_EQ(status_of(Errc::kStoreFailed), Status::service_unavailable);
+    EXPECT_EQ(status_of(Errc::kShuttingDown), Status::service_unavailable);
+}
+
+TEST(Problem, EveryErrorHasAStatusOfItsOwnMaking) {
+    for (int code = 0; name_of(static_cast<Errc>(code)) != "unknown"; ++code) {
+        EXPECT_NE(status_of(static_cast<Errc>(code)), Status::internal_server_error) << code;
+    }
+}
+
+TEST(Problem, WhoShouldTryAgainIsTold) {
+    EXPECT_EQ(problem(Error{Errc::kShuttingDown, ""}, "/").get("Retry-After"), "1");
+    EXPECT_EQ(problem(Error{Errc::kNotFound, ""}, "/").get("Retry-After"), "");
+}
+
+TEST(Problem, ExtensionsAreMembersToo) {
+    const auto response = problem(Status::service_unavailable, "not ready", "/readyz", {{"reasons", {"a", "b"}}});
+    const auto body = body_of(response);
+    EXPECT_EQ(body.at("title"), "Service Unavailable");
+    EXPECT_EQ(body.at("type"), "about:blank");
+    EXPECT_EQ(body.at("reasons"), (boost::json::array{"a", "b"}));
+}
+
+TEST(Problem, InstanceIsAShortAndPrintablePath) {
+    EXPECT_EQ(instance_of("/a/b?secret=1"), "/a/b");
+    EXPECT_EQ(instance_of("/a\x1B\xFF"
+                          "b"),
+              "/a??b");
+    EXPECT_EQ(instance_of("/" + std::string(9'000, 'a')).size(), 256U);
+}
+
+TEST(ResponseHead, SaysWhatEveryAnswerSays) {
+    const auto head = head_text(ok("text/plain", Body("12345")), true, "DATE");
+    EXPECT_EQ(head, "HTTP/1.1 200 OK\r\nDate: DATE\r\nContent-Type: text/plain\r\nContent-Length: 5\r\n"
+                    "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n"
+                    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n\r\n");
+    EXPECT_THAT(head_text(ok("text/plain", Body("")), false, ""), HasSubstr("Connection: close\r\n"));
+}
+
+TEST(ResponseHead, NoOriginIsLetIn) {
+    EXPECT_THAT(head_text(ok(boost::json::value(1)), true, ""), Not(HasSubstr("Access-Control")));
+}
+
+TEST(ResponseHead, AnAnswerWithoutABodyHasNoLength) {
+    EXPECT_THAT(head_text(not_modified("\"1\"", kRevalidate), true, ""), Not(HasSubstr("Content-Length")));
+    const Response gone{.status = Status::no_content, .fields = {}, .body = {}};
+    EXPECT_THAT(head_text(gone, true, ""), Not(HasSubstr("Content-Length")));
+}
+
+} // namespace
+} // namespace scanloom::http

@@ -1,0 +1,334 @@
+#include "server/http/server.hpp"
+
+#include "tests/support/http_client.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <stdexcept>
+#include <thread>
+
+namespace scanloom::http {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing_support::HttpAnswer;
+using testing_support::HttpClient;
+
+/// Says what it was asked; fails when asked to.
+Response echo(const Request& request) {
+    if (request.target == "/throw") throw std::runtime_error("asked to");
+    return ok("text/plain", Body(request.method + " " + request.target + " " + request.body));
+}
+
+class RunningServer {
+public:
+    explicit RunningServer(ServerConfig config = {}, Answer answer = echo) {
+        config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
+        server_ = Server::listen(io_, compute_.get_executor(), config, std::move(answer), counters_).value();
+        server_->start();
+        for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
+    }
+
+    ~RunningServer() {
+        stop();
+        for (auto& thread : threads_) thread.join();
+    }
+
+    void stop() {
+        if (stopped_) return;
+        stopped_ = true;
+        std::promise<void> done;
+        server_->stop([&done] { done.set_value(); });
+        done.get_future().wait();
+    }
+
+    /// For tests that stop the server themselves.
+    void set_stopped() { stopped_ = true; }
+
+    [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+    [[nodiscard]] Server& server() { return *server_; }
+    [[nodiscard]] boost::asio::io_context& io() { return io_; }
+    [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
+
+private:
+    prometheus::Registry registry_;
+    metrics::HttpCounters counters_{registry_};
+    boost::asio::thread_pool compute_{2};
+    boost::asio::io_context io_;
+    std::shared_ptr<Server> server_;
+    std::array<std::thread, 2> threads_;
+    bool stopped_ = false;
+};
+
+std::string get(std::string_view target) { return fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\n\r\n", target); }
+
+HttpAnswer answer_to(RunningServer& server, std::string_view bytes) {
+    HttpClient client(server.port());
+    client.send(bytes);
+    return client.read();
+}
+
+TEST(HttpServer, AnswersRequestsOnOneConnectionInOrder) {
+    RunningServer server;
+    HttpClient client(server.port());
+    for (int i = 0; i < 3; ++i) {
+        client.send(get(fmt::format("/{}", i)));
+        const auto answer = client.read();
+        EXPECT_EQ(answer.status, 200);
+        EXPECT_EQ(answer.body, fmt::format("GET /{} ", i));
+        EXPECT_FALSE(answer.fields.contains("connection"));
+    }
+}
+
+TEST(HttpServer, PipelinedRequestsAreAllAnsweredInOrder) {
+    RunningServer server;
+    HttpClient client(server.port());
+    std::string bytes;
+    for (int i = 0; i < 300; ++i) bytes += get(fmt::format("/{}", i)); // more than the buffer holds at once
+    client.send(bytes);
+    for (int i = 0; i < 300; ++i) ASSERT_EQ(client.read().body, fmt::format("GET /{} ", i));
+}
+
+TEST(HttpServer, RequestsSplitAtEveryByteAreUnderstood) {
+    RunningServer server;
+    HttpClient client(server.port());
+    const std::string request = "POST /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello";
+    for (const char c : request + get("/b")) client.send(std::string_view(&c, 1));
+    EXPECT_EQ(client.read().body, "POST /a hello");
+    EXPECT_EQ(client.read().body, "GET /b ");
+}
+
+TEST(HttpServer, HeadHasTheLengthButNotTheBody) {
+    RunningServer server;
+    HttpClient client(server.port());
+    client.send("HEAD /a HTTP/1.1\r\nHost: localhost\r\n\r\n" + get("/b"));
+    const auto head = client.read(false);
+    EXPECT_EQ(head.status, 200);
+    EXPECT_EQ(head.fields.at("content-length"), "8");
+    EXPECT_EQ(client.read().body, "GET /b ");
+}
+
+TEST(HttpServer, ConnectionIsClosedWhenAskedFor) {
+    RunningServer server;
+    for (const auto* request :
+         {"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", "GET / HTTP/1.0\r\n\r\n"}) {
+        HttpClient client(server.port());
+        client.send(request);
+        const auto answer = client.read();
+        EXPECT_EQ(answer.status, 200);
+        EXPECT_EQ(answer.fields.at("connection"), "close");
+        EXPECT_TRUE(client.is_closed());
+    }
+}
+
+TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
+    RunningServer server;
+    for (const auto* bytes : {"\x16\x03\x01\x02\x01garbage\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
+                              "GET / HTTP/1.1\r\nno colon\r\n\r\n", "GET / HTTP/1.1\r\nHost : x\r\n\r\n",
+                              "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n",
+                              "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n"}) {
+        HttpClient client(server.port());
+        client.send(bytes);
+        const auto answer = client.read();
+        EXPECT_EQ(answer.status, 400) << bytes;
+        EXPECT_EQ(answer.fields.at("content-type"), "application/problem+json");
+        EXPECT_EQ(answer.fields.at("connection"), "close");
+        EXPECT_TRUE(client.is_closed());
+    }
+    EXPECT_EQ(answer_to(server, get("/")).status, 200);
+}
+
+TEST(HttpServer, OneHostFieldIsNeeded) {
+    RunningServer server;
+    EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\n\r\n").status, 400);
+    EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n").status, 400);
+}
+
+TEST(HttpServer, HostsOfStrangersAreMisdirected) {
+    RunningServer server;
+    EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
+    EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
+}
+
+TEST(HttpServer, OversizedHeadersAreRefused) {
+    RunningServer server;
+    const std::string one_field = "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100'000, 'a') + "\r\n\r\n";
+    EXPECT_EQ(answer_to(server, one_field).status, 431);
+    std::string many_fields = "GET / HTTP/1.1\r\nHost: localhost\r\n";
+    for (int i = 0; i < 5'000; ++i) many_fields += "X: a\r\n";
+    EXPECT_EQ(answer_to(server, many_fields).status, 431);
+    EXPECT_EQ(answer_to(server, get("/" + std::string(100'000, 'a'))).status, 431);
+}
+
+TEST(HttpServer, HeadersUpToTheLimitAreRead) {
+    RunningServer server;
+    EXPECT_EQ(answer_to(server, get("/" + std::string(7'000, 'a'))).status, 200);
+}
+
+TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
+    RunningServer server;
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 65537\r\n\r\n");
+    EXPECT_EQ(client.read().status, 413);
+    HttpClient eager(server.port());
+    eager.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n\r\n" + std::string(200'000, 'a'));
+    EXPECT_EQ(eager.read().status, 413); // not lost to a reset, though its sender went on sending
+}
+
+TEST(HttpServer, BodiesUpToTheLimitAreRead) {
+    RunningServer server;
+    const std::string body(65'536, 'a');
+    const auto answer = answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 65536\r\n\r\n" + body);
+    EXPECT_EQ(answer.body, "POST / " + body);
+}
+
+TEST(HttpServer, ChunkedRequestsAreRefusedTrailersAndAll) {
+    RunningServer server;
+    const std::string start = "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n";
+    EXPECT_EQ(answer_to(server, start + "5\r\nhello\r\n0\r\n\r\n").status, 411);
+    EXPECT_EQ(answer_to(server, start + "0\r\nX: " + std::string(70'000, 'a') + "\r\n\r\n").status, 411);
+    EXPECT_EQ(answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: gzip\r\n\r\n").status, 411);
+    EXPECT_EQ(answer_to(server, get("/")).status, 200);
+}
+
+TEST(HttpServer, AWaitingBodyIsAskedFor) {
+    RunningServer server;
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+    EXPECT_EQ(client.read().status, 100);
+    client.send("ok");
+    EXPECT_EQ(client.read().body, "POST / ok");
+}
+
+TEST(HttpServer, SlowHeadersAreCutOff) {
+    RunningServer server(ServerConfig{.header = 50ms});
+    HttpClient client(server.port());
+    client.send("GET / HTTP/1.1\r\nHost: loc");
+    EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, DrippingBytesDoNotPostponeTheDeadline) {
+    RunningServer server(ServerConfig{.header_bytes_max = 1U << 30, .header = 50ms}); // so that only time can end it
+    HttpClient client(server.port());
+    client.send("GET /");
+    const std::jthread dripping([&](const std::stop_token& stop) {
+        while (!stop.stop_requested()) client.send("x");
+    });
+    EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, SlowBodiesAreCutOff) {
+    RunningServer server(ServerConfig{.body = 50ms});
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhel");
+    EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, IdleConnectionsAreClosed) {
+    RunningServer server(ServerConfig{.idle = 50ms});
+    HttpClient fresh(server.port());
+    EXPECT_TRUE(fresh.is_closed());
+    HttpClient used(server.port());
+    used.send(get("/"));
+    EXPECT_EQ(used.read().status, 200);
+    EXPECT_TRUE(used.is_closed());
+}
+
+TEST(HttpServer, WhoDoesNotReadIsCutOff) {
+    std::promise<void> entered;
+    RunningServer server(ServerConfig{.write = 50ms, .drain = 1h}, [&](const Request&) {
+        entered.set_value();
+        return ok("text/plain", Body(std::string(64 << 20, 'a'))); // more than the sockets' buffers hold
+    });
+    HttpClient client(server.port());
+    client.send(get("/"));
+    entered.get_future().wait();
+    server.stop(); // returns when the connection is closed, though nobody read a byte
+}
+
+TEST(HttpServer, LargeAnswersArriveWhole) {
+    RunningServer server({}, [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
+    EXPECT_EQ(answer_to(server, get("/")).body, std::string(8 << 20, 'b'));
+}
+
+TEST(HttpServer, AFaultCostsOneAnswerOnly) {
+    RunningServer server;
+    HttpClient client(server.port());
+    client.send(get("/throw"));
+    const auto answer = client.read();
+    EXPECT_EQ(answer.status, 500);
+    EXPECT_THAT(answer.body, Not(HasSubstr("asked to"))); // the reason is the log's
+    client.send(get("/"));
+    EXPECT_EQ(client.read().status, 200);
+}
+
+TEST(HttpServer, OneConnectionTooManyIsTold) {
+    RunningServer server(ServerConfig{.connections_max = 1});
+    HttpClient first(server.port());
+    first.send(get("/"));
+    EXPECT_EQ(first.read().status, 200);
+    HttpClient second(server.port());
+    EXPECT_EQ(second.read().status, 503);
+    EXPECT_EQ(server.counters().connections_refused.Value(), 1.0);
+    first.send(get("/"));
+    EXPECT_EQ(first.read().status, 200);
+}
+
+TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
+    std::promise<void> entered;
+    std::promise<void> go_on;
+    RunningServer server({}, [&](const Request& request) {
+        entered.set_value();
+        go_on.get_future().wait();
+        return echo(request);
+    });
+    HttpClient busy(server.port());
+    HttpClient idle(server.port());
+    busy.send(get("/"));
+    entered.get_future().wait();
+    std::promise<void> done;
+    server.server().stop([&done] { done.set_value(); });
+    EXPECT_TRUE(idle.is_closed()); // at once, while the other is still served
+    go_on.set_value();
+    const auto answer = busy.read();
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_EQ(answer.fields.at("connection"), "close");
+    EXPECT_TRUE(busy.is_closed());
+    busy.shutdown_send();
+    done.get_future().wait();
+    server.set_stopped();
+}
+
+TEST(HttpServer, AfterStoppingNobodyIsAccepted) {
+    RunningServer server;
+    server.stop();
+    EXPECT_THROW(HttpClient(server.port()), boost::system::system_error);
+}
+
+TEST(HttpServer, APortInUseIsAClearError) {
+    RunningServer server;
+    ServerConfig config;
+    config.endpoint = {boost::asio::ip::address_v4::loopback(), server.port()};
+    const auto second = Server::listen(server.io(), server.io().get_executor(), config, echo, server.counters());
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::kUnreachable);
+    EXPECT_THAT(second.error().message, HasSubstr(fmt::format("127.0.0.1:{}", server.port())));
+}
+
+TEST(HttpServer, CountsAnswersByClass) {
+    RunningServer server;
+    EXPECT_EQ(answer_to(server, get("/")).status, 200);
+    EXPECT_EQ(answer_to(server, "garbage\r\n\r\n").status, 400);
+    EXPECT_EQ(answer_to(server, get("/throw")).status, 500);
+    EXPECT_EQ(server.counters().answered(200).Value(), 1.0);
+    EXPECT_EQ(server.counters().answered(404).Value(), 1.0);
+    EXPECT_EQ(server.counters().answered(500).Value(), 1.0);
+}
+
+} // namespace
+} // namespace scanloom::http
