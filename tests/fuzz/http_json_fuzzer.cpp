@@ -1,0 +1,21 @@
+#include "server/http/json_read.hpp"
+#include "server/http/json_text.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+/// Input: the body of a request.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const auto object = http::parse_json_object({reinterpret_cast<const char*>(data), size});
+    if (!object) {
+        fuzz::check(!object.error().message.empty(), "every error says what is wrong");
+        return 0;
+    }
+    static_cast<void>(http::read_text(*object, "name"));
+    const auto number = http::read_number(*object, "cell_size");
+    if (number && *number) fuzz::check(std::isfinite(**number), "numbers are finite");
+    fuzz::check(http::parse_json_object(http::json_text(*object)).has_value(), "what is written can be read");
+    return 0;
+}

@@ -1,0 +1,44 @@
+#include "server/http/conditional.hpp"
+#include "server/http/host.hpp"
+#include "server/http/router.hpp"
+#include "server/http/target.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <cstdint>
+
+namespace scanloom::http {
+namespace {
+
+/// What parse_target() promises of every segment it lets through.
+void check_segments(const std::vector<std::string>& segments) {
+    for (const auto& segment : segments) {
+        fuzz::check(segment != "." && segment != "..", "no segment leaves its place");
+        fuzz::check(segment.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos, "no segment divides");
+    }
+}
+
+} // namespace
+} // namespace scanloom::http
+
+/// Input: a request target; also read as the fields If-None-Match and Host.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    static_cast<void>(http::if_none_match_has(text, "\"a-1\""));
+    static_cast<void>(http::is_known_host(text, {"maps.example"}));
+
+    const auto target = http::parse_target(text);
+    if (!target) {
+        fuzz::check(!target.error().message.empty(), "every error says what is wrong");
+        return 0;
+    }
+    fuzz::check(!target->segments.empty(), "every path has a segment");
+    http::check_segments(target->segments);
+    static_cast<void>(target->query.check_only({"since", "layer"}));
+    const auto routing = http::find_route("GET", target->segments);
+    if (const auto* match = std::get_if<http::Match>(&routing);
+        match && match->operation == http::Operation::kTilePng) {
+        fuzz::check(!match->arguments["session"].empty() && !match->arguments["y"].empty(), "arguments are not empty");
+    }
+    return 0;
+}
