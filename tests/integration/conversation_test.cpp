@@ -1,0 +1,160 @@
+#include "server/store/scan_log.hpp"
+#include "tests/integration/ingest_fixture.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+/// Robots that speak as they should.
+namespace scanloom::ingest {
+namespace {
+
+TEST_F(IngestTest, AWholeConversation) {
+    auto& ingest = start();
+    RobotSocket robot(port());
+    robot.send(hello("r"));
+    const auto welcome = robot.receive_kind<wire::Welcome>();
+    EXPECT_EQ(welcome.session_id, "0000000000000001");
+    EXPECT_EQ(welcome.last_durable_seq, 0U);
+    EXPECT_EQ(welcome.limits, (wire::Limits{1U << 20, 4096, 1024}));
+    EXPECT_EQ(welcome.credit_bytes, 2U << 20);
+    robot.send(small_laser());
+    stream(robot, 1, 1, 55);
+    robot.send(wire::Ping{77});
+    EXPECT_EQ(robot.receive_kind<wire::Pong>().nonce, 77U);
+    robot.send(wire::Goodbye{"done"});
+    EXPECT_FALSE(robot.receive().has_value());
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 55U);
+}
+
+TEST_F(IngestTest, AnyPlaceWhereTheBytesAreSplitGivesTheSameConversation) {
+    auto& ingest = start();
+    std::size_t robots = 0;
+    for (std::size_t split = 1;; ++split, ++robots) {
+        const std::string name = "r" + std::to_string(1000 + robots);
+        const std::string bytes = frame_of(hello(name)) + frame_of(small_laser()) +
+                                  frame_of(wire::ScanBatch{{random_scan(1, 1)}}) + frame_of(wire::Ping{split});
+        if (split == bytes.size()) break;
+        RobotSocket robot(port());
+        robot.send_bytes(std::string_view(bytes).substr(0, split));
+        robot.send_bytes(std::string_view(bytes).substr(split));
+        robot.receive_kind<wire::Welcome>();
+        std::uint64_t durable_seq = 0;
+        std::uint64_t nonce = 0;
+        while (durable_seq == 0 || nonce == 0) {
+            const auto message = robot.receive().value();
+            if (const auto* ack = std::get_if<wire::Ack>(&message)) durable_seq = ack->durable_seq;
+            if (const auto* pong = std::get_if<wire::Pong>(&message)) nonce = pong->nonce;
+        }
+        EXPECT_EQ(durable_seq, 1U);
+        EXPECT_EQ(nonce, split);
+    }
+    EXPECT_EQ(ingest.snapshot("lab")->robots.size(), robots);
+}
+
+TEST_F(IngestTest, OneByteAtATimeIsAConversationToo) {
+    start();
+    RobotSocket robot(port());
+    const std::string bytes =
+        frame_of(hello("r")) + frame_of(small_laser()) + frame_of(wire::ScanBatch{random_scans(1, 1, 5)});
+    for (const char byte : bytes) robot.send_bytes({&byte, 1});
+    robot.receive_kind<wire::Welcome>();
+    robot.wait_for_ack(5);
+}
+
+TEST_F(IngestTest, ARobotThatComesBackContinuesWhereItsScansAreDurable) {
+    auto& ingest = start();
+    {
+        const auto robot = welcomed(port(), hello("r"));
+        robot->send(small_laser());
+        stream(*robot, 1, 1, 30);
+        robot->send(wire::ScanBatch{random_scans(1, 31, 10)});
+        robot->finish_sending();
+        while (robot->receive()) {
+        }
+    }
+    RobotSocket robot(port());
+    robot.send(hello("r"));
+    EXPECT_EQ(robot.receive_kind<wire::Welcome>().last_durable_seq, 40U) << "what arrived before the end counts";
+    stream(robot, 1, 36, 60); // the first five again
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 60U);
+}
+
+TEST_F(IngestTest, ARobotWhoseLinkBrokeUnnoticedReplacesIt) {
+    start();
+    const auto first = welcomed(port(), hello("r"));
+    first->send(small_laser());
+    stream(*first, 1, 1, 10);
+    const auto second = welcomed(port(), hello("r"));
+    expect_refused(*first, Errc::kReplaced, false, "robot 'r' of session 'lab' connected again");
+    stream(*second, 1, 11, 20);
+}
+
+TEST_F(IngestTest, TwoRobotsWeaveOneMapAndEachHasItsOwnSeqs) {
+    auto& ingest = start();
+    std::vector<std::thread> robots;
+    for (unsigned n = 0; n < 2; ++n) {
+        robots.emplace_back([&, n] {
+            const auto robot = welcomed(port(), hello("r" + std::to_string(n)));
+            robot->send(small_laser());
+            stream(*robot, n, 1, 200);
+        });
+    }
+    for (auto& robot : robots) robot.join();
+    const auto snapshot = ingest.snapshot("lab");
+    ASSERT_EQ(snapshot->robots.size(), 2U);
+    EXPECT_EQ(snapshot->revision, 2U + 2U + 400U);
+    for (const auto& robot : snapshot->robots) EXPECT_EQ(robot.last_seq, 200U);
+}
+
+TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
+    auto& ingest = start();
+    std::vector<std::thread> robots;
+    for (unsigned n = 0; n < 10; ++n) {
+        robots.emplace_back([&, n] {
+            const auto robot = welcomed(port(), hello("r", "s" + std::to_string(n)));
+            robot->send(small_laser());
+            stream(*robot, n, 1, 60);
+        });
+    }
+    for (auto& robot : robots) robot.join();
+    for (unsigned n = 0; n < 10; ++n) {
+        mapping::Projection alone{mapping::MapConfig{}};
+        ASSERT_TRUE(alone.fold(RobotJoined{0, "r"}));
+        ASSERT_TRUE(alone.fold(SensorDescribed{0, small_laser()}));
+        for (const auto& scan : random_scans(n, 1, 60)) ASSERT_TRUE(alone.fold(ScanTaken{0, scan}));
+        EXPECT_EQ(ingest.digest("s" + std::to_string(n)), mapping::digest_of(alone.snapshot().occupancy));
+    }
+}
+
+TEST_F(IngestTest, ManyRobotsMayAskForTheSameNewSession) {
+    auto& ingest = start();
+    std::vector<std::thread> robots;
+    for (int n = 0; n < 8; ++n) {
+        robots.emplace_back([&, n] { welcomed(port(), hello("r" + std::to_string(n))); });
+    }
+    for (auto& robot : robots) robot.join();
+    EXPECT_EQ(ingest.sessions().list().size(), 1U);
+    EXPECT_EQ(log_.sessions()->size(), 1U);
+}
+
+TEST(IngestWithRocksDb, ARestartForgetsNothingAndTheRobotContinues) {
+    const TemporaryDirectory directory;
+    std::string digest;
+    {
+        const auto log = store::open_rocksdb(directory.path()).value();
+        RunningIngest ingest(*log);
+        const auto robot = welcomed(ingest.port(), hello("r"));
+        robot->send(small_laser());
+        stream(*robot, 1, 1, 300);
+        digest = ingest.digest("lab");
+    }
+    const auto log = store::open_rocksdb(directory.path()).value();
+    RunningIngest ingest(*log);
+    EXPECT_EQ(ingest.digest("lab"), digest);
+    RobotSocket robot(ingest.port());
+    robot.send(hello("r"));
+    EXPECT_EQ(robot.receive_kind<wire::Welcome>().last_durable_seq, 300U);
+    stream(robot, 1, 301, 350);
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).trajectory.size(), 350U);
+}
+
+} // namespace
+} // namespace scanloom::ingest

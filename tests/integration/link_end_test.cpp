@@ -1,0 +1,174 @@
+#include "tests/integration/ingest_fixture.hpp"
+
+#include <atomic>
+
+/// Links that the server ends: deadlines, limits, a failing disk, deletion, shutting down.
+namespace scanloom::ingest {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST_F(IngestTest, ARobotThatSaysNoHelloInTimeIsTold) {
+    IngestConfig config;
+    config.link.hello_deadline = 10ms;
+    start(config);
+    RobotSocket silent(port());
+    expect_refused(silent, Errc::kTimeout, true, "no hello was received in time");
+    RobotSocket slow(port());
+    slow.send_bytes(frame_of(hello("r")).substr(0, 10));
+    expect_refused(slow, Errc::kTimeout, true, "no hello was received in time");
+}
+
+TEST_F(IngestTest, ARobotThatFallsSilentIsTold) {
+    IngestConfig config;
+    config.link.idle_deadline = 10ms;
+    start(config);
+    const auto robot = welcomed(port(), hello("r"));
+    expect_refused(*robot, Errc::kTimeout, true, "nothing was received for too long");
+}
+
+TEST_F(IngestTest, ARobotThatDoesNotHangUpIsHungUpOn) {
+    IngestConfig config;
+    config.link.farewell_deadline = 10ms;
+    start(config);
+    RobotSocket robot(port());
+    robot.send(wire::Ping{});
+    expect_refused(robot, Errc::kMalformed, false, "the first frame is a ping");
+    EXPECT_THROW(for (;;) robot.send_bytes(std::string(65'536, 'x')), boost::system::system_error)
+        << "nobody reads any more";
+}
+
+TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
+    IngestConfig config;
+    config.links_max = 1;
+    start(config);
+    auto first = welcomed(port(), hello("r1"));
+    {
+        RobotSocket second(port());
+        second.send(hello("r2"));
+        expect_refused(second, Errc::kTooLarge, true, "1 robots are connected, the most this server takes");
+    }
+    first.reset();
+    for (;;) { // the server notices that the first has gone
+        RobotSocket second(port());
+        second.send(hello("r2"));
+        const auto answer = second.receive().value();
+        if (std::holds_alternative<wire::Welcome>(answer)) break;
+        ASSERT_TRUE(std::holds_alternative<wire::LinkError>(answer));
+    }
+}
+
+TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    std::string pings;
+    for (std::uint64_t n = 0; n < 50'000; ++n) pings += frame_of(wire::Ping{n});
+    std::atomic<bool> ended = false;
+    std::thread sending([&] {
+        while (!ended) robot->send_bytes(pings);
+    });
+    std::optional<wire::LinkError> refused; // reading begins only when the server's patience is at its end
+    while (running_->sessions().find("lab")->is_connected(0)) std::this_thread::yield();
+    while (const auto message = robot->receive()) {
+        if (const auto* error = std::get_if<wire::LinkError>(&*message)) refused = *error;
+        if (refused) ended = true;
+    }
+    sending.join();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->error.message, "too many pings without reading the pongs");
+}
+
+TEST_F(IngestTest, ARobotOfASessionWhoseDiskFailsMayTryAgain) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 10);
+    log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
+    robot->send(wire::ScanBatch{random_scans(1, 11, 1)});
+    expect_refused(*robot, Errc::kStoreFailed, true, "no space left");
+    RobotSocket again(port());
+    again.send(hello("r"));
+    expect_refused(again, Errc::kStoreFailed, true, "no space left");
+    RobotSocket elsewhere(port());
+    elsewhere.send(hello("r", "another"));
+    expect_refused(elsewhere, Errc::kStoreFailed, true, "no space left");
+}
+
+TEST_F(IngestTest, ARobotOfADeletedSessionIsTold) {
+    auto& ingest = start();
+    const auto robot = welcomed(port(), hello("r"));
+    const auto other = welcomed(port(), hello("r", "other"));
+    robot->send(small_laser());
+    ASSERT_TRUE(ingest.sessions().remove("lab"));
+    expect_refused(*robot, Errc::kGone, false, "session 'lab' was deleted");
+    other->send(small_laser());
+    stream(*other, 1, 1, 10);
+}
+
+TEST_F(IngestTest, WhenTheServerStopsEveryScanReceivedIsAcknowledgedBeforeTheFarewell) {
+    auto& ingest = start();
+    std::vector<std::unique_ptr<RobotSocket>> robots;
+    for (int n = 0; n < 4; ++n) {
+        robots.push_back(welcomed(port(), hello("r" + std::to_string(n), "s" + std::to_string(n % 2))));
+        robots.back()->send(small_laser());
+        stream(*robots.back(), 1, 1, 10);
+    }
+    log_.hold_completions();
+    for (auto& robot : robots) {
+        robot->send(wire::ScanBatch{random_scans(1, 11, 20)});
+        robot->send(wire::Ping{1});
+        robot->receive_kind<wire::Pong>(); // the batch has been handed to the session
+    }
+    ingest.stop_accepting();
+    std::thread draining([&] { ingest.sessions().drain(); });
+    while (!ingest.sessions().is_draining()) std::this_thread::yield();
+    log_.release_completions();
+    for (auto& robot : robots) {
+        robot->wait_for_ack(30);
+        expect_refused(*robot, Errc::kShuttingDown, true, "the server is shutting down");
+    }
+    draining.join();
+    EXPECT_THROW(for (;;) RobotSocket{port()}, boost::system::system_error) << "nobody listens any more";
+}
+
+TEST_F(IngestTest, StoppingWhileRobotsStreamLosesNothingThatWasAcknowledged) {
+    std::vector<std::uint64_t> acknowledged(4, 0);
+    {
+        auto& ingest = start();
+        std::atomic<int> streaming = 0;
+        std::vector<std::thread> robots;
+        for (unsigned n = 0; n < acknowledged.size(); ++n) {
+            robots.emplace_back([&, n] {
+                const auto robot = welcomed(port(), hello("r" + std::to_string(n)));
+                robot->send(small_laser());
+                for (std::uint64_t seq = 1;; ++seq) {
+                    robot->send(wire::ScanBatch{{random_scan(n, seq)}});
+                    for (;;) {
+                        const auto message = robot->receive().value();
+                        if (const auto* error = std::get_if<wire::LinkError>(&message)) {
+                            EXPECT_EQ(error->error.code, Errc::kShuttingDown);
+                            return;
+                        }
+                        acknowledged[n] = std::get<wire::Ack>(message).durable_seq;
+                        if (acknowledged[n] == seq) break;
+                    }
+                    if (seq == 20) ++streaming;
+                }
+            });
+        }
+        while (streaming < 4) std::this_thread::yield();
+        ingest.stop_accepting();
+        ingest.sessions().drain();
+        for (auto& robot : robots) robot.join();
+        running_.reset();
+    }
+    start();
+    for (std::size_t n = 0; n < acknowledged.size(); ++n) {
+        RobotSocket robot(port());
+        robot.send(hello("r" + std::to_string(n)));
+        EXPECT_GE(robot.receive_kind<wire::Welcome>().last_durable_seq, acknowledged[n]);
+    }
+}
+
+} // namespace
+} // namespace scanloom::ingest
