@@ -198,6 +198,21 @@ TEST_F(SessionRegistryTest, RemovingWhileARobotStreamsTellsItAndDisturbsNoOther)
     EXPECT_EQ(join_and_wait(*doomed, "r", std::make_shared<AwaitedLink>()).error().code, Errc::kGone);
 }
 
+TEST_F(SessionRegistryTest, OneThreadForTheMapsIsEnoughToRecoverRemoveAndDrain) {
+    stream(*registry_->create("a", {}).value(), "r", 10);
+    stream(*registry_->create("b", {}).value(), "r", 10);
+    boost::asio::thread_pool one_thread(1);
+    SessionRegistry registry(log_, one_thread.get_executor(), [] { return 0.0; });
+    ASSERT_TRUE(registry.recover());
+    const auto link = std::make_shared<AwaitedLink>();
+    ASSERT_TRUE(join_and_wait(*registry.find("a"), "r", link));
+    registry.find("a")->submit(link, random_scans(7, 11, 500), 0);
+    ASSERT_TRUE(registry.remove("a"));
+    EXPECT_EQ(link->wait_for_failure().code, Errc::kGone);
+    registry.drain();
+    one_thread.join();
+}
+
 TEST_F(SessionRegistryTest, DrainingMakesEverythingDurableAndRefusesTheNew) {
     std::vector<std::shared_ptr<AwaitedLink>> links;
     for (int n = 0; n < 5; ++n) {
