@@ -85,6 +85,21 @@ export function countPixels(page, [red, green, blue]) {
   );
 }
 
+/** Waits until the map shows one of these colours of the style sheet, at whatever opacity. */
+export async function showsColour(page, ...names) {
+  const colours = await Promise.all(names.map((name) => colourOf(page, name)));
+  await page.waitForFunction((wanted) => {
+    for (const canvas of document.querySelectorAll('#map canvas')) {
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      for (let at = 0; at < data.length; at += 4) {
+        if (data[at + 3] < 20) continue;
+        if (wanted.some((colour) => colour.every((part, band) => Math.abs(data[at + band] - part) < 12))) return true;
+      }
+    }
+    return false;
+  }, colours);
+}
+
 /** What the style sheet calls a colour, as [red, green, blue]. */
 export function colourOf(page, name) {
   return page.evaluate((property) => {

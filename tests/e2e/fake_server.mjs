@@ -46,7 +46,10 @@ export class FakeSession {
   move(robot, x, y, yaw) {
     this.revision += 1;
     let known = this.robots.find(({ name }) => name === robot);
-    if (!known) this.robots.push((known = { name: robot, connected: true, scans: 0, last_seq: 0, stamp: 0, pose: null }));
+    if (!known) {
+      known = { name: robot, connected: true, scans: 0, last_seq: 0, stamp: 0, pose: null };
+      this.robots.push(known);
+    }
     known.scans += 1;
     known.last_seq += 1;
     known.pose = { x, y, yaw };

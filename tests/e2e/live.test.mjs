@@ -1,7 +1,7 @@
 /** The whole way: a robot streams to the real server, and a person watches the map grow. */
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, textOf } from './browser.mjs';
+import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, showsColour, textOf } from './browser.mjs';
 import { Server, startRobot, stop } from './programs.mjs';
 
 const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '4'];
@@ -70,7 +70,7 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     await says(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
     await keepPicture(page, 'live-light');
     await page.emulateMedia({ colorScheme: 'dark' });
-    await page.waitForResponse((response) => response.url().includes('.png?'));
+    await showsColour(page, '--cell-free');
     await keepPicture(page, 'live-dark');
     assert.deepEqual(complaints, []);
   });

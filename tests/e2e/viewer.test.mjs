@@ -1,7 +1,17 @@
 /** The viewer against a server that does what each test wants. */
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
-import { colourOf, countPixels, keepPicture, kWebDirectory, launchBrowser, openPage, says, textOf } from './browser.mjs';
+import {
+  colourOf,
+  countPixels,
+  keepPicture,
+  kWebDirectory,
+  launchBrowser,
+  openPage,
+  says,
+  showsColour,
+  textOf,
+} from './browser.mjs';
 import { FakeServer, FakeSession } from './fake_server.mjs';
 
 const kHostile = '<img src=x onerror="document.title=1">';
@@ -214,6 +224,28 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await page.waitForSelector('.follow[aria-pressed="false"]');
   });
 
+  it('shows the whole map again when asked, even while it moves after a robot', async () => {
+    const session = painted('map');
+    session.move('r1', 2, 2, 0);
+    await open();
+    await page.click('.follow');
+    // The click comes the moment the robot moves, when the view has just begun to go after it.
+    await page.evaluate(() => {
+      const pose = document.querySelector('[data-role=pose]');
+      const observer = new MutationObserver(() => {
+        observer.disconnect();
+        document.querySelector('#fit').click();
+      });
+      observer.observe(pose, { childList: true });
+    });
+    session.move('r1', 3, 11, 0);
+    await page.waitForSelector('.follow[aria-pressed="false"]');
+    // 12.8 m fill the height but for 56 pixels on either side: 1.86 m lie 100 pixels beside the middle.
+    await page.mouse.move(884, 400);
+    await says(page, '#cursor-x', /^8\.2\d$/);
+    await says(page, '#cursor-y', /^6\.[34]\d$/);
+  });
+
   it('takes on the colours of the dark', async () => {
     painted('map', 0);
     await open({ scheme: 'dark' });
@@ -237,30 +269,15 @@ describe('the viewer', { timeout: 180_000 }, () => {
       .map((path) => /occupancy\/(\d+\/\d+\/\d+)\.png/.exec(path)[1]);
   }
 
-  async function tilesShown() {
-    await coloured('--cell-free', '--cell-occupied');
+  function tilesShown() {
+    return showsColour(page, '--cell-free', '--cell-occupied');
   }
 
-  async function freeShown() {
-    await coloured('--cell-free');
+  function freeShown() {
+    return showsColour(page, '--cell-free');
   }
 
-  async function occupiedShown() {
-    await coloured('--cell-occupied');
-  }
-
-  /** Waits until the map shows one of these colours, or a mixture with the background. */
-  async function coloured(...names) {
-    const colours = await Promise.all(names.map((name) => colourOf(page, name)));
-    await page.waitForFunction((wanted) => {
-      for (const canvas of document.querySelectorAll('#map canvas')) {
-        const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-        for (let at = 0; at < data.length; at += 40) {
-          if (data[at + 3] < 20) continue;
-          if (wanted.some((colour) => colour.every((part, band) => Math.abs(data[at + band] - part) < 12))) return true;
-        }
-      }
-      return false;
-    }, colours);
+  function occupiedShown() {
+    return showsColour(page, '--cell-occupied');
   }
 });

@@ -57,5 +57,6 @@ function sessionPath(name: string): string {
 /** The version makes the answer immutable; the id keeps apart sessions that had the same name one after the other. */
 function tilePath(session: SessionKey, tile: TileChange, kind: 'png' | 'bin'): string {
   const place = `${tile.z}/${tile.x}/${tile.y}.${kind}`;
-  return `${sessionPath(session.name)}/tiles/${kLayer}/${place}?v=${tile.revision}&id=${encodeURIComponent(session.id)}`;
+  const version = new URLSearchParams({ v: String(tile.revision), id: session.id });
+  return `${sessionPath(session.name)}/tiles/${kLayer}/${place}?${version}`;
 }

@@ -1,4 +1,4 @@
-/** From parsed JSON to values: each function throws a MalformedAnswer that names the first field that is not as agreed. */
+/** From parsed JSON to values: each throws a MalformedAnswer that names the first field that is not as agreed. */
 import type { Bounds, Changes, Point, Pose, Robot, Session, SessionPage, TileChange, Track, Trajectory } from './types';
 
 export class MalformedAnswer extends Error {

@@ -27,7 +27,9 @@ export class Camera {
   ) {
     map.on('pointerdrag', () => this.free());
     map.on('change:size', () => this.update());
-    for (const zooming of ['wheel', 'dblclick']) target.addEventListener(zooming, () => this.zoomed(), { passive: true });
+    for (const zooming of ['wheel', 'dblclick']) {
+      target.addEventListener(zooming, () => this.zoomed(), { passive: true });
+    }
     target.addEventListener('keydown', ({ key }) => {
       if (key.startsWith('Arrow')) this.free();
       else if (key === '+' || key === '-') this.zoomed();
@@ -103,6 +105,8 @@ export class Camera {
     const dx = (bounds.maxX - bounds.minX) * room;
     const dy = (bounds.maxY - bounds.minY) * room;
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
+    // Following a robot is a movement under way, which would otherwise have the last word.
+    this.map.getView().cancelAnimations();
     const [width = 0, height = 0] = this.map.getSize() ?? [];
     const padding = Math.min(kPaddingPx, kPaddingShareMax * Math.min(width, height));
     this.map.getView().fit(extent, {

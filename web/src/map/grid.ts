@@ -1,6 +1,6 @@
 /**
- * Where cells and tiles lie. A square of side S = 256 * cell_size * 2^9 is centred on the world's origin; zoom 0 shows it
- * as one tile, zoom 9 shows one cell per pixel. Cells (i, j) follow the world's axes; tile rows count downwards.
+ * Where cells and tiles lie. A square of side S = 256 * cell_size * 2^9 is centred on the world's origin; zoom 0 shows
+ * it as one tile, zoom 9 shows one cell per pixel. Cells (i, j) follow the world's axes; tile rows count downwards.
  */
 
 export const kTileSize = 256;

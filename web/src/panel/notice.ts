@@ -40,7 +40,7 @@ function contentOf(state: NoticeState): Node[] {
     case 'missing':
       return [
         el('h2', {}, 'No such session'),
-        el('p', {}, 'There is no session ', named(state.name), '. Choose another, or wait: it opens as soon as a robot begins it.'),
+        el('p', {}, 'There is no session ', named(state.name), '. Choose another, or wait until a robot begins it.'),
       ];
     case 'deleted':
       return [

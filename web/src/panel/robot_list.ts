@@ -26,7 +26,12 @@ export class RobotList {
     private readonly source: RobotListSource,
     private readonly follow: (robot: string | null) => void,
   ) {
-    this.rows = new KeyedList(list, ({ name }) => name, (robot) => this.createRow(robot), (row, robot) => this.update(row, robot));
+    this.rows = new KeyedList(
+      list,
+      ({ name }) => name,
+      (robot) => this.createRow(robot),
+      (row, robot) => this.update(row, robot),
+    );
   }
 
   show(robots: Robot[], colours: RobotColours): void {
@@ -52,7 +57,8 @@ export class RobotList {
     const follow = el('button', { type: 'button', class: 'follow', 'aria-label': `Follow ${name}` }, 'Follow');
     follow.addEventListener('click', () => this.follow(this.followed === name ? null : name));
     const title = el('span', { class: 'row-name', dir: 'auto' }, name);
-    return { element: el('li', { class: 'robot' }, swatch, title, follow, detail, place), swatch, detail, place, follow };
+    const element = el('li', { class: 'robot' }, swatch, title, follow, detail, place);
+    return { element, swatch, detail, place, follow };
   }
 
   private update(row: RobotRow, robot: Robot): void {
@@ -60,7 +66,8 @@ export class RobotList {
     row.swatch.dataset['colour'] = String(this.colours?.indexOf(robot.name) ?? 0);
     row.swatch.classList.toggle('hollow', !robot.connected);
     const travelled = format.length(this.source.pathLength(robot.name));
-    setText(row.detail, `${robot.connected ? 'connected' : 'away'} \u00b7 ${format.counted(robot.scans, 'scan')} \u00b7 ${travelled}`);
+    const state = robot.connected ? 'connected' : 'away';
+    setText(row.detail, [state, format.counted(robot.scans, 'scan'), travelled].join(' \u00b7 '));
     setText(row.place, robot.pose ? format.pose(robot.pose) : 'no position yet');
     row.follow.disabled = !robot.pose;
     row.follow.setAttribute('aria-pressed', String(robot.name === this.followed));

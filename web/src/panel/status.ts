@@ -54,7 +54,7 @@ export class Status {
 
 export function troubleOf(error: unknown): Trouble {
   if (error instanceof Unreachable) {
-    return { kind: 'offline', text: 'No connection to the server. Trying again by itself; the map shows what was last seen.' };
+    return { kind: 'offline', text: 'No connection to the server. Trying again; the map shows what was last seen.' };
   }
   if (error instanceof Refused) {
     return { kind: 'error', text: `The server reports an error: ${error.message}. Trying again.` };
