@@ -22,6 +22,7 @@ const std::vector<Folder> kFolders = {
     {.path = "common/error", .may_include = {}, .pure = true},
     {.path = "common/geometry", .may_include = {}, .pure = true},
     {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
+    {.path = "common/app", .may_include = {"common/error"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
 
     {.path = "server/mapping", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
@@ -35,9 +36,9 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/store", "server/tiles"}},
     {.path = "server/app", .may_include = {"common", "server"}},
 
-    {.path = "robot_client/sim", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
-    {.path = "robot_client/drive",
-     .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/sim"},
+    {.path = "robot_client/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "robot_client/sim",
+     .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/drive"},
      .pure = true},
     {.path = "robot_client/source",
      .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/drive", "robot_client/sim"}},
@@ -56,13 +57,13 @@ const std::vector<Package> kPackages = {
     {"google/protobuf/", {"common/wire"}},
     {"opencv2/", {"server/tiles"}},
     {"rocksdb/", {"server/store"}},
-    {"prometheus/", {"server"}},
+    {"prometheus/", {"server/metrics"}},
     {"spdlog/", {"server/session", "server/ingest", "server/http", "server/app", "robot_client/app"}},
     {"boost/asio",
      {"server/session", "server/ingest", "server/http", "server/app", "robot_client/uplink", "robot_client/app"}},
     {"boost/beast", {"server/http", "server/app"}},
     {"boost/iostreams/", {"robot_client/source"}},
-    {"CLI/", {"server/app", "robot_client/app"}},
+    {"CLI/", {"common/app", "server/app", "robot_client/app"}},
 };
 
 // How a file, socket, clock, thread or log shows among the standard headers.
