@@ -1,11 +1,19 @@
-// Writes the seeds of the wire's fuzzers: one small valid input for each kind of message and record.
+// Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record.
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/log_codec.hpp"
 #include "common/wire/messages.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/session/checkpoint.hpp"
+#include "server/store/crc32c.hpp"
 
+#include <boost/endian/conversion.hpp>
+#include <fmt/format.h>
+
+#include <bit>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 namespace {
 
@@ -75,6 +83,76 @@ std::vector<wire::Message> messages() {
     };
 }
 
+void write_messages(const std::filesystem::path& folder) {
+    int count = 0;
+    for (const auto& message : messages()) {
+        std::string frame;
+        wire::encode(message, frame);
+        write_file(folder / fmt::format("{:02}-{}", ++count, wire::name_of(message)),
+                   std::string_view(frame).substr(wire::kLengthPrefixBytes));
+    }
+}
+
+void write_streams(const std::filesystem::path& folder) {
+    std::string stream;
+    for (const auto& message : messages()) wire::encode(message, stream);
+    write_file(folder / "whole", std::string(1, '\0') + stream);
+    write_file(folder / "split", "\x05\x01\x02\x03\x0d\x61" + stream);
+    write_file(folder / "truncated", std::string(1, '\0') + stream.substr(0, stream.size() - 3));
+    write_file(folder / "too_large", std::string("\0\x7f\xff\xff\xff", 5));
+}
+
+void write_log_entries(const std::filesystem::path& folder) {
+    write_file(folder / "robot_joined", wire::encode_entry(RobotJoined{0, "r1"}));
+    write_file(folder / "laser_described", wire::encode_entry(SensorDescribed{0, laser()}));
+    write_file(folder / "sonar_described", wire::encode_entry(SensorDescribed{0, sonar_ring()}));
+    write_file(folder / "scan_taken", wire::encode_entry(ScanTaken{0, full_scan()}));
+    write_file(folder / "session", wire::encode_session({"lab", 1.7e9, options()}));
+}
+
+/// One record of RocksDB's log file format (server/store/log_file.hpp).
+std::string log_record(unsigned char type, std::string_view payload) {
+    const auto checksum = store::crc32c(std::string_view(reinterpret_cast<const char*>(&type), 1), payload);
+    unsigned char header[7];
+    boost::endian::store_little_u32(header, std::rotr(checksum, 15) + 0xa282ead8U);
+    boost::endian::store_little_u16(header + 4, static_cast<std::uint16_t>(payload.size()));
+    header[6] = type;
+    return std::string(reinterpret_cast<const char*>(header), sizeof header).append(payload);
+}
+
+void write_log_files(const std::filesystem::path& folder) {
+    const std::string file = log_record(1, "one write") + log_record(2, "two ") + log_record(4, "pieces");
+    write_file(folder / "whole", file);
+    write_file(folder / "torn", std::string_view(file).substr(0, file.size() - 4));
+    write_file(folder / "damaged", "!" + file.substr(1));
+}
+
+void append_text(std::string& out, std::string_view text) {
+    unsigned char length[2];
+    boost::endian::store_little_u16(length, static_cast<std::uint16_t>(text.size()));
+    out.append(reinterpret_cast<const char*>(length), sizeof length).append(text);
+}
+
+void write_checkpoint(const std::filesystem::path& folder) {
+    mapping::Projection projection{mapping::MapConfig{}};
+    // One beam, into one chunk of the map.
+    Scan scan;
+    scan.seq = 1;
+    scan.sensor = 1;
+    scan.pose = {0.5, 0.5, 0.0};
+    scan.ranges = {700};
+    for (const LogEntry& entry :
+         {LogEntry{RobotJoined{0, "r1"}}, LogEntry{SensorDescribed{0, laser()}}, LogEntry{ScanTaken{0, scan}}}) {
+        if (const auto folded = projection.fold(entry); !folded) throw std::runtime_error(folded.error().message);
+    }
+    std::string parts;
+    for (const auto& part : session::checkpoint_parts(projection.snapshot(), projection.state(), 0)) {
+        append_text(parts, part.key);
+        append_text(parts, part.value);
+    }
+    write_file(folder / "one_scan", parts);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -83,26 +161,10 @@ int main(int argc, char** argv) {
         return 2;
     }
     const std::filesystem::path folder = argv[1];
-
-    std::string stream;
-    int count = 0;
-    for (const auto& message : messages()) {
-        std::string frame;
-        wire::encode(message, frame);
-        stream += frame;
-        write_file(folder / "messages" / (std::to_string(++count) + "-" + std::string(wire::name_of(message))),
-                   std::string_view(frame).substr(wire::kLengthPrefixBytes));
-    }
-
-    write_file(folder / "frame_decoder" / "whole", std::string(1, '\0') + stream);
-    write_file(folder / "frame_decoder" / "split", "\x05\x01\x02\x03\x0d\x61" + stream);
-    write_file(folder / "frame_decoder" / "truncated", std::string(1, '\0') + stream.substr(0, stream.size() - 3));
-    write_file(folder / "frame_decoder" / "too_large", std::string("\0\x7f\xff\xff\xff", 5));
-
-    write_file(folder / "log_codec" / "robot_joined", wire::encode_entry(RobotJoined{0, "r1"}));
-    write_file(folder / "log_codec" / "laser_described", wire::encode_entry(SensorDescribed{0, laser()}));
-    write_file(folder / "log_codec" / "sonar_described", wire::encode_entry(SensorDescribed{0, sonar_ring()}));
-    write_file(folder / "log_codec" / "scan_taken", wire::encode_entry(ScanTaken{0, full_scan()}));
-    write_file(folder / "log_codec" / "session", wire::encode_session({"lab", 1.7e9, options()}));
+    write_messages(folder / "messages");
+    write_streams(folder / "frame_decoder");
+    write_log_entries(folder / "log_codec");
+    write_log_files(folder / "log_file");
+    write_checkpoint(folder / "checkpoint");
     return 0;
 }

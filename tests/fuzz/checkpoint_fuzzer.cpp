@@ -1,0 +1,43 @@
+#include "server/mapping/map_config.hpp"
+#include "server/session/checkpoint.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+
+namespace {
+
+/// Takes the next string off the input: two bytes of length, little-endian, then so many bytes or what there is.
+std::string_view take_text(std::string_view& input) {
+    const auto byte = [&](std::size_t at) {
+        return at < input.size() ? std::size_t{static_cast<unsigned char>(input[at])} : 0;
+    };
+    const std::size_t length = byte(0) | byte(1) << 8;
+    input.remove_prefix(std::min<std::size_t>(2, input.size()));
+    const auto text = input.substr(0, length);
+    input.remove_prefix(text.size());
+    return text;
+}
+
+} // namespace
+
+/// Input: key, value, key, value ... of a checkpoint's parts.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    std::string_view input(reinterpret_cast<const char*>(data), size);
+    session::CheckpointReader reader{mapping::MapConfig{}};
+    while (!input.empty()) {
+        const auto key = take_text(input);
+        const auto value = take_text(input);
+        if (const auto added = reader.add(key, value); !added) {
+            fuzz::check(!added.error().message.empty(), "every error says what is wrong");
+            return 0;
+        }
+    }
+    // Whatever was let through is a projection that can be looked at and kept again.
+    auto projection = std::move(reader).finish();
+    const auto parts = session::checkpoint_parts(projection.snapshot(), projection.state(), 0);
+    fuzz::check(!parts.empty() && parts.front().key == "head", "a checkpoint begins with its head");
+    return 0;
+}

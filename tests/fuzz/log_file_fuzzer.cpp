@@ -1,0 +1,19 @@
+#include "server/store/log_file.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <cstdint>
+#include <string>
+
+/// Input: a log file. A seed's checksums hold; the fuzzer breaks them.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    const auto found = store::check_log_file(bytes);
+    fuzz::check(found.whole_bytes <= size, "whole writes lie within the file");
+    fuzz::check(!found.damage || (*found.damage >= found.whole_bytes && *found.damage < size),
+                "damage lies behind the last whole write, within the file");
+
+    const auto kept = store::check_log_file(bytes.substr(0, found.whole_bytes));
+    fuzz::check(!kept.damage && kept.whole_bytes == found.whole_bytes, "the whole writes alone are a whole file");
+    return 0;
+}
