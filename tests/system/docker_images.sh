@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# Builds the images of docker/Dockerfile without a Docker engine, on a base image made here, then starts
+# the server's, checks its health check, and lets the robot's stream a map to it.
+# usage: docker_images.sh        (as root; needs buildah, debootstrap, iproute2, and the network for packages)
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+((EUID == 0)) || { echo "docker_images.sh: debootstrap and chroot need root" >&2; exit 1; }
+export BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs
+
+buildah() { command buildah --root "$work/storage" --runroot "$work/run" "$@"; }
+
+# setting IMAGE NAME: what the image says of itself, a list's items one a line.
+setting() {
+    buildah inspect --type image --format "{{range .Docker.Config.$2}}{{println .}}{{end}}" "localhost/scanloom-$1" | sed '$d'
+}
+
+build_base() {
+    local container
+    tests/system/minimal_debian.sh "$work/debian"
+    container=$(buildah from scratch)
+    buildah copy --quiet "$container" "$work/debian" / >/dev/null
+    buildah config --env PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$container"
+    buildah commit --quiet --rm "$container" localhost/scanloom-base >/dev/null
+    rm --recursive --force --one-file-system "$work/debian"
+}
+
+# build_image TARGET
+build_image() {
+    local user
+    buildah bud --format docker --layers --build-arg BASE=localhost/scanloom-base --file docker/Dockerfile \
+        --target "$1" --tag "localhost/scanloom-$1" . >"$work/$1.log" 2>&1 || { tail --lines 60 "$work/$1.log"; exit 1; }
+    user=$(buildah inspect --type image --format '{{.Docker.Config.User}}' "localhost/scanloom-$1")
+    [[ $user == scanloom ]] || { echo "the $1's image runs as '$user', not as scanloom" >&2; exit 1; }
+}
+
+# Until COMMAND... succeeds, for half a minute.
+eventually() {
+    local attempt
+    for attempt in {1..60}; do
+        "$@" && return
+        sleep 0.5
+    done
+    echo "after $attempt attempts still failing: $*" >&2
+    exit 1
+}
+
+# Starts the server's image as its entry point says, asks its health check, lets the robot's image map a room.
+run_images() {
+    local server_container robot_container entrypoint health server scans
+    ip link set lo up
+    server_container=$(buildah from localhost/scanloom-server)
+    robot_container=$(buildah from localhost/scanloom-robot)
+    mapfile -t entrypoint < <(setting server Entrypoint)
+    mapfile -t health < <(setting server Healthcheck.Test)
+
+    buildah run "$server_container" -- "${entrypoint[@]}" &
+    server=$!
+    eventually buildah run "$server_container" -- "${health[@]:1}"
+    echo "== the server is healthy"
+    buildah run "$robot_container" -- scanloom-robot --server 127.0.0.1:7447 --session room --robot r1 \
+        simulate --world room --drive wall_follower --seed 1
+    exec 3<>/dev/tcp/127.0.0.1/8080
+    printf 'GET /api/v1/sessions/room HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
+    cat <&3
+    kill "$server"
+    wait "$server"
+}
+
+if [[ ${1:-} == --run ]]; then
+    work=$2
+    run_images
+    exit
+fi
+
+work=$(mktemp --directory --tmpdir scanloom-docker.XXXXXX)
+remove() {
+    buildah rm --all >/dev/null || true
+    buildah rmi --all --force >/dev/null || true
+    rm --recursive --force --one-file-system "$work"
+}
+trap remove EXIT
+
+echo "== a minimal Debian 12 as the base image"
+build_base
+for target in server robot; do
+    echo "== the image of the $target"
+    build_image "$target"
+done
+echo "== the server and a robot, from their images, in a network of their own"
+unshare --net "$0" --run "$work"
+echo "== the images work"
