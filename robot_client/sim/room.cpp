@@ -1,0 +1,27 @@
+#include "robot_client/sim/world.hpp"
+
+namespace scanloom::robot {
+
+// 10 x 10 m inside, around the world origin. Furniture leaves either no gap or one a robot gets through.
+World make_room() {
+    std::vector<Box> solids = {
+        // walls, 0.2 m thick
+        {-5.2, -5.2, 5.2, -5.0},
+        {-5.2, 5.0, 5.2, 5.2},
+        {-5.2, -5.2, -5.0, 5.2},
+        {5.0, -5.2, 5.2, 5.2},
+        // against the walls: a wardrobe, a sideboard, a bed, a shelf
+        {-5.0, 3.4, -4.4, 5.0},
+        {0.5, 4.5, 2.9, 5.0},
+        {3.0, -5.0, 5.0, -3.6},
+        {-4.2, -5.0, -2.4, -4.65},
+        // standing free: a table, a sofa, a pillar, an armchair
+        {-1.2, -0.6, 0.8, 0.4},
+        {-2.8, 1.6, -0.8, 2.4},
+        {2.4, 1.2, 2.8, 1.6},
+        {1.6, -2.2, 2.4, -1.4},
+    };
+    return make_world("room", std::move(solids), {{-5.0, -5.0, 5.0, 5.0}});
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,98 @@
+#include "robot_client/source/carmen_observation.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+/// Logs print poses with six decimals: mounts derived from them agree to a few times that.
+constexpr double kMountRounding = 1e-5;
+
+/// Descriptions worth remembering; a log whose mount differs from line to line is described anew each time.
+constexpr std::size_t kSensorsRemembered = 16;
+
+bool nearly_same(const Pose2& a, const Pose2& b) {
+    return std::abs(a.x - b.x) < kMountRounding && std::abs(a.y - b.y) < kMountRounding &&
+           std::abs(normalize_angle(a.yaw - b.yaw)) < kMountRounding;
+}
+
+bool same_beams(const BeamAngles& a, const BeamAngles& b) {
+    const auto& first = std::get<UniformAngles>(a);
+    const auto& second = std::get<UniformAngles>(b);
+    return first.first == second.first && first.increment == second.increment; // scans may differ in their beam count
+}
+
+Pose2 mount_of(const CarmenScan& line, double laser_offset_forward) {
+    if (line.kind == CarmenKind::kRawLaser) return {laser_offset_forward, 0.0, 0.0};
+    if (line.kind == CarmenKind::kFlaser || line.laser == line.robot) return {};
+    return compose(inverse(line.robot), line.laser);
+}
+
+std::string name_for(const CarmenScan& line) { return line.sensor == 0 ? "front laser" : "rear laser"; }
+
+} // namespace
+
+Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp) {
+    auto range_max = range_max_of(line);
+    if (!range_max) return range_max.error();
+    const Pose2 mount = mount_of(line, laser_offset_forward_);
+    if (std::max(std::abs(mount.x), std::abs(mount.y)) > kCoordinateMax) {
+        return Error{Errc::kTooLarge, fmt::format("the laser is more than {:g} m from its robot", kCoordinateMax)};
+    }
+    Observation observation;
+    observation.sensor =
+        sensor_like({line.sensor, SensorKind::kLaser, name_for(line), mount, line.angles, 0.0, 0.0, *range_max});
+
+    Scan& scan = observation.scan;
+    scan.stamp = stamp;
+    scan.sensor = line.sensor;
+    scan.ranges = ranges_of(line, *range_max);
+    switch (line.kind) {
+    case CarmenKind::kFlaser:
+        scan.pose = line.laser;
+        scan.odometry = line.robot;
+        break;
+    case CarmenKind::kRobotLaser: scan.pose = compose(line.laser, inverse(observation.sensor->mount)); break;
+    case CarmenKind::kRawLaser: scan.pose = line.robot; break;
+    }
+    return observation;
+}
+
+Result<double> CarmenObserver::range_max_of(const CarmenScan& line) const {
+    if (options_.range_max) return *options_.range_max;
+    if (line.kind == CarmenKind::kFlaser) return kCarmenRangeMax;
+    if (line.range_max) return std::min(*line.range_max, kCarmenRangeMax);
+    return Error{Errc::kInvalidField, "maximum_range is not a length; give --max-range"};
+}
+
+std::vector<RangeMm> CarmenObserver::ranges_of(const CarmenScan& line, double range_max) const {
+    const NoReturn by_kind = line.kind == CarmenKind::kFlaser ? NoReturn::kDrop : NoReturn::kFree;
+    const RangeMm no_return = options_.no_return.value_or(by_kind) == NoReturn::kFree ? kNoReturn : kInvalidRange;
+    const RangeMm range_max_mm = to_range_mm(range_max);
+    std::vector<RangeMm> ranges(line.ranges.size());
+    std::transform(line.ranges.begin(), line.ranges.end(), ranges.begin(), [&](double range) {
+        if (!std::isfinite(range)) return kInvalidRange; // in a log this is a failed reading, not a long one
+        const RangeMm mm = to_range_mm(range);
+        return mm >= range_max_mm ? no_return : mm;
+    });
+    return ranges;
+}
+
+std::shared_ptr<const Sensor> CarmenObserver::sensor_like(const Sensor& wanted) {
+    const auto same = [&](const std::shared_ptr<const Sensor>& known) {
+        return known->id == wanted.id && known->range_max == wanted.range_max &&
+               nearly_same(known->mount, wanted.mount) && same_beams(known->angles, wanted.angles);
+    };
+    const auto known = std::find_if(sensors_.rbegin(), sensors_.rend(), same);
+    if (known != sensors_.rend()) return *known;
+    if (sensors_.size() == kSensorsRemembered) sensors_.erase(sensors_.begin());
+    sensors_.push_back(std::make_shared<const Sensor>(wanted));
+    return sensors_.back();
+}
+
+} // namespace scanloom::robot

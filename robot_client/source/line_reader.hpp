@@ -1,0 +1,47 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace scanloom::robot {
+
+/// How much a reader takes from one file before it gives up.
+struct LineLimits {
+    std::uint64_t text_bytes_max = std::uint64_t{1} << 30; ///< after decompression
+    std::size_t line_bytes_max = std::size_t{1} << 20;
+};
+
+/// The lines of a text file, plain or compressed with gzip or bzip2; its first bytes tell, not its name.
+///
+/// Errors  kNotFound: no such file, or not to be read; kMalformed: damaged or cut short;
+///         kTooLarge: beyond the limits. Each names the file and the last whole line before it.
+/// Thread  one at a time.
+class LineReader {
+public:
+    [[nodiscard]] static Result<LineReader> open(const std::filesystem::path& path, LineLimits limits = {});
+
+    LineReader(LineReader&&) noexcept;
+    LineReader& operator=(LineReader&&) noexcept;
+    ~LineReader();
+
+    /// The next line without its ending (LF or CR LF), valid until the next call; nothing after the last one.
+    [[nodiscard]] Result<std::optional<std::string_view>> next();
+
+    /// Number of the line that next() gave last, from 1.
+    [[nodiscard]] std::size_t line_number() const noexcept;
+
+private:
+    struct State;
+    explicit LineReader(std::unique_ptr<State> state);
+
+    std::unique_ptr<State> state_;
+};
+
+} // namespace scanloom::robot
