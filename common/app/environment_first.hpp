@@ -26,12 +26,12 @@ namespace scanloom {
 class EnvironmentFirstToml final : public CLI::ConfigTOML {
 public:
     [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-        auto settings = CLI::ConfigTOML::from_config(input);
-        std::erase_if(settings, [](const CLI::ConfigItem& item) {
+        auto items = CLI::ConfigTOML::from_config(input);
+        std::erase_if(items, [](const CLI::ConfigItem& item) {
             const char* value = std::getenv(environment_name(item.name).c_str());
             return value != nullptr && *value != '\0';
         });
-        return settings;
+        return items;
     }
 };
 

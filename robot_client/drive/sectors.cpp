@@ -17,9 +17,7 @@ SectorRanges sector_ranges(const Scan& scan, const Sensor& sensor) {
         if (mm == kInvalidRange || mm == kNoReturn) continue;
         const double angle = normalize_angle(beam_angle(angles, i));
         if (angle < -kSectorEnd || angle > kSectorEnd) continue;
-        double& sector = angle < -kSectorBorder  ? nearest.right
-                         : angle > kSectorBorder ? nearest.left
-                                                 : nearest.front;
+        double& sector = angle < -kSectorBorder ? nearest.right : angle > kSectorBorder ? nearest.left : nearest.front;
         sector = std::min(sector, static_cast<double>(mm) / 1000.0);
     }
     return nearest;

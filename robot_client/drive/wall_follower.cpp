@@ -42,7 +42,8 @@ Velocity WallFollower::step(const SectorRanges& nearest) {
         return {0.0, 0.0};
     }
     blocked_steps_ = 0;
-    if (d_min < kBackOffRange) return {kBackOff, 0.0};
+    // Backing off turns left, too: straight back, a robot beside a wall keeps its distance from it and never gets free.
+    if (d_min < kBackOffRange) return {kBackOff, kTurnMax};
     if (nearest.front < kFrontRange) return {0.0, kTurnMax};
     // Positive turns are counter-clockwise: away from the wall when it is nearer than wanted, towards it when farther.
     // (Printed as 0.5 (d_right - 0.6), which would leave a wall that is farther than 0.6 m.)

@@ -14,8 +14,8 @@ namespace scanloom::robot {
 
 /// Standard deviations of what a simulated robot measures.
 struct Noise {
-    double range = 0.02;           ///< metres, of each return
-    double beam_angle = 0.005;     ///< radians, of each beam's true direction
+    double range = 0.02;            ///< metres, of each return
+    double beam_angle = 0.005;      ///< radians, of each beam's true direction
     double odometry_forward = 0.05; ///< metres for each metre driven, within one control step
     double odometry_turn = 0.05;    ///< radians for each radian turned
     double odometry_drift = 0.02;   ///< radians for each metre driven

@@ -6,10 +6,10 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kHalfWidth = 15.0;  // of the building, inside
+constexpr double kHalfWidth = 15.0; // of the building, inside
 constexpr double kHalfHeight = 10.0;
-constexpr double kCorridorOuter = 4.0; // |y| of the wall between corridor and outer rooms
-constexpr double kCorridorInner = 2.0; // |y| of the wall between corridor and inner rooms
+constexpr double kCorridorOuter = 4.0;  // |y| of the wall between corridor and outer rooms
+constexpr double kCorridorInner = 2.0;  // |y| of the wall between corridor and inner rooms
 constexpr double kBlockHalfWidth = 9.0; // of the inner block
 constexpr double kWall = 0.15;
 constexpr double kDoor = 1.2;
@@ -69,8 +69,8 @@ void add_furniture(std::vector<Box>& solids) {
         solids.push_back({x - 1.6, -10.0, x + 0.8, -9.2});
         solids.push_back({x + 2.5, -7.6, x + 3.0, -6.0});
     }
-    solids.push_back({-7.2, -0.6, -4.8, 0.6});  // meeting table, west
-    solids.push_back({4.8, -0.6, 7.2, 0.6});    // meeting table, east
+    solids.push_back({-7.2, -0.6, -4.8, 0.6});   // meeting table, west
+    solids.push_back({4.8, -0.6, 7.2, 0.6});     // meeting table, east
     solids.push_back({-2.925, -0.4, -2.3, 1.2}); // kitchen counter
     solids.push_back({2.3, -1.2, 2.925, 0.4});   // kitchen cupboards
     solids.push_back({-12.6, -1.0, -11.4, 1.0}); // lounge table, west

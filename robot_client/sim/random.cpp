@@ -7,7 +7,8 @@
 namespace scanloom::robot {
 
 double Random::uniform(double low, double high) {
-    const double unit = static_cast<double>(engine_() >> 11) * 0x1p-53; // 53 bits: every double of that spacing in [0, 1)
+    const double unit =
+        static_cast<double>(engine_() >> 11) * 0x1p-53; // 53 bits: every double of that spacing in [0, 1)
     return low + (high - low) * unit;
 }
 

@@ -8,7 +8,6 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr int kControlStepsPerScan = 2; // 20 Hz control, 10 Hz laser
 constexpr double kStartClearance = 0.5; // metres
 
 Pose2 choose_start(const World& world, Random& random) {

@@ -11,6 +11,9 @@
 
 namespace scanloom::robot {
 
+inline constexpr int kControlStepsPerScan = 2;                               ///< 20 Hz control, 10 Hz laser
+inline constexpr double kScanPeriod = kControlStepsPerScan * kControlPeriod; ///< seconds
+
 struct SimulatorOptions {
     World world;
     Sensor laser;
@@ -18,9 +21,9 @@ struct SimulatorOptions {
     std::uint64_t seed = 1;
 };
 
-/// A robot that drives through a world and scans it. Everything follows from the options: no clock, no other randomness.
-/// It starts on a free place that the seed chooses. scan.pose is the true pose in the world; scan.odometry is what
-/// its wheels believe, from (0, 0, 0) on.
+/// A robot that drives through a world and scans it. Everything follows from the options: no clock, no other
+/// randomness. It starts on a free place that the seed chooses. scan.pose is the true pose in the world; scan.odometry
+/// is what its wheels believe, from (0, 0, 0) on.
 class Simulator {
 public:
     Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour);

@@ -64,7 +64,8 @@ Result<double> finite(std::string_view field, std::string_view token, double mag
     const auto value = to_number(token);
     if (!value) return malformed(fmt::format("{} is '{}', not a number", field, shown(token)));
     if (!std::isfinite(*value) || std::abs(*value) > magnitude_max) {
-        return Error{Errc::kInvalidField, fmt::format("{} is {}; at most {:g} either way is allowed", field, shown(token), magnitude_max)};
+        return Error{Errc::kInvalidField,
+                     fmt::format("{} is {}; at most {:g} either way is allowed", field, shown(token), magnitude_max)};
     }
     return *value;
 }
@@ -126,8 +127,8 @@ Result<CarmenLine> read_flaser(TokenSpan tokens) {
     scan.ranges = std::move(*ranges);
     scan.angles = flaser_angles(scan.ranges.size());
     if (tokens.size() != 9 && tokens.size() != 8 && tokens.size() != 6) {
-        return malformed(fmt::format("{} values follow the {} ranges; two poses and the time stamps are 9", tokens.size(),
-                                     scan.ranges.size()));
+        return malformed(fmt::format("{} values follow the {} ranges; two poses and the time stamps are 9",
+                                     tokens.size(), scan.ranges.size()));
     }
     auto laser = read_pose("laser", tokens.first(3));
     if (!laser) return laser.error();
@@ -148,7 +149,8 @@ Result<> take_laser_head(TokenSpan& tokens, CarmenScan& scan) {
     if (!start) return start.error();
     auto increment = finite("angular_resolution", tokens[3], kFullTurn);
     if (!increment) return increment.error();
-    if (*increment == 0.0) return Error{Errc::kInvalidField, "angular_resolution is 0; the beams would all point one way"};
+    if (*increment == 0.0)
+        return Error{Errc::kInvalidField, "angular_resolution is 0; the beams would all point one way"};
     const auto range_max = to_number(tokens[4]);
     if (!range_max) return malformed(fmt::format("maximum_range is '{}', not a number", shown(tokens[4])));
     if (*range_max > 0.0) scan.range_max = *range_max;

@@ -90,8 +90,9 @@ void LogBuilder::keep_one_view_of_each_scan() {
 /// Gives a RAWLASER line the robot's pose at its time. Pre: odometry is sorted by stamp.
 bool LogBuilder::place(StampedLine& line) const {
     const auto& samples = lines_.odometry;
-    const auto after = std::lower_bound(samples.begin(), samples.end(), line.stamp,
-                                        [](const CarmenOdometry& sample, double stamp) { return sample.stamp < stamp; });
+    const auto after =
+        std::lower_bound(samples.begin(), samples.end(), line.stamp,
+                         [](const CarmenOdometry& sample, double stamp) { return sample.stamp < stamp; });
     const auto is_near = [&](auto at) { return std::abs(at->stamp - line.stamp) <= kOdometryGapMax; };
     const bool has_after = after != samples.end() && is_near(after);
     const bool has_before = after != samples.begin() && is_near(after - 1);
@@ -117,7 +118,8 @@ CarmenLog LogBuilder::build() {
     CarmenObserver observer(options_, lines_.laser_offset_forward);
     for (StampedLine& line : lines_.scans) {
         if (line.scan.kind == CarmenKind::kRawLaser && !place(line)) {
-            skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kOdometryGapMax));
+            skip(line.line_number,
+                 fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kOdometryGapMax));
             continue;
         }
         auto observation = observer.observe(line.scan, line.stamp);
@@ -142,10 +144,11 @@ Result<CarmenLog> read_carmen_log(const std::filesystem::path& path, const Carme
     if (auto ok = builder.read(*reader); !ok) return ok.error();
     CarmenLog log = builder.build();
     if (log.observations.empty()) {
-        return Error{Errc::kNotFound,
-                     fmt::format("{}: no usable scan in its {} lines ({} skipped); a CARMEN log with FLASER, ROBOTLASER1, "
-                                 "ROBOTLASER2 or RAWLASER1 lines is needed",
-                                 path.string(), builder.line_count(), log.skipped_lines)};
+        return Error{
+            Errc::kNotFound,
+            fmt::format("{}: no usable scan in its {} lines ({} skipped); a CARMEN log with FLASER, ROBOTLASER1, "
+                        "ROBOTLASER2 or RAWLASER1 lines is needed",
+                        path.string(), builder.line_count(), log.skipped_lines)};
     }
     return log;
 }

@@ -13,9 +13,6 @@
 
 namespace scanloom::robot {
 
-/// What a beam without a return tells the map: its way is free up to range_max, or nothing.
-enum class NoReturn { kFree, kDrop };
-
 struct CarmenOptions {
     /// Default: kFree where the log states its sensor's range (ROBOTLASER, RAWLASER), kDrop where it does not (FLASER).
     std::optional<NoReturn> no_return;

@@ -70,7 +70,8 @@ Result<> LineReader::State::refill() {
     if (file.bad()) return failure(Errc::kMalformed, "reading failed");
     text_bytes += chunk_end;
     if (text_bytes > limits.text_bytes_max) {
-        return failure(Errc::kTooLarge, fmt::format("more than {} bytes of text; split the log", limits.text_bytes_max));
+        return failure(Errc::kTooLarge,
+                       fmt::format("more than {} bytes of text; split the log", limits.text_bytes_max));
     }
     return {};
 }

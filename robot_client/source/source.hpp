@@ -10,6 +10,9 @@
 
 namespace scanloom::robot {
 
+/// What a beam without a return tells the map: its way is free up to range_max, or nothing.
+enum class NoReturn { kFree, kDrop };
+
 /// A scan and the sensor that took it. Its seq is not set here: the uplink numbers scans.
 struct Observation {
     std::shared_ptr<const Sensor> sensor;

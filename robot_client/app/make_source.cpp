@@ -1,0 +1,58 @@
+#include "robot_client/app/make_source.hpp"
+
+#include "robot_client/drive/wall_follower.hpp"
+#include "robot_client/sim/simulator.hpp"
+#include "robot_client/source/carmen_log.hpp"
+#include "robot_client/source/recorded_source.hpp"
+#include "robot_client/source/simulated_source.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr std::size_t kSkippedLinesShown = 5;
+
+Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
+    std::size_t skipped = 0;
+    const auto tell = [&](const SkippedLine& line) {
+        if (++skipped > kSkippedLinesShown) return;
+        console.note(fmt::format("{}:{}: skipped: {}", replay.file, line.line_number, line.reason));
+    };
+    auto log = read_carmen_log(replay.file, {options.no_return, options.range_max, {}}, tell);
+    if (skipped > kSkippedLinesShown) {
+        console.note(fmt::format("{}: {} more lines skipped", replay.file, skipped - kSkippedLinesShown));
+    }
+    if (!log) return log.error();
+    return PreparedSource{std::make_unique<RecordedSource>(std::move(log->observations)), log->skipped_lines,
+                          replay.speed};
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& simulate, Console&) {
+    auto world = find_world(simulate.world);
+    if (!world) return world.error();
+    auto laser = find_laser(simulate.laser);
+    if (!laser) return laser.error();
+    if (options.range_max) laser->range_max = *options.range_max;
+    if (laser->range_max <= laser->range_min) {
+        return Error{Errc::kInvalidField, fmt::format("--max-range is {} m, but the laser {} begins to see at {} m",
+                                                      laser->range_max, simulate.laser, laser->range_min)};
+    }
+    SimulatorOptions simulator{std::move(*world), std::move(*laser), std::nullopt, simulate.seed};
+    if (simulate.noise == "gaussian") simulator.noise = Noise{};
+    SimulationLimits limits;
+    if (simulate.duration) limits.duration = *simulate.duration;
+    if (simulate.scans) limits.scans = *simulate.scans;
+    return PreparedSource{
+        std::make_unique<SimulatedSource>(Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits,
+                                          options.no_return.value_or(NoReturn::kFree)),
+        0, simulate.speed};
+}
+
+} // namespace
+
+Result<PreparedSource> make_source(const RobotOptions& options, Console& console) {
+    return std::visit([&](const auto& source) { return make(options, source, console); }, options.source);
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,167 @@
+#include "robot_client/app/options.hpp"
+
+#include "common/app/environment_first.hpp"
+#include "common/scan/limits.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr const char* kAbout = "Streams a robot's scans to a Scanloom server: a recorded log, or a simulated robot.\n"
+                               "Exits 0 when every scan is stored durably, and prints a summary as one line of JSON.";
+constexpr const char* kFooter =
+    "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
+    "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
+
+/// As the parser fills it, before it is sorted into RobotOptions.
+struct Raw {
+    std::string server = "127.0.0.1:7447";
+    std::string no_return;
+    double give_up_after = 120.0;
+};
+
+std::string check_name(const std::string& name) {
+    if (is_valid_name(name)) return {};
+    return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
+}
+
+std::string check_not_negative(const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
+    return fmt::format("'{}' is not 0 or more", text);
+}
+
+/// HOST:PORT or [ADDRESS]:PORT.
+bool split_server(const std::string& server, RobotOptions& options) {
+    const std::size_t colon = server.rfind(':');
+    if (colon == std::string::npos) return false;
+    options.host = server.substr(0, colon);
+    options.port = server.substr(colon + 1);
+    if (options.host.size() > 2 && options.host.front() == '[' && options.host.back() == ']') {
+        options.host = options.host.substr(1, options.host.size() - 2);
+    } else if (options.host.find(':') != std::string::npos) {
+        return false; // an IPv6 address without brackets: which colon is the port's?
+    }
+    int port = 0;
+    const bool is_number = options.port.find_first_not_of("0123456789") == std::string::npos &&
+                           CLI::detail::lexical_cast(options.port, port);
+    return !options.host.empty() && is_number && port >= 1 && port <= 65535;
+}
+
+void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
+    app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
+    app.add_option("--session", options.session, "Session to add to; made if it does not exist")
+        ->required()
+        ->check(check_name);
+    app.add_option("--robot", options.robot, "Name of this robot within the session")->required()->check(check_name);
+    app.add_option("--token-file", options.token_file, "File that holds the token of this robot")
+        ->check(CLI::ExistingFile);
+    app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
+        ->check(CLI::Range(0.01, 1.0));
+    app.add_option("--give-up-after", raw.give_up_after, "Seconds without progress until it fails; 0 = never")
+        ->check(check_not_negative)
+        ->capture_default_str();
+}
+
+void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
+    app.add_option("--max-range", options.range_max, "Metres; readings of this length or more are no-return")
+        ->check(CLI::Range(0.001, kRangeMax));
+    app.add_option("--no-return", raw.no_return,
+                   "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "
+                   "source states its sensor's range, drop where it does not (FLASER)")
+        ->check(CLI::IsMember({"free", "drop"}));
+}
+
+CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
+    auto* replay = app.add_subcommand("replay", "Replay a CARMEN log");
+    // not required() by the parser: an environment meant for both sources would then ask for it everywhere
+    replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
+    replay->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server takes it")
+        ->check(check_not_negative)
+        ->capture_default_str();
+    return replay;
+}
+
+CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
+    auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
+    simulate->add_option("--world", options.world, "Where it drives")
+        ->check(CLI::IsMember({"room", "office"}))
+        ->capture_default_str();
+    simulate->add_option("--drive", options.drive, "How it drives")
+        ->check(CLI::IsMember({"wall_follower"}))
+        ->capture_default_str();
+    simulate->add_option("--laser", options.laser, "What it sees with")
+        ->check(CLI::IsMember({"reference", "lidar360", "wide"}))
+        ->capture_default_str();
+    simulate->add_option("--noise", options.noise, "What its measurements suffer from")
+        ->check(CLI::IsMember({"none", "gaussian"}))
+        ->capture_default_str();
+    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")->capture_default_str();
+    simulate->add_option("--duration", options.duration, "Seconds to simulate; default: until interrupted")
+        ->check(CLI::PositiveNumber);
+    simulate->add_option("--scans", options.scans, "Scans to take; default: until interrupted")
+        ->check(CLI::PositiveNumber);
+    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
+        ->check(check_not_negative)
+        ->capture_default_str();
+    return simulate;
+}
+
+Leave usage_error(std::string_view what) {
+    return {kExitUsage, fmt::format("scanloom-robot: {}; see scanloom-robot --help", what)};
+}
+
+/// What CLI11 throws, as one line.
+Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
+    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
+        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+    }
+    std::string what = reason.what();
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    return usage_error(what);
+}
+
+} // namespace
+
+std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv) {
+    RobotOptions options;
+    Raw raw;
+    ReplayOptions replay_options;
+    SimulateOptions simulate_options;
+
+    CLI::App app(kAbout, "scanloom-robot");
+    app.footer(kFooter);
+    app.set_version_flag("--version", fmt::format("scanloom-robot {}", kVersion));
+    add_link_options(app, options, raw);
+    add_scan_options(app, options, raw);
+    const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
+    add_simulate(app, simulate_options)->fallthrough();
+    app.require_subcommand(1);
+    read_settings_from_environment_and_file(app);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& reason) {
+        return leave_for(app, reason);
+    }
+    if (!split_server(raw.server, options)) {
+        return usage_error(fmt::format("--server: '{}' is not HOST:PORT", raw.server));
+    }
+    if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
+    options.give_up_after =
+        std::chrono::milliseconds(static_cast<std::int64_t>(std::min(raw.give_up_after, 1e9) * 1e3));
+    if (replay->parsed()) {
+        if (replay_options.file.empty()) return usage_error("replay: name the FILE to replay");
+        options.source = std::move(replay_options);
+    } else {
+        options.source = std::move(simulate_options);
+    }
+    return options;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "common/app/program.hpp"
+#include "robot_client/source/source.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace scanloom::robot {
+
+struct ReplayOptions {
+    std::string file;
+    double speed = 0.0; ///< 0 = as fast as the server takes it, 1 = as recorded
+};
+
+struct SimulateOptions {
+    std::string world = "office";
+    std::string drive = "wall_follower";
+    std::string noise = "none";
+    std::string laser = "reference";
+    std::uint64_t seed = 1;
+    std::optional<double> duration; ///< seconds of the simulation
+    std::optional<std::uint64_t> scans;
+    double speed = 1.0; ///< 0 = as fast as the server takes it, 1 = real time
+};
+
+struct RobotOptions {
+    std::string host;
+    std::string port;
+    std::string session;
+    std::string robot;
+    std::string token_file;          ///< empty: no token
+    std::optional<double> cell_size; ///< metres
+    std::optional<double> range_max; ///< metres
+    std::optional<NoReturn> no_return;
+    std::chrono::milliseconds give_up_after{120'000};
+    std::variant<ReplayOptions, SimulateOptions> source;
+};
+
+/// What is to be said instead of running: help or the version on stdout, or a usage error on stderr.
+struct Leave {
+    ExitCode code = kExitDone;
+    std::string text;
+};
+
+/// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
+/// which beats the file.
+[[nodiscard]] std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv);
+
+} // namespace scanloom::robot

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "robot_client/uplink/uplink.hpp"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace scanloom::robot {
+
+/// One line for people: how many scans are stored, how fast, how long it still takes.
+/// `total` is the highest seq there will be, if that is known.
+[[nodiscard]] std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
+                                        std::chrono::duration<double> elapsed);
+
+/// What the program tells while it runs, on stderr. On a terminal the progress stays on one line that is written over;
+/// elsewhere it is a plain line every few seconds. No colours, so there is nothing for NO_COLOR to switch off.
+class Console {
+public:
+    explicit Console(bool is_terminal) : is_terminal_(is_terminal) {}
+
+    /// True for a stderr on which lines can be written over.
+    [[nodiscard]] static bool stderr_is_terminal();
+
+    /// How often progress() is worth calling.
+    [[nodiscard]] std::chrono::milliseconds progress_period() const;
+
+    void progress(std::string_view text);
+    void note(std::string_view text);
+    /// Leaves the newest progress line standing.
+    void finish();
+
+private:
+    bool is_terminal_;
+    bool line_is_open_ = false;
+};
+
+} // namespace scanloom::robot

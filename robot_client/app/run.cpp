@@ -1,0 +1,112 @@
+#include "robot_client/app/run.hpp"
+
+#include "robot_client/app/make_source.hpp"
+#include "robot_client/app/progress.hpp"
+#include "robot_client/app/summary.hpp"
+#include "robot_client/uplink/uplink.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+#include <csignal>
+#include <fstream>
+#include <random>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+
+/// The first line of a token file.
+Result<std::string> read_token(const std::string& path) {
+    std::string token;
+    if (path.empty()) return token;
+    std::ifstream file(path);
+    std::getline(file, token);
+    if (token.ends_with('\r')) token.pop_back();
+    if (!token.empty()) return token;
+    return Error{Errc::kNotFound, fmt::format("{}: no token to be read; the first line is it", path)};
+}
+
+UplinkOptions uplink_options(const RobotOptions& options, std::string token, double speed, Console& console) {
+    UplinkOptions uplink;
+    uplink.host = options.host;
+    uplink.port = options.port;
+    uplink.speed = speed;
+    uplink.give_up_after = options.give_up_after;
+    uplink.backoff_seed = std::random_device{}();
+    uplink.on_trouble = [&console](const Error& error) {
+        console.note(fmt::format("{}; trying again", error.message));
+    };
+    wire::Hello& hello = uplink.conversation.hello;
+    hello.robot = options.robot;
+    hello.session = options.session;
+    hello.token = std::move(token);
+    hello.create = SessionOptions{};
+    hello.create->cell_size = options.cell_size;
+    hello.client = fmt::format("scanloom-robot {}", kVersion);
+    return uplink;
+}
+
+/// The first signal ends the source, the second everything.
+asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console& console) {
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    console.note("interrupted: waiting for what was sent to be stored; interrupt again to leave at once");
+    uplink.stop();
+    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    io.stop();
+}
+
+asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, const Source& source,
+                                    Console& console) {
+    const auto begun = std::chrono::steady_clock::now();
+    asio::steady_timer timer(io);
+    for (;;) {
+        timer.expires_after(console.progress_period());
+        if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
+        console.progress(progress_text(uplink.status(), source.scan_count(), std::chrono::steady_clock::now() - begun));
+    }
+}
+
+} // namespace
+
+ExitCode run(const RobotOptions& options) {
+    Console console(Console::stderr_is_terminal());
+    const auto fail = [&](const Error& error) {
+        console.note("scanloom-robot: " + error.message);
+        return kExitFailed;
+    };
+    auto token = read_token(options.token_file);
+    if (!token) return fail(token.error());
+    auto prepared = make_source(options, console);
+    if (!prepared) return fail(prepared.error());
+
+    asio::io_context io(1);
+    Uplink uplink(io, uplink_options(options, *token, prepared->speed, console), *prepared->source);
+    Result<> outcome = Error{Errc::kShuttingDown, "interrupted before every sent scan was acknowledged"};
+    const auto begun = std::chrono::steady_clock::now();
+    asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
+    asio::co_spawn(io, show_progress(io, uplink, *prepared->source, console), asio::detached);
+    asio::co_spawn(io, uplink.run(), [&](std::exception_ptr failed, Result<> result) {
+        if (failed) std::rethrow_exception(failed);
+        outcome = std::move(result);
+        io.stop();
+    });
+    io.run();
+
+    console.finish();
+    const bool is_recording = std::holds_alternative<ReplayOptions>(options.source);
+    fmt::print("{}\n", summary_json({options.session, options.robot, uplink.status(), prepared->skipped_lines,
+                                     std::chrono::steady_clock::now() - begun, is_recording}));
+    return outcome ? kExitDone : fail(outcome.error());
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,45 @@
+#include "robot_client/source/simulated_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+/// Scans taken at 0, p, 2 p, ... before `duration`.
+std::uint64_t scans_within(double duration) {
+    const double scans =
+        std::ceil(duration / kScanPeriod - 1e-6); // 0.3 s are three periods of 0.1 s, rounded as they are
+    return scans < 1e15 ? static_cast<std::uint64_t>(scans) : std::numeric_limits<std::uint64_t>::max();
+}
+
+} // namespace
+
+SimulatedSource::SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return)
+    : simulator_(std::move(simulator)), limits_(limits), no_return_(no_return),
+      laser_(std::make_shared<const Sensor>(simulator_.laser())) {
+    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration));
+}
+
+std::optional<Observation> SimulatedSource::next() {
+    if (scans_ == limits_.scans) return std::nullopt;
+    ++scans_;
+    Observation observation{laser_, simulator_.next_scan()};
+    if (no_return_ == NoReturn::kDrop) {
+        auto& ranges = observation.scan.ranges;
+        std::replace(ranges.begin(), ranges.end(), kNoReturn, kInvalidRange);
+    }
+    return observation;
+}
+
+Result<> SimulatedSource::resume_after(std::uint64_t seq) {
+    resumed_after_ = seq;
+    return {};
+}
+
+std::optional<std::uint64_t> SimulatedSource::scan_count() const {
+    if (limits_.scans == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
+    return resumed_after_ + limits_.scans;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,224 @@
+#include "robot_client/uplink/conversation.hpp"
+
+#include "common/scan/limits.hpp"
+#include "common/wire/frame_decoder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace scanloom::robot {
+namespace {
+
+/// Pings a server may have unanswered here; one that sends more is not the server.
+constexpr std::size_t kPingsToAnswerMax = 16;
+
+/// Frame and batch fields around the scans of a batch, length prefix included.
+constexpr std::size_t kBatchOverhead = wire::kLengthPrefixBytes + 16;
+
+wire::LinkError retry(Errc code, std::string message) { return {{code, std::move(message)}, true}; }
+wire::LinkError give_up(Error error) { return {std::move(error), false}; }
+
+double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
+
+/// A server that states no limit means the protocol's.
+wire::Limits with_defaults(wire::Limits limits) {
+    if (limits.frame_size_max == 0) limits.frame_size_max = wire::kFrameBytesMax;
+    if (limits.beams_max == 0) limits.beams_max = kBeamsMax;
+    if (limits.scans_per_batch_max == 0) limits.scans_per_batch_max = kScansPerBatchMax;
+    return limits;
+}
+
+} // namespace
+
+Conversation::Conversation(ConversationOptions options, Time now)
+    : options_(std::move(options)), buffer_(options_.buffer_bytes_max), progress_(now) {}
+
+void Conversation::open(Time now) {
+    link_.emplace();
+    link_->opened = link_->heard = now;
+}
+
+std::optional<wire::LinkError> Conversation::receive(const wire::Message& message, Time now) {
+    assert(link_);
+    link_->heard = now;
+    if (const auto* failure = std::get_if<wire::LinkError>(&message)) return *failure;
+    if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
+        return retry(Errc::kShuttingDown, fmt::format("the server said goodbye: {}", goodbye->reason));
+    }
+    if (const auto* ping = std::get_if<wire::Ping>(&message)) {
+        if (link_->pings_to_answer.size() == kPingsToAnswerMax) {
+            return retry(Errc::kMalformed, "the server sends pings faster than they can be answered");
+        }
+        link_->pings_to_answer.push_back(ping->nonce);
+        return std::nullopt;
+    }
+    if (std::holds_alternative<wire::Pong>(message)) return std::nullopt;
+    const auto* welcome = std::get_if<wire::Welcome>(&message);
+    if (welcome && link_->said_hello && !link_->welcomed) return on_welcome(*welcome, now);
+    if (link_->welcomed) {
+        if (const auto* ack = std::get_if<wire::Ack>(&message)) return on_ack(*ack, now);
+        if (std::holds_alternative<wire::Correction>(message))
+            return std::nullopt; // poses are sent as the source has them
+    }
+    return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));
+}
+
+std::optional<wire::LinkError> Conversation::on_welcome(const wire::Welcome& welcome, Time now) {
+    if (!resumed_after_) {
+        resumed_after_ = welcome.last_durable_seq;
+        buffer_.start_after(welcome.last_durable_seq);
+        progress_ = now;
+    } else {
+        const bool made_anew = welcome.session_id != session_id_ && buffer_.acknowledged() > 0;
+        if (made_anew) {
+            return give_up({Errc::kGone, fmt::format("session {} was deleted and made anew while {} of its scans were "
+                                                     "acknowledged; start again to fill the new one",
+                                                     options_.hello.session, buffer_.acknowledged())});
+        }
+        const std::uint64_t acknowledged_before = buffer_.acknowledged();
+        if (auto ok = buffer_.rewind(welcome.last_durable_seq); !ok) return give_up(ok.error());
+        if (buffer_.acknowledged() > acknowledged_before) progress_ = now;
+    }
+    session_id_ = welcome.session_id;
+    link_->welcomed = true;
+    link_->limits = with_defaults(welcome.limits);
+    link_->credit.reset(welcome.credit_bytes);
+    ++welcomes_;
+    return std::nullopt;
+}
+
+std::optional<wire::LinkError> Conversation::on_ack(const wire::Ack& ack, Time now) {
+    if (ack.durable_seq > buffer_.sent()) {
+        return retry(Errc::kMalformed, fmt::format("the server acknowledged scan {}, only {} were sent",
+                                                   ack.durable_seq, buffer_.sent()));
+    }
+    if (ack.durable_seq > buffer_.acknowledged()) {
+        buffer_.acknowledge(ack.durable_seq);
+        progress_ = now;
+    }
+    link_->credit.durable(ack.durable_seq);
+    link_->credit.set_credit(ack.credit_bytes);
+    return std::nullopt;
+}
+
+std::optional<std::string> Conversation::next_frame(Time now) {
+    auto message = next_message(now);
+    if (!message) return std::nullopt;
+    std::string frame;
+    wire::encode(*message, frame);
+    if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) {
+        link_->credit.sent(batch->scans.back().seq, frame.size());
+    }
+    bytes_sent_ += frame.size();
+    return frame;
+}
+
+std::optional<wire::Message> Conversation::next_message(Time now) {
+    if (!link_ || link_->said_goodbye) return std::nullopt;
+    if (!link_->said_hello) {
+        link_->said_hello = true;
+        return options_.hello;
+    }
+    if (!link_->welcomed) return std::nullopt;
+    if (!link_->pings_to_answer.empty()) {
+        const wire::Pong pong{link_->pings_to_answer.front()};
+        link_->pings_to_answer.pop_front();
+        return pong;
+    }
+    if (now >= ping_due()) {
+        link_->pinged = now;
+        return wire::Ping{++nonce_};
+    }
+    if (is_done()) {
+        link_->said_goodbye = true;
+        return wire::Goodbye{"every scan is acknowledged"};
+    }
+    return next_about_scans();
+}
+
+std::optional<wire::Message> Conversation::next_about_scans() {
+    if (buffer_.unsent_count() == 0) return std::nullopt;
+    const auto& sensor = buffer_.unsent(0).sensor;
+    auto& described = link_->described[sensor->id];
+    if (!described || (described != sensor && *described != *sensor)) {
+        described = sensor;
+        return *sensor;
+    }
+    const std::size_t count = scans_that_fit();
+    if (count == 0) return std::nullopt;
+    wire::ScanBatch batch;
+    batch.scans.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) batch.scans.push_back(buffer_.unsent(i).scan);
+    buffer_.mark_sent(count);
+    return batch;
+}
+
+/// How many of the unsent scans go into the next batch: those whose sensor stands described, within the credit, the
+/// server's limits and the wanted batch size. The first may exceed the latter.
+std::size_t Conversation::scans_that_fit() {
+    const wire::Limits& limits = link_->limits;
+    const std::uint64_t frame_max = limits.frame_size_max + wire::kLengthPrefixBytes;
+    const std::size_t count_max = std::min<std::size_t>(buffer_.unsent_count(), limits.scans_per_batch_max);
+    std::size_t bytes = kBatchOverhead;
+    for (std::size_t i = 0; i < count_max; ++i) {
+        const Observation& next = buffer_.unsent(i);
+        bytes += wire_bytes_max(next.scan);
+        if (next.scan.ranges.size() > limits.beams_max || (i == 0 && bytes > frame_max)) {
+            if (i > 0) return i;
+            link_->cannot_send = {Errc::kTooLarge,
+                                  fmt::format("scan {} has {} beams, the server takes at most {} and frames of "
+                                              "at most {} bytes",
+                                              next.scan.seq, next.scan.ranges.size(), limits.beams_max,
+                                              limits.frame_size_max)};
+            return 0;
+        }
+        const auto described = link_->described.find(next.sensor->id);
+        const bool is_described = described != link_->described.end() &&
+                                  (described->second == next.sensor || *described->second == *next.sensor);
+        const std::uint64_t bytes_max =
+            std::min(link_->credit.available(),
+                     i == 0 ? frame_max : std::min<std::uint64_t>(frame_max, options_.batch_bytes_max));
+        if (!is_described || bytes > bytes_max) return i;
+    }
+    return count_max;
+}
+
+std::optional<wire::LinkError> Conversation::check(Time now) const {
+    if (!link_) return std::nullopt;
+    if (link_->cannot_send) return give_up(*link_->cannot_send);
+    if (!link_->welcomed && now >= link_->opened + options_.welcome_timeout) {
+        return retry(Errc::kTimeout, fmt::format("the server did not answer the hello within {:g} s",
+                                                 seconds(options_.welcome_timeout)));
+    }
+    if (link_->welcomed && now >= link_->heard + options_.silence_max) {
+        return retry(Errc::kTimeout,
+                     fmt::format("nothing came from the server for {:g} s", seconds(options_.silence_max)));
+    }
+    return std::nullopt;
+}
+
+Conversation::Time Conversation::ping_due() const {
+    return std::max(link_->heard, link_->pinged.value_or(link_->heard)) + options_.ping_after;
+}
+
+Conversation::Time Conversation::deadline() const {
+    if (!link_) return Time::max();
+    if (!link_->welcomed) return link_->opened + options_.welcome_timeout;
+    if (link_->said_goodbye) return link_->heard + options_.silence_max;
+    return std::min(ping_due(), link_->heard + options_.silence_max);
+}
+
+void Conversation::add(Observation observation, Time now) {
+    assert(resumed_after_ && !ended_);
+    if (buffer_.empty()) progress_ = now; // nothing waited until now
+    buffer_.push(std::move(observation));
+}
+
+std::optional<Conversation::Time> Conversation::stalled_since() const {
+    if (resumed_after_ && buffer_.empty()) return std::nullopt;
+    return progress_;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+namespace scanloom::robot {
+
+/// The bytes of ScanBatch frames (length prefix included) that are under way on one link: sent, not yet durable.
+/// A batch counts whole until its last scan is durable.
+class CreditWindow {
+public:
+    /// A new link; nothing is under way on it.
+    void reset(std::uint64_t credit_bytes) {
+        batches_.clear();
+        under_way_ = 0;
+        credit_ = credit_bytes;
+    }
+
+    void set_credit(std::uint64_t credit_bytes) noexcept { credit_ = credit_bytes; }
+
+    /// Bytes that may be sent now; 0 also where the server has lowered the credit below what is under way.
+    [[nodiscard]] std::uint64_t available() const noexcept { return credit_ > under_way_ ? credit_ - under_way_ : 0; }
+    [[nodiscard]] std::uint64_t under_way() const noexcept { return under_way_; }
+    [[nodiscard]] std::uint64_t credit() const noexcept { return credit_; }
+
+    void sent(std::uint64_t last_seq, std::size_t frame_bytes) {
+        batches_.push_back({last_seq, frame_bytes});
+        under_way_ += frame_bytes;
+    }
+
+    void durable(std::uint64_t seq) {
+        while (!batches_.empty() && batches_.front().last_seq <= seq) {
+            under_way_ -= batches_.front().bytes;
+            batches_.pop_front();
+        }
+    }
+
+private:
+    struct Batch {
+        std::uint64_t last_seq = 0;
+        std::size_t bytes = 0;
+    };
+
+    std::deque<Batch> batches_;
+    std::uint64_t under_way_ = 0;
+    std::uint64_t credit_ = 0;
+};
+
+} // namespace scanloom::robot

@@ -1,0 +1,243 @@
+#include "robot_client/uplink/uplink.hpp"
+
+#include "common/wire/frame_decoder.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using namespace asio::experimental::awaitable_operators;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReadBytes = 16384;
+constexpr int kScansBetweenYields = 32; // a fast source must not keep the acknowledgements waiting
+constexpr std::chrono::milliseconds kProgressPeriod{100};
+constexpr std::chrono::milliseconds kGoodbyeMax{1000};
+
+wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
+
+} // namespace
+
+Uplink::Uplink(asio::io_context& io, UplinkOptions options, Source& source)
+    : io_(io), options_(std::move(options)), source_(source), conversation_(options_.conversation, Clock::now()),
+      pacer_(options_.speed), backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+
+asio::awaitable<Result<>> Uplink::run() {
+    co_await (keep_linked() || feed() || watch_progress());
+    co_return outcome_;
+}
+
+void Uplink::stop() {
+    if (!stopped_) stopped_ = Clock::now();
+    wake_all();
+}
+
+UplinkStatus Uplink::status() const {
+    const std::uint64_t welcomes = conversation_.welcomes();
+    return {conversation_.resumed_after().value_or(0),
+            conversation_.last(),
+            conversation_.acknowledged(),
+            conversation_.bytes_sent(),
+            welcomes > 0 ? welcomes - 1 : 0,
+            conversation_.is_welcome()};
+}
+
+// The source ----------------------------------------------------------------------------------------------------------
+
+asio::awaitable<void> Uplink::feed() {
+    while (!conversation_.resumed_after()) co_await wait(feed_wake_, Clock::time_point::max());
+    if (auto ok = source_.resume_after(*conversation_.resumed_after()); !ok) {
+        outcome_ = ok.error();
+        co_return;
+    }
+    co_await feed_next();
+    conversation_.end();
+    wake_all();
+    for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the others tell when all is done
+}
+
+asio::awaitable<void> Uplink::feed_next() {
+    int scans_since_yield = 0;
+    while (!stopped_) {
+        if (!conversation_.has_room()) {
+            co_await wait(feed_wake_, Clock::time_point::max());
+            continue;
+        }
+        auto observation = source_.next();
+        if (!observation) co_return;
+        const auto due = pacer_.due(observation->scan.stamp, Clock::now());
+        while (!stopped_ && due > Clock::now()) co_await wait(feed_wake_, due);
+        if (stopped_) co_return; // this scan was not due yet
+        conversation_.add(std::move(*observation), Clock::now());
+        write_wake_.cancel();
+        if (++scans_since_yield % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
+    }
+}
+
+// Progress ------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<void> Uplink::watch_progress() {
+    std::optional<Clock::time_point> done_since;
+    for (;;) {
+        const auto now = Clock::now();
+        if (conversation_.is_done()) {
+            if (!done_since) done_since = now;
+            if (!conversation_.is_welcome() || now > *done_since + kGoodbyeMax) co_return;
+        } else if (auto reason = reason_to_give_up()) {
+            outcome_ = *reason;
+            co_return;
+        }
+        co_await wait(progress_wake_, now + kProgressPeriod);
+    }
+}
+
+std::optional<Error> Uplink::reason_to_give_up() const {
+    const std::string trouble = last_trouble_ ? "; the last trouble: " + last_trouble_->message : "";
+    const auto now = Clock::now();
+    if (stopped_ && !conversation_.resumed_after()) {
+        return Error{Errc::kUnreachable, "interrupted before the server answered" + trouble};
+    }
+    if (stopped_ && now > *stopped_ + options_.drain_max) {
+        return Error{Errc::kTimeout, fmt::format("interrupted; {} scans were not acknowledged within {:g} s{}",
+                                                 conversation_.last() - conversation_.acknowledged(),
+                                                 std::chrono::duration<double>(options_.drain_max).count(), trouble)};
+    }
+    const auto since = conversation_.stalled_since();
+    if (since && options_.give_up_after.count() > 0 && now > *since + options_.give_up_after) {
+        return Error{Errc::kTimeout,
+                     fmt::format("gave up after {:g} s without progress{}",
+                                 std::chrono::duration<double>(options_.give_up_after).count(), trouble)};
+    }
+    return std::nullopt;
+}
+
+// Links ---------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<void> Uplink::keep_linked() {
+    asio::steady_timer pause(io_);
+    for (;;) {
+        const wire::LinkError failure = co_await use_one_link();
+        conversation_.close();
+        if (conversation_.is_done()) co_return;
+        if (!failure.retryable) {
+            outcome_ = failure.error;
+            co_return;
+        }
+        last_trouble_ = failure.error;
+        options_.on_trouble(failure.error);
+        co_await wait(pause, Clock::now() + backoff_.next());
+    }
+}
+
+asio::awaitable<wire::LinkError> Uplink::use_one_link() {
+    Socket socket(io_);
+    if (auto failure = co_await connect(socket)) co_return *failure;
+    conversation_.open(Clock::now());
+    const auto ended = co_await (read_frames(socket) || write_frames(socket) || watch_link());
+    co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
+}
+
+asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(Socket& socket) {
+    const std::string where = fmt::format("{}:{}", options_.host, options_.port);
+    tcp::resolver resolver(io_);
+    const auto [unresolved, addresses] = co_await resolver.async_resolve(options_.host, options_.port, kUse);
+    if (unresolved) {
+        co_return lost(fmt::format("cannot find {}: {}; check --server", where, unresolved.message()));
+    }
+    asio::steady_timer timer(io_);
+    const auto connected =
+        co_await (asio::async_connect(socket, addresses, kUse) || wait(timer, Clock::now() + options_.connect_timeout));
+    if (connected.index() == 1) {
+        co_return lost(fmt::format("no connection to {} within {:g} s; check --server and the network", where,
+                                   std::chrono::duration<double>(options_.connect_timeout).count()));
+    }
+    const auto refused = std::get<0>(std::get<0>(connected));
+    if (refused) {
+        co_return lost(
+            fmt::format("cannot connect to {}: {}; is scanloom-server running there?", where, refused.message()));
+    }
+    boost::system::error_code ignored; // without it small frames only wait longer
+    socket.set_option(tcp::no_delay(true), ignored);
+    co_return std::nullopt;
+}
+
+asio::awaitable<wire::LinkError> Uplink::read_frames(Socket& socket) {
+    wire::FrameDecoder decoder(wire::kFrameBytesMax);
+    for (;;) {
+        const auto room = decoder.prepare(kReadBytes);
+        const auto [failed, count] = co_await socket.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+        decoder.commit(count);
+        for (;;) {
+            auto body = decoder.next();
+            if (!body) {
+                co_return wire::LinkError{
+                    prefixed("the other end does not speak Scanloom's robot link: ", body.error()),
+                    conversation_.is_welcome()};
+            }
+            if (!*body) break;
+            if (auto failure = take(**body)) co_return *failure;
+        }
+    }
+}
+
+std::optional<wire::LinkError> Uplink::take(std::string_view body) {
+    auto message = wire::decode(body);
+    if (!message) {
+        return wire::LinkError{prefixed("a frame of the server: ", message.error()), conversation_.is_welcome()};
+    }
+    const std::uint64_t acknowledged_before = conversation_.acknowledged();
+    auto failure = conversation_.receive(*message, Clock::now());
+    if (conversation_.acknowledged() > acknowledged_before) backoff_.reset();
+    wake_all();
+    return failure;
+}
+
+asio::awaitable<wire::LinkError> Uplink::write_frames(Socket& socket) {
+    for (;;) {
+        while (const auto frame = conversation_.next_frame(Clock::now())) {
+            const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(*frame), kUse);
+            if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+        }
+        if (conversation_.said_goodbye()) {
+            boost::system::error_code ignored; // the reader sees how the link ends
+            socket.shutdown(tcp::socket::shutdown_send, ignored);
+        }
+        if (auto failure = conversation_.check(Clock::now())) co_return *failure;
+        co_await wait(write_wake_, conversation_.deadline());
+    }
+}
+
+/// Notices a dead link even while a write to it is stuck.
+asio::awaitable<wire::LinkError> Uplink::watch_link() {
+    asio::steady_timer timer(io_);
+    for (;;) {
+        if (auto failure = conversation_.check(Clock::now())) co_return *failure;
+        co_await wait(timer, Clock::now() + kProgressPeriod);
+    }
+}
+
+asio::awaitable<void> Uplink::wait(asio::steady_timer& timer, Clock::time_point time) {
+    timer.expires_at(time);
+    co_await timer.async_wait(kUse);
+}
+
+void Uplink::wake_all() {
+    feed_wake_.cancel();
+    write_wake_.cancel();
+    progress_wake_.cancel();
+}
+
+} // namespace scanloom::robot

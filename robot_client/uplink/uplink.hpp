@@ -1,0 +1,94 @@
+#pragma once
+
+#include "robot_client/source/source.hpp"
+#include "robot_client/uplink/backoff.hpp"
+#include "robot_client/uplink/conversation.hpp"
+#include "robot_client/uplink/pacer.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace scanloom::robot {
+
+struct UplinkOptions {
+    std::string host;
+    std::string port;
+    ConversationOptions conversation;
+    double speed = 0.0; ///< of the source's own pace; 0 = as fast as the server takes it
+    std::chrono::milliseconds connect_timeout{10'000};
+    std::chrono::milliseconds give_up_after{120'000}; ///< without progress; 0 = never
+    std::chrono::milliseconds drain_max{10'000};      ///< how long stop() waits for acknowledgements
+    std::uint32_t backoff_seed = 1;
+    /// Hears of every link that failed and is going to be replaced.
+    std::function<void(const Error&)> on_trouble = [](const Error&) {};
+};
+
+/// How far an uplink is, for people and for the summary.
+struct UplinkStatus {
+    std::uint64_t resumed_after = 0; ///< scans the server held from earlier runs
+    std::uint64_t last = 0;          ///< highest seq taken from the source, or resumed_after
+    std::uint64_t acknowledged = 0;  ///< highest durable seq
+    std::uint64_t bytes = 0;         ///< sent, resent ones included
+    std::uint64_t reconnects = 0;
+    bool is_linked = false;
+};
+
+/// Carries a source's scans to the server: connects, reconnects, keeps the pace. The protocol is Conversation's;
+/// here are the sockets and timers.
+///
+/// Thread  everything runs on the one thread of `io`; stop() is called on it, too.
+class Uplink {
+public:
+    Uplink(boost::asio::io_context& io, UplinkOptions options, Source& source);
+
+    /// Completes when every scan is durable.
+    /// Errors  the server's, if it is final; kTimeout when nothing moves for give_up_after or not all sent scans
+    ///         were acknowledged within drain_max of stop(); those of the source's resume_after().
+    [[nodiscard]] boost::asio::awaitable<Result<>> run();
+
+    /// No more scans from the source; run() completes once those taken are durable, or after drain_max.
+    void stop();
+
+    [[nodiscard]] UplinkStatus status() const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    using Socket = boost::asio::ip::tcp::socket;
+
+    [[nodiscard]] boost::asio::awaitable<void> feed();
+    [[nodiscard]] boost::asio::awaitable<void> feed_next();
+    [[nodiscard]] boost::asio::awaitable<void> keep_linked();
+    [[nodiscard]] boost::asio::awaitable<void> watch_progress();
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
+    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> connect(Socket& socket);
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(Socket& socket);
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(Socket& socket);
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> watch_link();
+    [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
+    [[nodiscard]] std::optional<Error> reason_to_give_up() const;
+
+    /// Waits until `time` or until the timer is cancelled, which is how the coroutines wake one another.
+    [[nodiscard]] static boost::asio::awaitable<void> wait(boost::asio::steady_timer& timer, Clock::time_point time);
+    void wake_all();
+
+    boost::asio::io_context& io_;
+    UplinkOptions options_;
+    Source& source_;
+    Conversation conversation_;
+    Pacer pacer_;
+    Backoff backoff_;
+    boost::asio::steady_timer feed_wake_;
+    boost::asio::steady_timer write_wake_;
+    boost::asio::steady_timer progress_wake_;
+    Result<> outcome_;
+    std::optional<Error> last_trouble_;
+    std::optional<Clock::time_point> stopped_;
+};
+
+} // namespace scanloom::robot
