@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <filesystem>
 #include <istream>
 #include <memory>
 #include <string>
@@ -26,16 +27,17 @@ namespace scanloom {
 class EnvironmentFirstToml final : public CLI::ConfigTOML {
 public:
     [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-        auto items = CLI::ConfigTOML::from_config(input);
-        std::erase_if(items, [](const CLI::ConfigItem& item) {
+        auto settings = CLI::ConfigTOML::from_config(input);
+        std::erase_if(settings, [](const CLI::ConfigItem& item) {
             const char* value = std::getenv(environment_name(item.name).c_str());
             return value != nullptr && *value != '\0';
         });
-        return items;
+        return settings;
     }
 };
 
-/// Call it after all options and subcommands were added. Unknown settings in the file are errors.
+/// Call it after all options and subcommands were added. Unknown settings in the file are errors of app.parse().
+/// Throws CLI::ParseError when SCANLOOM_CONFIG names no file.
 inline void read_settings_from_environment_and_file(CLI::App& app) {
     const auto name_options = [](CLI::App& level) {
         for (CLI::Option* option : level.get_options()) {
@@ -48,7 +50,12 @@ inline void read_settings_from_environment_and_file(CLI::App& app) {
     for (CLI::App* source : app.get_subcommands({})) name_options(*source);
     app.config_formatter(std::make_shared<EnvironmentFirstToml>());
     app.allow_config_extras(CLI::config_extras_mode::error);
-    app.set_config("--config", "", "TOML file with settings")->envname(environment_name("config"));
+
+    // CLI11 reads the file before the environment, so the name in the environment is given as the default.
+    const char* file = std::getenv("SCANLOOM_CONFIG");
+    const std::string default_file = file != nullptr ? file : "";
+    if (!default_file.empty() && !std::filesystem::exists(default_file)) throw CLI::FileError::Missing(default_file);
+    app.set_config("--config", default_file, "TOML file with settings (Env:SCANLOOM_CONFIG)");
 }
 
 } // namespace scanloom

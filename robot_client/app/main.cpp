@@ -8,8 +8,7 @@
 int main(int argc, char** argv) try {
     const auto options = scanloom::robot::parse_options(argc, argv);
     if (const auto* leave = std::get_if<scanloom::robot::Leave>(&options)) {
-        const bool is_error = leave->code != scanloom::kExitDone;
-        fmt::print(is_error ? stderr : stdout, is_error ? "{}\n" : "{}", leave->text);
+        fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));

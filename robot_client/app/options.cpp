@@ -29,6 +29,21 @@ std::string check_name(const std::string& name) {
     return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
 }
 
+/// CLI::Range lets NaN pass.
+auto check_within(double low, double high) {
+    return [=](const std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("'{}' is not within {:g} to {:g}", text, low, high);
+    };
+}
+
+std::string check_positive(const std::string& text) {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
+    return fmt::format("'{}' is not more than 0", text);
+}
+
 std::string check_not_negative(const std::string& text) {
     double value = 0.0;
     if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
@@ -61,7 +76,7 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--token-file", options.token_file, "File that holds the token of this robot")
         ->check(CLI::ExistingFile);
     app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
-        ->check(CLI::Range(0.01, 1.0));
+        ->check(check_within(0.01, 1.0));
     app.add_option("--give-up-after", raw.give_up_after, "Seconds without progress until it fails; 0 = never")
         ->check(check_not_negative)
         ->capture_default_str();
@@ -69,7 +84,7 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--max-range", options.range_max, "Metres; readings of this length or more are no-return")
-        ->check(CLI::Range(0.001, kRangeMax));
+        ->check(check_within(0.001, kRangeMax));
     app.add_option("--no-return", raw.no_return,
                    "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "
                    "source states its sensor's range, drop where it does not (FLASER)")
@@ -102,9 +117,8 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->capture_default_str();
     simulate->add_option("--seed", options.seed, "The same seed gives the same scans")->capture_default_str();
     simulate->add_option("--duration", options.duration, "Seconds to simulate; default: until interrupted")
-        ->check(CLI::PositiveNumber);
-    simulate->add_option("--scans", options.scans, "Scans to take; default: until interrupted")
-        ->check(CLI::PositiveNumber);
+        ->check(check_positive);
+    simulate->add_option("--scans", options.scans, "Scans to take; default: until interrupted")->check(check_positive);
     simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
         ->check(check_not_negative)
         ->capture_default_str();
@@ -112,7 +126,7 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
 }
 
 Leave usage_error(std::string_view what) {
-    return {kExitUsage, fmt::format("scanloom-robot: {}; see scanloom-robot --help", what)};
+    return {kExitUsage, fmt::format("scanloom-robot: {}; see scanloom-robot --help\n", what)};
 }
 
 /// What CLI11 throws, as one line.
@@ -122,6 +136,9 @@ Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
         return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
     }
     std::string what = reason.what();
+    if (const std::string_view unknown = "INI was not able to parse "; what.starts_with(unknown)) {
+        what.replace(0, unknown.size(), "the file of --config has a setting that is not known: ");
+    }
     std::replace(what.begin(), what.end(), '\n', ' ');
     return usage_error(what);
 }
@@ -142,9 +159,9 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     add_simulate(app, simulate_options)->fallthrough();
     app.require_subcommand(1);
-    read_settings_from_environment_and_file(app);
 
     try {
+        read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason);

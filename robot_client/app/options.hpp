@@ -43,7 +43,7 @@ struct RobotOptions {
 /// What is to be said instead of running: help or the version on stdout, or a usage error on stderr.
 struct Leave {
     ExitCode code = kExitDone;
-    std::string text;
+    std::string text; ///< whole lines
 };
 
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,

@@ -42,7 +42,9 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, dou
     uplink.speed = speed;
     uplink.give_up_after = options.give_up_after;
     uplink.backoff_seed = std::random_device{}();
-    uplink.on_trouble = [&console](const Error& error) {
+    uplink.on_trouble = [&console, told = std::string()](const Error& error) mutable {
+        if (error.message == told) return; // a server that is away for long is told once
+        told = error.message;
         console.note(fmt::format("{}; trying again", error.message));
     };
     wire::Hello& hello = uplink.conversation.hello;

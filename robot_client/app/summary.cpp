@@ -1,26 +1,17 @@
 #include "robot_client/app/summary.hpp"
 
-#include <boost/json/object.hpp>
-#include <boost/json/serialize.hpp>
-
-#include <cmath>
+#include <fmt/format.h>
 
 namespace scanloom::robot {
 
 std::string summary_json(const Summary& summary) {
     const UplinkStatus& status = summary.status;
     const std::uint64_t before = summary.is_recording ? 0 : status.resumed_after;
-    return boost::json::serialize(boost::json::object{
-        {"scans", status.last - before},
-        {"acknowledged", status.acknowledged - before},
-        {"bytes", status.bytes},
-        {"seconds", std::round(summary.elapsed.count() * 1000.0) / 1000.0},
-        {"resumed_after", status.resumed_after},
-        {"skipped_lines", summary.skipped_lines},
-        {"reconnects", status.reconnects},
-        {"session", summary.session},
-        {"robot", summary.robot},
-    });
+    // Names are valid ones (is_valid_name): nothing in them needs escaping.
+    return fmt::format(R"({{"scans":{},"acknowledged":{},"bytes":{},"seconds":{:.3f},"resumed_after":{},)"
+                       R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}"}})",
+                       status.last - before, status.acknowledged - before, status.bytes, summary.elapsed.count(),
+                       status.resumed_after, summary.skipped_lines, status.reconnects, summary.session, summary.robot);
 }
 
 } // namespace scanloom::robot

@@ -16,7 +16,7 @@ struct Summary {
     bool is_recording = false; ///< scans count from the beginning of the recording, else from that of this run
 };
 
-/// One line of JSON, without its line break.
+/// One line of JSON, without its line break. Pre: the names are valid ones.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 } // namespace scanloom::robot

@@ -11,8 +11,6 @@ namespace {
 /// Share of a segment's length by which it is taken longer at both ends: rounding must not open a corner.
 constexpr double kEndSlack = 1e-9;
 
-double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 } // namespace
 
 std::vector<Segment> segments_near(std::span<const Segment> segments, const Point2& point, double radius) {
@@ -23,16 +21,22 @@ std::vector<Segment> segments_near(std::span<const Segment> segments, const Poin
 }
 
 double cast_ray(std::span<const Segment> segments, const Point2& origin, double yaw_rad) {
-    const Point2 direction{std::cos(yaw_rad), std::sin(yaw_rad)};
+    const double direction_x = std::cos(yaw_rad);
+    const double direction_y = std::sin(yaw_rad);
+    const double origin_x = origin.x();
+    const double origin_y = origin.y();
     double nearest = std::numeric_limits<double>::infinity();
     for (const Segment& segment : segments) {
-        const Point2 along = segment.b - segment.a;
-        const double determinant = cross(direction, along);
+        // origin + length * direction = a + share * (b - a), solved by Cramer's rule
+        const double along_x = segment.bx - segment.ax;
+        const double along_y = segment.by - segment.ay;
+        const double determinant = direction_x * along_y - direction_y * along_x;
         if (determinant == 0.0) continue; // parallel: seen edge on, its neighbours at the corners stop the ray
-        const Point2 to_segment = segment.a - origin;
-        const double length = cross(to_segment, along) / determinant;
+        const double to_x = segment.ax - origin_x;
+        const double to_y = segment.ay - origin_y;
+        const double length = (to_x * along_y - to_y * along_x) / determinant;
         if (length < 0.0 || length >= nearest) continue;
-        const double share = cross(to_segment, direction) / determinant;
+        const double share = (to_x * direction_y - to_y * direction_x) / determinant;
         if (share >= -kEndSlack && share <= 1.0 + kEndSlack) nearest = length;
     }
     return nearest;

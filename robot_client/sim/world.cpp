@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace scanloom::robot {
@@ -10,17 +11,22 @@ namespace scanloom::robot {
 World make_world(std::string name, std::vector<Box> solids, std::vector<Box> floors) {
     World world{std::move(name), std::move(solids), std::move(floors), {}};
     for (const Box& box : world.solids) {
-        const Point2 corners[] = {
-            {box.x_min, box.y_min}, {box.x_max, box.y_min}, {box.x_max, box.y_max}, {box.x_min, box.y_max}};
-        for (std::size_t i = 0; i < 4; ++i) world.outlines.push_back({corners[i], corners[(i + 1) % 4]});
+        world.outlines.push_back({box.x_min, box.y_min, box.x_max, box.y_min});
+        world.outlines.push_back({box.x_max, box.y_min, box.x_max, box.y_max});
+        world.outlines.push_back({box.x_max, box.y_max, box.x_min, box.y_max});
+        world.outlines.push_back({box.x_min, box.y_max, box.x_min, box.y_min});
     }
     return world;
 }
 
 double distance(const Segment& segment, const Point2& point) {
-    const Point2 along = segment.b - segment.a;
-    const double share = std::clamp((point - segment.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    return (point - segment.a - share * along).norm();
+    const double along_x = segment.bx - segment.ax;
+    const double along_y = segment.by - segment.ay;
+    const double to_x = point.x() - segment.ax;
+    const double to_y = point.y() - segment.ay;
+    const double share =
+        std::clamp((to_x * along_x + to_y * along_y) / (along_x * along_x + along_y * along_y), 0.0, 1.0);
+    return std::hypot(to_x - share * along_x, to_y - share * along_y);
 }
 
 double clearance(const World& world, const Point2& point) {

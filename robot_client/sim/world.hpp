@@ -11,8 +11,10 @@ namespace scanloom::robot {
 
 /// A straight piece of something that lasers see and robots bump into. Metres, in the world frame.
 struct Segment {
-    Point2 a;
-    Point2 b;
+    double ax = 0.0;
+    double ay = 0.0;
+    double bx = 0.0;
+    double by = 0.0;
 };
 
 /// A rectangle along the axes. Metres, in the world frame.

@@ -179,8 +179,10 @@ std::optional<TailShape> find_shape(TokenSpan tail, std::span<const std::size_t>
         if (tail.size() < trailer) continue;
         if (trailer > 0 && to_number(tail[tail.size() - 2])) continue;
         const std::size_t values = tail.size() - trailer;
+        // A leading count of 0 and a time of 0 are rather m and turn_axis of a line without ipc_timestamp.
+        const bool looks_counted = trailer == 3 && tail[0] == "0" && to_number(tail[tail.size() - 3]) == 0.0;
         for (const std::size_t body : body_sizes) {
-            if (values == body) return TailShape{0, trailer};
+            if (values == body && !looks_counted) return TailShape{0, trailer};
         }
         const auto remissions = values == 0 ? std::nullopt : to_count(tail[0]);
         if (remissions && *remissions <= kBeamsMax && values == 1 + *remissions + body_sizes.back()) {

@@ -1,0 +1,154 @@
+#include "tests/integration/robot_client/fake_server.hpp"
+
+#include "common/wire/frame_decoder.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+
+} // namespace
+
+struct FakeServer::Link {
+    Socket socket;
+    LinkScript script;
+    std::set<std::uint32_t> sensors;
+    std::uint64_t scans = 0;
+    std::uint64_t batches = 0;
+    std::size_t unacknowledged_bytes = 0;
+    bool is_silent = false;
+
+    asio::awaitable<bool> send(const wire::Message& message) {
+        if (is_silent) co_return true;
+        std::string frame;
+        wire::encode(message, frame);
+        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(frame), kUse);
+        co_return !failed;
+    }
+};
+
+FakeServer::FakeServer(asio::io_context& io, std::vector<LinkScript> scripts)
+    : io_(io), acceptor_(io, tcp::endpoint(asio::ip::address_v4::loopback(), 0)), endpoint_(acceptor_.local_endpoint()),
+      scripts_(std::move(scripts)) {
+    asio::co_spawn(io_, accept(), asio::detached);
+}
+
+void FakeServer::store_before(std::uint64_t scans) {
+    stored_.resize(scans);
+    for (std::uint64_t i = 0; i < scans; ++i) stored_[i].seq = i + 1;
+    durable_ = scans;
+}
+
+void FakeServer::close() { acceptor_.close(); }
+
+void FakeServer::reopen() {
+    acceptor_.open(endpoint_.protocol());
+    acceptor_.set_option(tcp::acceptor::reuse_address(true));
+    acceptor_.bind(endpoint_);
+    acceptor_.listen();
+    asio::co_spawn(io_, accept(), asio::detached);
+}
+
+asio::awaitable<void> FakeServer::accept() {
+    for (;;) {
+        auto [failed, socket] = co_await acceptor_.async_accept(kUse);
+        if (failed) co_return;
+        LinkScript script = scripts_[std::min(links_++, scripts_.size() - 1)];
+        asio::co_spawn(io_, serve(std::move(socket), std::move(script)), asio::detached);
+    }
+}
+
+asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
+    Link link{std::move(socket), std::move(script), {}, 0, 0, 0, false};
+    wire::FrameDecoder decoder(wire::kFrameBytesMax);
+    for (;;) {
+        const auto room = decoder.prepare(4096);
+        const auto [failed, count] = co_await link.socket.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        if (failed) co_return;
+        decoder.commit(count);
+        for (auto body = decoder.next(); body && *body; body = decoder.next()) {
+            const auto message = wire::decode(**body);
+            if (!message) {
+                faults_.push_back(message.error().message);
+                co_return;
+            }
+            if (!co_await answer(link, *message, (*body)->size() + wire::kLengthPrefixBytes)) co_return;
+        }
+    }
+}
+
+asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& message, std::size_t frame_bytes) {
+    if (const auto* hello = std::get_if<wire::Hello>(&message)) co_return co_await greet(link, *hello);
+    if (const auto* sensor = std::get_if<Sensor>(&message)) link.sensors.insert(sensor->id);
+    if (const auto* ping = std::get_if<wire::Ping>(&message)) co_return co_await link.send(wire::Pong{ping->nonce});
+    if (std::holds_alternative<wire::Goodbye>(message)) {
+        ++goodbyes_;
+        co_return false;
+    }
+    if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) co_return co_await take(link, *batch, frame_bytes);
+    co_return true;
+}
+
+asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
+    hellos_.push_back(hello);
+    if (link.script.refuse_hello) {
+        co_await link.send(*link.script.refuse_hello);
+        co_return false;
+    }
+    if (link.script.answer_hello_with) {
+        co_await asio::async_write(link.socket, asio::buffer(*link.script.answer_hello_with), kUse);
+        co_return false;
+    }
+    durable_ = stored_.size(); // what was stored without being acknowledged survived
+    co_return co_await link.send(
+        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes});
+}
+
+asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes) {
+    const LinkScript& script = link.script;
+    largest_batch_ = std::max(largest_batch_, batch.scans.size());
+    link.unacknowledged_bytes += frame_bytes;
+    if (link.unacknowledged_bytes > script.credit_bytes) {
+        faults_.push_back(
+            fmt::format("{} bytes under way, {} granted", link.unacknowledged_bytes, script.credit_bytes));
+    }
+    for (const Scan& scan : batch.scans) {
+        if (!link.sensors.contains(scan.sensor)) faults_.push_back("a scan of a sensor that was not described");
+        if (scan.seq != stored_.size() + 1) {
+            faults_.push_back(fmt::format("scan {} after scan {}", scan.seq, stored_.size()));
+        }
+        stored_.push_back(scan);
+        ++link.scans;
+        if (script.hang_up_after_scans == link.scans) {
+            if (script.error_after_scans) co_await link.send(*script.error_after_scans);
+            co_return false;
+        }
+        if (script.silent_after_scans == link.scans) link.is_silent = true;
+        if (script.stop_reading_after_scans == link.scans) {
+            asio::steady_timer never(io_, asio::steady_timer::time_point::max());
+            co_await never.async_wait(kUse);
+        }
+    }
+    if (++link.batches % script.ack_every != 0 || link.is_silent) co_return true;
+    durable_ = stored_.size();
+    link.unacknowledged_bytes = 0;
+    co_return co_await link.send(wire::Ack{durable_, durable_, script.credit_bytes});
+}
+
+} // namespace scanloom::robot

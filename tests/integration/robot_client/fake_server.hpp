@@ -1,0 +1,73 @@
+#pragma once
+
+#include "common/wire/messages.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// What a server does on one link. The first that is set and reached ends it.
+struct LinkScript {
+    std::optional<wire::LinkError> refuse_hello = {};      ///< instead of a welcome
+    std::optional<std::string> answer_hello_with = {};     ///< raw bytes instead of a welcome
+    std::optional<std::uint64_t> durable_seq = {};         ///< told in the welcome instead of the truth
+    std::optional<std::uint64_t> hang_up_after_scans = {}; ///< of this link
+    std::optional<wire::LinkError> error_after_scans = {}; ///< sent where hang_up_after_scans stands
+    std::optional<std::uint64_t> silent_after_scans = {};  ///< neither acks nor pongs from then on
+    std::optional<std::uint64_t> stop_reading_after_scans;
+    std::uint64_t credit_bytes = 20'000;
+    std::uint64_t ack_every = 1; ///< batches
+};
+
+/// Enough of a server to try a robot on: welcomes, stores, acknowledges, and fails as its scripts say, one a link;
+/// the last script holds for all further links. It checks what every server would: order of scans, sensors described
+/// before their scans, credit. What it finds wrong is in faults().
+class FakeServer {
+public:
+    FakeServer(boost::asio::io_context& io, std::vector<LinkScript> scripts);
+
+    [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+    /// Every connection is closed at once and no new one is taken, until reopen().
+    void close();
+    void reopen();
+
+    [[nodiscard]] const std::vector<Scan>& stored() const noexcept { return stored_; }
+    [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
+    [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
+    [[nodiscard]] int goodbyes() const noexcept { return goodbyes_; }
+    [[nodiscard]] std::size_t largest_batch() const noexcept { return largest_batch_; }
+    void store_before(std::uint64_t scans); ///< pretend that so many came in earlier runs
+
+private:
+    using Socket = boost::asio::ip::tcp::socket;
+    struct Link;
+
+    [[nodiscard]] boost::asio::awaitable<void> accept();
+    [[nodiscard]] boost::asio::awaitable<void> serve(Socket socket, LinkScript script);
+    [[nodiscard]] boost::asio::awaitable<bool> greet(Link& link, const wire::Hello& hello);
+    [[nodiscard]] boost::asio::awaitable<bool> answer(Link& link, const wire::Message& message,
+                                                      std::size_t frame_bytes);
+    [[nodiscard]] boost::asio::awaitable<bool> take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes);
+
+    boost::asio::io_context& io_;
+    boost::asio::ip::tcp::acceptor acceptor_;
+    boost::asio::ip::tcp::endpoint endpoint_;
+    std::vector<LinkScript> scripts_;
+    std::size_t links_ = 0;
+    std::vector<Scan> stored_;
+    std::uint64_t durable_ = 0;
+    std::vector<std::string> faults_;
+    std::vector<wire::Hello> hellos_;
+    int goodbyes_ = 0;
+    std::size_t largest_batch_ = 0;
+};
+
+} // namespace scanloom::robot

@@ -1,0 +1,253 @@
+#include "robot_client/uplink/uplink.hpp"
+
+#include "robot_client/source/recorded_source.hpp"
+#include "tests/integration/robot_client/fake_server.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::robot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::size_t kScans = 500;
+
+std::vector<Observation> recording(std::size_t scans = kScans) {
+    const auto sensor = std::make_shared<const Sensor>(
+        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 90}, 0.0, 0.0, 10.0});
+    std::vector<Observation> made(scans, Observation{sensor, {}});
+    for (std::size_t i = 0; i < scans; ++i) {
+        made[i].scan.stamp = static_cast<double>(i);
+        made[i].scan.pose.x = static_cast<double>(i + 1); // tells where it belongs
+        made[i].scan.ranges.assign(90, 1000);
+    }
+    return made;
+}
+
+/// A robot and a server in one thread.
+class UplinkTest : public testing::Test {
+protected:
+    void serve(std::vector<LinkScript> scripts) { server_.emplace(io_, std::move(scripts)); }
+
+    UplinkOptions options() {
+        UplinkOptions made;
+        made.host = "127.0.0.1";
+        made.port = std::to_string(server_->port());
+        made.conversation.hello.robot = "r1";
+        made.conversation.hello.session = "s1";
+        made.give_up_after = 20s;
+        made.on_trouble = [this](const Error& error) { troubles_.push_back(error.message); };
+        return made;
+    }
+
+    /// Runs until the uplink has its outcome.
+    Result<> run(const UplinkOptions& made, std::size_t scans = kScans) {
+        source_.emplace(recording(scans));
+        uplink_.emplace(io_, made, *source_);
+        Result<> outcome = Error{Errc::kTimeout, "it did not end"};
+        boost::asio::co_spawn(io_, uplink_->run(), [&](std::exception_ptr failed, Result<> result) {
+            EXPECT_FALSE(failed);
+            outcome = std::move(result);
+            io_.stop();
+        });
+        io_.run();
+        return outcome;
+    }
+
+    void expect_all_stored_once(std::size_t scans = kScans, std::size_t from_earlier = 0) {
+        EXPECT_THAT(server_->faults(), IsEmpty());
+        ASSERT_EQ(server_->stored().size(), scans);
+        for (std::size_t i = from_earlier; i < scans; ++i) {
+            EXPECT_EQ(server_->stored()[i].seq, i + 1);
+            EXPECT_EQ(server_->stored()[i].pose.x, static_cast<double>(i + 1));
+        }
+    }
+
+    boost::asio::io_context io_{1};
+    std::optional<FakeServer> server_;
+    std::optional<RecordedSource> source_;
+    std::optional<Uplink> uplink_;
+    std::vector<std::string> troubles_;
+};
+
+TEST_F(UplinkTest, StreamsEverythingAndSaysGoodbye) {
+    serve({{}});
+    const auto outcome = run(options());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_all_stored_once();
+    EXPECT_EQ(server_->goodbyes(), 1);
+    EXPECT_EQ(uplink_->status().acknowledged, kScans);
+    EXPECT_EQ(uplink_->status().reconnects, 0U);
+    EXPECT_GT(server_->largest_batch(), 1U) << "as fast as it goes, scans share frames";
+}
+
+TEST_F(UplinkTest, ATinyCreditSlowsItButStopsNothing) {
+    serve({{.credit_bytes = 700}});
+    EXPECT_TRUE(run(options(), 50));
+    expect_all_stored_once(50);
+}
+
+TEST_F(UplinkTest, SurvivesAnyNumberOfBrokenLinks) {
+    std::vector<LinkScript> scripts;
+    for (const std::uint64_t scans : {1U, 50U, 51U, 120U}) scripts.push_back({.hang_up_after_scans = scans});
+    scripts.push_back({.hang_up_after_scans = 33, .ack_every = 1000}); // stored, never acknowledged
+    scripts.push_back({});
+    serve(scripts);
+    const auto outcome = run(options());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_all_stored_once();
+    EXPECT_EQ(uplink_->status().reconnects, 5U);
+    EXPECT_EQ(troubles_.size(), 5U);
+}
+
+TEST_F(UplinkTest, RetryableErrorsAreRetriedFinalOnesEndIt) {
+    serve({{.refuse_hello = wire::LinkError{{Errc::kShuttingDown, "draining; come back"}, true}},
+           {.hang_up_after_scans = 20, .error_after_scans = wire::LinkError{{Errc::kStoreFailed, "disk full"}, true}},
+           {.hang_up_after_scans = 20,
+            .error_after_scans = wire::LinkError{{Errc::kGone, "session s1 was deleted"}, false}}});
+    const auto outcome = run(options());
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error(), (Error{Errc::kGone, "session s1 was deleted"}));
+    EXPECT_THAT(troubles_, ElementsAre("draining; come back", "disk full"));
+}
+
+TEST_F(UplinkTest, ASilentServerIsLeftForANewLink) {
+    serve({{.silent_after_scans = 10}, {}});
+    auto made = options();
+    made.conversation.ping_after = 50ms;
+    made.conversation.silence_max = 200ms;
+    EXPECT_TRUE(run(made));
+    EXPECT_THAT(troubles_, ElementsAre(HasSubstr("nothing came from the server")));
+    EXPECT_EQ(uplink_->status().reconnects, 1U);
+    expect_all_stored_once();
+}
+
+TEST_F(UplinkTest, AServerThatStopsReadingIsLeftForANewLink) {
+    serve({{.stop_reading_after_scans = 10, .credit_bytes = 100 << 20}, {.credit_bytes = 100 << 20}});
+    auto made = options();
+    made.conversation.ping_after = 50ms;
+    made.conversation.silence_max = 200ms;
+    EXPECT_TRUE(run(made, 40'000)) << "more than the kernel's buffers take, so that a write is stuck";
+    EXPECT_EQ(uplink_->status().acknowledged, 40'000U);
+    EXPECT_EQ(uplink_->status().reconnects, 1U);
+}
+
+TEST_F(UplinkTest, AFreshProgramContinuesTheRecordingWhereTheServerStands) {
+    serve({{}});
+    server_->store_before(200);
+    EXPECT_TRUE(run(options()));
+    expect_all_stored_once(kScans, 200);
+    EXPECT_EQ(uplink_->status().resumed_after, 200U);
+}
+
+TEST_F(UplinkTest, ARecordingTheServerHasWholeIsDoneAtOnce) {
+    serve({{}});
+    server_->store_before(kScans);
+    EXPECT_TRUE(run(options()));
+    EXPECT_EQ(server_->goodbyes(), 1);
+}
+
+TEST_F(UplinkTest, AServerWithMoreScansThanTheRecordingHasAnother) {
+    serve({{}});
+    server_->store_before(kScans + 1);
+    const auto outcome = run(options());
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("the recording only 500"));
+}
+
+TEST_F(UplinkTest, AServerThatLostAcknowledgedScansIsAClearError) {
+    serve({{.hang_up_after_scans = 100}, {.durable_seq = 3}});
+    const auto outcome = run(options());
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("are lost"));
+}
+
+TEST_F(UplinkTest, AProgramThatSpeaksSomethingElseIsAClearError) {
+    serve({{.answer_hello_with = "HTTP/1.1 400 Bad Request\r\n\r\n"}});
+    const auto outcome = run(options());
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("does not speak Scanloom's robot link"));
+}
+
+TEST_F(UplinkTest, WithoutAServerItGivesUpAndSaysWhy) {
+    serve({{}});
+    auto made = options();
+    server_->close();
+    made.give_up_after = 300ms;
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("gave up after 0.3 s"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("is scanloom-server running there?"));
+}
+
+TEST_F(UplinkTest, AServerThatComesLateIsFound) {
+    serve({{}});
+    const auto made = [&] {
+        auto options_with_reopening = options();
+        server_->close();
+        options_with_reopening.on_trouble = [this](const Error&) {
+            if (troubles_.empty()) server_->reopen();
+            troubles_.emplace_back("away");
+        };
+        return options_with_reopening;
+    }();
+    EXPECT_TRUE(run(made));
+    expect_all_stored_once();
+    EXPECT_EQ(troubles_.size(), 1U);
+}
+
+TEST_F(UplinkTest, InRealTimeEachScanGoesByItself) {
+    serve({{}});
+    auto made = options();
+    made.speed = 200.0; // 5 ms a scan
+    EXPECT_TRUE(run(made, 40));
+    expect_all_stored_once(40);
+    EXPECT_LE(server_->largest_batch(), 3U) << "a scan waits only where the machine was busy";
+}
+
+TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
+    serve({{}});
+    auto made = options();
+    made.speed = 10.0;
+    boost::asio::steady_timer timer(io_, 350ms);
+    timer.async_wait([&](boost::system::error_code) { uplink_->stop(); });
+    EXPECT_TRUE(run(made));
+    const auto status = uplink_->status();
+    EXPECT_GT(status.last, 0U);
+    EXPECT_LT(status.last, kScans);
+    EXPECT_EQ(status.acknowledged, status.last);
+    expect_all_stored_once(status.last);
+    EXPECT_EQ(server_->goodbyes(), 1);
+}
+
+TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {
+    serve({{.silent_after_scans = 1}});
+    auto made = options();
+    made.drain_max = 200ms;
+    boost::asio::steady_timer timer(io_, 100ms);
+    timer.async_wait([&](boost::system::error_code) { uplink_->stop(); });
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("were not acknowledged within 0.2 s"));
+}
+
+TEST_F(UplinkTest, TheHelloIsTheSameOnEveryLink) {
+    serve({{.hang_up_after_scans = 10}, {}});
+    auto made = options();
+    made.conversation.hello.create = SessionOptions{.cell_size = 0.1};
+    made.conversation.hello.client = "test";
+    EXPECT_TRUE(run(made));
+    ASSERT_EQ(server_->hellos().size(), 2U);
+    EXPECT_EQ(server_->hellos()[0], made.conversation.hello);
+    EXPECT_EQ(server_->hellos()[1], made.conversation.hello);
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,72 @@
+#include "robot_client/drive/wall_follower.hpp"
+
+#include "robot_client/drive/sectors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kTurnMax = std::numbers::pi / 4.0;
+
+Velocity first_step(const SectorRanges& nearest) { return WallFollower().step(nearest); }
+
+TEST(WallFollower, DrivesOnAndBearsRightInTheOpen) { EXPECT_EQ(first_step({5, 5, 5}), (Velocity{0.4, -0.05})); }
+
+TEST(WallFollower, SteersTowardsSixtyCentimetresFromTheWall) {
+    EXPECT_EQ(first_step({0.6, 5, 5}), (Velocity{0.4, 0.0}));
+    EXPECT_LT(first_step({0.68, 5, 5}).turn, 0.0) << "too far: to the right";
+    EXPECT_GT(first_step({0.5, 5, 5}).turn, 0.0) << "too near: to the left";
+    EXPECT_NEAR(first_step({0.5, 5, 5}).turn, 0.05, 1e-12);
+}
+
+TEST(WallFollower, TurnsLeftOnTheSpotBeforeAWallAhead) {
+    EXPECT_EQ(first_step({0.6, 0.39, 5}), (Velocity{0.0, kTurnMax}));
+    EXPECT_EQ(first_step({0.6, 0.41, 5}).forward, 0.4);
+}
+
+TEST(WallFollower, BacksOffFromWhatIsNear) {
+    EXPECT_EQ(first_step({5, 5, 0.34}).forward, -0.2);
+    EXPECT_EQ(first_step({0.34, 5, 5}).forward, -0.2);
+}
+
+TEST(WallFollower, StopsWhenVeryNearAndRecoversAfterThirtyStops) {
+    WallFollower follower;
+    const SectorRanges blocked{0.2, 5, 5};
+    for (int i = 0; i < 31; ++i) EXPECT_EQ(follower.step(blocked), (Velocity{0.0, 0.0})) << i;
+    for (int i = 0; i < 40; ++i) EXPECT_EQ(follower.step(blocked), (Velocity{-0.08, -0.6 * kTurnMax})) << i;
+    EXPECT_EQ(follower.step(blocked), (Velocity{0.0, 0.0})) << "40 steps of recovery are enough";
+}
+
+TEST(WallFollower, RecoveryEndsEarlyOnceThereIsRoom) {
+    WallFollower follower;
+    for (int i = 0; i < 31; ++i) static_cast<void>(follower.step({0.2, 5, 5}));
+    EXPECT_EQ(follower.step({0.2, 5, 5}).forward, -0.08);
+    EXPECT_EQ(follower.step({0.45, 5, 5}).forward, -0.08);
+    EXPECT_EQ(follower.step({0.45, 5, 5}).forward, 0.4);
+}
+
+TEST(WallFollower, StopsAreCountedInARow) {
+    WallFollower follower;
+    for (int round = 0; round < 3; ++round) {
+        for (int i = 0; i < 30; ++i) EXPECT_EQ(follower.step({0.2, 5, 5}), (Velocity{0.0, 0.0}));
+        EXPECT_EQ(follower.step({5, 5, 5}).forward, 0.4);
+    }
+}
+
+TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    Sensor laser;
+    laser.angles = UniformAngles{-180.0 * kDegree, 30.0 * kDegree, 12};
+    Scan scan; //     -180 -150 -120 -90  -60   -30   0   30        60  90   120  150
+    scan.ranges = {100, 100, 100, 900, 800, 2000, 1500, kNoReturn, 0, 3000, 100, 100};
+    const SectorRanges nearest = sector_ranges(scan, laser);
+    EXPECT_DOUBLE_EQ(nearest.right, 0.8);
+    EXPECT_DOUBLE_EQ(nearest.front, 1.5);
+    EXPECT_DOUBLE_EQ(nearest.left, 3.0);
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,75 @@
+#include "robot_client/sim/laser.hpp"
+
+#include "robot_client/sim/ray_casting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+TEST(Lasers, LookWhereTheirDescriptionSays) {
+    const auto ends = [](const char* name) {
+        const Sensor laser = *find_laser(name);
+        const std::size_t count = beam_count(laser.angles);
+        return std::array{static_cast<double>(count), beam_angle(laser.angles, 0) / kDegree,
+                          beam_angle(laser.angles, count - 1) / kDegree, laser.range_max};
+    };
+    const auto expect = [](std::array<double, 4> actual, std::array<double, 4> wanted) {
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(actual[i], wanted[i], 1e-9);
+    };
+    expect(ends("reference"), {684, -90, 90, 5});
+    expect(ends("lidar360"), {360, -180, 179, 12});
+    expect(ends("wide"), {1081, -135, 135, 30});
+    EXPECT_FALSE(find_laser("radar"));
+}
+
+TEST(Sweep, WithoutNoiseIsExactToTheMillimetre) {
+    const World room = make_room();
+    const Sensor laser = *find_laser("wide");
+    Random random(1);
+    const Pose2 pose{-3.0, -2.0, 0.7};
+    const auto ranges = sweep(room, laser, pose, std::nullopt, random);
+    ASSERT_EQ(ranges.size(), 1081U);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const double exact = cast_ray(room.outlines, {pose.x, pose.y}, pose.yaw + beam_angle(laser.angles, i));
+        EXPECT_NEAR(ranges[i] / 1000.0, exact, 0.0005000001);
+    }
+}
+
+TEST(Sweep, WhatIsBeyondTheRangeIsNoReturn) {
+    Sensor laser = *find_laser("lidar360");
+    laser.range_max = 0.5;
+    Random random(1);
+    for (const RangeMm range : sweep(make_room(), laser, {-3.0, -2.0, 0.0}, std::nullopt, random)) {
+        EXPECT_EQ(range, kNoReturn);
+    }
+}
+
+TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
+    const World room = make_room();
+    const Sensor laser = *find_laser("reference");
+    Random random(4);
+    const Pose2 pose{4.0, 0.0, 0.0}; // a wall a metre ahead
+    double squares = 0.0;
+    int count = 0;
+    for (int i = 0; i < 200; ++i) {
+        const auto exact = sweep(room, laser, pose, std::nullopt, random);
+        const auto noisy = sweep(room, laser, pose, Noise{.beam_angle = 0.0}, random);
+        for (std::size_t beam = 0; beam < exact.size(); ++beam) {
+            ASSERT_EQ(exact[beam] == kNoReturn, noisy[beam] == kNoReturn);
+            if (exact[beam] == kNoReturn || exact[beam] > 4800) continue; // there the range cuts the noise
+            const double difference = (static_cast<double>(noisy[beam]) - static_cast<double>(exact[beam])) / 1000.0;
+            squares += difference * difference;
+            ++count;
+        }
+    }
+    EXPECT_NEAR(std::sqrt(squares / count), 0.02, 0.001);
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,104 @@
+#include "robot_client/sim/ray_casting.hpp"
+
+#include "robot_client/sim/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(RayCasting, MeetsAWallWhereGeometrySays) {
+    const std::vector<Segment> wall = {{2.0, -1.0, 2.0, 1.0}};
+    EXPECT_NEAR(cast_ray(wall, {0, 0}, 0.0), 2.0, 1e-12);
+    EXPECT_NEAR(cast_ray(wall, {0, 0}, std::atan2(0.5, 2.0)), std::hypot(2.0, 0.5), 1e-12);
+    EXPECT_NEAR(cast_ray(wall, {0.5, 0}, 0.0), 1.5, 1e-12);
+    EXPECT_EQ(cast_ray(wall, {0, 0}, kPi), std::numeric_limits<double>::infinity()) << "behind";
+    EXPECT_EQ(cast_ray(wall, {0, 0}, std::atan2(1.1, 2.0)), std::numeric_limits<double>::infinity()) << "beside";
+}
+
+TEST(RayCasting, TheNearestWallCounts) {
+    const std::vector<Segment> walls = {{3, -1, 3, 1}, {1, -1, 1, 1}, {2, -1, 2, 1}};
+    EXPECT_NEAR(cast_ray(walls, {0, 0}, 0.0), 1.0, 1e-12);
+}
+
+/// The nearest solid by marching along the ray in small steps: slow, but sharing no formula with the code.
+double march(const World& world, const Point2& origin, double yaw, double step) {
+    const double step_x = step * std::cos(yaw);
+    const double step_y = step * std::sin(yaw);
+    for (double length = 0.0, x = origin.x(), y = origin.y(); length < 50.0; length += step, x += step_x, y += step_y) {
+        for (const Box& box : world.solids) {
+            if (x >= box.x_min && x <= box.x_max && y >= box.y_min && y <= box.y_max) return length;
+        }
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+class Worlds : public testing::TestWithParam<const char*> {
+protected:
+    World world_ = *find_world(GetParam());
+    Random random_{9};
+
+    Point2 free_place() {
+        for (;;) {
+            const Box& floor = world_.floors[random_.index(world_.floors.size())];
+            const Point2 place{random_.uniform(floor.x_min, floor.x_max), random_.uniform(floor.y_min, floor.y_max)};
+            if (clearance(world_, place) > 0.01) return place;
+        }
+    }
+};
+
+TEST_P(Worlds, RaysAgreeWithMarchingThroughTheSolids) {
+    constexpr double kStep = 0.002;
+    for (int i = 0; i < 50; ++i) {
+        const Point2 origin = free_place();
+        const double yaw = random_.uniform(-kPi, kPi);
+        const double exact = cast_ray(world_.outlines, origin, yaw);
+        const double marched = march(world_, origin, yaw, kStep);
+        // a march may step over the tip of a corner, so it may only be the longer one
+        EXPECT_LE(exact, marched + 1e-9);
+        const Point2 hit = origin + (exact + 1e-7) * Point2{std::cos(yaw), std::sin(yaw)};
+        EXPECT_LT(clearance(world_, hit), 1e-6) << "what stops a ray is a solid";
+    }
+}
+
+TEST_P(Worlds, NoRayLeavesTheWorldNotEvenThroughItsCorners) {
+    for (int i = 0; i < 20; ++i) {
+        const Point2 origin = free_place();
+        for (int beam = 0; beam < 3600; ++beam) {
+            ASSERT_LT(cast_ray(world_.outlines, origin, beam * kPi / 1800.0), 37.0);
+        }
+        for (const Segment& segment : world_.outlines) {
+            const double to_corner = std::atan2(segment.ay - origin.y(), segment.ax - origin.x());
+            ASSERT_LT(cast_ray(world_.outlines, origin, to_corner), 37.0);
+        }
+    }
+}
+
+TEST_P(Worlds, CullingFarSegmentsChangesNothingWithinTheRadius) {
+    for (int i = 0; i < 300; ++i) {
+        const Point2 origin = free_place();
+        const double yaw = random_.uniform(-kPi, kPi);
+        const double full = cast_ray(world_.outlines, origin, yaw);
+        const double culled = cast_ray(segments_near(world_.outlines, origin, 5.0), origin, yaw);
+        if (full <= 5.0) {
+            EXPECT_EQ(culled, full);
+        } else {
+            EXPECT_GT(culled, 5.0);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Worlds, testing::Values("room", "office"));
+
+TEST(FindWorld, AnUnknownNameListsTheWorldsThereAre) {
+    EXPECT_EQ(find_world("moon").error().message, "there is no world 'moon'; choose room or office");
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,126 @@
+#include "robot_client/sim/simulator.hpp"
+
+#include "robot_client/drive/wall_follower.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace scanloom::robot {
+namespace {
+
+Simulator make(const char* world, std::uint64_t seed, std::optional<Noise> noise = {},
+               const char* laser = "reference") {
+    return {{*find_world(world), *find_laser(laser), noise, seed}, std::make_unique<WallFollower>()};
+}
+
+TEST(Simulator, TheSameSeedGivesTheSameScans) {
+    auto first = make("office", 7, Noise{});
+    auto second = make("office", 7, Noise{});
+    auto other = make("office", 8, Noise{});
+    bool differs = false;
+    for (int i = 0; i < 100; ++i) {
+        const Scan scan = first.next_scan();
+        EXPECT_EQ(scan, second.next_scan());
+        differs |= scan != other.next_scan();
+    }
+    EXPECT_TRUE(differs);
+}
+
+TEST(Simulator, ScansComeTenTimesASecond) {
+    auto simulator = make("room", 1);
+    for (int i = 0; i < 50; ++i) EXPECT_NEAR(simulator.next_scan().stamp, 0.1 * i, 1e-9);
+}
+
+TEST(Simulator, OdometryWithoutNoiseIsTheTruePathFromItsStart) {
+    auto simulator = make("room", 2);
+    const Pose2 start = simulator.next_scan().pose;
+    Scan scan;
+    for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
+    const Pose2 believed = compose(start, *scan.odometry);
+    EXPECT_NEAR(believed.x, scan.pose.x, 1e-9);
+    EXPECT_NEAR(believed.y, scan.pose.y, 1e-9);
+}
+
+TEST(Simulator, OdometryWithNoiseDriftsButNotAway) {
+    auto simulator = make("room", 2, Noise{});
+    const Pose2 start = simulator.next_scan().pose;
+    Scan scan;
+    for (int i = 0; i < 600; ++i) scan = simulator.next_scan();
+    const Pose2 believed = compose(start, *scan.odometry);
+    const double drift = std::hypot(believed.x - scan.pose.x, believed.y - scan.pose.y);
+    EXPECT_GT(drift, 1e-4);
+    EXPECT_LT(drift, 2.0);
+}
+
+/// How one simulated robot fared.
+struct Drive {
+    double clearance_min = 10.0;
+    double path_length = 0.0;
+    double longest_stay = 0.0; // seconds within half a metre
+    std::size_t square_metres = 0;
+    std::uint64_t collisions = 0;
+};
+
+Drive watch(Simulator simulator, const World& world, double seconds) {
+    Drive drive;
+    std::set<std::pair<int, int>> visited;
+    Pose2 last = simulator.pose();
+    Pose2 stay = last;
+    double stay_since = 0.0;
+    const int scans = static_cast<int>(seconds / kScanPeriod);
+    for (int i = 0; i < scans; ++i) {
+        const Scan scan = simulator.next_scan();
+        const Pose2& pose = scan.pose;
+        drive.path_length += std::hypot(pose.x - last.x, pose.y - last.y);
+        drive.clearance_min = std::min(drive.clearance_min, clearance(world, {pose.x, pose.y}));
+        visited.emplace(static_cast<int>(std::floor(pose.x)), static_cast<int>(std::floor(pose.y)));
+        if (std::hypot(pose.x - stay.x, pose.y - stay.y) > 0.5) {
+            stay = pose;
+            stay_since = scan.stamp;
+        }
+        drive.longest_stay = std::max(drive.longest_stay, scan.stamp - stay_since);
+        last = pose;
+    }
+    drive.square_metres = visited.size();
+    drive.collisions = simulator.collisions();
+    return drive;
+}
+
+struct Setting {
+    const char* world;
+    const char* laser;
+    bool noisy;
+};
+
+class WallFollowerDrives : public testing::TestWithParam<Setting> {};
+
+TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandstill) {
+    const auto [name, laser, noisy] = GetParam();
+    const World world = *find_world(name);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const Drive drive = watch(make(name, seed, noisy ? std::optional(Noise{}) : std::nullopt, laser), world, 180.0);
+        SCOPED_TRACE(fmt::format("{} seed {}", name, seed));
+        EXPECT_EQ(drive.collisions, 0U);
+        EXPECT_GT(drive.clearance_min, 0.25);
+        EXPECT_LT(drive.longest_stay, 15.0);
+        EXPECT_GT(drive.path_length, 45.0);
+        EXPECT_GT(drive.square_metres, 15U);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
+                         testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
+                                         Setting{"office", "reference", false}, Setting{"office", "lidar360", true}));
+
+TEST(WallFollowerDrives, GoesAllAroundTheOffice) {
+    const World world = make_office();
+    const Drive drive = watch(make("office", 1), world, 300.0);
+    EXPECT_GT(drive.square_metres, 70U) << "the ring of corridors has some 80 m";
+}
+
+} // namespace
+} // namespace scanloom::robot

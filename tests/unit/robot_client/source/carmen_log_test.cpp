@@ -1,0 +1,313 @@
+#include "robot_client/source/carmen_log.hpp"
+
+#include "robot_client/source/recorded_source.hpp"
+
+#include <boost/iostreams/filter/bzip2.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filtering_stream.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace scanloom::robot {
+namespace {
+
+using testing::HasSubstr;
+namespace io = boost::iostreams;
+
+class CarmenLogFile : public testing::Test {
+protected:
+    std::filesystem::path write(std::string_view bytes) {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        const auto path = std::filesystem::path(testing::TempDir()) / fmt::format("scanloom_{}.log", test->name());
+        std::ofstream(path, std::ios::binary) << bytes;
+        paths_.push_back(path);
+        return path;
+    }
+
+    Result<CarmenLog> read(std::string_view bytes, const CarmenOptions& options = {}) {
+        return read_carmen_log(write(bytes), options, [&](const SkippedLine& line) { skipped_.push_back(line); });
+    }
+
+    void TearDown() override {
+        for (const auto& path : paths_) std::filesystem::remove(path);
+    }
+
+    std::vector<SkippedLine> skipped_;
+
+private:
+    std::vector<std::filesystem::path> paths_;
+};
+
+template <class Filter>
+std::string packed(std::string_view text, Filter filter) {
+    std::ostringstream out;
+    {
+        io::filtering_ostream stream;
+        stream.push(filter);
+        stream.push(out);
+        stream << text;
+    }
+    return out.str();
+}
+
+std::string gzip(std::string_view text) { return packed(text, io::gzip_compressor()); }
+std::string bzip2(std::string_view text) { return packed(text, io::bzip2_compressor()); }
+
+std::string flaser(double stamp, std::string_view ranges = "2 1.0 2.0") {
+    return fmt::format("FLASER {} {} 0 0 {} 0 0 {} host 1\n", ranges, stamp, stamp, stamp);
+}
+
+std::string robot_laser(std::string_view laser, std::string_view robot, double range_max = 30.0) {
+    return fmt::format("ROBOTLASER1 0 -1.5 3 0.1 {} 0.01 0 2 1.0 {} 0 {} {} 0 0 0 0 0 13.0 host 13.1\n", range_max,
+                       range_max, laser, robot);
+}
+
+constexpr std::string_view kManyScansHint = "no usable scan";
+
+TEST_F(CarmenLogFile, ReadsTheSamePlainAndPacked) {
+    std::string text = "# comment\r\n";
+    for (int i = 0; i < 3000; ++i) text += flaser(i);
+    const auto plain = read(text);
+    ASSERT_TRUE(plain);
+    EXPECT_EQ(plain->observations.size(), 3000U);
+    for (const std::string& bytes : {gzip(text), bzip2(text), gzip(text.substr(0, 999)) + gzip(text.substr(999)),
+                                     bzip2(text.substr(0, 999)) + bzip2(text.substr(999))}) {
+        const auto log = read(bytes);
+        ASSERT_TRUE(log) << log.error().message;
+        ASSERT_EQ(log->observations.size(), 3000U);
+        for (std::size_t i = 0; i < 3000; ++i) EXPECT_EQ(log->observations[i].scan, plain->observations[i].scan);
+    }
+}
+
+TEST_F(CarmenLogFile, ALastLineWithoutLineBreakCounts) {
+    auto text = flaser(1) + flaser(2);
+    text.pop_back();
+    EXPECT_EQ(read(text)->observations.size(), 2U);
+}
+
+TEST_F(CarmenLogFile, ScansComeInOrderOfTimeAndEqualTimesInOrderOfTheFile) {
+    const auto log = read(flaser(3, "1 0.3") + flaser(1, "1 0.1") + flaser(2, "1 0.21") + flaser(2, "1 0.22"));
+    ASSERT_TRUE(log);
+    std::vector<RangeMm> order;
+    for (const auto& observation : log->observations) order.push_back(observation.scan.ranges[0]);
+    EXPECT_EQ(order, (std::vector<RangeMm>{100, 210, 220, 300}));
+}
+
+TEST_F(CarmenLogFile, ALineWithoutStampTakesThatOfTheLineBefore) {
+    const auto log = read(flaser(5) + "FLASER 1 0.7 0 0 0 0 0 0\n" + flaser(4));
+    EXPECT_EQ(log->observations[1].scan.stamp, 5.0);
+    EXPECT_EQ(log->observations[2].scan.stamp, 5.0);
+    EXPECT_EQ(log->observations[2].scan.ranges[0], 700U);
+}
+
+TEST_F(CarmenLogFile, BrokenLinesAreSkippedCountedAndNamed) {
+    const auto log = read(flaser(1) + "FLASER 3 1 2\n" + flaser(2) + "FLASER 1 1.0 nan 0 0 0 0 0 3 host 3\n");
+    ASSERT_TRUE(log);
+    EXPECT_EQ(log->observations.size(), 2U);
+    EXPECT_EQ(log->skipped_lines, 2U);
+    ASSERT_EQ(skipped_.size(), 2U);
+    EXPECT_EQ(skipped_[0].line_number, 2U);
+    EXPECT_THAT(skipped_[0].reason, HasSubstr("3 beams are announced"));
+    EXPECT_EQ(skipped_[1].line_number, 4U);
+}
+
+TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryTheSecond) {
+    const auto log = read("FLASER 1 1.0 1 2 0.5 3 4 0.7 9.5 host 1\n");
+    const auto& [sensor, scan] = log->observations[0];
+    EXPECT_EQ(scan.pose, (Pose2{1, 2, 0.5}));
+    EXPECT_EQ(scan.odometry, (Pose2{3, 4, 0.7}));
+    EXPECT_EQ(sensor->mount, Pose2{});
+    EXPECT_EQ(sensor->range_max, kCarmenRangeMax);
+}
+
+TEST_F(CarmenLogFile, RangesAreMillimetresAndFailedOnesInvalid) {
+    const auto log = read(flaser(1, "6 1.2345 0 -1 nan inf 0.0004"));
+    EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1235, 0, 0, 0, 0, 0}));
+}
+
+TEST_F(CarmenLogFile, FlaserDropsBeamsWithoutReturnUnlessAskedToFree) {
+    const std::string text = flaser(1, "4 49.9994 49.9996 50 81.83");
+    EXPECT_EQ(read(text)->observations[0].scan.ranges, (std::vector<RangeMm>{49999, 0, 0, 0}));
+    CarmenOptions free;
+    free.no_return = NoReturn::kFree;
+    EXPECT_EQ(read(text, free)->observations[0].scan.ranges,
+              (std::vector<RangeMm>{49999, kNoReturn, kNoReturn, kNoReturn}));
+}
+
+TEST_F(CarmenLogFile, RobotLaserFreesBeamsWithoutReturnUnlessAskedToDrop) {
+    const std::string text = robot_laser("0 0 0", "0 0 0", 30.0);
+    const auto log = read(text);
+    EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
+    EXPECT_EQ(log->observations[0].sensor->range_max, 30.0);
+    CarmenOptions drop;
+    drop.no_return = NoReturn::kDrop;
+    EXPECT_EQ(read(text, drop)->observations[0].scan.ranges[1], kInvalidRange);
+}
+
+TEST_F(CarmenLogFile, AStatedRangeBeyond50MetresIsNotBelieved) {
+    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 81.9))->observations[0].sensor->range_max, kCarmenRangeMax);
+}
+
+TEST_F(CarmenLogFile, TheUsersMaximumRangeBeatsTheLogs) {
+    CarmenOptions options;
+    options.range_max = 1.5;
+    const auto log = read(flaser(1, "2 1.0 2.0") + robot_laser("0 0 0", "0 0 0", 30.0), options);
+    EXPECT_EQ(log->observations[0].sensor->range_max, 1.5);
+    EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1000, kInvalidRange}));
+    EXPECT_EQ(log->observations[1].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
+}
+
+TEST_F(CarmenLogFile, PoseTimesMountIsTheLaserPoseAsLogged) {
+    // the second line differs by the rounding of six decimals, the third by a real move of the laser
+    const auto log =
+        read(robot_laser("1.25 2.5 0.3", "1.0 2.4 0.31") + robot_laser("1.250001 2.5 0.3", "1.0 2.4 0.31") +
+             robot_laser("1.35 2.5 0.3", "1.0 2.4 0.31"));
+    ASSERT_EQ(log->observations.size(), 3U);
+    const double laser_x[] = {1.25, 1.250001, 1.35};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& [sensor, scan] = log->observations[i];
+        const Pose2 laser = compose(scan.pose, sensor->mount);
+        EXPECT_NEAR(laser.x, laser_x[i], 1e-12);
+        EXPECT_NEAR(laser.y, 2.5, 1e-12);
+        EXPECT_NEAR(laser.yaw, 0.3, 1e-12);
+        EXPECT_NEAR(scan.pose.x, 1.0, 1e-5);
+        EXPECT_NEAR(scan.pose.yaw, 0.31, 1e-5);
+    }
+    EXPECT_EQ(log->observations[0].sensor, log->observations[1].sensor);
+    EXPECT_NE(log->observations[0].sensor, log->observations[2].sensor);
+}
+
+TEST_F(CarmenLogFile, BeamCountsMayVaryUnderOneDescription) {
+    const auto log = read(robot_laser("0 0 0", "0 0 0") +
+                          "ROBOTLASER1 0 -1.5 3 0.1 30 0.01 0 3 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0 14.0 host 13.1\n");
+    EXPECT_EQ(log->observations[0].sensor, log->observations[1].sensor);
+    EXPECT_EQ(log->observations[1].scan.ranges.size(), 3U);
+}
+
+constexpr std::string_view kRawLaser = "RAWLASER1 0 -1.5 3 0.1 30 0.01 0 1 1.0 0 10.5 host 1\n";
+
+TEST_F(CarmenLogFile, RawLaserTakesItsPoseFromTheOdometryAroundIt) {
+    const auto log = read(std::string("PARAM robot_frontlaser_offset 0.1 1 h 1\nODOM 2 4 3.1 0 0 0 10.25 h 1\n") +
+                          std::string(kRawLaser) + "ODOM 4 8 -3.1 0 0 0 10.75 h 1\n");
+    ASSERT_TRUE(log);
+    const auto& [sensor, scan] = log->observations[0];
+    EXPECT_NEAR(scan.pose.x, 3.0, 1e-12);
+    EXPECT_NEAR(scan.pose.y, 6.0, 1e-12);
+    EXPECT_NEAR(std::abs(scan.pose.yaw), 3.14159, 1e-4) << "the short way round";
+    EXPECT_EQ(sensor->mount, (Pose2{0.1, 0, 0}));
+}
+
+TEST_F(CarmenLogFile, RawLaserWithoutOdometryNearIsSkipped) {
+    const auto log = read(flaser(1).replace(0, 6, "NOTHIN") + "ODOM 2 4 0 0 0 0 8 h 1\n" + std::string(kRawLaser));
+    ASSERT_FALSE(log);
+    EXPECT_THAT(skipped_.at(0).reason, HasSubstr("no ODOM line within 1 s"));
+}
+
+TEST_F(CarmenLogFile, RawLaserIsNotASecondViewOfAnotherLine) {
+    const auto log = read(robot_laser("0 0 0", "0 0 0") + "ODOM 2 4 0 0 0 0 10.5 h 1\n" + std::string(kRawLaser));
+    EXPECT_EQ(log->observations.size(), 1U);
+    EXPECT_EQ(log->skipped_lines, 0U);
+}
+
+TEST_F(CarmenLogFile, NothingUsableIsAnErrorThatNamesTheFile) {
+    for (const std::string_view text : {"", "# only\n", "FLASER 3 1 2\n", "\x01\x02\x03"}) {
+        const auto log = read(text);
+        ASSERT_FALSE(log);
+        EXPECT_THAT(log.error().message, HasSubstr(std::string(kManyScansHint)));
+        EXPECT_THAT(log.error().message, HasSubstr("NothingUsable"));
+    }
+}
+
+TEST_F(CarmenLogFile, CutOrDamagedPackedFilesAreErrorsThatNameFileAndLine) {
+    std::string text;
+    for (int i = 0; i < 20000; ++i) text += flaser(0.37 * i);
+    for (const std::string& whole : {gzip(text), bzip2(text)}) {
+        for (const std::size_t cut : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{5}}) {
+            const auto log = read(std::string_view(whole).substr(0, cut));
+            ASSERT_FALSE(log) << "cut after " << cut << " of " << whole.size();
+            EXPECT_THAT(log.error().message, HasSubstr("damaged or cut short after line"));
+        }
+        std::string flipped = whole;
+        flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x10);
+        const auto log = read(flipped);
+        ASSERT_FALSE(log);
+        EXPECT_THAT(log.error().message, HasSubstr("CutOrDamaged"));
+    }
+}
+
+TEST_F(CarmenLogFile, TextBeyondTheLimitIsRefused) {
+    CarmenOptions options;
+    options.limits.text_bytes_max = 100'000;
+    const auto log = read(gzip(std::string(10'000'000, '\n')), options);
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, Errc::kTooLarge);
+}
+
+TEST_F(CarmenLogFile, AnEndlessLineIsRefused) {
+    const auto log = read(flaser(1) + std::string(2'000'000, 'x'));
+    ASSERT_FALSE(log);
+    EXPECT_EQ(log.error().code, Errc::kTooLarge);
+    EXPECT_THAT(log.error().message, HasSubstr("after line 1"));
+}
+
+TEST_F(CarmenLogFile, MissingFilesAndFoldersAreErrors) {
+    const auto ignore = [](const SkippedLine&) {};
+    EXPECT_EQ(read_carmen_log("/nonexistent/x.clf", {}, ignore).error().code, Errc::kNotFound);
+    EXPECT_THAT(read_carmen_log(testing::TempDir(), {}, ignore).error().message, HasSubstr("not a regular file"));
+}
+
+struct RealLog {
+    const char* file;
+    std::size_t scans;
+    std::size_t beams;
+};
+
+class RealCarmenLog : public testing::TestWithParam<RealLog> {};
+
+TEST_P(RealCarmenLog, IsReadWhole) {
+    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / GetParam().file;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    const auto log = read_carmen_log(path, {}, [](const SkippedLine&) {});
+    ASSERT_TRUE(log) << log.error().message;
+    EXPECT_EQ(log->observations.size(), GetParam().scans);
+    EXPECT_EQ(log->skipped_lines, 0U);
+    double stamp = log->observations[0].scan.stamp;
+    for (const auto& [sensor, scan] : log->observations) {
+        EXPECT_EQ(scan.ranges.size(), GetParam().beams);
+        EXPECT_EQ(sensor, log->observations[0].sensor);
+        EXPECT_GE(scan.stamp, stamp);
+        stamp = scan.stamp;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Logs, RealCarmenLog,
+                         testing::Values(RealLog{"intel.clf.bz2", 13631, 180},
+                                         RealLog{"intel-corrected.log.gz", 910, 180},
+                                         RealLog{"fr079.clf.bz2", 4934, 360},
+                                         RealLog{"fr079-corrected.log.gz", 4791, 360}),
+                         [](const auto& log) { return fmt::format("Log{}", log.index); });
+
+TEST(RecordedSource, ContinuesBehindTheScansTheServerHas) {
+    std::vector<Observation> observations(5);
+    for (std::size_t i = 0; i < 5; ++i) observations[i].scan.stamp = static_cast<double>(i);
+    RecordedSource source(std::move(observations));
+    ASSERT_TRUE(source.resume_after(3));
+    EXPECT_EQ(source.next()->scan.stamp, 3.0);
+    EXPECT_EQ(source.next()->scan.stamp, 4.0);
+    EXPECT_FALSE(source.next());
+    EXPECT_EQ(source.scan_count(), 5U);
+}
+
+TEST(RecordedSource, AServerWithMoreScansHasAnotherRecording) {
+    RecordedSource source(std::vector<Observation>(5));
+    EXPECT_TRUE(source.resume_after(5));
+    EXPECT_EQ(source.resume_after(6).error().code, Errc::kConflict);
+}
+
+} // namespace
+} // namespace scanloom::robot

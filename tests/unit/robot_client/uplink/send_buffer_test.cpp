@@ -1,0 +1,98 @@
+#include "robot_client/uplink/send_buffer.hpp"
+
+#include "common/wire/messages.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace scanloom::robot {
+namespace {
+
+Observation observation(std::size_t beams = 10) {
+    Observation made{std::make_shared<const Sensor>(), {}};
+    made.scan.ranges.assign(beams, 1000);
+    return made;
+}
+
+SendBuffer with_scans(int count) {
+    SendBuffer buffer(1 << 20);
+    for (int i = 0; i < count; ++i) buffer.push(observation());
+    return buffer;
+}
+
+TEST(SendBuffer, NumbersScansFromWhereTheServerStands) {
+    SendBuffer buffer(1 << 20);
+    buffer.start_after(41);
+    buffer.push(observation());
+    EXPECT_EQ(buffer.unsent(0).scan.seq, 42U);
+    EXPECT_EQ(buffer.last(), 42U);
+}
+
+TEST(SendBuffer, HasNoRoomBeyondItsBytesUntilSomeAreAcknowledged) {
+    SendBuffer buffer(3 * wire_bytes_max(observation().scan));
+    int pushed = 0;
+    for (; buffer.has_room(); ++pushed) buffer.push(observation());
+    EXPECT_EQ(pushed, 3);
+    buffer.mark_sent(2);
+    EXPECT_FALSE(buffer.has_room()) << "sent is not stored";
+    buffer.acknowledge(1);
+    EXPECT_TRUE(buffer.has_room());
+}
+
+TEST(SendBuffer, RewindMakesWhatTheServerLacksUnsentAgain) {
+    SendBuffer buffer = with_scans(10);
+    buffer.mark_sent(8);
+    buffer.acknowledge(3);
+    ASSERT_TRUE(buffer.rewind(5));
+    EXPECT_EQ(buffer.acknowledged(), 5U);
+    EXPECT_EQ(buffer.unsent(0).scan.seq, 6U);
+    EXPECT_EQ(buffer.unsent_count(), 5U);
+}
+
+TEST(SendBuffer, RewindMayGoBeyondWhatWasSentSinceTheLastRewind) {
+    SendBuffer buffer = with_scans(10);
+    buffer.mark_sent(8);
+    ASSERT_TRUE(buffer.rewind(2)); // nothing is sent again before this link breaks, too
+    ASSERT_TRUE(buffer.rewind(7)) << "the first link had brought over 7";
+    EXPECT_EQ(buffer.unsent(0).scan.seq, 8U);
+}
+
+TEST(SendBuffer, ScansTheServerLostAreAClearError) {
+    SendBuffer buffer = with_scans(10);
+    buffer.mark_sent(8);
+    buffer.acknowledge(6);
+    const auto lost = buffer.rewind(4);
+    ASSERT_FALSE(lost);
+    EXPECT_THAT(lost.error().message, testing::HasSubstr("scans 5 to 6 are lost"));
+}
+
+TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
+    SendBuffer buffer = with_scans(10);
+    buffer.mark_sent(8);
+    EXPECT_THAT(buffer.rewind(9).error().message, testing::HasSubstr("another program"));
+}
+
+TEST(WireBytesMax, IsNeverLessThanWhatTheScanTakes) {
+    for (const std::size_t beams : {1U, 180U, 4096U}) {
+        for (int variant = 0; variant < 4; ++variant) {
+            Scan scan;
+            scan.seq = std::numeric_limits<std::uint64_t>::max();
+            scan.stamp = 1e300;
+            scan.sensor = 63;
+            scan.pose = {1e6, -1e6, 1};
+            scan.odometry = scan.pose;
+            scan.ranges.assign(beams, kNoReturn);
+            if (variant & 1) scan.intensities.assign(beams, std::numeric_limits<std::uint32_t>::max());
+            if (variant & 2) scan.angles = ExplicitAngles(beams, 0.5);
+            if (variant == 1) scan.angles = UniformAngles{0.5, 0.001, static_cast<std::uint32_t>(beams)};
+            std::string frame;
+            wire::encode(wire::ScanBatch{{scan}}, frame);
+            EXPECT_LE(frame.size(), wire_bytes_max(scan) + 20);
+        }
+    }
+}
+
+} // namespace
+} // namespace scanloom::robot
