@@ -1,4 +1,5 @@
 #include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 #include <boost/json/parse.hpp>
 #include <gtest/gtest.h>

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <system_error>
 
 namespace scanloom::test {
@@ -65,17 +64,6 @@ int ChildProcess::wait() {
     while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {}
     ended_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     return *ended_;
-}
-
-TemporaryDirectory::TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "scanloom-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), "mkdtemp");
-    path_ = name;
-}
-
-TemporaryDirectory::~TemporaryDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
 }
 
 } // namespace scanloom::test
