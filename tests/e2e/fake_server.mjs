@@ -108,6 +108,8 @@ export class FakeSession {
 
 export class FakeServer {
   sessions = new Map();
+  /** Path of every request to the API, in order. */
+  requests = [];
   /** Path and query of every tile asked for, in order. */
   tileRequests = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
@@ -168,6 +170,7 @@ export class FakeServer {
   }
 
   answerApi(url, response) {
+    this.requests.push(url.pathname);
     if (this.failure) return problem(response, this.failure.status, this.failure.title, this.failure.detail);
     const [, , , , encodedName, ...rest] = url.pathname.split('/');
     if (encodedName === undefined) {

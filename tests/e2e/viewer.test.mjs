@@ -207,6 +207,15 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await says(page, '#cursor-value', /% occupied/);
   });
 
+  it('tells how far a robot has come as soon as its path is drawn', async () => {
+    const session = painted('map');
+    session.move('r1', 2, 2, 0);
+    session.move('r1', 5, 6, 0);
+    await open();
+    await says(page, '[data-robot="r1"] .row-detail', /5\.0 m/);
+    assert.equal(countOf('/api/v1/sessions/map'), 1, 'without asking for the session again');
+  });
+
   it('follows a robot until the person moves the map', async () => {
     const session = painted('map');
     session.move('r1', 2, 2, 0);
@@ -261,6 +270,10 @@ describe('the viewer', { timeout: 180_000 }, () => {
     const session = server.add(new FakeSession(name, id));
     session.paint(256, 255, percent);
     return session;
+  }
+
+  function countOf(path) {
+    return server.requests.filter((each) => each === path).length;
   }
 
   function tilePaths() {

@@ -54,7 +54,10 @@ export class Viewer {
           this.parts.map.showTiles(tiles);
           this.parts.cursor.update();
         },
-        tracks: (tracks) => this.parts.map.showTracks(tracks),
+        tracks: (tracks) => {
+          this.parts.map.showTracks(tracks);
+          this.parts.robots.refresh();
+        },
         gone: () => {
           this.clear();
           this.parts.notice.show({ kind: seen ? 'deleted' : 'missing', name });

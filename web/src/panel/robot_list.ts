@@ -40,6 +40,11 @@ export class RobotList {
     this.rows.show(robots);
   }
 
+  /** The paths have grown. */
+  refresh(): void {
+    this.rows.show(this.robots);
+  }
+
   clear(): void {
     this.robots = [];
     this.rows.show([]);
