@@ -13,8 +13,9 @@ namespace {
 
 constexpr const char* kAbout = "Keeps the scans of robots in a durable log and serves the maps woven from it.\n"
                                "Prints one line of JSON with its ports when it is ready.";
-constexpr const char* kFooter = "Every option may also stand in the file of --config (TOML) or in the environment "
-                                "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.";
+constexpr const char* kFooter =
+    "Every option may also stand in the file of --config (TOML) or in the environment "
+    "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.";
 
 /// As the parser fills it, before it is settled.
 struct Raw {
@@ -32,7 +33,8 @@ std::filesystem::path default_web() {
 }
 
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
-    app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")->capture_default_str();
+    app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
+        ->capture_default_str();
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
     app.add_option("--web", options.web, "Directory of the viewer's files");
@@ -42,7 +44,8 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--log-level", options.log_level, "How much is told on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
         ->capture_default_str();
-    app.add_flag("--insecure", options.insecure, "Listen beyond this machine, although anybody there may send and read");
+    app.add_flag("--insecure", options.insecure,
+                 "Listen beyond this machine, although anybody there may send and read");
 }
 
 Result<> settle(const Raw& raw, ServerOptions& options) {
@@ -109,10 +112,11 @@ Result<> check_guarded(const ServerOptions& options) {
     if (options.insecure) return {};
     for (const auto& endpoint : {options.listen, options.http}) {
         if (endpoint.address().is_loopback()) continue;
-        return Error{Errc::kInvalidField,
-                     fmt::format("{} can be reached from other machines and nothing guards it; listen on 127.0.0.1, or say "
-                                 "--insecure if everybody there may send and read",
-                                 endpoint.address().to_string())};
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("{} can be reached from other machines and nothing guards it; listen on 127.0.0.1, or say "
+                        "--insecure if everybody there may send and read",
+                        endpoint.address().to_string())};
     }
     return {};
 }

@@ -17,10 +17,10 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
-    std::filesystem::path web;             ///< the viewer's files
-    std::size_t threads = 1;               ///< that weave, and as many that answer requests
+    std::filesystem::path web; ///< the viewer's files
+    std::size_t threads = 1;   ///< that weave, and as many that answer requests
     std::string log_level = "info";
-    bool insecure = false;                 ///< listen beyond loopback without a guard
+    bool insecure = false; ///< listen beyond loopback without a guard
 };
 
 /// Nothing to run: how to end, and what to say (on standard error when the code is not 0).

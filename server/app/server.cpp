@@ -33,7 +33,8 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web)
     : options_(options), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
-      serving_(std::max<std::size_t>(2, options.threads)), // a request that waits for the disk must not hold up all others
+      serving_(
+          std::max<std::size_t>(2, options.threads)), // a request that waits for the disk must not hold up all others
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
       patience_(io_) {}
 
@@ -57,16 +58,17 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
 Result<> Server::listen() {
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
-            io_, options_.listen, ingest::LinkServices{sessions_, serving_.get_executor()}, ingest::IngestConfig{});
+            io_, options_.listen, ingest::LinkServices{sessions_, serving_.get_executor(), metrics_.ingest()},
+            ingest::IngestConfig{});
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
     }
     http::ServerConfig config;
     config.endpoint = options_.http;
-    auto http = http::Server::listen(io_, serving_.get_executor(), config,
-                                     [this](const http::Request& request) { return api_.answer(request); },
-                                     metrics_.http());
+    auto http = http::Server::listen(
+        io_, serving_.get_executor(), config, [this](const http::Request& request) { return api_.answer(request); },
+        metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};
@@ -92,8 +94,8 @@ Result<> Server::run() {
 void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
-    spdlog::info("robots: {}:{}, people: http://{}:{}/, store: {}", options_.listen.address().to_string(), ingest_->port(),
-                 options_.http.address().to_string(), http_->port(), options_.store.string());
+    spdlog::info("robots: {}:{}, people: http://{}:{}/, store: {}", options_.listen.address().to_string(),
+                 ingest_->port(), options_.http.address().to_string(), http_->port(), options_.store.string());
 }
 
 void Server::wait_for_signal() {

@@ -55,13 +55,17 @@ asio::awaitable<void> IngestServer::accept() {
         if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
         if (open_ >= config_.links_max + kTurnedAwayMax) continue;
         ++open_;
+        services_.counters.links_open.Increment();
         auto link = std::make_shared<RobotLink>(std::move(socket), services_, config_.link);
         asio::co_spawn(
             link->executor(),
             [link, full, links_max = config_.links_max] {
                 return full ? link->turn_away(too_many(links_max)) : link->run();
             },
-            asio::bind_executor(acceptor_.get_executor(), [this](std::exception_ptr) { --open_; }));
+            asio::bind_executor(acceptor_.get_executor(), [this](std::exception_ptr) {
+                --open_;
+                services_.counters.links_open.Decrement();
+            }));
     }
 }
 

@@ -73,6 +73,7 @@ asio::awaitable<void> RobotLink::run() {
     }
     if (session_) session_->leave(self);
     if (ended_by_) served = *ended_by_;
+    if (!served) services_.counters.failed(served.error().code).Increment();
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
     spdlog::info("robot '{}' at {} left: {}", robot_, peer_,
@@ -187,6 +188,7 @@ Result<> RobotLink::handle(wire::Message message) {
         return {};
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
+        services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         if (auto ok = charge_batch(); !ok) return ok.error();
         session_->submit(self, std::move(batch->scans), frame_bytes_);
         return {};

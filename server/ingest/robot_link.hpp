@@ -2,6 +2,7 @@
 
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
 
@@ -30,6 +31,7 @@ struct LinkConfig {
 struct LinkServices {
     session::SessionRegistry& sessions;
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
+    metrics::IngestCounters& counters;
 };
 
 /// One robot's connection, from the hello to the farewell.

@@ -21,15 +21,13 @@ const prometheus::Histogram::BucketBoundaries kSecondsBuckets = {0.0005, 0.001, 
 
 IngestCounters::IngestCounters(prometheus::Registry& registry)
     : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
-      scans_received(counter(registry, "scanloom_scans_received_total", "Well-formed scans that robots sent.")),
-      scans_applied(counter(registry, "scanloom_scans_applied_total", "Scans that are durable and in their map.")),
-      scans_duplicates(counter(registry, "scanloom_scans_duplicates_total", "Scans sent again and dropped.")) {
+      scans_received(counter(registry, "scanloom_scans_received_total", "Well-formed scans that robots sent.")) {
     auto& family = prometheus::BuildCounter()
-                       .Name("scanloom_scans_rejected_total")
-                       .Help("Scans and frames that were refused, by reason.")
+                       .Name("scanloom_links_failed_total")
+                       .Help("Links that ended without a goodbye, by reason.")
                        .Register(registry);
     for (int code = 0; name_of(static_cast<Errc>(code)) != "unknown"; ++code) {
-        rejected_.push_back(&family.Add({{"reason", std::string(name_of(static_cast<Errc>(code)))}}));
+        failed_.push_back(&family.Add({{"reason", std::string(name_of(static_cast<Errc>(code)))}}));
     }
 }
 

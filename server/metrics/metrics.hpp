@@ -20,17 +20,13 @@ public:
     explicit IngestCounters(prometheus::Registry& registry);
 
     prometheus::Gauge& links_open;
-    prometheus::Counter& scans_received;   ///< well-formed scans that arrived
-    prometheus::Counter& scans_applied;    ///< in the log and in the map
-    prometheus::Counter& scans_duplicates; ///< sent again after a reconnect and dropped
+    prometheus::Counter& scans_received; ///< well-formed scans that arrived
 
-    /// Scans or frames that were refused, by the reason. Pre: one of the enumerators of Errc.
-    [[nodiscard]] prometheus::Counter& rejected(Errc reason) const {
-        return *rejected_[static_cast<std::size_t>(reason)];
-    }
+    /// Links that ended without a goodbye, by the reason. Pre: one of the enumerators of Errc.
+    [[nodiscard]] prometheus::Counter& failed(Errc reason) const { return *failed_[static_cast<std::size_t>(reason)]; }
 
 private:
-    std::vector<prometheus::Counter*> rejected_; // by Errc
+    std::vector<prometheus::Counter*> failed_; // by Errc
 };
 
 /// What the HTTP server counts. Thread: any.

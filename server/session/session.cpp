@@ -21,9 +21,9 @@ constexpr std::size_t kRobotsMax = 1024;      // of one session
 } // namespace
 
 Session::Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
-                 boost::asio::any_io_executor compute)
-    : info_(std::move(info)), log_(log), strand_(std::move(compute)), projection_(std::move(projection)),
-      appended_(projection_.revision()), checkpointed_(checkpointed) {
+                 boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters)
+    : info_(std::move(info)), log_(log), counters_(std::move(counters)), strand_(std::move(compute)),
+      projection_(std::move(projection)), appended_(projection_.revision()), checkpointed_(checkpointed) {
     forget_what_is_not_durable();
     publish();
 }
@@ -137,7 +137,10 @@ void Session::take(Member& member, std::vector<Scan> scans, std::size_t bytes) {
     Submission submission{static_cast<RobotIndex>(&member - members_.data()), {}, bytes};
     for (std::size_t n = 0; n < scans.size(); ++n) {
         Scan& scan = scans[n];
-        if (scan.seq <= member.received_seq) continue; // sent again after a reconnect: the log has it
+        if (scan.seq <= member.received_seq) { // sent again after a reconnect: the log has it
+            ++counters_->scans_duplicates;
+            continue;
+        }
         if (auto ok = check_next(member, scan); !ok) {
             enqueue(std::move(submission)); // the scans before it have been received and count as such
             return fail(member, prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error()));
@@ -212,6 +215,7 @@ Result<> Session::fold(const Group& group) {
             if (auto folded = projection_.fold(entry); !folded) return folded.error();
             if (const auto* taken = std::get_if<ScanTaken>(&entry)) {
                 members_[submission.robot].durable_seq = taken->scan.seq;
+                ++counters_->scans_applied;
             }
         }
     }

@@ -8,6 +8,7 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/strand.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -26,6 +27,12 @@ struct SessionInfo {
     std::string name;
     double created = 0.0; ///< seconds since the epoch
     mapping::MapConfig config;
+};
+
+/// What all sessions count together. Thread: any.
+struct SessionCounters {
+    std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
+    std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
 };
 
 /// What a session tells the link of a robot. Called on the session's strand: hand over, do not block.
@@ -59,7 +66,8 @@ public:
     /// A session whose projection has been recovered from the log up to its end.
     /// `checkpointed` is the revision that its stored checkpoint holds.
     Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
-            boost::asio::any_io_executor compute);
+            boost::asio::any_io_executor compute,
+            std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>());
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
@@ -140,6 +148,7 @@ private:
 
     SessionInfo info_;
     store::ScanLog& log_;
+    const std::shared_ptr<SessionCounters> counters_;
     boost::asio::strand<boost::asio::any_io_executor> strand_;
 
     // On the strand only.

@@ -41,7 +41,8 @@ void SessionRegistry::recover_one(const store::StoredSession& stored) {
         auto recovered = session::recover(log_, stored.id, *config);
         if (!recovered) return recovered.error();
         return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
-                                         std::move(recovered->projection), recovered->checkpointed, log_, compute_);
+                                         std::move(recovered->projection), recovered->checkpointed, log_, compute_,
+                                         counters_);
     };
     auto session = weave();
     const std::unique_lock lock(mutex_);
@@ -104,7 +105,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
         log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
     if (!id) return id.error();
     auto session = std::make_shared<Session>(SessionInfo{*id, std::string(name), created, *config},
-                                             mapping::Projection(*config), 0, log_, compute_);
+                                             mapping::Projection(*config), 0, log_, compute_, counters_);
     const std::unique_lock lock(mutex_);
     sessions_.emplace(name, session);
     return session;

@@ -51,6 +51,8 @@ public:
     /// Pre  as for remove().
     void drain();
 
+    [[nodiscard]] const SessionCounters& counters() const noexcept { return *counters_; }
+
     [[nodiscard]] bool is_draining() const noexcept { return draining_; }
 
 private:
@@ -64,6 +66,7 @@ private:
     store::ScanLog& log_;
     boost::asio::any_io_executor compute_;
     std::function<double()> now_;
+    const std::shared_ptr<SessionCounters> counters_ = std::make_shared<SessionCounters>();
     std::atomic<bool> draining_ = false;
 
     std::mutex changing_;             // held over create() and remove(), which write to the store first

@@ -22,12 +22,14 @@ const std::filesystem::path kIntel = std::filesystem::path(SCANLOOM_SOURCE_DIR) 
 Stream real_log() { return {{"replay", kIntel.string()}, 13'631}; }
 
 Stream simulated() {
-    return {{"simulate", "--world", "office", "--drive", "wall_follower", "--seed", "7", "--speed", "0", "--scans", "3000"},
-            3000};
+    return {
+        {"simulate", "--world", "office", "--drive", "wall_follower", "--seed", "7", "--speed", "0", "--scans", "3000"},
+        3000};
 }
 
 std::vector<std::string> robot_arguments(const RunningServer& server, const Stream& stream) {
-    std::vector<std::string> arguments{"--server", server.robot_address(), "--session", "s", "--robot", "r", "--cell-size", "0.1"};
+    std::vector<std::string> arguments{"--server", server.robot_address(), "--session", "s", "--robot",
+                                       "r",        "--cell-size",          "0.1"};
     arguments.insert(arguments.end(), stream.source.begin(), stream.source.end());
     return arguments;
 }
@@ -58,7 +60,8 @@ bool wait_for_scans(const RunningServer& server, std::uint64_t scans) {
     for (;;) {
         const auto answer = server.get("/api/v1/sessions/s");
         if (answer.status != 200 && answer.status != 404) return false;
-        if (answer.status == 200 && boost::json::parse(answer.body).at("scans").to_number<std::uint64_t>() > scans) return true;
+        if (answer.status == 200 && boost::json::parse(answer.body).at("scans").to_number<std::uint64_t>() > scans)
+            return true;
     }
 }
 
@@ -69,7 +72,8 @@ void kill_again_and_again(const Stream& stream, unsigned seed, int kills) {
     ChildProcess robot(program("scanloom-robot"), robot_arguments(*server, stream), place.path() / "robot");
     std::mt19937 random(seed);
     for (int kill = 0; kill < kills; ++kill) {
-        const std::uint64_t after = stream.scans * static_cast<std::uint64_t>(kill) / static_cast<std::uint64_t>(kills + 1) + random() % 50;
+        const std::uint64_t after =
+            stream.scans * static_cast<std::uint64_t>(kill) / static_cast<std::uint64_t>(kills + 1) + random() % 50;
         ASSERT_TRUE(wait_for_scans(*server, after));
         server->process().signal(SIGKILL);
         EXPECT_EQ(server->process().wait(), -SIGKILL);

@@ -31,7 +31,7 @@ public:
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor()}, config);
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest()}, config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
     }
@@ -65,6 +65,7 @@ private:
     boost::asio::any_io_executor pool() { return compute_.get_executor(); }
 
     boost::asio::thread_pool compute_{2};
+    metrics::Metrics metrics_{"test"};
     boost::asio::thread_pool may_wait_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;

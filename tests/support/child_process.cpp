@@ -61,7 +61,8 @@ void ChildProcess::signal(int number) const { kill(pid_, number); }
 int ChildProcess::wait() {
     if (ended_) return *ended_;
     int status = 0;
-    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
     ended_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
     return *ended_;
 }

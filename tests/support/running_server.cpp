@@ -13,7 +13,8 @@ namespace scanloom::test {
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
 
-HttpAnswer http_request(std::uint16_t port, const std::string& method, const std::string& target, const std::string& body) {
+HttpAnswer http_request(std::uint16_t port, const std::string& method, const std::string& target,
+                        const std::string& body) {
     asio::io_context io;
     asio::ip::tcp::socket socket(io);
     socket.connect({asio::ip::address_v4::loopback(), port});
@@ -38,8 +39,8 @@ RunningServer::RunningServer(const std::filesystem::path& store, const std::file
                              std::uint16_t robot_port, std::uint16_t http_port) {
     process_ = std::make_unique<ChildProcess>(
         program("scanloom-server"),
-        std::vector<std::string>{"--store", store.string(), "--listen", "127.0.0.1:" + std::to_string(robot_port), "--http",
-                                 "127.0.0.1:" + std::to_string(http_port)},
+        std::vector<std::string>{"--store", store.string(), "--listen", "127.0.0.1:" + std::to_string(robot_port),
+                                 "--http", "127.0.0.1:" + std::to_string(http_port)},
         log);
     const auto line = process_->read_line();
     if (!line) throw std::runtime_error("scanloom-server ended before it was ready; see " + log.string());
@@ -50,7 +51,8 @@ RunningServer::RunningServer(const std::filesystem::path& store, const std::file
 
 boost::json::value RunningServer::get_json(const std::string& target) const {
     const auto answer = get(target);
-    if (answer.status != 200) throw std::runtime_error(target + " answered " + std::to_string(answer.status) + ": " + answer.body);
+    if (answer.status != 200)
+        throw std::runtime_error(target + " answered " + std::to_string(answer.status) + ": " + answer.body);
     return boost::json::parse(answer.body);
 }
 

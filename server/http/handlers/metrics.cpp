@@ -33,6 +33,10 @@ Families session_families(const session::SessionRegistry& sessions) {
         gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.list().size())),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
                   static_cast<double>(sessions.damaged().size())),
+        counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
+                    static_cast<double>(sessions.counters().scans_applied)),
+        counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
+                    static_cast<double>(sessions.counters().scans_duplicates)),
     };
 }
 

@@ -21,8 +21,7 @@ TEST(Metrics, CountersStartAtZeroSoThatRatesCanBeTaken) {
     const Metrics metrics("1");
     const auto text = to_text(metrics.collect());
     for (const auto* line :
-         {"scanloom_scans_received_total 0\n", "scanloom_scans_applied_total 0\n",
-          "scanloom_scans_duplicates_total 0\n", "scanloom_scans_rejected_total{reason=\"out_of_order\"} 0\n",
+         {"scanloom_scans_received_total 0\n", "scanloom_links_failed_total{reason=\"out_of_order\"} 0\n",
           "scanloom_links_open 0\n", "scanloom_http_requests_total{code=\"5xx\"} 0\n",
           "scanloom_http_request_seconds_count 0\n"}) {
         EXPECT_THAT(text, HasSubstr(line));
@@ -32,13 +31,13 @@ TEST(Metrics, CountersStartAtZeroSoThatRatesCanBeTaken) {
 TEST(Metrics, WhatIsCountedIsShown) {
     Metrics metrics("1");
     metrics.ingest().scans_received.Increment(3);
-    metrics.ingest().rejected(Errc::kMalformed).Increment();
-    metrics.ingest().rejected(Errc::kUnreachable).Increment(2);
+    metrics.ingest().failed(Errc::kMalformed).Increment();
+    metrics.ingest().failed(Errc::kUnreachable).Increment(2);
     metrics.http().answered(304).Increment();
     const auto text = to_text(metrics.collect());
     EXPECT_THAT(text, HasSubstr("scanloom_scans_received_total 3\n"));
-    EXPECT_THAT(text, HasSubstr("scanloom_scans_rejected_total{reason=\"malformed\"} 1\n"));
-    EXPECT_THAT(text, HasSubstr("scanloom_scans_rejected_total{reason=\"unreachable\"} 2\n"));
+    EXPECT_THAT(text, HasSubstr("scanloom_links_failed_total{reason=\"malformed\"} 1\n"));
+    EXPECT_THAT(text, HasSubstr("scanloom_links_failed_total{reason=\"unreachable\"} 2\n"));
     EXPECT_THAT(text, HasSubstr("scanloom_http_requests_total{code=\"3xx\"} 1\n"));
 }
 
