@@ -80,8 +80,8 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-server {}", kVersion));
     add_options(app, options, raw);
-    read_settings_from_environment_and_file(app);
     try {
+        read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
         if (reason.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usage_error(reason.what());

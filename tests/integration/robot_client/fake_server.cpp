@@ -96,7 +96,10 @@ asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
 asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& message, std::size_t frame_bytes) {
     if (const auto* hello = std::get_if<wire::Hello>(&message)) co_return co_await greet(link, *hello);
     if (const auto* sensor = std::get_if<Sensor>(&message)) link.sensors.insert(sensor->id);
-    if (const auto* ping = std::get_if<wire::Ping>(&message)) co_return co_await link.send(wire::Pong{ping->nonce});
+    if (const auto* ping = std::get_if<wire::Ping>(&message)) {
+        const wire::Message pong = wire::Pong{ping->nonce};
+        co_return co_await link.send(pong);
+    }
     if (std::holds_alternative<wire::Goodbye>(message)) {
         ++goodbyes_;
         co_return false;
@@ -108,7 +111,8 @@ asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& messag
 asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
     hellos_.push_back(hello);
     if (link.script.refuse_hello) {
-        co_await link.send(*link.script.refuse_hello);
+        const wire::Message refusal = *link.script.refuse_hello;
+        co_await link.send(refusal);
         co_return false;
     }
     if (link.script.answer_hello_with) {
@@ -116,8 +120,10 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
         co_return false;
     }
     durable_ = stored_.size(); // what was stored without being acknowledged survived
-    co_return co_await link.send(
-        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes});
+    // Messages have names here: g++ 12 destroys temporaries of aggregate types twice when a co_await follows them.
+    const wire::Message welcome =
+        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes};
+    co_return co_await link.send(welcome);
 }
 
 asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes) {
@@ -135,8 +141,12 @@ asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch,
         }
         stored_.push_back(scan);
         ++link.scans;
+        on_stored(stored_.size());
         if (script.hang_up_after_scans == link.scans) {
-            if (script.error_after_scans) co_await link.send(*script.error_after_scans);
+            if (script.error_after_scans) {
+                const wire::Message error = *script.error_after_scans;
+                co_await link.send(error);
+            }
             co_return false;
         }
         if (script.silent_after_scans == link.scans) link.is_silent = true;
@@ -148,7 +158,8 @@ asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch,
     if (++link.batches % script.ack_every != 0 || link.is_silent) co_return true;
     durable_ = stored_.size();
     link.unacknowledged_bytes = 0;
-    co_return co_await link.send(wire::Ack{durable_, durable_, script.credit_bytes});
+    const wire::Message ack = wire::Ack{durable_, durable_, script.credit_bytes};
+    co_return co_await link.send(ack);
 }
 
 } // namespace scanloom::robot

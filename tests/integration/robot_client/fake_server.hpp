@@ -22,7 +22,7 @@ struct LinkScript {
     std::optional<std::uint64_t> hang_up_after_scans = {}; ///< of this link
     std::optional<wire::LinkError> error_after_scans = {}; ///< sent where hang_up_after_scans stands
     std::optional<std::uint64_t> silent_after_scans = {};  ///< neither acks nor pongs from then on
-    std::optional<std::uint64_t> stop_reading_after_scans;
+    std::optional<std::uint64_t> stop_reading_after_scans = {};
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
 };
@@ -44,6 +44,8 @@ public:
     [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
     [[nodiscard]] int goodbyes() const noexcept { return goodbyes_; }
     [[nodiscard]] std::size_t largest_batch() const noexcept { return largest_batch_; }
+    /// Called after every scan stored, with their number.
+    std::function<void(std::size_t)> on_stored = [](std::size_t) {};
     void store_before(std::uint64_t scans); ///< pretend that so many came in earlier runs
 
 private:

