@@ -10,6 +10,7 @@ namespace scanloom::wire {
 namespace {
 
 void feed(FrameDecoder& decoder, std::string_view bytes) {
+    if (bytes.empty()) return; // memcpy must not be given a null pointer, even for nothing
     std::memcpy(decoder.prepare(bytes.size()).data(), bytes.data(), bytes.size());
     decoder.commit(bytes.size());
 }
