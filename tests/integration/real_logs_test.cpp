@@ -1,0 +1,69 @@
+#include "robot_client/source/carmen_log.hpp"
+#include "tests/support/kernel_against_oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace scanloom {
+namespace {
+
+struct Recording {
+    const char* file;
+    std::size_t scans;
+};
+
+void PrintTo(const Recording& recording, std::ostream* out) { *out << recording.file; }
+
+std::filesystem::path path_of(const Recording& recording) {
+    return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / recording.file;
+}
+
+class RealLogs : public testing::TestWithParam<Recording> {
+protected:
+    void SetUp() override {
+        if (!std::filesystem::exists(path_of(GetParam()))) GTEST_SKIP() << "there is no " << path_of(GetParam());
+    }
+
+    robot::CarmenLog read(robot::NoReturn no_return) {
+        auto log = robot::read_carmen_log(path_of(GetParam()), {.no_return = no_return, .range_max = {}, .limits = {}},
+                                          [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
+        EXPECT_TRUE(log) << log.error().message;
+        return log ? std::move(*log) : robot::CarmenLog{};
+    }
+};
+
+TEST_P(RealLogs, HoldEveryScanInTheOrderOfTime) {
+    const auto log = read(robot::NoReturn::kDrop);
+    ASSERT_EQ(log.observations.size(), GetParam().scans);
+    for (std::size_t n = 1; n < log.observations.size(); ++n) {
+        EXPECT_LE(log.observations[n - 1].scan.stamp, log.observations[n].scan.stamp);
+    }
+}
+
+TEST_P(RealLogs, AreWovenAsTheNaiveDoubleLoopWould) {
+    const auto log = read(robot::NoReturn::kDrop);
+    std::size_t firm = 0;
+    const std::size_t step = log.observations.size() / 25;
+    for (std::size_t n = 0; n < log.observations.size(); n += step) {
+        const auto& [sensor, scan] = log.observations[n];
+        mapping::Case c;
+        c.shape = GetParam().file + (": scan " + std::to_string(n));
+        c.angles = angles_of(scan, *sensor);
+        c.range_min = sensor->range_min;
+        c.range_max = sensor->range_max;
+        c.cell_size = n % 2 == 0 ? 0.1 : 0.25;
+        c.T_map_sensor = compose(scan.pose, sensor->mount);
+        c.ranges = scan.ranges;
+        ASSERT_NO_FATAL_FAILURE(mapping::expect_equal_to_oracle(c, firm));
+    }
+    EXPECT_GT(firm, 100'000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RealLogs,
+                         testing::Values(Recording{"intel.clf.bz2", 13'631}, Recording{"intel-corrected.log.gz", 910},
+                                         Recording{"fr079.clf.bz2", 4'934},
+                                         Recording{"fr079-corrected.log.gz", 4'791}));
+
+} // namespace
+} // namespace scanloom

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "common/scan/scan.hpp"
+#include "server/mapping/cell.hpp"
+#include "server/mapping/inverse_sensor_model.hpp"
+#include "tests/support/inverse_sensor_oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// The production sensor model held against the oracle, cell by cell.
+namespace scanloom::mapping {
+
+/// One scan and all that the model takes with it.
+struct Case {
+    std::string shape;
+    BeamAngles angles;
+    double aperture = std::numbers::pi / 180.0;
+    double range_min = 0.0;
+    double range_max = 3.0;
+    double thickness = 0.1;
+    double cell_size = 0.05;
+    Pose2 T_map_sensor;
+    std::vector<RangeMm> ranges;
+};
+
+using Verdicts = std::map<std::pair<int, int>, oracle::Verdict>;
+
+/// What the production kernel says; fails the test when a cell comes twice.
+inline Verdicts run_kernel(const Case& c) {
+    Verdicts verdicts;
+    const auto fan = make_beam_fan(c.angles, c.aperture);
+    const ModelGeometry geometry{c.range_min, c.range_max, c.thickness, c.cell_size};
+    inverse_sensor_model(fan, c.ranges, c.T_map_sensor, geometry, [&](Verdict verdict, int j, int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            const auto value = verdict == Verdict::kFree ? oracle::Verdict::kFree : oracle::Verdict::kOccupied;
+            EXPECT_TRUE(verdicts.emplace(std::pair(i, j), value).second)
+                << c.shape << ": cell " << i << ", " << j << " changes twice in one scan";
+        }
+    });
+    return verdicts;
+}
+
+inline oracle::Scene scene_of(const Case& c) {
+    oracle::Scene scene{{}, {}, c.range_min, c.range_max, c.thickness, 0.0, c.cell_size, c.T_map_sensor};
+    for (std::size_t b = 0; b < beam_count(c.angles); ++b) {
+        scene.beam_angles.push_back(beam_angle(c.angles, b));
+        const RangeMm mm = c.ranges[b];
+        scene.readings.push_back(mm == kInvalidRange ? NAN : mm == kNoReturn ? HUGE_VAL : mm / 1000.0);
+    }
+    scene.beta = std::max(c.aperture, beam_spacing(c.angles));
+    return scene;
+}
+
+/// How far a scan can change anything: its longest reading, or its range where a beam returned nothing.
+inline double reach_of(const Case& c) {
+    double reach = 0.0;
+    for (const RangeMm mm : c.ranges) {
+        if (mm != kInvalidRange) reach = std::max(reach, std::min(c.range_max, mm / 1000.0));
+    }
+    return reach + std::max(c.thickness, c.cell_size);
+}
+
+/// Compares every cell around the sensor; counts the cells compared in `firm`.
+inline void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
+    const auto kernel = run_kernel(c);
+    const auto scene = scene_of(c);
+    const GridGeometry grid(c.cell_size);
+    const Cell centre = grid.cell_at({c.T_map_sensor.x, c.T_map_sensor.y});
+    const int reach = static_cast<int>(std::ceil(reach_of(c) / c.cell_size)) + 2;
+    for (const auto& [cell, verdict] : kernel) {
+        EXPECT_LE(std::max(std::abs(cell.first - centre.i), std::abs(cell.second - centre.j)), reach) << c.shape;
+    }
+    for (int j = centre.j - reach; j <= centre.j + reach; ++j) {
+        for (int i = centre.i - reach; i <= centre.i + reach; ++i) {
+            const auto expected = oracle::verdict_of_cell(scene, i, j);
+            if (!expected) continue;
+            const auto found = kernel.find({i, j});
+            const auto got = found == kernel.end() ? oracle::Verdict::kNothing : found->second;
+            ++firm;
+            ASSERT_EQ(static_cast<int>(got), static_cast<int>(*expected))
+                << c.shape << ": cell " << i << ", " << j << ", sensor at " << c.T_map_sensor.x << ", "
+                << c.T_map_sensor.y << ", yaw " << c.T_map_sensor.yaw << ", " << beam_count(c.angles) << " beams";
+        }
+    }
+}
+
+} // namespace scanloom::mapping
