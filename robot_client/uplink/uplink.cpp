@@ -129,6 +129,8 @@ asio::awaitable<void> Uplink::keep_linked() {
     asio::steady_timer pause(io_);
     for (;;) {
         const wire::LinkError failure = co_await use_one_link();
+        const auto cancellation = co_await asio::this_coro::cancellation_state;
+        if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has the outcome
         conversation_.close();
         if (conversation_.is_done()) co_return;
         if (!failure.retryable) {
@@ -182,22 +184,26 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(Socket& socket) {
         decoder.commit(count);
         for (;;) {
             auto body = decoder.next();
-            if (!body) {
-                co_return wire::LinkError{
-                    prefixed("the other end does not speak Scanloom's robot link: ", body.error()),
-                    conversation_.is_welcome()};
-            }
+            if (!body) co_return unreadable(body.error());
             if (!*body) break;
             if (auto failure = take(**body)) co_return *failure;
         }
     }
 }
 
+/// Bytes that are no frames of a server. Before the welcome it is another program that listens there.
+wire::LinkError Uplink::unreadable(const Error& error) const {
+    if (conversation_.is_welcome()) return {prefixed("the server sent ", error), true};
+    return {
+        {Errc::kMalformed, fmt::format("what listens at {}:{} does not speak Scanloom's robot link; give the server's "
+                                       "robot port to --server",
+                                       options_.host, options_.port)},
+        false};
+}
+
 std::optional<wire::LinkError> Uplink::take(std::string_view body) {
     auto message = wire::decode(body);
-    if (!message) {
-        return wire::LinkError{prefixed("a frame of the server: ", message.error()), conversation_.is_welcome()};
-    }
+    if (!message) return unreadable(message.error());
     const std::uint64_t acknowledged_before = conversation_.acknowledged();
     auto failure = conversation_.receive(*message, Clock::now());
     if (conversation_.acknowledged() > acknowledged_before) backoff_.reset();

@@ -70,6 +70,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(Socket& socket);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(Socket& socket);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> watch_link();
+    [[nodiscard]] wire::LinkError unreadable(const Error& error) const;
     [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
 

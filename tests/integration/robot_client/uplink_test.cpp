@@ -161,6 +161,7 @@ TEST_F(UplinkTest, AServerWithMoreScansThanTheRecordingHasAnother) {
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("the recording only 500"));
+    EXPECT_THAT(troubles_, IsEmpty()) << "hanging up for this is no trouble";
 }
 
 TEST_F(UplinkTest, AServerThatLostAcknowledgedScansIsAClearError) {
