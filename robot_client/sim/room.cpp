@@ -10,16 +10,17 @@ World make_room() {
         {-5.2, 5.0, 5.2, 5.2},
         {-5.2, -5.2, -5.0, 5.2},
         {5.0, -5.2, 5.2, 5.2},
-        // against the walls: a wardrobe, a sideboard, a bed, a shelf
-        {-5.0, 3.4, -4.4, 5.0},
-        {0.5, 4.5, 2.9, 5.0},
-        {3.0, -5.0, 5.0, -3.6},
+        // against the walls, shallow: a wardrobe, a sideboard, a bookcase, a shelf
+        {-5.0, 0.8, -4.5, 2.8},
+        {0.5, 4.6, 2.9, 5.0},
+        {4.65, -1.5, 5.0, 0.5},
         {-4.2, -5.0, -2.4, -4.65},
-        // standing free: a table, a sofa, a pillar, an armchair
+        // standing free, with wide ways around them: a table, a sofa, a pillar, an armchair, a bed
         {-1.2, -0.6, 0.8, 0.4},
-        {-2.8, 1.6, -0.8, 2.4},
-        {2.4, 1.2, 2.8, 1.6},
+        {-1.8, 1.8, 0.2, 2.6},
+        {2.0, 1.2, 2.4, 1.6},
         {1.6, -2.2, 2.4, -1.4},
+        {-2.6, -2.8, -0.6, -1.4},
     };
     return make_world("room", std::move(solids), {{-5.0, -5.0, 5.0, 5.0}});
 }
