@@ -1,0 +1,60 @@
+#include "common/scan/limits.hpp"
+#include "common/wire/frame_decoder.hpp"
+#include "common/wire/messages.hpp"
+#include "robot_client/source/carmen_log.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+namespace {
+
+using namespace scanloom;
+
+/// A file in memory, read by its path.
+class MemoryFile {
+public:
+    MemoryFile(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("fuzz.log", 0)) {
+        fuzz::check(descriptor_ >= 0 && write(descriptor_, data, size) == static_cast<ssize_t>(size),
+                    "the file is written");
+    }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    ~MemoryFile() { close(descriptor_); }
+
+    [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+private:
+    int descriptor_;
+};
+
+/// The server lets the message through.
+bool is_welcome(const wire::Message& message) {
+    std::string frame;
+    wire::encode(message, frame);
+    return wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).has_value();
+}
+
+} // namespace
+
+/// Input: a CARMEN log, plain or compressed.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const MemoryFile file(data, size);
+    robot::CarmenOptions options;
+    options.limits = {.text_bytes_max = 1 << 20, .line_bytes_max = 1 << 16};
+    const auto log = robot::read_carmen_log(file.path(), options, [](const robot::SkippedLine& line) {
+        fuzz::check(!line.reason.empty(), "every skipped line has its reason");
+    });
+    if (!log) {
+        fuzz::check(!log.error().message.empty(), "every error says what is wrong");
+        return 0;
+    }
+    std::uint64_t seq = 0;
+    for (auto observation : log->observations) {
+        observation.scan.seq = ++seq;
+        fuzz::check(is_welcome(*observation.sensor), "a sensor that is sent is not refused");
+        fuzz::check(is_welcome(wire::ScanBatch{{observation.scan}}), "a scan that is sent is not refused");
+        fuzz::check(wire::check_scan(observation.scan, *observation.sensor).has_value(), "a scan fits its sensor");
+    }
+    return 0;
+}
