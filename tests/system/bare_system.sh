@@ -39,7 +39,8 @@ mount -t proc proc "$system/proc"
 mount --rbind /dev "$system/dev"
 git clone --quiet --no-local . "$system/root/scanloom"
 
-timed ./scanloom demo --for 20
+timed ./scanloom demo --for 20 | tee "$system.log"
+grep --quiet ' [1-9][0-9]* scans were stored' "$system.log" || { echo "the demonstration mapped nothing" >&2; exit 1; }
 timed ./scanloom test
 timed ./scanloom test # again: nothing is installed or built
 echo "== the bare system runs both commands"

@@ -47,7 +47,7 @@ eventually() {
 
 # Starts the server's image as its entry point says, asks its health check, lets the robot's image map a room.
 run_images() {
-    local server_container robot_container entrypoint health server scans
+    local server_container robot_container entrypoint health server session
     ip link set lo up
     server_container=$(buildah from localhost/scanloom-server)
     robot_container=$(buildah from localhost/scanloom-robot)
@@ -58,11 +58,15 @@ run_images() {
     server=$!
     eventually buildah run "$server_container" -- "${health[@]:1}"
     echo "== the server is healthy"
-    buildah run "$robot_container" -- scanloom-robot --server 127.0.0.1:7447 --session room --robot r1 \
-        simulate --world room --drive wall_follower --seed 1
+    buildah run "$robot_container" -- scanloom-robot --server 127.0.0.1:7447 --session office --robot r1 \
+        simulate --world office --drive wall_follower --seed 1 --scans 300 --speed 0
     exec 3<>/dev/tcp/127.0.0.1/8080
-    printf 'GET /api/v1/sessions/room HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
-    cat <&3
+    printf 'GET /api/v1/sessions/office HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
+    session=$(cat <&3)
+    [[ $session == *'"scans":300'* ]] || { echo "the server's session has not the robot's 300 scans: $session" >&2; exit 1; }
+    exec 3<>/dev/tcp/127.0.0.1/8080
+    printf 'GET / HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
+    [[ $(cat <&3) == *'<html'* ]] || { echo "the server's image has no viewer" >&2; exit 1; }
     kill "$server"
     wait "$server"
 }
