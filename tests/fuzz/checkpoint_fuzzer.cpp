@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     // Whatever was let through is a projection that can be looked at and kept again.
     auto projection = std::move(reader).finish();
-    if (!projection) return 0; // parts are missing
+    if (!projection) return 0;
     const auto parts = session::checkpoint_parts(projection->snapshot(), projection->state(), 0);
     fuzz::check(!parts.empty() && parts.front().key == "head", "a checkpoint begins with its head");
     return 0;
