@@ -10,6 +10,7 @@
 #include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -73,6 +74,9 @@ Result<Message> read_hello(const v1::Hello& proto) {
     if (hello.client.size() > 128) {
         return Error{Errc::kTooLarge,
                      fmt::format("hello.client has {} bytes, at most 128 are allowed", hello.client.size())};
+    }
+    if (std::any_of(hello.client.begin(), hello.client.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
+        return invalid_field("hello.client holds a control character; send the program's name and version");
     }
     if (proto.has_create()) {
         auto options = from_proto(proto.create());

@@ -4,7 +4,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -26,6 +26,7 @@ int run(const app::ServerOptions& options) {
 } // namespace
 
 int main(int argc, char** argv) {
+    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
     try {
         const auto options = app::read_options(argc, argv);
         if (const auto* leave = std::get_if<app::Leave>(&options)) {

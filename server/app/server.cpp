@@ -83,10 +83,14 @@ Result<> Server::run() {
         io_.stop();
         return recovered.error();
     }
-    api_.set_recovered();
-    ingest_->start();
-    announce();
+    if (!sessions_.is_draining()) {
+        api_.set_recovered();
+        ingest_->start();
+        announce();
+    }
     threads.clear(); // joins: until drain() has let everything come to its end
+    serving_.join();
+    weaving_.join();
     spdlog::info("stopped");
     return {};
 }

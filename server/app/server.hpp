@@ -48,9 +48,10 @@ private:
     ServerOptions options_;
     std::unique_ptr<store::ScanLog> log_;
     metrics::Metrics metrics_;
-    boost::asio::io_context io_;
+    // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
+    boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     http::Api api_;
     std::unique_ptr<ingest::IngestServer> ingest_;

@@ -176,6 +176,9 @@ public:
         return *own_as<ChunkType>(node->children[tree::slot_of(u, v, 1)], revision);
     }
 
+    /// How many chunks it holds.
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
     /// What the tree holds now. Later writes do not show in it.
     [[nodiscard]] ChunkView<ChunkType> snapshot() {
         ++epoch_;
@@ -213,6 +216,7 @@ private:
                 child = std::make_shared<tree::Node>();
             } else {
                 child = std::make_shared<ChunkType>(*blank_);
+                ++size_;
             }
         } else if (child->epoch != epoch_) {
             child = std::make_shared<Item>(*static_cast<const Item*>(child.get()));
@@ -224,6 +228,7 @@ private:
 
     tree::Quadrants quadrants_;
     std::uint64_t epoch_ = 1;
+    std::size_t size_ = 0;
     std::shared_ptr<const ChunkType> blank_;
 };
 

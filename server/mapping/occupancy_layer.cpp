@@ -18,8 +18,8 @@ OccupancyLayer::OccupancyLayer(const MapConfig& config) : tree_(blank_chunk()) {
     const double l0 = log_odds_of(config.p_prior);
     const Step common{0, to_fixed(log_odds_of(config.p_min)), to_fixed(log_odds_of(config.p_max)), to_fixed(l0)};
     free_ = occupied_ = common;
-    free_.amount = to_fixed(log_odds_of(config.p_free) - l0);
-    occupied_.amount = to_fixed(log_odds_of(config.p_occupied) - l0);
+    free_.amount = to_fixed(log_odds_of(config.p_free)) - common.prior;
+    occupied_.amount = to_fixed(log_odds_of(config.p_occupied)) - common.prior;
 }
 
 void OccupancyLayer::apply(std::span<LogOdds> cells, const Step& step) noexcept {

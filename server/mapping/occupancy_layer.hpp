@@ -28,11 +28,13 @@ public:
     /// Puts back a chunk of a checkpoint.
     void restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
 
+    [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
+
     [[nodiscard]] OccupancyView snapshot() { return tree_.snapshot(); }
 
 private:
     struct Step {
-        LogOdds amount;
+        int amount; // may exceed what a cell can hold: from one end of the clamp to the other
         LogOdds l_min;
         LogOdds l_max;
         LogOdds prior;

@@ -61,7 +61,7 @@ Result<> Projection::fold_scan(const ScanTaken& taken) {
         return misplaced(revision, fmt::format("scan {} of robot '{}' follows scan {}", scan.seq, robot.state.name,
                                                robot.state.last_seq));
     }
-    if (sensor->second.kind == SensorKind::kLaser) integrate(robot, sensor->second, scan, revision);
+    if (sensor->second.kind == SensorKind::kLaser && !is_full()) integrate(robot, sensor->second, scan, revision);
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
     robot.state.stamp = scan.stamp;

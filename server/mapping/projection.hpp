@@ -12,6 +12,9 @@ namespace scanloom::mapping {
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
 inline constexpr std::uint32_t kWeavingVersion = 1;
 
+/// A map of this many chunks is full: 1 GiB of cells, 1.3 square kilometres at 5 cm. One scan may exceed it once.
+inline constexpr std::size_t kChunksMax = 131'072;
+
 /// Everything but the chunks and trajectories of a projection: what a checkpoint keeps besides them.
 struct ProjectionState {
     struct Robot {
@@ -37,6 +40,9 @@ public:
 
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
+
+    /// The map is as large as it may be: further scans leave the cells as they are.
+    [[nodiscard]] bool is_full() const noexcept { return occupancy_.chunk_count() >= kChunksMax; }
 
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,

@@ -152,6 +152,12 @@ void Session::take(Member& member, std::vector<Scan> scans, std::size_t bytes) {
 }
 
 Result<> Session::check_next(const Member& member, const Scan& scan) const {
+    if (projection_.is_full()) {
+        return Error{Errc::kTooLarge,
+                     fmt::format("pose leads on in a map that is full with {} chunks of 64 x 64 cells; "
+                                 "use larger cells or another session",
+                                 mapping::kChunksMax)};
+    }
     if (scan.seq != member.received_seq + 1) {
         return Error{
             Errc::kOutOfOrder,
@@ -201,7 +207,7 @@ void Session::on_appended(Group group, const Result<>& appended) {
     if (!appended) return stop_writing(appended.error());
     if (broken_) return finish_closing();
     append_next(); // the disk works while this group is folded
-    if (auto folded = fold(group); !folded) return stop_writing(folded.error());
+    if (auto folded = fold_guarded(group); !folded) return stop_writing(folded.error());
     publish();
     release(group);
     if (projection_.revision() - checkpointed_ >= kCheckpointEvery) write_checkpoint();
@@ -220,6 +226,15 @@ Result<> Session::fold(const Group& group) {
         }
     }
     return {};
+}
+
+/// Memory may run out for one session; that must not end the others.
+Result<> Session::fold_guarded(const Group& group) {
+    try {
+        return fold(group);
+    } catch (const std::bad_alloc&) {
+        return Error{Errc::kTooLarge, "there is no memory left for this map; use larger cells or another session"};
+    }
 }
 
 void Session::publish() {

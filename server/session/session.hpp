@@ -136,6 +136,7 @@ private:
     void append_next();
     void on_appended(Group group, const Result<>& appended);
     [[nodiscard]] Result<> fold(const Group& group);
+    [[nodiscard]] Result<> fold_guarded(const Group& group);
     void release(const Group& group);
     void publish();
     void fail(Member& member, const Error& error);

@@ -31,6 +31,7 @@ Result<> SessionRegistry::recover() {
 }
 
 void SessionRegistry::recover_one(const store::StoredSession& stored) {
+    if (draining_) return; // told to stop meanwhile: what is not woven now will be at the next start
     std::string name = fmt::format("#{:016x}", stored.id); // until its record has told
     const auto weave = [&]() -> Result<std::shared_ptr<Session>> {
         const auto record = wire::decode_session(stored.record);
@@ -44,7 +45,14 @@ void SessionRegistry::recover_one(const store::StoredSession& stored) {
                                          std::move(recovered->projection), recovered->checkpointed, log_, compute_,
                                          counters_);
     };
-    auto session = weave();
+    const auto guarded = [&]() -> Result<std::shared_ptr<Session>> {
+        try {
+            return weave();
+        } catch (const std::bad_alloc&) {
+            return Error{Errc::kTooLarge, "there is no memory left for its map"};
+        }
+    };
+    auto session = guarded();
     const std::unique_lock lock(mutex_);
     if (session) {
         sessions_[name] = std::move(*session);

@@ -36,7 +36,7 @@ Result<Version> parse_version(const Query& query) {
 /// that revision has been reached.
 bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
     return version.revision && *version.revision >= tile && *version.revision <= now &&
-           version.session_tag.value_or(tag) == tag;
+           version.session_tag == tag;
 }
 
 using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, tiles::TileKey);

@@ -79,6 +79,18 @@ TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
     EXPECT_EQ(projection.snapshot().occupancy.find({0, 0})->at({10, 0}), 0);
 }
 
+TEST(Projection, EvidenceFromOneEndOfTheClampToTheOtherKeepsItsSign) {
+    Projection projection(*resolve(
+        {.cell_size = 0.1, .p_occupied = 0.9999, .p_free = 1e-6, .p_prior = 0.999, .p_min = 1e-6, .p_max = 0.9999}));
+    Sensor beam;
+    beam.angles = UniformAngles{0.0, 1.0, 1};
+    beam.range_max = 5.0;
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, beam}));
+    ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
+    EXPECT_LT(probability_of(projection.snapshot().occupancy.find({0, 0})->at({5, 0})), 0.01);
+}
+
 TEST(Projection, SnapshotsTakenBetweenScansChangeNothing) {
     const auto log = random_log(1, 60);
     Projection plain{MapConfig{}};
