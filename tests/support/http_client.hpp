@@ -7,6 +7,7 @@
 #include <sys/time.h>
 
 #include <cctype>
+#include <cerrno>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -62,8 +63,15 @@ public:
         return answer;
     }
 
-    /// Whether the server hangs up without saying anything more.
-    [[nodiscard]] bool is_closed() { return buffer_.empty() && !receive(); }
+    /// Whether the server hangs up without saying anything more, rather than keeping silent.
+    [[nodiscard]] bool is_closed() { return buffer_.empty() && !receive() && !timed_out_; }
+
+    /// Whether the server ends the stream in order, not by a reset, which may take an answer with it.
+    [[nodiscard]] bool ends_in_order() {
+        while (receive()) {
+        }
+        return last_size_ == 0;
+    }
 
     void shutdown_send() { ::shutdown(socket_.native_handle(), SHUT_WR); }
 
@@ -72,6 +80,8 @@ private:
     bool receive() {
         char bytes[4096];
         const auto size = ::recv(socket_.native_handle(), bytes, sizeof(bytes), 0);
+        last_size_ = size;
+        timed_out_ = size < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
         if (size <= 0) return false;
         buffer_.append(bytes, static_cast<std::size_t>(size));
         return true;
@@ -91,6 +101,8 @@ private:
     boost::asio::io_context io_;
     boost::asio::ip::tcp::socket socket_;
     std::string buffer_;
+    ssize_t last_size_ = 0;
+    bool timed_out_ = false;
 };
 
 } // namespace scanloom::testing_support
