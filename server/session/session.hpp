@@ -83,7 +83,8 @@ public:
     /// Errors  kReplaced, kGone, kStoreFailed, kShuttingDown, kTooLarge.
     void join(std::string robot, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
-    /// Describes a sensor, for the scans submitted after it. `bytes` is given back through on_durable.
+    /// Describes a sensor, for the scans submitted after it. What comes from a link that has not joined
+    /// yet, or has failed, is ignored, here and below. `bytes` is given back through on_durable.
     void submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::size_t bytes);
 
     /// Adds scans. Those the log already has are dropped; a missing one fails the link (kOutOfOrder),

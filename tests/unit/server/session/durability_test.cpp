@@ -27,6 +27,30 @@ TEST_F(SessionTest, NothingIsVisibleOrAcknowledgedBeforeItIsDurable) {
     EXPECT_EQ(before->robots[0].last_seq, 0U) << "a snapshot never changes";
 }
 
+/// A link that looks at the map whenever it hears that scans are in it.
+struct WatchingLink : RecordedLink {
+    explicit WatchingLink(const Session& session) : watched(session) {}
+
+    void on_durable(std::uint64_t seq, std::size_t bytes) override {
+        RecordedLink::on_durable(seq, bytes);
+        seqs_in_map.push_back(watched.snapshot()->robots.at(0).last_seq);
+    }
+
+    const Session& watched;
+    std::vector<std::uint64_t> seqs_in_map;
+};
+
+TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
+    const auto link = std::make_shared<WatchingLink>(*session_);
+    session_->join("r", link, [](const Result<Joined>&) {});
+    run();
+    session_->submit(link, small_laser(), 0);
+    for (std::uint64_t seq = 1; seq <= 600; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
+    run();
+    EXPECT_EQ(link->durable_seq(), 600U);
+    EXPECT_EQ(link->seqs_in_map, link->durable_seqs);
+}
+
 TEST_F(SessionTest, WhatIsSubmittedWhileTheDiskWorksIsAppendedTogether) {
     const auto link = join("r");
     const auto appends = log_.stats().appends;
