@@ -4,6 +4,8 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <sys/resource.h>
+
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -12,7 +14,16 @@ namespace {
 
 using namespace scanloom;
 
+/// Every robot and viewer takes a descriptor; with too few left the store cannot open its next file.
+void allow_as_many_descriptors_as_possible() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int run(const app::ServerOptions& options) {
+    allow_as_many_descriptors_as_possible();
     spdlog::set_default_logger(spdlog::stderr_color_mt("scanloom-server"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
