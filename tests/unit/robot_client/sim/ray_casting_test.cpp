@@ -27,6 +27,20 @@ TEST(RayCasting, TheNearestWallCounts) {
     EXPECT_NEAR(cast_ray(walls, {0, 0}, 0.0), 1.0, 1e-12);
 }
 
+TEST(RayCasting, AClosedOutlineIsClosedAtItsCorners) {
+    const std::vector<Segment> triangle = {{0.1, 0.1, 3.3, 0.7}, {3.3, 0.7, 1.9, 2.3}, {1.9, 2.3, 0.1, 0.1}};
+    Random random(12);
+    for (int i = 0; i < 100'000; ++i) {
+        // a point within it, from two of its sides
+        const double u = random.uniform(0.05, 0.9);
+        const double v = random.uniform(0.05, 0.95 - u);
+        const Point2 origin{0.1 + u * 3.2 + v * 1.8, 0.1 + u * 0.6 + v * 2.2};
+        const Segment& corner = triangle[random.index(3)];
+        const double yaw = std::atan2(corner.ay - origin.y(), corner.ax - origin.x());
+        ASSERT_LT(cast_ray(triangle, origin, yaw), 4.0) << "through the corner at " << corner.ax;
+    }
+}
+
 /// The nearest solid by marching along the ray in small steps: slow, but sharing no formula with the code.
 double march(const World& world, const Point2& origin, double yaw, double step) {
     const double step_x = step * std::cos(yaw);
