@@ -33,14 +33,19 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web)
     : options_(options), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
-      serving_(
-          std::max<std::size_t>(2, options.threads)), // a request that waits for the disk must not hold up all others
+      serving_(std::max<std::size_t>(2, options.threads)), // one large map must not hold up all tiles
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
       patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
     io_.stop();
+    join_pools();
+}
+
+void Server::join_pools() {
+    telling_.join();
+    changing_.join();
     serving_.join();
     weaving_.join();
 }
@@ -58,7 +63,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
 Result<> Server::listen() {
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
-            io_, options_.listen, ingest::LinkServices{sessions_, serving_.get_executor(), metrics_.ingest()},
+            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest()},
             ingest::IngestConfig{});
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
@@ -67,8 +72,8 @@ Result<> Server::listen() {
     http::ServerConfig config;
     config.endpoint = options_.http;
     auto http = http::Server::listen(
-        io_, serving_.get_executor(), config, [this](const http::Request& request) { return api_.answer(request); },
-        metrics_.http());
+        io_, {telling_.get_executor(), serving_.get_executor(), changing_.get_executor()}, config,
+        [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};
@@ -89,8 +94,7 @@ Result<> Server::run() {
         announce();
     }
     threads.clear(); // joins: until drain() has let everything come to its end
-    serving_.join();
-    weaving_.join();
+    join_pools();
     spdlog::info("stopped");
     return {};
 }
@@ -118,7 +122,7 @@ void Server::drain() {
     patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();
     });
-    asio::post(serving_, [this, busy = asio::make_work_guard(io_)] {
+    asio::post(changing_, [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();
         http_->stop([this] { patience_.cancel(); });
     });

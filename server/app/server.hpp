@@ -21,9 +21,11 @@ namespace scanloom::app {
 
 /// The parts of scanloom-server, and what connects them.
 ///
-///   io        sockets only: frames and requests come in, answers go out
+///   io        sockets: frames and requests come in, answers go out; health and the viewer's files
 ///   weaving   the sessions' strands: everything that changes a map
-///   serving   answers to HTTP requests, and what waits for the disk
+///   serving   answers made from snapshots
+///   changing  creating and deleting sessions: waits for the disk and for strands
+///   telling   metrics
 ///
 /// Thread  open() and run() from the main thread.
 class Server {
@@ -44,6 +46,7 @@ private:
     void announce() const;
     void wait_for_signal();
     void drain();
+    void join_pools();
 
     ServerOptions options_;
     std::unique_ptr<store::ScanLog> log_;
@@ -51,6 +54,8 @@ private:
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
+    boost::asio::thread_pool changing_{2};
+    boost::asio::thread_pool telling_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     http::Api api_;

@@ -170,12 +170,32 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
     co_return !error;
 }
 
-/// Off this thread, which serves other sockets too.
+/// Off this thread, which serves other sockets too, unless there is nothing to wait for.
 net::awaitable<Response> Connection::compute(Request request) {
+    const Lane lane = lane_of(request);
+    if (lane == Lane::kAtOnce) co_return answer_guarded(service_->answer, request);
+    std::shared_ptr<const void> change;
+    if (lane == Lane::kChanging) {
+        change = service_->changes.try_take();
+        if (!change) {
+            co_return problem(Status::service_unavailable,
+                              "too many sessions are being created or deleted at this moment; try again soon",
+                              instance_of(request.target));
+        }
+    }
     auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
         co_return answer_guarded(service->answer, request);
     };
-    co_return co_await net::co_spawn(service_->compute, std::move(work), net::use_awaitable);
+    co_return co_await net::co_spawn(executor_of(lane), std::move(work), net::use_awaitable);
+}
+
+/// Pre: not Lane::kAtOnce.
+const net::any_io_executor& Connection::executor_of(Lane lane) const {
+    switch (lane) {
+    case Lane::kTelling: return service_->executors.telling;
+    case Lane::kChanging: return service_->executors.changing;
+    default: return service_->executors.serving;
+    }
 }
 
 net::awaitable<void> Connection::refuse(beast::error_code reason) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "server/http/lane.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/server_config.hpp"
+#include "server/http/slots.hpp"
 #include "server/metrics/metrics.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -22,13 +24,22 @@ namespace scanloom::http {
 /// Computes the answer to a request. Called on several threads at once.
 using Answer = std::function<Response(const Request&)>;
 
+/// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:
+/// deleting a session waits for the executor that the sessions work on.
+struct Executors {
+    boost::asio::any_io_executor telling;
+    boost::asio::any_io_executor serving;
+    boost::asio::any_io_executor changing;
+};
+
 /// What all connections of a server share.
 struct Service {
     ServerConfig config;
     bool check_host = true;
-    boost::asio::any_io_executor compute; ///< answers are computed here
+    Executors executors;
     Answer answer;
     metrics::HttpCounters& counters;
+    Slots changes; ///< requests in Lane::kChanging
 };
 
 /// One connection: reads a request, has it answered, writes the answer, and again, in order.
@@ -57,6 +68,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
     [[nodiscard]] boost::asio::awaitable<Response> compute(Request request);
+    [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, bool with_body, bool keep_alive);
     [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);

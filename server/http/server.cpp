@@ -20,12 +20,12 @@ namespace scanloom::http {
 namespace net = boost::asio;
 using net::ip::tcp;
 
-Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, net::any_io_executor compute, ServerConfig config,
+Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, ServerConfig config,
                                                Answer answer, metrics::HttpCounters& counters) {
     const auto endpoint = config.endpoint;
     const bool check_host = endpoint.address().is_loopback() || !config.host_names.empty();
     auto service = std::make_shared<const Service>(
-        Service{std::move(config), check_host, std::move(compute), std::move(answer), counters});
+        Service{config, check_host, std::move(executors), std::move(answer), counters, Slots(config.changes_max)});
     std::shared_ptr<Server> server(new Server(io, std::move(service)));
     if (const auto failed = server->bind()) {
         return Error{Errc::kUnreachable,

@@ -22,17 +22,15 @@ namespace scanloom::http {
 /// Listens, and runs one coroutine per connection.
 ///
 /// Queue   "connections": at most config.connections_max, each with one request at a time, which
-///         also bounds what waits for the compute executor. One more connection is answered 503.
-/// Thread  any. The counters must outlive the server's work on both executors.
+///         also bounds what waits for the executors. One more connection is answered 503.
+///         "changes": at most config.changes_max requests create or delete sessions; one more is answered 503.
+/// Thread  any. The counters must outlive the server's work on all executors.
 class Server : public std::enable_shared_from_this<Server> {
 public:
     /// Binds; connections wait until start().
     ///
-    /// `compute` is where answers are computed. It must not be the executor the sessions work on, as
-    /// deleting a session waits for that session.
     /// Errors  kUnreachable, naming the endpoint: it is taken, or not an address of this machine.
-    [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io,
-                                                                boost::asio::any_io_executor compute,
+    [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io, Executors executors,
                                                                 ServerConfig config, Answer answer,
                                                                 metrics::HttpCounters& counters);
 

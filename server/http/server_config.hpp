@@ -15,6 +15,8 @@ struct ServerConfig {
     boost::asio::ip::tcp::endpoint endpoint; ///< port 0 picks a free one
     std::size_t connections_max = 1024;      ///< one more is answered 503 and closed
 
+    std::size_t changes_max = 16; ///< requests that create or delete sessions; one more is answered 503
+
     std::uint32_t header_bytes_max = 8 * 1024;
     std::uint64_t body_bytes_max = 64 * 1024;
 

@@ -233,10 +233,11 @@ Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& vis
 
 StoreStats RocksdbScanLog::stats() const {
     StoreStats stats = committer_.stats();
-    stats.bytes_on_disk = bytes_in(directory_.path());
     stats.torn_bytes_dropped = torn_bytes_dropped_;
     return stats;
 }
+
+std::uint64_t RocksdbScanLog::bytes_on_disk() const { return bytes_in(directory_.path()); }
 
 Result<> RocksdbScanLog::check_session(SessionId session) {
     std::string record;

@@ -31,6 +31,7 @@ public:
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
     [[nodiscard]] StoreStats stats() const override;
+    [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
 private:
     [[nodiscard]] Result<> check_session(SessionId session);

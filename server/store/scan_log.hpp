@@ -37,9 +37,8 @@ struct CheckpointPart {
     friend bool operator==(const CheckpointPart&, const CheckpointPart&) = default;
 };
 
-/// What the store did since it was opened, and what it holds.
+/// What the store did since it was opened.
 struct StoreStats {
-    std::uint64_t bytes_on_disk = 0;       ///< all files of the store
     std::uint64_t appends = 0;             ///< calls of append() that became durable
     std::uint64_t entries = 0;             ///< log entries that became durable
     std::uint64_t synced_writes = 0;       ///< group commits, one fsync each
@@ -107,6 +106,9 @@ public:
     [[nodiscard]] virtual Result<> read_checkpoint(SessionId session, const VisitPart& visit) = 0;
 
     [[nodiscard]] virtual StoreStats stats() const = 0;
+
+    /// All files of the store.
+    [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
 };
 
 struct StoreOptions {

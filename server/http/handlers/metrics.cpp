@@ -13,10 +13,11 @@ using Families = std::vector<prometheus::MetricFamily>;
 using metrics::counter_now;
 using metrics::gauge_now;
 
-Families store_families(const store::StoreStats& stats) {
+Families store_families(const store::ScanLog& log) {
+    const auto stats = log.stats();
     const auto number = [](std::uint64_t count) { return static_cast<double>(count); };
     return {
-        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(stats.bytes_on_disk)),
+        gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
         gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
         gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
         counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
@@ -51,7 +52,7 @@ Result<Response> get_metrics(const metrics::Metrics& counted, const session::Ses
     if (auto known = call.query.check_only({}); !known) return known.error();
     Families families = counted.collect();
     append(families, session_families(sessions));
-    append(families, store_families(log.stats()));
+    append(families, store_families(log));
     append(families, metrics::process_families());
     return ok("text/plain; version=0.0.4; charset=utf-8", Body(metrics::to_text(families)))
         .set("Cache-Control", kNotKept);

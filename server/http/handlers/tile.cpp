@@ -35,8 +35,7 @@ Result<Version> parse_version(const Query& query) {
 /// Whether the tile as it is now is the tile of that version for ever: nothing changed it since, and
 /// that revision has been reached.
 bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
-    return version.revision && *version.revision >= tile && *version.revision <= now &&
-           version.session_tag == tag;
+    return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
 using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, tiles::TileKey);

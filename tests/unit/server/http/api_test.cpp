@@ -421,6 +421,13 @@ TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("shutting down"));
 }
 
+TEST_F(ApiTest, ReadinessDoesNotLookAtTheDisk) {
+    EXPECT_EQ(get("/readyz").status, Status::ok);
+    EXPECT_EQ(log_.looks_at_the_disk(), 0);
+    EXPECT_EQ(get("/metrics").status, Status::ok);
+    EXPECT_EQ(log_.looks_at_the_disk(), 1);
+}
+
 TEST_F(ApiTest, ReadinessNamesAFailedStore) {
     log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
     ask("POST", "/api/v1/sessions", R"({"name":"a"})");

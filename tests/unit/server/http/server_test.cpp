@@ -7,9 +7,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
+#include <latch>
+#include <memory>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 namespace scanloom::http {
 namespace {
@@ -29,7 +33,7 @@ class RunningServer {
 public:
     explicit RunningServer(ServerConfig config = {}, Answer answer = echo) {
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
-        server_ = Server::listen(io_, compute_.get_executor(), config, std::move(answer), counters_).value();
+        server_ = Server::listen(io_, executors(), config, std::move(answer), counters_).value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
     }
@@ -53,12 +57,17 @@ public:
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
+    [[nodiscard]] Executors executors() {
+        return {telling_.get_executor(), serving_.get_executor(), changing_.get_executor()};
+    }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
 private:
     prometheus::Registry registry_;
     metrics::HttpCounters counters_{registry_};
-    boost::asio::thread_pool compute_{2};
+    boost::asio::thread_pool telling_{1};
+    boost::asio::thread_pool serving_{1};
+    boost::asio::thread_pool changing_{1};
     boost::asio::io_context io_;
     std::shared_ptr<Server> server_;
     std::array<std::thread, 2> threads_;
@@ -291,7 +300,7 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
     });
     HttpClient busy(server.port());
     HttpClient idle(server.port());
-    busy.send(get("/"));
+    busy.send(get("/api/v1/sessions"));
     entered.get_future().wait();
     std::promise<void> done;
     server.server().stop([&done] { done.set_value(); });
@@ -306,6 +315,82 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
     server.set_stopped();
 }
 
+/// Holds up every request it is told to, until it goes.
+class Gate {
+public:
+    explicit Gate(std::size_t awaited) : all_in_(static_cast<std::ptrdiff_t>(awaited)) {}
+
+    void pass_slowly() {
+        all_in_.count_down();
+        opened_.wait(false);
+    }
+    void wait_until_all_are_in() { all_in_.wait(); }
+    void open() {
+        opened_ = true;
+        opened_.notify_all();
+    }
+
+private:
+    std::latch all_in_;
+    std::atomic<bool> opened_ = false;
+};
+
+std::string post(std::string_view target) {
+    return fmt::format("POST {} HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\n\r\n", target);
+}
+
+TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
+    Gate gate(3);
+    RunningServer server({}, [&](const Request& request) {
+        if (request.target.starts_with("/api") || request.target == "/metrics") gate.pass_slowly();
+        return echo(request);
+    });
+    std::vector<std::unique_ptr<HttpClient>> busy;
+    for (const auto& request : {get("/api/v1/sessions"), post("/api/v1/sessions"), get("/metrics")}) {
+        busy.push_back(std::make_unique<HttpClient>(server.port()));
+        busy.back()->send(request);
+    }
+    gate.wait_until_all_are_in(); // no executor has a thread left
+    for (const auto* target : {"/livez", "/readyz", "/", "/assets/a.js", "/openapi.json", "/nothing"}) {
+        EXPECT_EQ(answer_to(server, get(target)).status, 200) << target;
+    }
+    gate.open();
+    for (const auto& client : busy) EXPECT_EQ(client->read().status, 200);
+}
+
+TEST(HttpServer, ChangesHoldUpNeitherTilesNorMetrics) {
+    Gate gate(1);
+    RunningServer server({}, [&](const Request& request) {
+        if (request.method == "DELETE") gate.pass_slowly();
+        return echo(request);
+    });
+    HttpClient deleting(server.port());
+    deleting.send("DELETE /api/v1/sessions/a HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    gate.wait_until_all_are_in();
+    for (const auto* target : {"/api/v1/sessions/b/tiles/occupancy/0/0/0.png", "/api/v1/sessions", "/metrics"}) {
+        EXPECT_EQ(answer_to(server, get(target)).status, 200) << target;
+    }
+    gate.open();
+    EXPECT_EQ(deleting.read().status, 200);
+}
+
+TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
+    Gate gate(1);
+    RunningServer server(ServerConfig{.changes_max = 1}, [&](const Request& request) {
+        gate.pass_slowly();
+        return echo(request);
+    });
+    HttpClient first(server.port());
+    first.send(post("/api/v1/sessions"));
+    gate.wait_until_all_are_in();
+    const auto refused = answer_to(server, post("/api/v1/sessions"));
+    EXPECT_EQ(refused.status, 503);
+    EXPECT_EQ(refused.fields.at("retry-after"), "1");
+    gate.open();
+    EXPECT_EQ(first.read().status, 200);
+    EXPECT_EQ(answer_to(server, post("/api/v1/sessions")).status, 200);
+}
+
 TEST(HttpServer, AfterStoppingNobodyIsAccepted) {
     RunningServer server;
     server.stop();
@@ -316,7 +401,7 @@ TEST(HttpServer, APortInUseIsAClearError) {
     RunningServer server;
     ServerConfig config;
     config.endpoint = {boost::asio::ip::address_v4::loopback(), server.port()};
-    const auto second = Server::listen(server.io(), server.io().get_executor(), config, echo, server.counters());
+    const auto second = Server::listen(server.io(), server.executors(), config, echo, server.counters());
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::kUnreachable);
     EXPECT_THAT(second.error().message, HasSubstr(fmt::format("127.0.0.1:{}", server.port())));

@@ -107,12 +107,12 @@ TEST_F(OpenRocksdb, ARemovedSessionsDiskIsFreed) {
         for (char& byte : entry) byte = static_cast<char>(random());
         ASSERT_TRUE(append_and_wait(*log, removed, revision, {std::move(entry)}));
     }
-    const auto before = log->stats().bytes_on_disk;
+    const auto before = log->bytes_on_disk();
     EXPECT_GT(before, 10'000'000U);
     ASSERT_TRUE(log->remove_session(removed));
     log.reset(); // waits for what deletes files
     log = open_rocksdb(directory_, options).value();
-    EXPECT_LT(log->stats().bytes_on_disk, before / 4);
+    EXPECT_LT(log->bytes_on_disk(), before / 4);
     EXPECT_THAT(entries_after(*log, kept, 0).value(), ElementsAre("entry"));
 }
 

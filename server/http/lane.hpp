@@ -1,0 +1,17 @@
+#pragma once
+
+#include "server/http/request.hpp"
+
+namespace scanloom::http {
+
+/// What an answer may have to wait for; each lane has an executor of its own, so that none holds up another.
+enum class Lane {
+    kAtOnce,   ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
+    kTelling,  ///< a look at the system: metrics
+    kServing,  ///< its own work on a snapshot: tiles, maps
+    kChanging, ///< the disk, or a session's strand: creating and deleting sessions
+};
+
+[[nodiscard]] Lane lane_of(const Request& request);
+
+} // namespace scanloom::http
