@@ -14,6 +14,7 @@
 #include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <ctime>
@@ -211,12 +212,18 @@ net::awaitable<bool> Connection::write(const Response& response, bool with_body,
     co_return written&& keep_alive;
 }
 
-/// A deadline for each piece, so that a large answer may take its time as long as somebody reads it.
+/// A deadline for each piece, so that a large answer may take its time as long as somebody reads it; and one for all,
+/// so that nobody holds one in memory by reading a byte now and then.
 net::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
     const std::array<net::const_buffer, 2> whole = {net::buffer(head), net::buffer(body)};
     beast::buffers_suffix<std::array<net::const_buffer, 2>> rest(whole);
+    const auto& config = service_->config;
+    const auto size_seconds =
+        static_cast<double>(head.size() + body.size()) / static_cast<double>(config.write_rate_min);
+    const auto end = std::chrono::steady_clock::now() + config.write +
+                     std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
     while (beast::buffer_bytes(rest) > 0) {
-        stream_.expires_after(service_->config.write);
+        stream_.expires_at(std::min(end, std::chrono::steady_clock::now() + config.write));
         const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
         if (error) co_return false;
         rest.consume(size);

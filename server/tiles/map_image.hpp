@@ -8,7 +8,8 @@
 
 namespace scanloom::tiles {
 
-inline constexpr std::int64_t kMapPixelsMax = 100'000'000;
+/// 400 m by 400 m at 5 cm; a byte each, and some copies on the way to a file.
+inline constexpr std::int64_t kMapPixelsMax = 64'000'000;
 inline constexpr std::int64_t kMapSideMax = 1'000'000; ///< pixels; what libpng writes
 
 /// Which cells a map image shows, one for each pixel.
@@ -30,6 +31,8 @@ struct MapImage {
 };
 
 /// The frame of what was asked for: all cells that any scan changed, or the cells a bbox overlaps, whether seen or not.
+/// A bbox is not clipped to what was seen: its image and its description, fetched one after the other while the map
+/// grows, have to fit each other.
 /// Errors  kNotFound: no bbox, and nothing was seen yet; kTooLarge: more pixels than the limits;
 ///         kInvalidField: a bad bbox.
 [[nodiscard]] Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, const std::optional<Extent>& bbox);

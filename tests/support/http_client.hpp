@@ -8,6 +8,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -71,6 +72,13 @@ public:
         while (receive()) {
         }
         return last_size_ == 0;
+    }
+
+    /// Reads a byte at a time until the stream ends; how many there were.
+    [[nodiscard]] std::size_t read_by_single_bytes() {
+        std::size_t count = 0;
+        for (char byte = 0; ::recv(socket_.native_handle(), &byte, 1, 0) == 1;) ++count;
+        return count;
     }
 
     void shutdown_send() { ::shutdown(socket_.native_handle(), SHUT_WR); }

@@ -4,6 +4,7 @@
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
+#include "server/http/problem.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/ros_map.hpp"
 
@@ -12,6 +13,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -38,20 +41,14 @@ Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
                  fmt::format("bbox is {}; min_x,min_y,max_x,max_y in metres is needed", in_quotes(*text))};
 }
 
-Body png_of(const mapping::Snapshot& snapshot, const tiles::MapFrame& frame) {
-    return Body(std::make_shared<const tiles::Bytes>(tiles::map_png(tiles::render_map(snapshot, frame))));
-}
+/// What a request for a map comes to before anything is drawn.
+struct Wanted {
+    std::shared_ptr<const mapping::Snapshot> snapshot;
+    tiles::MapFrame frame;
+    std::string etag;
+};
 
-Body pgm_of(const mapping::Snapshot& snapshot, const tiles::MapFrame& frame) {
-    return Body(std::make_shared<const tiles::Bytes>(tiles::map_pgm(tiles::render_map(snapshot, frame))));
-}
-
-Body yaml_of(const mapping::Snapshot&, const tiles::MapFrame& frame) { return Body(tiles::map_yaml(frame)); }
-
-using Write = Body (*)(const mapping::Snapshot&, const tiles::MapFrame&);
-
-Result<Response> get_map(const session::SessionRegistry& sessions, const Call& call, std::string_view content_type,
-                         Write write) {
+Result<Wanted> wanted_map(const session::SessionRegistry& sessions, const Call& call) {
     if (auto known = call.query.check_only({"layer", "bbox"}); !known) return known.error();
     const auto bbox = bbox_parameter(call.query);
     if (!bbox) return bbox.error();
@@ -59,26 +56,52 @@ Result<Response> get_map(const session::SessionRegistry& sessions, const Call& c
     if (!session) return session.error();
     if (auto known = check_layer_parameter(call.query); !known) return known.error();
 
-    const auto snapshot = (*session)->snapshot();
+    auto snapshot = (*session)->snapshot();
     const auto frame = tiles::map_frame(*snapshot, *bbox);
     if (!frame) return frame.error();
-    const auto etag = fmt::format("\"{}-map-{}\"", session_tag((*session)->info()), snapshot->revision);
-    if (if_none_match_has(call.request.if_none_match, etag)) return not_modified(etag, kRevalidate);
-    return ok(content_type, write(*snapshot, *frame)).set("ETag", etag).set("Cache-Control", kRevalidate);
+    auto etag = fmt::format("\"{}-map-{}\"", session_tag((*session)->info()), snapshot->revision);
+    return Wanted{std::move(snapshot), *frame, std::move(etag)};
+}
+
+Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
+    return ok(content_type, std::move(body)).set("ETag", etag).set("Cache-Control", kRevalidate);
+}
+
+using Write = tiles::Bytes (*)(const tiles::MapImage&);
+
+Result<Response> get_image(const session::SessionRegistry& sessions, const Slots& images, const Call& call,
+                           std::string_view content_type, Write write) {
+    const auto wanted = wanted_map(sessions, call);
+    if (!wanted) return wanted.error();
+    if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
+    struct Image {
+        std::shared_ptr<const void> slot;
+        tiles::Bytes bytes;
+    };
+    auto image = std::make_shared<Image>(Image{images.try_take(), {}});
+    if (!image->slot) {
+        return problem(Status::service_unavailable, "other map images are being made and sent; try again soon",
+                       instance_of(call.request.target));
+    }
+    image->bytes = write(tiles::render_map(*wanted->snapshot, wanted->frame));
+    return map_answer(content_type, Body(std::shared_ptr<const tiles::Bytes>(image, &image->bytes)), wanted->etag);
 }
 
 } // namespace
 
-Result<Response> get_map_png(const session::SessionRegistry& sessions, const Call& call) {
-    return get_map(sessions, call, "image/png", png_of);
+Result<Response> get_map_png(const session::SessionRegistry& sessions, const Slots& images, const Call& call) {
+    return get_image(sessions, images, call, "image/png", tiles::map_png);
 }
 
-Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const Call& call) {
-    return get_map(sessions, call, "image/x-portable-graymap", pgm_of);
+Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const Slots& images, const Call& call) {
+    return get_image(sessions, images, call, "image/x-portable-graymap", tiles::map_pgm);
 }
 
 Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call) {
-    return get_map(sessions, call, "application/yaml", yaml_of);
+    const auto wanted = wanted_map(sessions, call);
+    if (!wanted) return wanted.error();
+    if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
+    return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), wanted->etag);
 }
 
 } // namespace scanloom::http

@@ -262,6 +262,15 @@ TEST(HttpServer, WhoDoesNotReadIsCutOff) {
     server.stop(); // returns when the connection is closed, though nobody read a byte
 }
 
+TEST(HttpServer, WhoReadsTooSlowlyIsCutOff) {
+    constexpr std::size_t kSize = 64 << 20; // a byte at a time: a minute
+    RunningServer server(ServerConfig{.write = 50ms, .write_rate_min = std::uint64_t{1} << 40},
+                         [](const Request&) { return ok("text/plain", Body(std::string(kSize, 'a'))); });
+    HttpClient client(server.port());
+    client.send(get("/"));
+    EXPECT_LT(client.read_by_single_bytes(), kSize);
+}
+
 TEST(HttpServer, LargeAnswersArriveWhole) {
     RunningServer server({}, [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
     EXPECT_EQ(answer_to(server, get("/")).body, std::string(8 << 20, 'b'));
