@@ -6,6 +6,7 @@
 #include "server/http/handlers/map_files.hpp"
 #include "server/http/handlers/metrics.hpp"
 #include "server/http/handlers/openapi.hpp"
+#include "server/http/handlers/session_lookup.hpp"
 #include "server/http/handlers/sessions.hpp"
 #include "server/http/handlers/tile.hpp"
 #include "server/http/handlers/tilejson.hpp"
@@ -34,6 +35,12 @@ bool needs_sessions(Operation operation) {
     case Operation::kOpenapi: return false;
     default: return true;
     }
+}
+
+/// Whether it is about what one session holds. Deleting is not: a damaged session can be deleted, too.
+bool asks_of_a_session(Operation operation) {
+    return needs_sessions(operation) && operation != Operation::kListSessions &&
+           operation != Operation::kCreateSession && operation != Operation::kDeleteSession;
 }
 
 } // namespace
@@ -68,11 +75,14 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
         return Error{Errc::kShuttingDown, "the sessions are still being recovered from the store; try again soon"};
     }
     const Call call{request, match.arguments, target.query};
+    if (asks_of_a_session(match.operation)) {
+        if (auto refusal = refusal_if_damaged(sessions_, call)) return std::move(*refusal);
+    }
     switch (match.operation) {
     case Operation::kViewer: return get_viewer(web_, call);
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);
     case Operation::kLivez: return get_livez(call);
-    case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, call);
+    case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, robots_, call);
     case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, call);
     case Operation::kOpenapi: return get_openapi(call);
     case Operation::kListSessions: return list_sessions(sessions_, call);

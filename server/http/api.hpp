@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/handlers/health.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/slots.hpp"
@@ -29,6 +30,9 @@ public:
     /// From now on the sessions are served; before, whoever asks for them is told to wait.
     void set_recovered() noexcept { recovered_ = true; }
 
+    /// Pre  nobody asks yet.
+    void set_robot_port(RobotPort robots) { robots_ = std::move(robots); }
+
     /// Every failure is an answer too: application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
@@ -40,6 +44,7 @@ private:
     const metrics::Metrics& metrics_;
     const WebFiles web_;
     const Slots map_images_{kMapImagesMax};
+    RobotPort robots_;
     std::atomic<bool> recovered_ = false;
 };
 

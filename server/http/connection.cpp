@@ -33,6 +33,11 @@ std::string date_now() { return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt:
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
+/// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
+bool is_frame(const beast::flat_buffer& unread) {
+    return unread.size() > 0 && *static_cast<const char*>(unread.data().data()) == '\0';
+}
+
 /// The answer to bytes that are no request we read; nothing when there is nobody to answer.
 std::optional<Response> refusal_of(beast::error_code reason) {
     using beast::http::error;
@@ -200,7 +205,13 @@ const net::any_io_executor& Connection::executor_of(Lane lane) const {
 }
 
 net::awaitable<void> Connection::refuse(beast::error_code reason) {
-    if (const auto refusal = http::refusal_of(reason)) co_await write(*refusal, true, false);
+    if (is_frame(buffer_)) {
+        co_await write(problem(Status::bad_request,
+                               "this is no HTTP but what robots send; they connect to the robot port (--listen)", ""),
+                       true, false);
+    } else if (const auto refusal = http::refusal_of(reason)) {
+        co_await write(*refusal, true, false);
+    }
 }
 
 /// @return whether the connection can take another request.

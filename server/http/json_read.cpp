@@ -1,6 +1,7 @@
 #include "server/http/json_read.hpp"
 
 #include "server/http/in_quotes.hpp"
+#include "server/http/json_keys.hpp"
 
 #include <boost/json/parse.hpp>
 #include <boost/url/grammar/ci_string.hpp>
@@ -26,6 +27,9 @@ Result<boost::json::object> parse_json_object(std::string_view body) {
     auto value = boost::json::parse(body, failed, {}, options);
     if (failed) return Error{Errc::kMalformed, fmt::format("the body is not JSON: {}", failed.message())};
     if (!value.is_object()) return Error{Errc::kMalformed, "the body is JSON but not an object; send {\"name\": ...}"};
+    if (const auto twice = duplicate_key(body)) {
+        return Error{Errc::kInvalidField, fmt::format("the field {} is given twice; give it once", in_quotes(*twice))};
+    }
     return std::move(value.get_object());
 }
 

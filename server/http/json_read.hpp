@@ -15,7 +15,7 @@ namespace scanloom::http {
 [[nodiscard]] bool is_json(std::string_view content_type);
 
 /// The JSON object that a body is, at most 8 levels deep.
-/// Errors  kMalformed: not JSON, deeper, or not an object.
+/// Errors  kMalformed: not JSON, deeper, or not an object. kInvalidField: a key that is given twice.
 [[nodiscard]] Result<boost::json::object> parse_json_object(std::string_view body);
 
 /// Errors  kInvalidField, naming the first member that is none of these.

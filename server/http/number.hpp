@@ -29,4 +29,12 @@ template <std::integral T>
     return value;
 }
 
+/// Metres to be shown, without the noise of the last bits: -19.95 where a product of cells and their size has
+/// -19.950000000000003. Exact to a micrometre.
+[[nodiscard]] inline double rounded_metres(double metres) {
+    constexpr double kPerMetre = 1e6;
+    const double rounded = std::round(metres * kPerMetre) / kPerMetre;
+    return std::isfinite(rounded) ? rounded : metres;
+}
+
 } // namespace scanloom::http

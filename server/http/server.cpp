@@ -1,18 +1,16 @@
 #include "server/http/server.hpp"
 
 #include "server/http/problem.hpp"
+#include "server/sockets/accept_each.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <utility>
 
 namespace scanloom::http {
@@ -36,7 +34,7 @@ Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors ex
 }
 
 Server::Server(net::io_context& io, std::shared_ptr<const Service> service)
-    : io_(io), service_(std::move(service)), strand_(net::make_strand(io)), acceptor_(strand_), timer_(strand_) {}
+    : io_(io), service_(std::move(service)), strand_(net::make_strand(io)), acceptor_(strand_), drained_(strand_) {}
 
 boost::system::error_code Server::bind() {
     const auto& endpoint = service_->config.endpoint;
@@ -61,8 +59,8 @@ void Server::stop(std::function<void()> done) {
         self->done_ = std::move(done);
         boost::system::error_code ignored;
         self->acceptor_.close(ignored);
-        self->timer_.expires_after(self->service_->config.drain); // also ends a pause in accepting
-        self->timer_.async_wait([self](boost::system::error_code cancelled) {
+        self->drained_.expires_after(self->service_->config.drain);
+        self->drained_.async_wait([self](boost::system::error_code cancelled) {
             if (cancelled) return;
             for (const auto& connection : self->connections_) connection->abort();
         });
@@ -73,19 +71,8 @@ void Server::stop(std::function<void()> done) {
 
 net::awaitable<void> Server::accept_loop() {
     const auto self = shared_from_this();
-    while (acceptor_.is_open()) {
-        auto [failed, socket] =
-            co_await acceptor_.async_accept(net::make_strand(io_), net::as_tuple(net::use_awaitable));
-        if (!acceptor_.is_open()) break;
-        if (!failed) {
-            take(std::move(socket));
-            continue;
-        }
-        // Out of file descriptors, most likely: some are given back in time.
-        spdlog::warn("cannot accept an HTTP connection: {}", failed.message());
-        timer_.expires_after(std::chrono::milliseconds(100));
-        co_await timer_.async_wait(net::as_tuple(net::use_awaitable));
-    }
+    co_await sockets::accept_each(acceptor_, io_, "an HTTP connection",
+                                  [this](tcp::socket socket) { take(std::move(socket)); });
     accepting_ = false;
     call_done_when_empty();
 }
@@ -98,7 +85,12 @@ void Server::take(tcp::socket socket) {
     auto connection = std::make_shared<Connection>(std::move(socket), service_);
     connections_.insert(connection);
     service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
-    net::co_spawn(executor, serve(std::move(connection)), net::detached);
+    try {
+        net::co_spawn(executor, serve(connection), net::detached);
+    } catch (...) {
+        forget(connection);
+        throw;
+    }
 }
 
 /// Says why, as far as that is possible without waiting: nothing may pile up here.
@@ -130,7 +122,7 @@ void Server::forget(const std::shared_ptr<Connection>& connection) {
 
 void Server::call_done_when_empty() {
     if (!done_ || accepting_ || !connections_.empty()) return;
-    timer_.cancel();
+    drained_.cancel();
     std::exchange(done_, nullptr)();
 }
 

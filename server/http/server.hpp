@@ -62,7 +62,7 @@ private:
 
     // On the strand only.
     boost::asio::ip::tcp::acceptor acceptor_;
-    boost::asio::steady_timer timer_; // a pause in accepting; then the end of draining
+    boost::asio::steady_timer drained_; // runs out at the end of draining
     std::set<std::shared_ptr<Connection>> connections_;
     bool accepting_ = false;
     std::function<void()> done_; // set while stopping

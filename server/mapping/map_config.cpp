@@ -5,14 +5,7 @@
 namespace scanloom::mapping {
 namespace {
 
-/// The one list of what can be set: name, member of SessionOptions, member of MapConfig.
-struct Field {
-    const char* name;
-    std::optional<double> SessionOptions::*option;
-    double MapConfig::*value;
-};
-
-constexpr Field kFields[] = {
+constexpr ConfigField kFields[] = {
     {"cell_size", &SessionOptions::cell_size, &MapConfig::cell_size},
     {"p_occupied", &SessionOptions::p_occupied, &MapConfig::p_occupied},
     {"p_free", &SessionOptions::p_free, &MapConfig::p_free},
@@ -61,6 +54,8 @@ Result<> check(const MapConfig& c) {
 }
 
 } // namespace
+
+std::span<const ConfigField> config_fields() noexcept { return kFields; }
 
 Result<MapConfig> resolve(const SessionOptions& options) {
     MapConfig config;

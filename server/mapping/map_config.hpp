@@ -4,6 +4,8 @@
 #include "common/scan/session_options.hpp"
 
 #include <numbers>
+#include <optional>
+#include <span>
 
 namespace scanloom::mapping {
 
@@ -21,6 +23,16 @@ struct MapConfig {
 
     friend bool operator==(const MapConfig&, const MapConfig&) = default;
 };
+
+/// One thing that can be set.
+struct ConfigField {
+    const char* name; ///< as people and programs write it
+    std::optional<double> SessionOptions::*option;
+    double MapConfig::*value;
+};
+
+/// The one list of what can be set.
+[[nodiscard]] std::span<const ConfigField> config_fields() noexcept;
 
 /// The options with defaults filled in.
 /// Errors  kInvalidField: the message names the field, its value and its range.

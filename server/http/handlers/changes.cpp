@@ -18,7 +18,7 @@ Result<Response> get_changes(const session::SessionRegistry& sessions, const Cal
 
     const auto snapshot = (*session)->snapshot();
     boost::json::array changed;
-    for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, *since)) {
+    for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, since_in(*snapshot, *since))) {
         changed.push_back(boost::json::object{{"z", key.zoom}, {"x", key.x}, {"y", key.y}, {"revision", revision}});
     }
     return ok(boost::json::object{

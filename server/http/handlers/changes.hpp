@@ -7,7 +7,7 @@
 namespace scanloom::http {
 
 /// GET .../changes?layer&since: every tile of every zoom that was touched after revision `since`.
-/// A `since` beyond the revision now says that the session was made anew: no tile is newer.
+/// A `since` beyond the revision now is of a session that was deleted and made anew: every tile is told.
 [[nodiscard]] Result<Response> get_changes(const session::SessionRegistry& sessions, const Call& call);
 
 } // namespace scanloom::http

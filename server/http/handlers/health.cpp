@@ -1,11 +1,26 @@
 #include "server/http/handlers/health.hpp"
 
+#include "server/http/handlers/session_json.hpp"
 #include "server/http/problem.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
 
 namespace scanloom::http {
+namespace {
+
+/// Damaged sessions keep nobody from using the others.
+boost::json::object readiness(const session::SessionRegistry& sessions, const RobotPort& robots) {
+    boost::json::array damaged;
+    for (const auto& [name, reason] : sessions.damaged()) damaged.push_back(damaged_json(name, reason));
+    boost::json::value host;
+    if (!robots.host.empty()) host = boost::json::string(robots.host);
+    return {{"status", "ready"},
+            {"robots", boost::json::object{{"host", std::move(host)}, {"port", robots.port}}},
+            {"damaged", std::move(damaged)}};
+}
+
+} // namespace
 
 Result<Response> get_livez(const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
@@ -13,13 +28,13 @@ Result<Response> get_livez(const Call& call) {
 }
 
 Result<Response> get_readyz(const session::SessionRegistry& sessions, const store::ScanLog& log, bool recovered,
-                            const Call& call) {
+                            const RobotPort& robots, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     boost::json::array reasons;
     if (!recovered) reasons.emplace_back("the sessions are still being recovered from the store");
     if (sessions.is_draining()) reasons.emplace_back("the server is shutting down");
     if (const auto error = log.stats().last_error) reasons.emplace_back("the store failed: " + *error);
-    if (reasons.empty()) return ok(boost::json::object{{"status", "ready"}});
+    if (reasons.empty()) return ok(readiness(sessions, robots));
     return problem(Status::service_unavailable, "the server is not ready", "/readyz", {{"reasons", reasons}});
 }
 

@@ -5,13 +5,23 @@
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <cstdint>
+#include <string>
+
 namespace scanloom::http {
+
+/// Where robots connect.
+struct RobotPort {
+    std::string host; ///< an address; empty when every address of this machine will do
+    std::uint16_t port = 0;
+};
 
 /// GET /livez: the process answers.
 [[nodiscard]] Result<Response> get_livez(const Call& call);
 
-/// GET /readyz: 200, or 503 with the reasons: sessions not recovered yet, draining, a failed store.
+/// GET /readyz: 200 with the sessions that are damaged and where robots connect, or 503 with the reasons: sessions not
+/// recovered yet, draining, a failed store. It waits for nothing.
 [[nodiscard]] Result<Response> get_readyz(const session::SessionRegistry& sessions, const store::ScanLog& log,
-                                          bool recovered, const Call& call);
+                                          bool recovered, const RobotPort& robots, const Call& call);
 
 } // namespace scanloom::http

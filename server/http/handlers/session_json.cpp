@@ -2,6 +2,8 @@
 
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/json_read.hpp"
+#include "server/http/number.hpp"
+#include "server/mapping/map_config.hpp"
 #include "server/tiles/extent.hpp"
 
 #include <boost/json/array.hpp>
@@ -15,44 +17,28 @@
 namespace scanloom::http {
 namespace {
 
-/// The one list of the options' names in JSON.
-struct OptionName {
-    std::string_view name;
-    std::optional<double> SessionOptions::*option;
-};
-
-constexpr OptionName kOptions[] = {
-    {"cell_size", &SessionOptions::cell_size},
-    {"p_occupied", &SessionOptions::p_occupied},
-    {"p_free", &SessionOptions::p_free},
-    {"p_prior", &SessionOptions::p_prior},
-    {"p_min", &SessionOptions::p_min},
-    {"p_max", &SessionOptions::p_max},
-    {"obstacle_thickness", &SessionOptions::obstacle_thickness},
-    {"beam_aperture", &SessionOptions::beam_aperture},
-};
-
 std::string rfc3339(double seconds) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(std::floor(seconds))));
 }
 
 boost::json::object config_json(const mapping::MapConfig& config) {
-    const SessionOptions options = mapping::options_of(config);
     boost::json::object json;
-    for (const auto& [name, option] : kOptions) json[name] = *(options.*option);
+    for (const auto& field : mapping::config_fields()) json[field.name] = config.*field.value;
     return json;
 }
 
 boost::json::value bounds_json(const mapping::Snapshot& snapshot) {
     if (snapshot.bounds.empty()) return nullptr;
     const auto extent = tiles::extent_of(snapshot.bounds, snapshot.config.cell_size);
-    return boost::json::object{
-        {"min_x", extent.min_x}, {"min_y", extent.min_y}, {"max_x", extent.max_x}, {"max_y", extent.max_y}};
+    return boost::json::object{{"min_x", rounded_metres(extent.min_x)},
+                               {"min_y", rounded_metres(extent.min_y)},
+                               {"max_x", rounded_metres(extent.max_x)},
+                               {"max_y", rounded_metres(extent.max_y)}};
 }
 
 boost::json::value pose_json(const std::optional<Pose2>& pose) {
     if (!pose) return nullptr;
-    return boost::json::object{{"x", pose->x}, {"y", pose->y}, {"yaw", pose->yaw}};
+    return boost::json::object{{"x", rounded_metres(pose->x)}, {"y", rounded_metres(pose->y)}, {"yaw", pose->yaw}};
 }
 
 } // namespace
@@ -73,6 +59,7 @@ boost::json::object to_json(const session::Session& session) {
     }
     const auto& info = session.info();
     return {{"name", info.name},
+            {"state", "ok"},
             {"id", session_tag(info)},
             {"created", rfc3339(info.created)},
             {"revision", snapshot->revision},
@@ -83,21 +70,25 @@ boost::json::object to_json(const session::Session& session) {
             {"robots", std::move(robots)}};
 }
 
+boost::json::object damaged_json(std::string_view name, const Error& reason) {
+    return {{"name", name}, {"state", "damaged"}, {"reason", reason.message}};
+}
+
 Result<SessionRequest> parse_session_request(std::string_view body) {
     const auto object = parse_json_object(body);
     if (!object) return object.error();
     std::vector<std::string_view> known = {"name"};
-    for (const auto& option : kOptions) known.push_back(option.name);
+    for (const auto& field : mapping::config_fields()) known.push_back(field.name);
     if (auto ok = check_members(*object, known); !ok) return ok.error();
 
     SessionRequest wanted;
     auto name = read_text(*object, "name");
     if (!name) return name.error();
     wanted.name = std::move(*name);
-    for (const auto& [option_name, option] : kOptions) {
-        const auto number = read_number(*object, option_name);
+    for (const auto& field : mapping::config_fields()) {
+        const auto number = read_number(*object, field.name);
         if (!number) return number.error();
-        wanted.options.*option = *number;
+        wanted.options.*field.option = *number;
     }
     return wanted;
 }

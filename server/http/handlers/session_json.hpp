@@ -7,11 +7,15 @@
 #include <boost/json/object.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace scanloom::http {
 
 /// Everything about a session, as the API shows it.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);
+
+/// A session whose log is damaged, so that there is no more to show of it than that.
+[[nodiscard]] boost::json::object damaged_json(std::string_view name, const Error& reason);
 
 /// What a new session is to be.
 struct SessionRequest {

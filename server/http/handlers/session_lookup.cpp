@@ -2,6 +2,7 @@
 
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
+#include "server/http/problem.hpp"
 
 #include <fmt/format.h>
 
@@ -23,17 +24,25 @@ std::uint64_t mixed(std::uint64_t bits) {
 Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions, const Call& call) {
     const auto& name = call.arguments["session"];
     if (auto session = sessions.find(name)) return session;
-    const auto damaged = sessions.damaged();
-    if (const auto found = damaged.find(name); found != damaged.end()) {
-        return Error{Errc::kStoreFailed,
-                     fmt::format("the session {} could not be recovered: {}", name, found->second.message)};
-    }
     return Error{Errc::kNotFound,
                  fmt::format("there is no session {}; GET /api/v1/sessions lists them", in_quotes(name))};
 }
 
-std::string session_tag(const session::SessionInfo& info) {
-    return fmt::format("{:016x}", mixed(mixed(info.id) ^ std::bit_cast<std::uint64_t>(info.created)));
+std::optional<Response> refusal_if_damaged(const session::SessionRegistry& sessions, const Call& call) {
+    const auto& name = call.arguments["session"];
+    if (sessions.find(name)) return std::nullopt;
+    const auto damaged = sessions.damaged();
+    const auto found = damaged.find(name);
+    if (found == damaged.end()) return std::nullopt;
+    return problem(Status::internal_server_error,
+                   fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets it",
+                               name, found->second.message),
+                   instance_of(call.request.target));
+}
+
+std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
+    const auto making = mixed(std::uint64_t{versions.weaving} << 32 | versions.rendering);
+    return fmt::format("{:016x}", mixed(mixed(mixed(info.id) ^ std::bit_cast<std::uint64_t>(info.created)) ^ making));
 }
 
 Result<> check_layer(std::string_view layer) {
@@ -48,6 +57,10 @@ Result<Revision> since_parameter(const Query& query) {
     if (const auto since = parse_integer<Revision>(text)) return *since;
     return Error{Errc::kInvalidField,
                  fmt::format("since is {}; a revision is needed, a whole number from 0 on", in_quotes(text))};
+}
+
+Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {
+    return since <= snapshot.revision ? since : 0;
 }
 
 } // namespace scanloom::http

@@ -2,9 +2,14 @@
 
 #include "common/error/error.hpp"
 #include "server/http/handlers/call.hpp"
+#include "server/http/response.hpp"
+#include "server/mapping/projection.hpp"
 #include "server/session/session_registry.hpp"
+#include "server/tiles/tile_version.hpp"
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace scanloom::http {
@@ -12,13 +17,23 @@ namespace scanloom::http {
 inline constexpr std::string_view kOccupancy = "occupancy";
 
 /// The session of the call's path.
-/// Errors  kNotFound; kStoreFailed: its log is damaged, and so it could not be recovered.
+/// Errors  kNotFound.
 [[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions,
                                                                      const Call& call);
 
-/// What tells a session from every other one, also from one that had its name before, and from those of
-/// a store that was here before: viewers keep what they were told is immutable. 16 hex digits.
-[[nodiscard]] std::string session_tag(const session::SessionInfo& info);
+/// The answer, 500, when the log of the call's session is damaged; nothing when the session can be served or is none.
+[[nodiscard]] std::optional<Response> refusal_if_damaged(const session::SessionRegistry& sessions, const Call& call);
+
+/// How this program makes maps from logs, and bytes from maps.
+struct MakingVersions {
+    std::uint32_t weaving = mapping::kWeavingVersion;
+    std::uint32_t rendering = tiles::kRenderingVersion;
+};
+
+/// What tells a session from every other one, also from one that had its name before, from those of a store that
+/// was here before, and from itself as another version of the program shows it: viewers keep what they were told is
+/// immutable. In every entity tag of what is made from the session. 16 hex digits.
+[[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
 
 /// Errors  kNotFound: no such layer.
 [[nodiscard]] Result<> check_layer(std::string_view layer);
@@ -30,5 +45,9 @@ inline constexpr std::string_view kOccupancy = "occupancy";
 /// The since parameter, 0 when it is not given.
 /// Errors  kInvalidField: not a revision.
 [[nodiscard]] Result<Revision> since_parameter(const Query& query);
+
+/// The revision to count from: 0 when `since` has not been reached, as then it is of a session that was deleted, and
+/// whoever asks knows nothing of the one that has its name now.
+[[nodiscard]] Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept;
 
 } // namespace scanloom::http

@@ -10,12 +10,20 @@
 #include <boost/json/array.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
 
 constexpr std::size_t kLimitMax = 1000;
+
+/// A session's name, or the '#' and number of one whose record cannot be read.
+bool is_listed_name(std::string_view text) { return is_valid_name(text.substr(text.starts_with('#') ? 1 : 0)); }
 
 struct Page {
     std::size_t limit = 100;
@@ -34,7 +42,7 @@ Result<Page> parse_page(const Query& query) {
         page.limit = *limit;
     }
     if (const auto after = query.find("after")) {
-        if (!is_valid_name(*after)) {
+        if (!is_listed_name(*after)) {
             return Error{Errc::kInvalidField,
                          fmt::format("after is {}; the name of a session is needed", in_quotes(*after))};
         }
@@ -43,20 +51,32 @@ Result<Page> parse_page(const Query& query) {
     return page;
 }
 
+/// A session that is served, or why it is not.
+using Listed = Result<std::shared_ptr<session::Session>>;
+
+std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions) {
+    std::map<std::string, Listed, std::less<>> listed;
+    for (auto& session : sessions.list()) listed.emplace(session->info().name, session);
+    for (const auto& [name, reason] : sessions.damaged()) listed.emplace(name, reason);
+    return listed;
+}
+
+boost::json::object to_json(const Listed& listed, std::string_view name) {
+    return listed ? http::to_json(**listed) : damaged_json(name, listed.error());
+}
+
 } // namespace
 
 Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call) {
     const auto page = parse_page(call.query);
     if (!page) return page.error();
-    const auto all = sessions.list();
-    const auto first = std::ranges::upper_bound(
-        all, page->after, {}, [](const auto& session) -> std::string_view { return session->info().name; });
+    const auto listed = sessions_by_name(sessions);
     boost::json::array shown;
     boost::json::value next = nullptr;
-    for (auto session = first; session != all.end() && shown.size() < page->limit; ++session) {
-        shown.push_back(to_json(**session));
-        if (shown.size() == page->limit && session + 1 != all.end())
-            next = boost::json::string((*session)->info().name);
+    auto entry = listed.upper_bound(page->after);
+    for (; entry != listed.end() && shown.size() < page->limit; ++entry) {
+        shown.push_back(to_json(entry->second, entry->first));
+        if (shown.size() == page->limit && std::next(entry) != listed.end()) next = boost::json::string(entry->first);
     }
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
 }

@@ -6,7 +6,8 @@
 
 namespace scanloom::http {
 
-/// GET /api/v1/sessions: by rising name, at most `limit` (1..1000, default 100) names after `after`.
+/// GET /api/v1/sessions: by rising name, at most `limit` (1..1000, default 100) names after `after`;
+/// those whose log is damaged, too, marked so.
 [[nodiscard]] Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call);
 
 /// POST /api/v1/sessions

@@ -1,6 +1,7 @@
 #include "server/http/handlers/tilejson.hpp"
 
 #include "server/http/handlers/session_lookup.hpp"
+#include "server/http/number.hpp"
 #include "server/tiles/extent.hpp"
 #include "server/tiles/tile_key.hpp"
 
@@ -12,7 +13,8 @@ namespace scanloom::http {
 namespace {
 
 boost::json::array corners(const tiles::Extent& extent) {
-    return {extent.min_x, extent.min_y, extent.max_x, extent.max_y};
+    return {rounded_metres(extent.min_x), rounded_metres(extent.min_y), rounded_metres(extent.max_x),
+            rounded_metres(extent.max_y)};
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "server/http/handlers/trajectory.hpp"
 
 #include "server/http/handlers/session_lookup.hpp"
+#include "server/http/number.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,8 @@ void append_feature(std::string& text, const mapping::RobotState& robot, Revisio
                    R"("geometry":{{"type":"{2}","coordinates":[)",
                    robot.name, count, count < 2 ? "MultiPoint" : "LineString");
     for (std::size_t i = first; i < points.size(); ++i) {
-        fmt::format_to(std::back_inserter(text), "{}[{},{}]", i == first ? "" : ",", points[i].pose.x,
-                       points[i].pose.y);
+        fmt::format_to(std::back_inserter(text), "{}[{},{}]", i == first ? "" : ",", rounded_metres(points[i].pose.x),
+                       rounded_metres(points[i].pose.y));
     }
     text += "]}}";
 }
@@ -42,7 +43,7 @@ Result<Response> get_trajectory(const session::SessionRegistry& sessions, const 
     const char* separator = "";
     for (const auto& robot : snapshot->robots) {
         text += separator;
-        append_feature(text, robot, *since);
+        append_feature(text, robot, since_in(*snapshot, *since));
         separator = ",";
     }
     text += "]}";

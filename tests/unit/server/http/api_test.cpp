@@ -1,5 +1,6 @@
 #include "server/http/api.hpp"
 
+#include "server/http/handlers/session_lookup.hpp"
 #include "server/mapping/digest.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/tiles/occupancy_tile.hpp"
@@ -144,6 +145,7 @@ TEST_F(ApiTest, BadSessionRequestsAreRefusedByField) {
         {R"({"name":"a","cellsize":1})", "\"cellsize\""},
         {R"({"name":"a","cell_size":"1"})", "cell_size is not a number"},
         {R"({"name":"a","cell_size":0})", "cell_size"},
+        {R"({"name":"a","cell_size":0.1,"cell_size":0.2})", "\"cell_size\" is given twice"},
         {R"({"name":"a","cell_size":-1e300})", "cell_size"},
         {R"({"name":"a","p_free":0.7})", "p_free"},
         {R"([])", "not an object"},
@@ -274,6 +276,29 @@ TEST_F(ApiTest, EntityTagFollowsTheTileAndTheSession) {
     EXPECT_NE(get(unseen).get("ETag"), far);
 }
 
+TEST_F(ApiTest, AnotherVersionOfTheProgramSharesNoEntityTag) {
+    create("a");
+    stream("a", 1);
+    const auto info = registry_.find("a")->info();
+    const auto tag = session_tag(info);
+    EXPECT_EQ(get_json("/api/v1/sessions/a").at("id").as_string(), tag); // also what is kept for good under this id
+    EXPECT_NE(session_tag(info, {.weaving = mapping::kWeavingVersion + 1}), tag);
+    EXPECT_NE(session_tag(info, {.rendering = tiles::kRenderingVersion + 1}), tag);
+    for (const auto* file :
+         {"map.png", "map.pgm", "map.yaml", "tiles/occupancy/0/0/0.png", "tiles/occupancy/0/0/0.bin"}) {
+        EXPECT_THAT(std::string(get(fmt::format("/api/v1/sessions/a/{}", file)).get("ETag")), HasSubstr(tag)) << file;
+    }
+}
+
+TEST_F(ApiTest, BoundsReadAsPeopleWriteThem) {
+    create("a");
+    stream("a", 1);
+    for (const auto* path : {"", "/tiles/occupancy.json", "/trajectory.geojson"}) {
+        const std::string text(get(fmt::format("/api/v1/sessions/a{}", path)).body.bytes());
+        EXPECT_THAT(text, Not(testing::ContainsRegex("[0-9]\\.[0-9]*(00000000|99999999)"))) << path;
+    }
+}
+
 TEST_F(ApiTest, OnlyAVersionThatCannotChangeIsKeptForGood) {
     create("a");
     stream("a", 3); // revisions 3, 4, 5 touch the tile
@@ -324,7 +349,7 @@ TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
     EXPECT_THAT(changed, testing::Contains(boost::json::value{{"z", 0}, {"x", 0}, {"y", 0}, {"revision", 5}}));
     EXPECT_THAT(changed, testing::Contains(boost::json::value{{"z", 9}, {"x", 256}, {"y", 255}, {"revision", 5}}));
     EXPECT_TRUE(get_json("/api/v1/sessions/a/changes?since=5").at("tiles").as_array().empty());
-    EXPECT_TRUE(get_json("/api/v1/sessions/a/changes?since=9").at("tiles").as_array().empty());
+    EXPECT_EQ(get_json("/api/v1/sessions/a/changes?since=9").at("tiles"), all.at("tiles")); // of a session before
 }
 
 TEST_F(ApiTest, BadChangesAreRefusedByParameter) {
@@ -422,6 +447,7 @@ TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
                                   {"coordinates", boost::json::array{boost::json::array{1.5, 1.25}}}}));
     const auto none = get_json("/api/v1/sessions/a/trajectory.geojson?since=5");
     EXPECT_EQ(none.at("features").at(0).at("geometry").at("coordinates"), boost::json::array{});
+    EXPECT_EQ(get_json("/api/v1/sessions/a/trajectory.geojson?since=6"), whole); // of a session before
 }
 
 TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
@@ -459,8 +485,50 @@ TEST_F(ApiTest, ADamagedSessionSaysSo) {
     const auto name = registry.damaged().begin()->first; // "#" and its id
     Api api(registry, log_, metrics_, {});
     api.set_recovered();
-    const auto response = api.answer({.target = "/api/v1/sessions/%23" + name.substr(1)});
-    EXPECT_THAT(detail(response, Status::service_unavailable), HasSubstr("could not be recovered"));
+    const auto path = "/api/v1/sessions/%23" + name.substr(1);
+    for (const auto* rest : {"", "/changes", "/map.png", "/tiles/occupancy/0/0/0.png"}) {
+        const auto response = api.answer({.target = path + rest});
+        EXPECT_THAT(detail(response, Status::internal_server_error), HasSubstr("could not be recovered"));
+        EXPECT_EQ(response.get("Retry-After"), "") << "waiting does not help";
+    }
+    EXPECT_EQ(api.answer({.method = "DELETE", .target = path}).status, Status::no_content);
+    EXPECT_EQ(api.answer({.target = path}).status, Status::not_found);
+}
+
+TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
+    create("a");
+    ASSERT_TRUE(log_.create_session("no record of a session"));
+    session::SessionRegistry registry(log_, pool_.get_executor(), [] { return 0.0; });
+    ASSERT_TRUE(registry.recover());
+    Api api(registry, log_, metrics_, {});
+    api.set_recovered();
+    const auto json = [&](std::string target) {
+        const auto response = api.answer({.target = std::move(target)});
+        EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
+        return boost::json::parse(response.body.bytes());
+    };
+    const auto all = json("/api/v1/sessions");
+    ASSERT_EQ(all.at("sessions").as_array().size(), 2U);
+    const auto damaged = all.at("sessions").at(0);
+    EXPECT_EQ(damaged.at("name"), "#0000000000000002");
+    EXPECT_EQ(damaged.at("state"), "damaged");
+    EXPECT_FALSE(damaged.at("reason").as_string().empty());
+    EXPECT_EQ(all.at("sessions").at(1).at("name"), "a");
+    EXPECT_EQ(all.at("sessions").at(1).at("state"), "ok");
+
+    const auto first = json("/api/v1/sessions?limit=1");
+    EXPECT_EQ(first.at("next"), damaged.at("name"));
+    const auto rest =
+        json("/api/v1/sessions?after=%23" + std::string(std::string_view(damaged.at("name").as_string()).substr(1)));
+    EXPECT_EQ(rest.at("sessions").at(0).at("name"), "a");
+    EXPECT_EQ(json("/readyz").at("damaged"), boost::json::array{damaged});
+    registry.drain();
+}
+
+TEST_F(ApiTest, ReadinessTellsWhereRobotsConnect) {
+    EXPECT_TRUE(get_json("/readyz").at("robots").at("host").is_null());
+    api_.set_robot_port({"192.0.2.7", 7448});
+    EXPECT_EQ(get_json("/readyz").at("robots"), (boost::json::object{{"host", "192.0.2.7"}, {"port", 7448}}));
 }
 
 TEST_F(ApiTest, MetricsNameNoSession) {

@@ -55,6 +55,19 @@ TEST(JsonObject, UnknownMembersAreRefusedByName) {
     EXPECT_THAT(checked.error().message, AllOf(HasSubstr("\"cellsize\""), HasSubstr("name, cell_size")));
 }
 
+TEST(JsonObject, AKeyGivenTwiceIsRefusedByName) {
+    for (const auto* body : {R"({"a":1,"b":2,"a":1})", R"({"x":{"a":1,"a":2}})", R"({"x":[{"b":0},{"a":1,"a":2}]})",
+                             R"({"a":1,"\u0061":2})"}) {
+        const auto object = parse_json_object(body);
+        ASSERT_FALSE(object) << body;
+        EXPECT_EQ(object.error().code, Errc::kInvalidField);
+        EXPECT_THAT(object.error().message, HasSubstr("\"a\" is given twice")) << body;
+    }
+    for (const auto* body : {R"({"a":{"a":[{"a":1},{"a":"a"}]},"b":{"a":1}})", R"({"a":1,"A":2})"}) {
+        EXPECT_TRUE(parse_json_object(body)) << body;
+    }
+}
+
 TEST(JsonText, MustBeThereAndAString) {
     const auto object = parse_json_object(R"({"name":"a","other":7,"none":null})").value();
     EXPECT_EQ(read_text(object, "name").value(), "a");
@@ -116,6 +129,12 @@ TEST(Number, IntegersAreDigitsAndClampedToWhatFits) {
     for (const auto* text : {"", " 1", "1 ", "+1", "0x1", "1.0", "1e3", "-", "-1"}) {
         EXPECT_EQ(parse_integer<std::uint64_t>(text), std::nullopt) << text;
     }
+}
+
+TEST(Number, MetresAreShownWithoutTheNoiseOfTheLastBits) {
+    EXPECT_EQ(json_text(boost::json::array{rounded_metres(-399 * 0.05), rounded_metres(3 * 0.1), rounded_metres(1e-7)}),
+              "[-19.95,0.3,0]");
+    EXPECT_EQ(rounded_metres(1e307), 1e307);
 }
 
 TEST(Number, RealsAreFinite) {

@@ -152,6 +152,14 @@ TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
 }
 
+TEST(HttpServer, RobotsAreSentToTheirPort) {
+    RunningServer server;
+    const std::string_view frame("\0\0\0\x08\x12\x06robot1", 12);
+    const auto answer = answer_to(server, frame);
+    EXPECT_EQ(answer.status, 400);
+    EXPECT_THAT(answer.body, HasSubstr("robot port"));
+}
+
 TEST(HttpServer, OneHostFieldIsNeeded) {
     RunningServer server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\n\r\n").status, 400);
