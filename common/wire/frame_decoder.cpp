@@ -3,10 +3,19 @@
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <iterator>
 
 namespace scanloom::wire {
+
+namespace {
+
+/// What HTTP begins with, requests and answers. As lengths of frames all of these are a gigabyte or more.
+constexpr std::string_view kHttp[] = {"GET ", "HEAD", "POST", "PUT ", "DELE", "OPTI", "PATC", "CONN", "TRAC", "HTTP"};
+
+} // namespace
 
 std::span<std::byte> FrameDecoder::prepare(std::size_t bytes) {
     if (begin_ == end_) begin_ = end_ = 0;
@@ -31,6 +40,15 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
 
     const std::byte* head = buffer_.data() + begin_;
     const std::size_t length = boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(head));
+    const std::string_view begin(reinterpret_cast<const char*>(head), kLengthPrefixBytes);
+    if (std::ranges::find(kHttp, begin) != std::end(kHttp)) {
+        holds_http_ = true;
+        failed_ = Error{Errc::kMalformed,
+                        fmt::format("what came begins with \"{}\": that is HTTP, no frame; robots connect to the robot "
+                                    "port (--listen), browsers to the HTTP port (--http)",
+                                    begin)};
+        return *failed_;
+    }
     if (length > frame_bytes_max_) {
         failed_ =
             Error{Errc::kTooLarge, fmt::format("a frame announces {} bytes, at most {} are allowed here; send fewer "

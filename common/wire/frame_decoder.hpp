@@ -21,8 +21,8 @@ inline constexpr std::size_t kFrameBytesMaxBeforeHello = std::size_t{16} << 10;
 ///
 /// Usage   read into prepare(), commit() what was read, then call next() until it is empty.
 /// Errors  kTooLarge as soon as a length prefix exceeds the limit, before anything is allocated for
-///         it; kMalformed for an empty frame. After an error the stream has no frame borders any
-///         more: every further next() repeats the error.
+///         it; kMalformed for an empty frame, or for HTTP in its place. After an error the stream has no
+///         frame borders any more: every further next() repeats the error.
 /// Thread  one at a time.
 class FrameDecoder {
 public:
@@ -44,12 +44,16 @@ public:
     /// True when the stream stands between two frames: closing here loses nothing.
     [[nodiscard]] bool at_frame_border() const noexcept { return begin_ == end_; }
 
+    /// True when the error was HTTP in the place of a frame, as from a browser that found the wrong port.
+    [[nodiscard]] bool holds_http() const noexcept { return holds_http_; }
+
 private:
     std::size_t frame_bytes_max_;
     std::vector<std::byte> buffer_;
     std::size_t begin_ = 0; // first byte not yet handed out
     std::size_t end_ = 0;   // one past the last byte received
     std::optional<Error> failed_;
+    bool holds_http_ = false;
 };
 
 /// A body with its length in front, ready to be sent. Pre: body.size() <= kFrameBytesMax.

@@ -1,6 +1,7 @@
 #include "robot_client/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
+#include "common/app/parse_failure.hpp"
 #include "common/scan/limits.hpp"
 
 #include <CLI/CLI.hpp>
@@ -135,12 +136,7 @@ Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
         const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
         return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
     }
-    std::string what = reason.what();
-    if (const std::string_view unknown = "INI was not able to parse "; what.starts_with(unknown)) {
-        what.replace(0, unknown.size(), "the file of --config has a setting that is not known: ");
-    }
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    return usage_error(what);
+    return usage_error(sentence_of(reason));
 }
 
 } // namespace

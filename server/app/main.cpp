@@ -1,10 +1,9 @@
+#include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
-
-#include <sys/resource.h>
 
 #include <csignal>
 #include <exception>
@@ -14,20 +13,13 @@ namespace {
 
 using namespace scanloom;
 
-/// Every robot and viewer takes a descriptor; with too few left the store cannot open its next file.
-void allow_as_many_descriptors_as_possible() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-    limit.rlim_cur = limit.rlim_max;
-    setrlimit(RLIMIT_NOFILE, &limit);
-}
-
 int run(const app::ServerOptions& options) {
-    allow_as_many_descriptors_as_possible();
     spdlog::set_default_logger(spdlog::stderr_color_mt("scanloom-server"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
-    auto server = app::Server::open(options);
+    const auto descriptors = app::allow_as_many_descriptors_as_possible();
+    if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
+    auto server = app::Server::open(options, app::limits_within(descriptors));
     auto ended = server ? (*server)->run() : Result<>(server.error());
     if (ended) return kExitDone;
     std::cerr << "scanloom-server: " << ended.error().message << '\n';

@@ -1,10 +1,13 @@
 #include "server/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
+#include "common/app/parse_failure.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <thread>
 
@@ -22,6 +25,7 @@ struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
+    std::string web; ///< empty: not given
 };
 
 /// Beside the build's programs, or where a package puts it.
@@ -37,7 +41,10 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         ->capture_default_str();
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
-    app.add_option("--web", options.web, "Directory of the viewer's files");
+    app.add_option("--http-host", options.http_hosts,
+                   "Name by which the HTTP port is asked, besides localhost and addresses; may be given several times. "
+                   "Other names are refused on a loopback address, and everywhere as soon as one is given");
+    app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
     app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
@@ -46,6 +53,28 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         ->capture_default_str();
     app.add_flag("--insecure", options.insecure,
                  "Listen beyond this machine, although anybody there may send and read");
+}
+
+/// What was named has to be there; what was not may be missing.
+Result<> settle_web(const std::string& named, ServerOptions& options) {
+    options.web = named.empty() ? default_web() : std::filesystem::path(named);
+    std::error_code ignored;
+    if (named.empty() || std::filesystem::is_regular_file(options.web / "index.html", ignored)) return {};
+    return Error{Errc::kNotFound, fmt::format("--web {}: there is no index.html in it; name the directory that the "
+                                              "viewer was built into, or leave --web out",
+                                              named)};
+}
+
+Result<> check_host_names(const std::vector<std::string>& names) {
+    for (const auto& name : names) {
+        const bool valid = !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+            return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
+        });
+        if (valid) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("--http-host '{}' is not the name of a host; give it without scheme and port", name)};
+    }
+    return {};
 }
 
 Result<> settle(const Raw& raw, ServerOptions& options) {
@@ -60,11 +89,12 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
                      fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
     }
     options.store = raw.store;
+    if (auto found = settle_web(raw.web, options); !found) return found.error();
+    if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
     return check_guarded(options);
 }
 
-Leave usage_error(std::string what) {
-    std::replace(what.begin(), what.end(), '\n', ' ');
+Leave usage_error(std::string_view what) {
     return {kExitUsage, fmt::format("scanloom-server: {}; see scanloom-server --help", what)};
 }
 
@@ -73,7 +103,6 @@ Leave usage_error(std::string what) {
 std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv) {
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
-    options.web = default_web();
     Raw raw;
 
     CLI::App app(kAbout, "scanloom-server");
@@ -84,7 +113,8 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        if (reason.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usage_error(reason.what());
+        if (reason.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
+            return usage_error(sentence_of(reason));
         const bool is_help = reason.get_name() == "CallForHelp";
         return Leave{kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
     }

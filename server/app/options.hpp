@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace scanloom::app {
 
@@ -17,8 +18,9 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
-    std::filesystem::path web; ///< the viewer's files
-    std::size_t threads = 1;   ///< that weave, and as many that answer requests
+    std::filesystem::path web;           ///< the viewer's files
+    std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
+    std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::string log_level = "info";
     bool insecure = false; ///< listen beyond loopback without a guard
 };

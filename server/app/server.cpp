@@ -1,6 +1,7 @@
 #include "server/app/server.hpp"
 
 #include "common/app/program.hpp"
+#include "server/sockets/run_to_the_end.hpp"
 
 #include <boost/asio/post.hpp>
 #include <boost/json/object.hpp>
@@ -31,8 +32,9 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 } // namespace
 
-Server::Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web)
-    : options_(options), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
+Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
+               http::WebFiles web)
+    : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)), // one large map must not hold up all tiles
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
       patience_(io_) {}
@@ -50,27 +52,38 @@ void Server::join_pools() {
     weaving_.join();
 }
 
-Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options) {
+Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits) {
     auto log = store::open_rocksdb(options.store);
     if (!log) return log.error();
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
-    std::unique_ptr<Server> server(new Server(options, std::move(*log), std::move(*web)));
+    if (!web->contains("index.html")) {
+        spdlog::warn("there is no viewer in {}: build it with ./scanloom build, or name its directory with --web; all "
+                     "else is served",
+                     options.web.string());
+    }
+    std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
     if (auto listening = server->listen(); !listening) return listening.error();
     return server;
 }
 
 Result<> Server::listen() {
+    ingest::IngestConfig robots;
+    robots.links_max = limits_.robots;
+    robots.greeting_max = limits_.greeting;
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
-            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest()},
-            ingest::IngestConfig{});
+            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest()}, robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
     }
+    const auto address = options_.listen.address();
+    api_.set_robot_port({address.is_unspecified() ? "" : address.to_string(), ingest_->port()});
     http::ServerConfig config;
     config.endpoint = options_.http;
+    config.host_names = options_.http_hosts;
+    config.connections_max = limits_.http;
     auto http = http::Server::listen(
         io_, {telling_.get_executor(), serving_.get_executor(), changing_.get_executor()}, config,
         [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
@@ -83,7 +96,8 @@ Result<> Server::run() {
     wait_for_signal();
     http_->start();
     std::vector<std::jthread> threads;
-    for (std::size_t n = 0; n < 1 + options_.threads / 4; ++n) threads.emplace_back([this] { io_.run(); });
+    for (std::size_t n = 0; n < 1 + options_.threads / 4; ++n)
+        threads.emplace_back([this] { sockets::run_to_the_end(io_); });
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();
         return recovered.error();

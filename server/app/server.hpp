@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
 #include "server/http/api.hpp"
 #include "server/http/server.hpp"
@@ -31,7 +32,8 @@ namespace scanloom::app {
 class Server {
 public:
     /// Opens the store and the ports. Errors: one sentence that says what to do.
-    [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options);
+    [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options,
+                                                              const ConnectionLimits& limits = {});
 
     ~Server();
 
@@ -40,7 +42,8 @@ public:
     [[nodiscard]] Result<> run();
 
 private:
-    Server(const ServerOptions& options, std::unique_ptr<store::ScanLog> log, http::WebFiles web);
+    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
+           http::WebFiles web);
 
     [[nodiscard]] Result<> listen();
     void announce() const;
@@ -49,6 +52,7 @@ private:
     void join_pools();
 
     ServerOptions options_;
+    ConnectionLimits limits_;
     std::unique_ptr<store::ScanLog> log_;
     metrics::Metrics metrics_;
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.

@@ -1,12 +1,11 @@
 #include "server/ingest/ingest_server.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "server/sockets/accept_each.hpp"
+
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -30,7 +29,12 @@ IngestServer::IngestServer(asio::io_context& io, const asio::ip::tcp::endpoint& 
     : io_(io), acceptor_(asio::make_strand(io), endpoint), port_(acceptor_.local_endpoint().port()),
       services_(services), config_(config) {}
 
-void IngestServer::start() { asio::co_spawn(acceptor_.get_executor(), accept(), asio::detached); }
+void IngestServer::start() {
+    asio::co_spawn(acceptor_.get_executor(),
+                   sockets::accept_each(acceptor_, io_, "a robot",
+                                        [this](asio::ip::tcp::socket socket) { take(std::move(socket)); }),
+                   asio::detached);
+}
 
 void IngestServer::stop() {
     asio::post(acceptor_.get_executor(), [this] {
@@ -39,34 +43,61 @@ void IngestServer::stop() {
     });
 }
 
-asio::awaitable<void> IngestServer::accept() {
-    asio::steady_timer pause(acceptor_.get_executor());
-    while (acceptor_.is_open()) {
-        auto [error, socket] =
-            co_await acceptor_.async_accept(asio::make_strand(io_), asio::as_tuple(asio::use_awaitable));
-        if (error == asio::error::operation_aborted) continue;
-        if (error) { // out of file descriptors, say: try again when some may be free
-            spdlog::warn("a robot could not be accepted: {}", error.message());
-            pause.expires_after(std::chrono::milliseconds(100));
-            co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
-            continue;
-        }
-        const bool full = open_ >= config_.links_max;
-        if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
-        if (open_ >= config_.links_max + kTurnedAwayMax) continue;
-        ++open_;
-        services_.counters.links_open.Increment();
-        auto link = std::make_shared<RobotLink>(std::move(socket), services_, config_.link);
-        asio::co_spawn(
-            link->executor(),
-            [link, full, links_max = config_.links_max] {
-                return full ? link->turn_away(too_many(links_max)) : link->run();
-            },
-            asio::bind_executor(acceptor_.get_executor(), [this](std::exception_ptr) {
-                --open_;
-                services_.counters.links_open.Decrement();
-            }));
+void IngestServer::take(asio::ip::tcp::socket socket) {
+    const bool full = count(Standing::kServed) >= config_.links_max;
+    if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
+    if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
+    if (!full) make_room_for_greeting();
+    auto link = std::make_shared<RobotLink>(std::move(socket), services_, config_.link);
+    const auto guest = std::make_shared<Guest>(Guest{link, full ? Standing::kLeaving : Standing::kGreeting});
+    if (!full) greeting_.push_back(guest);
+    ++count(guest->standing);
+    services_.counters.links_open.Increment();
+    try {
+        begin(guest);
+    } catch (...) {
+        leave(guest);
+        throw;
     }
+}
+
+void IngestServer::begin(const std::shared_ptr<Guest>& guest) {
+    const auto strand = acceptor_.get_executor();
+    guest->link->when_greeted([this, strand, weak = std::weak_ptr(guest)] {
+        asio::post(strand, [this, weak] {
+            const auto greeted = weak.lock();
+            if (greeted && greeted->standing == Standing::kGreeting) change(*greeted, Standing::kServed);
+        });
+    });
+    asio::co_spawn(
+        guest->link->executor(),
+        [link = guest->link, full = guest->standing == Standing::kLeaving, links_max = config_.links_max] {
+            return full ? link->turn_away(too_many(links_max)) : link->run();
+        },
+        asio::bind_executor(strand, [this, guest](std::exception_ptr) { leave(guest); }));
+}
+
+/// Who came first and still says nothing is the least likely to be a robot.
+void IngestServer::make_room_for_greeting() {
+    if (count(Standing::kGreeting) < config_.greeting_max) return;
+    const auto oldest = greeting_.front();
+    spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed", config_.greeting_max);
+    change(*oldest, Standing::kLeaving);
+    oldest->link->cut_off();
+}
+
+void IngestServer::change(Guest& guest, Standing standing) {
+    if (guest.standing == Standing::kGreeting)
+        std::erase_if(greeting_, [&](const auto& one) { return one.get() == &guest; });
+    --count(guest.standing);
+    guest.standing = standing;
+    ++count(standing);
+}
+
+void IngestServer::leave(const std::shared_ptr<Guest>& guest) {
+    change(*guest, Standing::kLeaving);
+    --count(Standing::kLeaving);
+    services_.counters.links_open.Decrement();
 }
 
 } // namespace scanloom::ingest

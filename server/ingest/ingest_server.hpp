@@ -2,21 +2,27 @@
 
 #include "server/ingest/robot_link.hpp"
 
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <list>
+#include <memory>
 
 namespace scanloom::ingest {
 
 struct IngestConfig {
     LinkConfig link;
-    std::size_t links_max = 10'000; ///< open at the same time; more are refused with an Error
+    std::size_t links_max = 10'000; ///< that said hello; more are refused with an Error
+    std::size_t greeting_max = 256; ///< that did not yet; one more, and the oldest is cut off
 };
 
 /// Listens for robots and serves each on a link of its own.
+///
+/// Connections on which no hello was said have a limit of their own, so that silent ones keep no robot out: a robot
+/// greets at once. Those who say hello at the same moment may pass links_max, by greeting_max at most.
 /// Thread  the io_context's; start() and stop() from any.
 class IngestServer {
 public:
@@ -33,14 +39,30 @@ public:
     void stop();
 
 private:
-    boost::asio::awaitable<void> accept();
+    enum class Standing { kGreeting, kServed, kLeaving };
+
+    /// A connection that is open.
+    struct Guest {
+        std::shared_ptr<RobotLink> link;
+        Standing standing;
+    };
+
+    void take(boost::asio::ip::tcp::socket socket);
+    void begin(const std::shared_ptr<Guest>& guest);
+    void make_room_for_greeting();
+    void change(Guest& guest, Standing standing);
+    void leave(const std::shared_ptr<Guest>& guest);
+    [[nodiscard]] std::size_t& count(Standing standing) { return counts_[static_cast<std::size_t>(standing)]; }
 
     boost::asio::io_context& io_;
     boost::asio::ip::tcp::acceptor acceptor_;
     std::uint16_t port_;
     LinkServices services_;
     IngestConfig config_;
-    std::size_t open_ = 0; // links, also those being turned away; on the acceptor's strand
+
+    // On the acceptor's strand.
+    std::list<std::shared_ptr<Guest>> greeting_; // oldest first
+    std::array<std::size_t, 3> counts_{};        // guests by standing
 };
 
 } // namespace scanloom::ingest

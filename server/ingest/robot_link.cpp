@@ -44,6 +44,12 @@ Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the conn
 
 wire::LinkError in_words(const Error& error) { return {error, is_retryable(error.code)}; }
 
+std::string in_http(std::string_view sentence) {
+    return fmt::format("HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain; charset=utf-8\r\n"
+                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}\n",
+                       sentence.size() + 1, sentence);
+}
+
 } // namespace
 
 bool is_retryable(Errc code) noexcept {
@@ -82,6 +88,13 @@ asio::awaitable<void> RobotLink::run() {
                           : served.error().message);
 }
 
+void RobotLink::cut_off() {
+    asio::post(socket_.get_executor(), [self = shared_from_this()] {
+        boost::system::error_code ignored;
+        self->socket_.close(ignored);
+    });
+}
+
 asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
     expect_something_within(config_.farewell_deadline);
     start_watch();
@@ -98,6 +111,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
         co_return Error{Errc::kMalformed,
                         fmt::format("the first frame is a {}; a hello is expected", wire::name_of(*first))};
     }
+    if (greeted_) greeted_();
     deadline_ = std::chrono::steady_clock::time_point::max(); // what is waited for now is our disk, not the robot
     if (auto entered = co_await enter(std::move(*hello)); !entered) co_return entered.error();
     while (!goodbye_) {
@@ -278,7 +292,12 @@ asio::awaitable<void> RobotLink::write_outbox() {
 asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
     ended_by_ = why.error;
     expect_something_within(config_.farewell_deadline);
-    send(why);
+    if (!session_ && decoder_.holds_http()) {
+        outbox_ += in_http(why.error.message); // whoever speaks HTTP to this port reads no frames
+        co_await write_outbox();
+    } else {
+        send(why);
+    }
     last_words_ = true;
     if (writing_) co_await written_.async_wait(kAsTuple);
     boost::system::error_code ignored;

@@ -14,6 +14,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,12 @@ public:
 
     [[nodiscard]] boost::asio::any_io_executor executor() { return socket_.get_executor(); }
 
+    /// `told` is called once when the robot has said hello, on the link's strand. Pre: before run().
+    void when_greeted(std::function<void()> told) { greeted_ = std::move(told); }
+
+    /// Closes the connection without a word; run() ends. Thread: any.
+    void cut_off();
+
     /// Serves the robot to the end. Never throws.
     boost::asio::awaitable<void> run();
 
@@ -78,6 +85,7 @@ private:
     LinkServices services_;
     LinkConfig config_;
     std::string peer_;
+    std::function<void()> greeted_;
 
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
     std::size_t frame_bytes_ = 0; // of the frame last received, with its length prefix

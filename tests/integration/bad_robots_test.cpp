@@ -51,7 +51,6 @@ std::vector<Fault> faults_before_the_hello() {
         {length_prefix(0xFFFFFFFF), Errc::kTooLarge, "a frame announces 4294967295 bytes"},
         {length_prefix(0), Errc::kMalformed, "a frame of 0 bytes"},
         {frame_around("garbage that is no protobuf"), Errc::kMalformed, "27 bytes that are not a scanloom.v1.Frame"},
-        {"GET / HTTP/1.1\r\n\r\n", Errc::kTooLarge, "a frame announces 1195725856 bytes"},
         {frame_around("\xfa\x01\x02hi"), Errc::kMalformed, "a frame without a body"},
         {frame_of(wire::Ping{1}), Errc::kMalformed, "the first frame is a ping; a hello is expected"},
         {frame_of(small_laser()), Errc::kMalformed, "the first frame is a sensor_description; a hello"},

@@ -1,4 +1,5 @@
 #include "tests/integration/ingest_fixture.hpp"
+#include "tests/support/http_client.hpp"
 
 #include <atomic>
 
@@ -56,6 +57,32 @@ TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
         if (std::holds_alternative<wire::Welcome>(answer)) break;
         ASSERT_TRUE(std::holds_alternative<wire::LinkError>(answer));
     }
+}
+
+TEST_F(IngestTest, SilentConnectionsKeepNoRobotOut) {
+    IngestConfig config;
+    config.links_max = 2;
+    config.greeting_max = 3;
+    config.link.hello_deadline = 1h;
+    start(config);
+    std::vector<std::unique_ptr<RobotSocket>> silent;
+    for (int n = 0; n < 10; ++n) silent.push_back(std::make_unique<RobotSocket>(port()));
+    const auto first = welcomed(port(), hello("r1"));
+    for (int n = 0; n < 8; ++n) EXPECT_FALSE(silent[n]->receive()) << "the oldest made room";
+    const auto second = welcomed(port(), hello("r2"));
+    RobotSocket third(port());
+    expect_refused(third, Errc::kTooLarge, true, "2 robots are connected");
+    silent.clear();
+}
+
+TEST_F(IngestTest, APersonWithABrowserIsSentToTheOtherPort) {
+    start();
+    testing_support::HttpClient browser(port());
+    browser.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const auto answer = browser.read();
+    EXPECT_EQ(answer.status, 400);
+    EXPECT_THAT(answer.body, testing::HasSubstr("browsers to the HTTP port"));
+    EXPECT_TRUE(browser.ends_in_order());
 }
 
 TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {

@@ -95,6 +95,18 @@ TEST(FrameDecoder, AnEmptyFrameIsRefused) {
     EXPECT_EQ(decoder.next().error().code, Errc::kMalformed);
 }
 
+TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
+    for (const auto* text : {"GET / HTTP/1.1\r\n", "HTTP/1.1 400 Bad Request\r\n"}) {
+        FrameDecoder decoder(1000);
+        feed(decoder, text);
+        const auto body = decoder.next();
+        ASSERT_FALSE(body);
+        EXPECT_EQ(body.error().code, Errc::kMalformed);
+        EXPECT_THAT(body.error().message, testing::HasSubstr("robots connect to the robot port"));
+        EXPECT_TRUE(decoder.holds_http());
+    }
+}
+
 TEST(FrameDecoder, TheLimitMayGrowAfterTheHello) {
     FrameDecoder decoder(10);
     feed(decoder, stream_of({"hello"}));

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import {
   decodeChanges,
+  decodeRobotPort,
   decodeSession,
   decodeSessionPage,
   decodeTrajectory,
@@ -34,6 +35,25 @@ describe('decoding', () => {
       bounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
       robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 } }],
     });
+  });
+
+  it('tells damaged sessions from those that are served', () => {
+    const page = decodeSessionPage({
+      sessions: [{ name: '#000000000000002a', state: 'damaged', reason: 'no record' }, { ...session(), state: 'ok' }],
+      next: null,
+    });
+    assert.deepEqual(page.damaged, [{ name: '#000000000000002a', reason: 'no record' }]);
+    assert.deepEqual(
+      page.sessions.map(({ name }) => name),
+      ['intel'],
+    );
+  });
+
+  it('reads where robots connect', () => {
+    const robots = { host: '192.0.2.7', port: 7447 };
+    assert.deepEqual(decodeRobotPort({ status: 'ready', robots, damaged: [] }), robots);
+    assert.deepEqual(decodeRobotPort({ robots: { host: null, port: 1 } }), { host: null, port: 1 });
+    assert.throws(() => decodeRobotPort({ status: 'ready' }), MalformedAnswer);
   });
 
   it('takes a session in which nothing was seen', () => {

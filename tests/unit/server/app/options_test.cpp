@@ -1,0 +1,74 @@
+#include "server/app/options.hpp"
+
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace scanloom::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::variant<ServerOptions, Leave> read(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"scanloom-server", "--store", "s"});
+    std::vector<const char*> argv;
+    for (const auto& argument : arguments) argv.push_back(argument.c_str());
+    return read_options(static_cast<int>(argv.size()), argv.data());
+}
+
+std::string refusal(std::vector<std::string> arguments) {
+    const auto outcome = read(std::move(arguments));
+    const auto* leave = std::get_if<Leave>(&outcome);
+    if (leave == nullptr) return "taken";
+    EXPECT_EQ(leave->code, kExitUsage);
+    EXPECT_EQ(leave->text.find('\n'), std::string::npos) << leave->text;
+    return leave->text;
+}
+
+class ServerOptionsTest : public testing::Test {
+protected:
+    std::string file(const std::string& name, const std::string& content) {
+        const auto path = directory_.path() / name;
+        std::ofstream(path) << content;
+        return path.string();
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(ServerOptionsTest, FaultsOfTheFileAreToldInItsOwnTerms) {
+    const auto unknown = refusal({"--config", file("a.toml", "lissen = \"127.0.0.1:1\"\n")});
+    EXPECT_THAT(unknown, AllOf(HasSubstr("the file of --config"), HasSubstr("lissen"), Not(HasSubstr("INI"))));
+    const auto missing = refusal({"--config", "no-such-file.toml"});
+    EXPECT_THAT(missing, AllOf(HasSubstr("the file of --config cannot be read"), HasSubstr("no-such-file.toml")));
+    EXPECT_THAT(refusal({"--config", file("b.toml", "threads = 0\n")}), HasSubstr("--threads"));
+}
+
+TEST_F(ServerOptionsTest, ANamedDirectoryWithoutAViewerIsRefused) {
+    const auto path = directory_.path().string();
+    EXPECT_THAT(refusal({"--web", path}), AllOf(HasSubstr("--web " + path), HasSubstr("index.html")));
+    EXPECT_THAT(refusal({"--config", file("a.toml", "web = \"" + path + "\"\n")}), HasSubstr("index.html"));
+    file("index.html", "<html></html>");
+    EXPECT_EQ(std::get<ServerOptions>(read({"--web", path})).web, path);
+}
+
+TEST_F(ServerOptionsTest, WithoutAWordTheViewerMayBeMissing) {
+    EXPECT_TRUE(std::holds_alternative<ServerOptions>(read({})));
+}
+
+TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
+    EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab", "--http-host", "maps"})).http_hosts,
+                ElementsAre("maps.lab", "maps"));
+    const auto config = file("a.toml", "http-host = [\"maps.lab\", \"maps\"]\n");
+    EXPECT_THAT(std::get<ServerOptions>(read({"--config", config})).http_hosts, ElementsAre("maps.lab", "maps"));
+    for (const auto* wrong : {"http://maps.lab", "maps.lab:80", "a b"}) {
+        EXPECT_THAT(refusal({"--http-host", wrong}), HasSubstr(wrong));
+    }
+}
+
+} // namespace
+} // namespace scanloom::app

@@ -1,0 +1,30 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import type { Session } from '../../../web/src/api/types';
+import { NewestSessions } from '../../../web/src/newest_sessions';
+
+function session(id: string, revision: number): Session {
+  return { name: 'a', id, created: '', revision, scans: revision, cellSize: 0.05, bounds: null, robots: [] };
+}
+
+describe('the newest sessions', () => {
+  it('do not go back to an answer that took longer', () => {
+    const newest = new NewestSessions();
+    newest.learn(session('1', 9));
+    assert.equal(newest.learn(session('1', 7)).scans, 9);
+    assert.equal(newest.learn(session('1', 10)).scans, 10);
+  });
+
+  it('start again with a session that was made anew', () => {
+    const newest = new NewestSessions();
+    newest.learn(session('1', 9));
+    assert.equal(newest.learn(session('2', 1)).scans, 1);
+  });
+
+  it('take an equal revision, as robots come and go without a scan', () => {
+    const newest = new NewestSessions();
+    newest.learn(session('1', 9));
+    const later = session('1', 9);
+    assert.equal(newest.learn(later), later);
+  });
+});
