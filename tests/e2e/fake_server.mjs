@@ -73,6 +73,7 @@ export class FakeSession {
   toJson() {
     return {
       name: this.name,
+      state: 'ok',
       id: this.id,
       created: this.created,
       revision: this.revision,
@@ -114,6 +115,10 @@ export class FakeServer {
   tileRequests = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
   failure = null;
+  /** Sessions that cannot be served, {name, reason}. */
+  damaged = [];
+  /** Where robots would connect. */
+  robots = { host: null, port: 17447 };
 
   static async start(webDirectory) {
     const fake = new FakeServer(webDirectory);
@@ -154,7 +159,8 @@ export class FakeServer {
   async answer(request, response) {
     const url = new URL(request.url, this.address);
     try {
-      if (url.pathname.startsWith('/api/')) this.answerApi(url, response);
+      if (url.pathname === '/readyz') json(response, { status: 'ready', robots: this.robots, damaged: this.damaged });
+      else if (url.pathname.startsWith('/api/')) this.answerApi(url, response);
       else await this.answerFile(url, response);
     } catch (error) {
       problem(response, 500, 'Internal error', String(error));
@@ -174,9 +180,13 @@ export class FakeServer {
     if (this.failure) return problem(response, this.failure.status, this.failure.title, this.failure.detail);
     const [, , , , encodedName, ...rest] = url.pathname.split('/');
     if (encodedName === undefined) {
-      return json(response, { sessions: [...this.sessions.values()].map((each) => each.toJson()), next: null });
+      const served = [...this.sessions.values()].map((each) => each.toJson());
+      const damaged = this.damaged.map((each) => ({ ...each, state: 'damaged' }));
+      return json(response, { sessions: [...damaged, ...served], next: null });
     }
     const session = this.sessions.get(decodeURIComponent(encodedName));
+    const damaged = this.damaged.find(({ name }) => name === decodeURIComponent(encodedName));
+    if (damaged) return problem(response, 500, 'Internal Server Error', damaged.reason);
     if (!session) return problem(response, 404, 'Not found', 'no such session');
     const since = Number(url.searchParams.get('since') ?? 0);
     if (rest.length === 0) return json(response, session.toJson());

@@ -26,7 +26,7 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
   });
 
   it('opens its session in the page that was waiting for it', async () => {
-    await says(page, '#notice', /No sessions yet/);
+    await says(page, '#notice', new RegExp(`No sessions yet.*--server 127\\.0\\.0\\.1:${server.robotPort} `, 's'));
     robot = startRobot(server, 'demo', 'r1', kSource);
     await page.waitForSelector('#notice', { state: 'hidden' });
     await page.waitForSelector('[data-robot="r1"]');

@@ -35,12 +35,47 @@ describe('the viewer', { timeout: 180_000 }, () => {
 
   it('says how to begin a session, and opens the first one by itself', async () => {
     await open();
-    await says(page, '#notice', /No sessions yet.*scanloom-robot --server 127\.0\.0\.1:7447/s);
+    await says(page, '#notice', /No sessions yet.*scanloom-robot --server 127\.0\.0\.1:17447/s);
     await keepPicture(page, 'no-sessions');
     painted('first');
     await says(page, '#sessions', /first/);
     await page.waitForSelector('#notice', { state: 'hidden' });
     assert.equal(new URL(page.url()).hash, '#session=first');
+  });
+
+  it('says where robots connect when that is not where the page came from', async () => {
+    server.robots = { host: '192.0.2.7', port: 7448 };
+    await open();
+    await says(page, '#notice', /scanloom-robot --server 192\.0\.2\.7:7448/);
+  });
+
+  it('shows a damaged session as one, and serves the others', async () => {
+    server.damaged.push({ name: 'broken', reason: 'entry 7 of its log is damaged' });
+    painted('whole');
+    await open();
+    await says(page, '#damaged', /broken.*damaged.*entry 7 of its log/s);
+    await says(page, '#sessions', /whole/);
+    await page.waitForSelector('#notice', { state: 'hidden' });
+    await page.goto(`${server.address}#session=broken`);
+    await says(page, '#notice', /Session damaged.*entry 7 of its log/s);
+    complaints.splice(0); // the browser's own: a 500 is what was asked for
+  });
+
+  it('tells the same of a session in the list and beside the map', async () => {
+    const session = painted('map');
+    await open();
+    await tilesShown();
+    for (let n = 0; n < 20; ++n) {
+      session.move('r1', n, 1, 0);
+      const [listed, fact] = await page.evaluate(() => [
+        document.querySelector('#sessions .row-detail')?.textContent,
+        document.querySelector('#facts dd')?.textContent,
+      ]);
+      assert.equal(listed?.split(' scan')[0], fact);
+      await page.waitForTimeout(100);
+    }
+    await says(page, '#facts', /20/);
+    await says(page, '#sessions', /20 scans/);
   });
 
   it('keeps the choice in the address, over a reload', async () => {

@@ -1,10 +1,11 @@
 /** Builds the page's parts and connects them; what each does is its own file's matter. */
-import { fetchSessions } from './api/api';
-import type { Session } from './api/types';
+import { fetchRobotPort, fetchSessions } from './api/api';
+import type { DamagedSession, RobotPort, Session } from './api/types';
 import { hashOfSession, sessionOfHash } from './address';
 import { byId, setText } from './dom';
 import { Camera } from './map/camera';
 import { createMap, MapView } from './map/map_view';
+import { NewestSessions } from './newest_sessions';
 import { Cursor } from './panel/cursor';
 import { Facts } from './panel/facts';
 import { Notice } from './panel/notice';
@@ -25,7 +26,8 @@ const map = createMap(target);
 const mapView = new MapView(map, readTheme());
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
-const sessionList = new SessionList(byId('sessions', HTMLElement));
+const sessionList = new SessionList(byId('sessions', HTMLElement), byId('damaged', HTMLElement));
+const newest = new NewestSessions();
 const robotList = new RobotList(byId('robots', HTMLElement), mapView, (robot) => follow(robot));
 const camera = new Camera(map, target, (robot) => robotList.setFollowed(robot));
 const cursor = new Cursor(map, target, {
@@ -46,7 +48,13 @@ const viewer = new Viewer({
   status,
   details: byId('details', HTMLElement),
   noRobots: byId('no-robots', HTMLElement),
+  newest: (session) => {
+    const known = newest.learn(session);
+    sessionList.refresh(known);
+    return known;
+  },
 });
+let robotPort: RobotPort | null = null;
 
 function follow(robot: string | null): void {
   if (robot === null) camera.free();
@@ -64,12 +72,13 @@ function openChosen(): void {
 }
 
 /** Without a choice, the session where something happens, or else the newest. */
-function chooseFrom(sessions: Session[]): void {
+async function chooseFrom(sessions: Session[], signal: AbortSignal): Promise<void> {
   const newestFirst = [...sessions].sort((a, b) => b.created.localeCompare(a.created));
   const live = newestFirst.find(({ robots }) => robots.some(({ connected }) => connected));
   const choice = live ?? newestFirst[0];
   if (!choice) {
-    notice.show({ kind: 'no-sessions', host: location.hostname });
+    robotPort ??= await fetchRobotPort(signal);
+    notice.show({ kind: 'no-sessions', robots: robotPort, pageHost: location.hostname });
     return;
   }
   history.replaceState(null, '', hashOfSession(choice.name));
@@ -77,10 +86,18 @@ function chooseFrom(sessions: Session[]): void {
 }
 
 async function refreshSessions(signal: AbortSignal): Promise<void> {
-  const sessions = await fetchSessions(signal);
-  sessionList.show(sessions);
-  byId('no-sessions', HTMLElement).hidden = sessions.length > 0;
-  if (sessionOfHash(location.hash) === null) chooseFrom(sessions);
+  const answer = await fetchSessions(signal);
+  const sessions = answer.sessions.map((session) => newest.learn(session));
+  sessionList.show(sessions, answer.damaged);
+  byId('no-sessions', HTMLElement).hidden = sessions.length + answer.damaged.length > 0;
+  const chosen = sessionOfHash(location.hash);
+  if (chosen === null) return chooseFrom(sessions, signal);
+  for (const session of sessions) if (session.name === chosen) viewer.refresh(session);
+  for (const session of answer.damaged) if (session.name === chosen) explain(session);
+}
+
+function explain({ name, reason }: DamagedSession): void {
+  notice.show({ kind: 'damaged', name, reason });
 }
 
 function connectControls(): void {

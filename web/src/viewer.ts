@@ -23,6 +23,8 @@ export interface ViewerParts {
   status: Status;
   details: HTMLElement;
   noRobots: HTMLElement;
+  /** Tells the rest of the page what was heard of a session; returns the newest that anybody heard. */
+  newest: (session: Session) => Session;
 }
 
 const kSource = 'session';
@@ -31,6 +33,8 @@ export class Viewer {
   private leave = new AbortController();
   private colours = new RobotColours(kRobotColours);
   private reading = new AbortController();
+  /** Of the session that is shown. */
+  private id: string | null = null;
 
   constructor(private readonly parts: ViewerParts) {}
 
@@ -49,7 +53,7 @@ export class Viewer {
           seen = true;
           this.start(session);
         },
-        session: (session) => this.show(session),
+        session: (session) => this.show(this.parts.newest(session)),
         tiles: (tiles) => {
           this.parts.map.showTiles(tiles);
           this.parts.cursor.update();
@@ -71,15 +75,21 @@ export class Viewer {
     );
   }
 
+  /** Something newer was heard of a session, which may be the one that is shown. */
+  refresh(session: Session): void {
+    if (session.id === this.id) this.show(session);
+  }
+
   private start(session: Session): void {
     this.clear();
+    this.id = session.id;
     const versions = new TileVersions();
     this.colours = new RobotColours(kRobotColours);
     this.parts.map.open(session, versions, this.colours);
     const reader = new CellReader(session, versions, this.reading.signal, () => this.parts.cursor.update());
     this.parts.cursor.show({ cellSize: session.cellSize, reader });
     this.parts.details.hidden = false;
-    this.show(session);
+    this.show(this.parts.newest(session));
   }
 
   private show(session: Session): void {
@@ -92,6 +102,7 @@ export class Viewer {
   }
 
   private clear(): void {
+    this.id = null;
     this.reading.abort();
     this.reading = new AbortController();
     this.parts.map.close();

@@ -1,7 +1,7 @@
 /** The server's resources that the viewer reads, one function each. */
-import { decodeChanges, decodeSession, decodeSessionPage, decodeTrajectory } from './decode';
+import { decodeChanges, decodeRobotPort, decodeSession, decodeSessionPage, decodeTrajectory } from './decode';
 import { get, getJson, readBody } from './http';
-import type { Changes, Session, TileChange, Trajectory } from './types';
+import type { Changes, RobotPort, Session, Sessions, TileChange, Trajectory } from './types';
 
 const kRoot = 'api/v1/sessions';
 const kLayer = 'occupancy';
@@ -9,18 +9,23 @@ const kPageSize = 100;
 const kPagesMax = 20;
 
 /** All sessions, at most kPageSize * kPagesMax of them. */
-export async function fetchSessions(signal: AbortSignal): Promise<Session[]> {
-  const sessions: Session[] = [];
+export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {
+  const all: Sessions = { sessions: [], damaged: [] };
   let after: string | null = null;
   for (let page = 0; page < kPagesMax; ++page) {
     const query = new URLSearchParams({ limit: String(kPageSize) });
     if (after !== null) query.set('after', after);
     const answer = decodeSessionPage(await getJson(`${kRoot}?${query}`, signal));
-    sessions.push(...answer.sessions);
+    all.sessions.push(...answer.sessions);
+    all.damaged.push(...answer.damaged);
     after = answer.next;
     if (after === null) break;
   }
-  return sessions;
+  return all;
+}
+
+export async function fetchRobotPort(signal: AbortSignal): Promise<RobotPort> {
+  return decodeRobotPort(await getJson('readyz', signal));
 }
 
 export async function fetchSession(name: string, signal: AbortSignal): Promise<Session> {

@@ -1,5 +1,18 @@
 /** From parsed JSON to values: each throws a MalformedAnswer that names the first field that is not as agreed. */
-import type { Bounds, Changes, Point, Pose, Robot, Session, SessionPage, TileChange, Track, Trajectory } from './types';
+import type {
+  Bounds,
+  Changes,
+  DamagedSession,
+  Point,
+  Pose,
+  Robot,
+  RobotPort,
+  Session,
+  SessionPage,
+  TileChange,
+  Track,
+  Trajectory,
+} from './types';
 
 export class MalformedAnswer extends Error {
   override name = 'MalformedAnswer';
@@ -9,9 +22,27 @@ type Fields = Record<string, unknown>;
 
 export function decodeSessionPage(json: unknown): SessionPage {
   const page = fields(json, 'sessions');
+  const listed = list(page['sessions'], 'sessions').map((each) => fields(each, 'session'));
   return {
-    sessions: list(page['sessions'], 'sessions').map(decodeSession),
+    sessions: listed.filter((each) => !isDamaged(each)).map(decodeSession),
+    damaged: listed.filter(isDamaged).map(decodeDamaged),
     next: typeof page['next'] === 'string' ? page['next'] : null,
+  };
+}
+
+function isDamaged(session: Fields): boolean {
+  return session['state'] === 'damaged';
+}
+
+function decodeDamaged(session: Fields): DamagedSession {
+  return { name: text(session['name'], 'name'), reason: text(session['reason'], 'reason') };
+}
+
+export function decodeRobotPort(json: unknown): RobotPort {
+  const robots = fields(fields(json, 'readiness')['robots'], 'robots');
+  return {
+    host: robots['host'] == null ? null : text(robots['host'], 'robots.host'),
+    port: number(robots['port'], 'robots.port'),
   };
 }
 

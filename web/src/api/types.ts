@@ -22,7 +22,7 @@ export interface Robot {
 
 export interface Session {
   name: string;
-  /** Changes when a session is deleted and another is made under its name. */
+  /** Changes when a session is deleted and another is made under its name, or when the server draws maps otherwise. */
   id: string;
   created: string;
   /** Rises with every scan. */
@@ -34,9 +34,27 @@ export interface Session {
   robots: Robot[];
 }
 
-export interface SessionPage {
+/** A session that the server cannot weave again from its log. */
+export interface DamagedSession {
+  name: string;
+  /** A sentence. */
+  reason: string;
+}
+
+export interface Sessions {
   sessions: Session[];
+  damaged: DamagedSession[];
+}
+
+export interface SessionPage extends Sessions {
   next: string | null;
+}
+
+/** Where robots connect. */
+export interface RobotPort {
+  /** Null: any address of the server will do, so also the one this page came from. */
+  host: string | null;
+  port: number;
 }
 
 /** A tile of the XYZ scheme (y down) and the revision that touched it last. */

@@ -1,12 +1,14 @@
 /** What stands in the place of the map while there is none to show. */
+import type { RobotPort } from '../api/types';
 import { el } from '../dom';
 
 export type NoticeState =
   | { kind: 'none' }
   | { kind: 'loading' }
-  | { kind: 'no-sessions'; host: string }
+  | { kind: 'no-sessions'; robots: RobotPort; pageHost: string }
   | { kind: 'missing'; name: string }
   | { kind: 'deleted'; name: string }
+  | { kind: 'damaged'; name: string; reason: string }
   | { kind: 'empty'; name: string };
 
 export class Notice {
@@ -34,7 +36,7 @@ function contentOf(state: NoticeState): Node[] {
       return [
         el('h2', {}, 'No sessions yet'),
         el('p', {}, 'A session begins when a robot connects. Start a simulated one:'),
-        el('pre', { tabindex: '0', 'aria-label': 'Command' }, el('code', {}, robotCommand(state.host))),
+        el('pre', { tabindex: '0', 'aria-label': 'Command' }, el('code', {}, robotCommand(state.robots, state.pageHost))),
         el('p', {}, 'It appears here by itself.'),
       ];
     case 'missing':
@@ -46,6 +48,12 @@ function contentOf(state: NoticeState): Node[] {
       return [
         el('h2', {}, 'Session deleted'),
         el('p', {}, 'The session ', named(state.name), ' was deleted on the server. Choose another one.'),
+      ];
+    case 'damaged':
+      return [
+        el('h2', {}, 'Session damaged'),
+        el('p', {}, 'The server cannot show the session ', named(state.name), ': ', state.reason, '.'),
+        el('p', {}, 'The other sessions are not affected.'),
       ];
     case 'empty':
       return [
@@ -59,10 +67,11 @@ function named(name: string): HTMLElement {
   return el('strong', { dir: 'auto' }, name);
 }
 
-/** @param host where the page came from; robots usually connect to the same machine, on their own port */
-function robotCommand(host: string): string {
+/** @param pageHost where the page came from: where the server listens on every address, robots find it there, too */
+function robotCommand({ host, port }: RobotPort, pageHost: string): string {
+  const address = host?.includes(':') ? `[${host}]` : (host ?? pageHost);
   return [
-    `build/bin/scanloom-robot --server ${host}:7447 \\`,
+    `build/bin/scanloom-robot --server ${address}:${port} \\`,
     '    --session demo --robot r1 \\',
     '    simulate --world office --drive wall_follower --seed 1',
   ].join('\n');

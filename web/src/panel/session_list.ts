@@ -1,5 +1,5 @@
-/** The sessions to choose from. */
-import type { Session } from '../api/types';
+/** The sessions to choose from, and those that cannot be shown. */
+import type { DamagedSession, Session } from '../api/types';
 import { hashOfSession } from '../address';
 import { el, KeyedList, setText, type Row } from '../dom';
 import { counted } from '../format';
@@ -10,18 +10,35 @@ interface SessionRow extends Row {
   live: HTMLElement;
 }
 
+interface DamagedRow extends Row {
+  reason: HTMLElement;
+}
+
 export class SessionList {
   private readonly rows: KeyedList<Session, SessionRow>;
+  private readonly damagedRows: KeyedList<DamagedSession, DamagedRow>;
   private chosen: string | null = null;
   private sessions: Session[] = [];
 
-  constructor(list: HTMLElement) {
+  constructor(list: HTMLElement, damagedList: HTMLElement) {
     this.rows = new KeyedList(list, ({ name }) => name, createRow, (row, session) => this.update(row, session));
+    this.damagedRows = new KeyedList(
+      damagedList,
+      ({ name }) => name,
+      createDamagedRow,
+      (row, { reason }) => setText(row.reason, reason),
+    );
   }
 
-  show(sessions: Session[]): void {
+  show(sessions: Session[], damaged: DamagedSession[]): void {
     this.sessions = sessions;
     this.rows.show(sessions);
+    this.damagedRows.show(damaged);
+  }
+
+  /** One of them has changed. */
+  refresh(session: Session): void {
+    this.rows.show((this.sessions = this.sessions.map((each) => (each.name === session.name ? session : each))));
   }
 
   choose(name: string): void {
@@ -43,4 +60,12 @@ function createRow(session: Session): SessionRow {
   const name = el('span', { class: 'row-name', dir: 'auto' }, session.name);
   const link = el('a', { href: hashOfSession(session.name), class: 'row' }, name, live, summary);
   return { element: el('li', {}, link), link, summary, live };
+}
+
+/** Nothing to open: the server cannot weave its map. */
+function createDamagedRow({ name }: DamagedSession): DamagedRow {
+  const reason = el('span', { class: 'row-detail' });
+  const title = el('span', { class: 'row-name', dir: 'auto' }, name);
+  const mark = el('span', { class: 'damaged' }, 'damaged');
+  return { element: el('li', {}, el('div', { class: 'row' }, title, mark, reason)), reason };
 }
