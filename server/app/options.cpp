@@ -41,9 +41,12 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         ->capture_default_str();
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
-    app.add_option("--http-host", options.http_hosts,
-                   "Name by which the HTTP port is asked, besides localhost and addresses; may be given several times. "
-                   "Other names are refused on a loopback address, and everywhere as soon as one is given");
+    app.add_option(
+           "--http-host", options.http_hosts,
+           "Name by which the HTTP port is asked, besides localhost and addresses; several with commas or several "
+           "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
+        ->delimiter(',')
+        ->allow_extra_args(false);
     app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
     app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
         ->check(CLI::Range(1, 256))

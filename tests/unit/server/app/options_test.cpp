@@ -63,6 +63,8 @@ TEST_F(ServerOptionsTest, WithoutAWordTheViewerMayBeMissing) {
 TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab", "--http-host", "maps"})).http_hosts,
                 ElementsAre("maps.lab", "maps"));
+    EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab,maps"})).http_hosts,
+                ElementsAre("maps.lab", "maps"));
     const auto config = file("a.toml", "http-host = [\"maps.lab\", \"maps\"]\n");
     EXPECT_THAT(std::get<ServerOptions>(read({"--config", config})).http_hosts, ElementsAre("maps.lab", "maps"));
     for (const auto* wrong : {"http://maps.lab", "maps.lab:80", "a b"}) {
