@@ -20,6 +20,9 @@ namespace {
 /// Protobuf would write a line to stderr for every bad string that anyone sends; decode() reports them already.
 [[maybe_unused]] auto* const kEarlierLogHandler = google::protobuf::SetLogHandler(nullptr);
 
+constexpr std::size_t kClientBytesMax = 128;
+constexpr std::size_t kSourceBytesMax = 64;
+
 struct ErrorCodePair {
     Errc errc;
     v1::ErrorCode code;
@@ -62,8 +65,21 @@ Result<> check_name(std::string_view field, std::string_view name) {
         fmt::format("{} is not a valid name; use 1 to {} characters of A-Z a-z 0-9 _ -", field, kNameBytesMax));
 }
 
+/// Text that appears in logs.
+Result<> check_text(std::string_view field, std::string_view text, std::size_t bytes_max) {
+    if (text.size() > bytes_max) {
+        return Error{Errc::kTooLarge,
+                     fmt::format("{} has {} bytes, at most {} are allowed", field, text.size(), bytes_max)};
+    }
+    if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
+        return invalid_field(fmt::format("{} holds a control character; send printable text", field));
+    }
+    return {};
+}
+
 Result<Message> read_hello(const v1::Hello& proto) {
-    Hello hello{proto.protocol_version(), proto.robot(), proto.session(), proto.token(), std::nullopt, proto.client()};
+    Hello hello{proto.protocol_version(), proto.robot(), proto.session(), proto.token(), std::nullopt,
+                proto.client(),           proto.source()};
     if (hello.protocol_version != kProtocolVersion) {
         return Error{Errc::kUnsupportedVersion,
                      fmt::format("hello.protocol_version is {}; this program speaks version {}", hello.protocol_version,
@@ -71,13 +87,8 @@ Result<Message> read_hello(const v1::Hello& proto) {
     }
     if (auto ok = check_name("hello.robot", hello.robot); !ok) return ok.error();
     if (auto ok = check_name("hello.session", hello.session); !ok) return ok.error();
-    if (hello.client.size() > 128) {
-        return Error{Errc::kTooLarge,
-                     fmt::format("hello.client has {} bytes, at most 128 are allowed", hello.client.size())};
-    }
-    if (std::any_of(hello.client.begin(), hello.client.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
-        return invalid_field("hello.client holds a control character; send the program's name and version");
-    }
+    if (auto ok = check_text("hello.client", hello.client, kClientBytesMax); !ok) return ok.error();
+    if (auto ok = check_text("hello.source", hello.source, kSourceBytesMax); !ok) return ok.error();
     if (proto.has_create()) {
         auto options = from_proto(proto.create());
         if (!options) return prefixed("hello.create.", options.error());
@@ -146,6 +157,7 @@ struct ToProto {
         out.set_token(hello.token);
         if (hello.create) to_proto(*hello.create, *out.mutable_create());
         out.set_client(hello.client);
+        out.set_source(hello.source);
     }
     void operator()(const Welcome& welcome) const {
         auto& out = *frame.mutable_welcome();

@@ -25,6 +25,7 @@ struct Hello {
     std::string token;
     std::optional<SessionOptions> create;
     std::string client;
+    std::string source; ///< what is streamed, if it can be streamed again; see frame.proto
 
     friend bool operator==(const Hello&, const Hello&) = default;
 };

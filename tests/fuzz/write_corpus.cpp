@@ -69,7 +69,7 @@ SessionOptions options() { return {0.05, 0.9, 0.1, 0.5, 0.001, 0.999, 0.1, 0.017
 
 std::vector<wire::Message> messages() {
     return {
-        wire::Hello{wire::kProtocolVersion, "r1", "lab", "secret", options(), "scanloom-robot 0.1.0"},
+        wire::Hello{wire::kProtocolVersion, "r1", "lab", "secret", options(), "scanloom-robot 0.1.0", "carmen:9f3a"},
         wire::Welcome{"5f1c", 17, {1 << 20, 4096, 1024}, 1 << 22},
         laser(),
         sonar_ring(),

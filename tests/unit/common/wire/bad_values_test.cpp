@@ -42,6 +42,10 @@ TEST(BadHello, IsRefusedByTheNameOfItsField) {
         {[](Hello& h) { h.session = "../etc"; }, "hello.session is not a valid name"},
         {[](Hello& h) { h.session = "caf\xc3\xa9"; }, "hello.session is not a valid name"},
         {[](Hello& h) { h.client = std::string(129, 'c'); }, "hello.client has 129 bytes", Errc::kTooLarge},
+        {[](Hello& h) { h.client = "a\x1b[2J"; }, "hello.client holds a control character;"},
+        {[](Hello& h) { h.source = std::string(65, 's'); }, "hello.source has 65 bytes, at most 64", Errc::kTooLarge},
+        {[](Hello& h) { h.source = "carmen:\n"; }, "hello.source holds a control character;"},
+        {[](Hello& h) { h.source = "carmen:\x7f"; }, "hello.source holds a control character;"},
     };
     for (const auto& spoilt : kSpoilt) {
         Hello hello = example_hello();

@@ -43,6 +43,7 @@ inline Hello example_hello() {
     hello.token = "secret";
     hello.create = SessionOptions{0.1, 0.8, 0.2, 0.5, 0.01, 0.99, 0.25, 0.125};
     hello.client = "a robot 1.0";
+    hello.source = "carmen:" + std::string(57, '9'); // as long as it may be
     return hello;
 }
 

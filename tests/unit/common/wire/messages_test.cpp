@@ -55,6 +55,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     hello.create.reset();
     hello.token.clear();
     hello.client.clear();
+    hello.source.clear();
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello));
     hello.create = SessionOptions{.p_min = 0.0};
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 is not an absent one";
