@@ -21,11 +21,14 @@ struct Folder {
 const std::vector<Folder> kFolders = {
     {.path = "common/error", .may_include = {}, .pure = true},
     {.path = "common/geometry", .may_include = {}, .pure = true},
+    {.path = "common/hash", .may_include = {}, .pure = true},
     {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
     {.path = "common/app", .may_include = {"common/error"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
 
-    {.path = "server/mapping", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
+    {.path = "server/mapping",
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"},
+     .pure = true},
     {.path = "server/store", .may_include = {"common", "server/mapping"}},
     {.path = "server/session", .may_include = {"common", "server/mapping", "server/store"}},
     {.path = "server/tiles", .may_include = {"common/error", "common/geometry", "common/scan", "server/mapping"}},
@@ -43,7 +46,8 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/drive"},
      .pure = true},
     {.path = "robot_client/source",
-     .may_include = {"common/error", "common/geometry", "common/scan", "robot_client/drive", "robot_client/sim"}},
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "robot_client/drive",
+                     "robot_client/sim"}},
     {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
 };
@@ -57,6 +61,7 @@ struct Package {
 const std::vector<Package> kPackages = {
     {"scanloom/v1/", {"common/wire"}},
     {"google/protobuf/", {"common/wire"}},
+    {"openssl/", {"common/hash", "server/http"}},
     {"opencv2/", {"server/tiles"}},
     {"rocksdb/", {"server/store"}},
     {"prometheus/", {"server/metrics"}},
