@@ -6,13 +6,14 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 ((EUID == 0)) || { echo "docker_images.sh: debootstrap and chroot need root" >&2; exit 1; }
-export BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs
+export BUILDAH_ISOLATION=chroot
 
-buildah() { command buildah --root "$work/storage" --runroot "$work/run" "$@"; }
+buildah() { command buildah --storage-driver vfs --root "$work/storage" --runroot "$work/run" "$@"; }
 
 # setting IMAGE NAME: what the image says of itself, a list's items one a line.
 setting() {
-    buildah inspect --type image --format "{{range .Docker.Config.$2}}{{println .}}{{end}}" "localhost/scanloom-$1" | sed '$d'
+    buildah inspect --type image --format "{{range .Docker.Config.$2}}{{println .}}{{end}}" "localhost/scanloom-$1" |
+        sed '/^$/d'
 }
 
 build_base() {
