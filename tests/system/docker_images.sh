@@ -8,7 +8,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 ((EUID == 0)) || { echo "docker_images.sh: debootstrap and chroot need root" >&2; exit 1; }
 export BUILDAH_ISOLATION=chroot
 
-buildah() { command buildah --storage-driver vfs --root "$work/storage" --runroot "$work/run" "$@"; }
+storage() { echo --storage-driver vfs --root "$work/storage" --runroot "$work/run"; }
+
+# shellcheck disable=SC2046 # no spaces in them
+buildah() { command buildah $(storage) "$@"; }
 
 # setting IMAGE NAME: what the image says of itself, a list's items one a line.
 setting() {
@@ -55,7 +58,8 @@ run_images() {
     mapfile -t entrypoint < <(setting server Entrypoint)
     mapfile -t health < <(setting server Healthcheck.Test)
 
-    buildah run "$server_container" -- "${entrypoint[@]}" &
+    # shellcheck disable=SC2046
+    (exec buildah $(storage) run "$server_container" -- "${entrypoint[@]}") & # exec: $! is what to stop
     server=$!
     eventually buildah run "$server_container" -- "${health[@]:1}"
     echo "== the server is healthy"
@@ -69,7 +73,7 @@ run_images() {
     printf 'GET / HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
     [[ $(cat <&3) == *'<html'* ]] || { echo "the server's image has no viewer" >&2; exit 1; }
     kill "$server"
-    wait "$server"
+    wait "$server" || { echo "the server's container did not end well when it was stopped" >&2; exit 1; }
 }
 
 if [[ ${1:-} == --run ]]; then
