@@ -20,6 +20,8 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kShuttingDown: return "shutting_down";
     case Errc::kUnauthorized: return "unauthorized";
     case Errc::kUnreachable: return "unreachable";
+    case Errc::kOverloaded: return "overloaded";
+    case Errc::kInternal: return "internal";
     }
     return "unknown";
 }

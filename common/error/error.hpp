@@ -28,6 +28,8 @@ enum class Errc {
     kShuttingDown,       ///< the server is draining
     kUnauthorized,       ///< no valid token
     kUnreachable,        ///< the peer cannot be reached, or hung up
+    kOverloaded,         ///< no room or no time for this now; later there may be
+    kInternal,           ///< a fault of this program
 };
 
 /// Stable lower-case name of a code, for logs and JSON ("invalid_field").

@@ -43,20 +43,22 @@ constexpr ErrorCodePair kErrorCodes[] = {
     {Errc::kStoreFailed, v1::ERROR_CODE_STORE_FAILED},
     {Errc::kShuttingDown, v1::ERROR_CODE_SHUTTING_DOWN},
     {Errc::kUnauthorized, v1::ERROR_CODE_UNAUTHORIZED},
+    {Errc::kOverloaded, v1::ERROR_CODE_OVERLOADED},
+    {Errc::kInternal, v1::ERROR_CODE_INTERNAL},
 };
 
 v1::ErrorCode to_code(Errc errc) {
     for (const auto& pair : kErrorCodes) {
         if (pair.errc == errc) return pair.code;
     }
-    return v1::ERROR_CODE_UNSPECIFIED;
+    return v1::ERROR_CODE_INTERNAL;
 }
 
 Errc to_errc(v1::ErrorCode code) {
     for (const auto& pair : kErrorCodes) {
         if (pair.code == code) return pair.errc;
     }
-    return Errc::kMalformed;
+    return Errc::kInternal; // a code of a newer server; its sentence tells
 }
 
 Result<> check_name(std::string_view field, std::string_view name) {

@@ -72,7 +72,7 @@ Response Api::answer(const Request& request) {
 
 Result<Response> Api::call(const Match& match, const Target& target, const Request& request) {
     if (needs_sessions(match.operation) && !recovered_) {
-        return Error{Errc::kShuttingDown, "the sessions are still being recovered from the store; try again soon"};
+        return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
     const Call call{request, match.arguments, target.query};
     if (asks_of_a_session(match.operation)) {

@@ -27,6 +27,8 @@ std::string_view title_of(Errc code) {
     case Errc::kShuttingDown: return "Not available now";
     case Errc::kUnauthorized: return "Not authorized";
     case Errc::kUnreachable: return "Unreachable";
+    case Errc::kOverloaded: return "Too busy now";
+    case Errc::kInternal: return "The server failed";
     }
     return "Failed";
 }
@@ -65,6 +67,8 @@ Status status_of(Errc code) noexcept {
     case Errc::kShuttingDown: return Status::service_unavailable;
     case Errc::kUnauthorized: return Status::unauthorized;
     case Errc::kUnreachable: return Status::bad_gateway;
+    case Errc::kOverloaded: return Status::service_unavailable;
+    case Errc::kInternal: return Status::internal_server_error;
     }
     return Status::internal_server_error;
 }

@@ -18,7 +18,7 @@ constexpr std::size_t kTurnedAwayMax = 64;
 
 wire::LinkError too_many(std::size_t links) {
     return {
-        {Errc::kTooLarge, fmt::format("{} robots are connected, the most this server takes; try again later", links)},
+        {Errc::kOverloaded, fmt::format("{} robots are connected, the most this server takes; try again later", links)},
         true};
 }
 

@@ -47,7 +47,7 @@ TEST_F(IngestTest, RobotsBeyondTheLimitAreToldToComeBack) {
     {
         RobotSocket second(port());
         second.send(hello("r2"));
-        expect_refused(second, Errc::kTooLarge, true, "1 robots are connected, the most this server takes");
+        expect_refused(second, Errc::kOverloaded, true, "1 robots are connected, the most this server takes");
     }
     first.reset();
     for (;;) { // the server notices that the first has gone

@@ -74,7 +74,7 @@ TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
     for (const Errc code :
          {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField, Errc::kNotFound,
           Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout, Errc::kReplaced, Errc::kGone,
-          Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized}) {
+          Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized, Errc::kOverloaded, Errc::kInternal}) {
         const Message message = LinkError{{code, "why"}, false};
         EXPECT_EQ(decode(body_of(message)).value(), message) << name_of(code);
     }
