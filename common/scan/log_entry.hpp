@@ -16,9 +16,11 @@ using RobotIndex = std::uint32_t;
 /// revision 1. Also the state of a map after folding that entry.
 using Revision = std::uint64_t;
 
+/// A robot's first appearance; or again, as long as it has no scans, with another source.
 struct RobotJoined {
     RobotIndex robot = 0;
     std::string name;
+    std::string source = {}; ///< identifies a recording or simulation, so that no other continues it; empty: none
 
     friend bool operator==(const RobotJoined&, const RobotJoined&) = default;
 };

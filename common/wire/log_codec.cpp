@@ -20,6 +20,7 @@ struct ToProto {
     void operator()(const RobotJoined& joined) const {
         out.mutable_robot_joined()->set_robot(joined.robot);
         out.mutable_robot_joined()->set_name(joined.name);
+        out.mutable_robot_joined()->set_source(joined.source);
     }
     void operator()(const SensorDescribed& described) const {
         out.mutable_sensor_described()->set_robot(described.robot);
@@ -46,7 +47,8 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
     switch (proto->body_case()) {
     case v1::LogEntry::kRobotJoined:
-        return LogEntry(RobotJoined{proto->robot_joined().robot(), proto->robot_joined().name()});
+        return LogEntry(
+            RobotJoined{proto->robot_joined().robot(), proto->robot_joined().name(), proto->robot_joined().source()});
     case v1::LogEntry::kSensorDescribed: {
         auto sensor = from_proto(proto->sensor_described().sensor());
         if (!sensor) return prefixed("sensor_described.", sensor.error());

@@ -27,15 +27,16 @@ constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
 
 constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 
-asio::awaitable<Result<session::Joined>> join(session::Session& session, std::string robot,
+asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
                                               std::shared_ptr<session::RobotListener> listener) {
     const auto executor = co_await asio::this_coro::executor;
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
         [&](auto handler) {
             auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            session.join(std::move(robot), std::move(listener), [shared, executor](Result<session::Joined> joined) {
-                asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
-            });
+            session.join(hello.robot, hello.source, std::move(listener),
+                         [shared, executor](Result<session::Joined> joined) {
+                             asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
+                         });
         },
         asio::use_awaitable);
 }
@@ -54,7 +55,7 @@ std::string in_http(std::string_view sentence) {
 
 bool is_retryable(Errc code) noexcept {
     return code == Errc::kTimeout || code == Errc::kStoreFailed || code == Errc::kShuttingDown ||
-           code == Errc::kOutOfOrder;
+           code == Errc::kOutOfOrder || code == Errc::kOverloaded;
 }
 
 RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
@@ -75,7 +76,7 @@ asio::awaitable<void> RobotLink::run() {
     try {
         served = co_await serve();
     } catch (const std::exception& exception) {
-        served = Error{Errc::kMalformed, fmt::format("this link failed unexpectedly: {}", exception.what())};
+        served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
     if (session_) session_->leave(self);
     if (ended_by_) served = *ended_by_;
@@ -127,13 +128,13 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     robot_ = hello.robot;
     auto session = co_await find_or_create(hello);
     if (!session) co_return session.error();
-    const auto joined = co_await join(**session, hello.robot, shared_from_this());
+    const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
     session_ = std::move(*session);
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
-    send(wire::Welcome{fmt::format("{:016x}", session_->info().id), joined->last_durable_seq,
+    send(wire::Welcome{session::tag_of(session_->info()), joined->last_durable_seq,
                        wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
                                     static_cast<std::uint32_t>(kBeamsMax),
                                     static_cast<std::uint32_t>(kScansPerBatchMax)},

@@ -31,6 +31,7 @@ void OccupancyLayer::apply(std::span<LogOdds> cells, const Step& step) noexcept 
 
 CellBox OccupancyLayer::integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
                                   const ModelGeometry& geometry, Revision revision) {
+    if (revision > newest_restored_) restored_.clear();
     CellBox changed;
     ChunkKey current_key;
     OccupancyChunk* current = nullptr; // neighbouring runs mostly fall into the same chunk
@@ -40,11 +41,15 @@ CellBox OccupancyLayer::integrate(const BeamFan& fan, std::span<const RangeMm> r
                              const Step& step = verdict == Verdict::kFree ? free_ : occupied_;
                              for (std::int32_t i = begin; i < end;) {
                                  const ChunkKey key = chunk_of({i, j});
+                                 const std::int32_t piece_end = std::min(end, (key.ci + 1) * kChunkSide);
+                                 if (holds_already(key, revision)) {
+                                     i = piece_end;
+                                     continue;
+                                 }
                                  if (current == nullptr || key != current_key) {
                                      current = &tree_.write(key, revision);
                                      current_key = key;
                                  }
-                                 const std::int32_t piece_end = std::min(end, (key.ci + 1) * kChunkSide);
                                  apply({&current->at({i, j}), static_cast<std::size_t>(piece_end - i)}, step);
                                  i = piece_end;
                              }
@@ -52,7 +57,15 @@ CellBox OccupancyLayer::integrate(const BeamFan& fan, std::span<const RangeMm> r
     return changed;
 }
 
+bool OccupancyLayer::holds_already(ChunkKey key, Revision revision) const {
+    if (restored_.empty()) return false;
+    const auto restored = restored_.find(key);
+    return restored != restored_.end() && revision <= restored->second;
+}
+
 void OccupancyLayer::restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
+    restored_[key] = revision;
+    newest_restored_ = std::max(newest_restored_, revision);
     auto& chunk = tree_.write(key, revision);
     assert(cells.size() == chunk.cells.size());
     std::copy(cells.begin(), cells.end(), chunk.cells.begin());

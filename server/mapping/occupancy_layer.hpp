@@ -5,6 +5,8 @@
 #include "server/mapping/log_odds.hpp"
 #include "server/mapping/map_config.hpp"
 
+#include <map>
+
 namespace scanloom::mapping {
 
 using OccupancyChunk = Chunk<LogOdds>;
@@ -25,8 +27,13 @@ public:
     CellBox integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
                       const ModelGeometry& geometry, Revision revision);
 
-    /// Puts back a chunk of a checkpoint.
+    /// Puts back a chunk of a checkpoint. It holds everything up to its revision already, so that scans
+    /// up to that one leave it as it is when they are integrated again.
+    /// Source  the page LSN of Mohan et al., ARIES (1992), section 6.
     void restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+
+    /// The newest revision of any chunk put back.
+    [[nodiscard]] Revision newest_restored() const noexcept { return newest_restored_; }
 
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 
@@ -41,10 +48,13 @@ private:
     };
 
     static void apply(std::span<LogOdds> cells, const Step& step) noexcept;
+    [[nodiscard]] bool holds_already(ChunkKey key, Revision revision) const;
 
     Step free_;
     Step occupied_;
     ChunkTree<OccupancyChunk> tree_;
+    std::map<ChunkKey, Revision> restored_; // dropped once all of them are overtaken
+    Revision newest_restored_ = 0;
 };
 
 } // namespace scanloom::mapping

@@ -29,10 +29,13 @@ Result<> Projection::fold(const LogEntry& entry) {
 }
 
 Result<> Projection::fold_joined(const RobotJoined& joined) {
-    if (joined.robot != robots_.size()) {
+    const bool again = joined.robot < robots_.size() && robots_[joined.robot].state.name == joined.name &&
+                       robots_[joined.robot].state.last_seq == 0;
+    if (joined.robot != robots_.size() && !again) {
         return misplaced(revision_ + 1, fmt::format("robot {} joins after {} others", joined.robot, robots_.size()));
     }
-    robots_.emplace_back().state.name = joined.name;
+    if (!again) robots_.emplace_back().state.name = joined.name;
+    robots_[joined.robot].source = joined.source;
     return {};
 }
 
@@ -61,7 +64,7 @@ Result<> Projection::fold_scan(const ScanTaken& taken) {
         return misplaced(revision, fmt::format("scan {} of robot '{}' follows scan {}", scan.seq, robot.state.name,
                                                robot.state.last_seq));
     }
-    if (sensor->second.kind == SensorKind::kLaser && !is_full()) integrate(robot, sensor->second, scan, revision);
+    if (sensor->second.kind == SensorKind::kLaser) integrate(robot, sensor->second, scan, revision);
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
     robot.state.stamp = scan.stamp;
@@ -96,16 +99,11 @@ Snapshot Projection::snapshot() {
     return snapshot;
 }
 
-const std::map<std::uint32_t, Sensor>& Projection::sensors_of(RobotIndex robot) const {
-    static const std::map<std::uint32_t, Sensor> none;
-    return robot < robots_.size() ? robots_[robot].sensors : none;
-}
-
 ProjectionState Projection::state() const {
     ProjectionState state{revision_, bounds_, {}};
     for (const auto& robot : robots_) {
         auto& out = state.robots.emplace_back(
-            ProjectionState::Robot{robot.state.name, robot.state.last_seq, robot.state.scan_count, {}});
+            ProjectionState::Robot{robot.state.name, robot.source, robot.state.last_seq, robot.state.scan_count, {}});
         for (const auto& [id, sensor] : robot.sensors) out.sensors.push_back(sensor);
     }
     return state;
@@ -117,6 +115,7 @@ void Projection::restore(const ProjectionState& state) {
     for (const auto& saved : state.robots) {
         auto& robot = robots_.emplace_back();
         robot.state.name = saved.name;
+        robot.source = saved.source;
         robot.state.last_seq = saved.last_seq;
         robot.state.scan_count = saved.scan_count;
         for (const auto& sensor : saved.sensors) robot.sensors[sensor.id] = sensor;
@@ -128,6 +127,7 @@ void Projection::restore_chunk(ChunkKey key, Revision revision, std::span<const 
 }
 
 Result<> Projection::restore_point(RobotIndex robot, const TrajectoryPoint& point) {
+    if (point.revision > revision_) return {}; // comes again with its scan
     if (robot >= robots_.size())
         return misplaced(point.revision, fmt::format("a pose of robot {}, which never joined", robot));
     robots_[robot].trajectory.append(point);

@@ -12,13 +12,11 @@ namespace scanloom::mapping {
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
 inline constexpr std::uint32_t kWeavingVersion = 1;
 
-/// A map of this many chunks is full: 1 GiB of cells, 1.3 square kilometres at 5 cm. One scan may exceed it once.
-inline constexpr std::size_t kChunksMax = 131'072;
-
 /// Everything but the chunks and trajectories of a projection: what a checkpoint keeps besides them.
 struct ProjectionState {
     struct Robot {
         std::string name;
+        std::string source; ///< RobotJoined::source
         std::uint64_t last_seq = 0;
         std::uint64_t scan_count = 0;
         std::vector<Sensor> sensors;
@@ -41,8 +39,7 @@ public:
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
-    /// The map is as large as it may be: further scans leave the cells as they are.
-    [[nodiscard]] bool is_full() const noexcept { return occupancy_.chunk_count() >= kChunksMax; }
+    [[nodiscard]] std::size_t chunk_count() const noexcept { return occupancy_.chunk_count(); }
 
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
@@ -52,17 +49,18 @@ public:
     /// What has been woven so far. Cheap; the next writes copy the chunks they touch.
     [[nodiscard]] Snapshot snapshot();
 
-    /// The sensors that a robot has described, by id; empty for an unknown robot.
-    [[nodiscard]] const std::map<std::uint32_t, Sensor>& sensors_of(RobotIndex robot) const;
-
     [[nodiscard]] ProjectionState state() const;
 
     /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then
-    /// every chunk and every trajectory point by rising revision.
+    /// every chunk and every trajectory point by rising revision. Chunks and points may be newer than the state
+    /// (a checkpoint cut short): folding the log's entries after the state's revision then gives the same maps.
     void restore(const ProjectionState& state);
     void restore_chunk(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
     /// Errors  kMalformed: no such robot.
     [[nodiscard]] Result<> restore_point(RobotIndex robot, const TrajectoryPoint& point);
+
+    /// The log has at least this many entries, or the chunks put back were of another log.
+    [[nodiscard]] Revision newest_restored() const noexcept { return occupancy_.newest_restored(); }
 
 private:
     /// The fan of a sensor's own angles, kept from scan to scan of the same beam count.
@@ -73,6 +71,7 @@ private:
 
     struct Robot {
         RobotState state; // its trajectory view is filled in by snapshot()
+        std::string source;
         Trajectory trajectory;
         std::map<std::uint32_t, Sensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;

@@ -64,9 +64,14 @@ std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     return numbers;
 }
 
-std::string head_part(const mapping::ProjectionState& state) {
+std::string format_part() {
     std::string value;
     put(value, mapping::kWeavingVersion);
+    return value;
+}
+
+std::string head_part(const mapping::ProjectionState& state) {
+    std::string value;
     put(value, state.revision);
     put(value, state.bounds.i_begin);
     put(value, state.bounds.j_begin);
@@ -75,53 +80,117 @@ std::string head_part(const mapping::ProjectionState& state) {
     return value;
 }
 
-void add_robot(std::vector<store::CheckpointPart>& parts, RobotIndex index,
-               const mapping::ProjectionState::Robot& robot) {
+std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     std::string value;
     put(value, robot.last_seq);
     put(value, robot.scan_count);
-    parts.push_back({fmt::format("robot/{:08x}", index), value + robot.name});
-    for (const auto& sensor : robot.sensors) {
-        parts.push_back({fmt::format("sensor/{:08x}/{:08x}", index, sensor.id),
-                         wire::encode_entry(SensorDescribed{index, sensor})});
+    return value + robot.name + '\0' + robot.source;
+}
+
+std::string track_part(const mapping::TrajectoryView& track, std::size_t begin) {
+    std::string value;
+    const std::size_t end = std::min(begin + mapping::kTrajectoryBlock, track.size());
+    for (std::size_t n = begin; n < end; ++n) put(value, track[n]);
+    return value;
+}
+
+std::string chunk_part(const mapping::OccupancyChunk& chunk) {
+    std::string value;
+    put(value, chunk.revision);
+    put(value, chunk.cells);
+    return value;
+}
+
+std::string chunk_key(mapping::ChunkKey key) {
+    return fmt::format("weave/occupancy/{:08x}/{:08x}", static_cast<std::uint32_t>(key.cj),
+                       static_cast<std::uint32_t>(key.ci));
+}
+
+/// Gathers parts and hands them to the store whenever a piece is full. After a failure nothing more is written.
+class PieceWriter {
+public:
+    PieceWriter(store::ScanLog& log, store::SessionId session, const std::atomic<bool>& stop)
+        : log_(log), session_(session), stop_(stop) {}
+
+    void add(std::string key, std::string value) {
+        bytes_ += key.size() + value.size();
+        parts_.push_back({std::move(key), std::move(value)});
+    }
+
+    void write_if_full() {
+        if (bytes_ >= kPieceBytes) write();
+    }
+
+    void write() {
+        if (stop_ && written_) written_ = Error{Errc::kGone, "the session is being deleted"};
+        if (written_) written_ = log_.write_checkpoint(session_, std::exchange(parts_, {}));
+        parts_.clear();
+        bytes_ = 0;
+    }
+
+    [[nodiscard]] const Result<>& written() const { return written_; }
+
+private:
+    static constexpr std::size_t kPieceBytes = std::size_t{4} << 20;
+
+    store::ScanLog& log_;
+    store::SessionId session_;
+    const std::atomic<bool>& stop_;
+    std::vector<store::CheckpointPart> parts_;
+    std::size_t bytes_ = 0;
+    Result<> written_;
+};
+
+void write_tracks(PieceWriter& out, const mapping::Snapshot& snapshot, Revision since) {
+    for (RobotIndex index = 0; index < snapshot.robots.size(); ++index) {
+        const auto& track = snapshot.robots[index].trajectory;
+        const std::size_t first_block = track.first_after(since) / mapping::kTrajectoryBlock;
+        for (std::size_t block = first_block; block * mapping::kTrajectoryBlock < track.size(); ++block) {
+            out.add(fmt::format("track/{:08x}/{:08x}", index, block),
+                    track_part(track, block * mapping::kTrajectoryBlock));
+            out.write_if_full();
+        }
     }
 }
 
-void add_track(std::vector<store::CheckpointPart>& parts, RobotIndex index, const mapping::TrajectoryView& track,
-               Revision since) {
-    const std::size_t first_block = track.first_after(since) / mapping::kTrajectoryBlock;
-    for (std::size_t begin = first_block * mapping::kTrajectoryBlock; begin < track.size();
-         begin += mapping::kTrajectoryBlock) {
-        const std::size_t end = std::min(begin + mapping::kTrajectoryBlock, track.size());
-        std::string value;
-        for (std::size_t n = begin; n < end; ++n) put(value, track[n]);
-        parts.push_back(
-            {fmt::format("track/{:08x}/{:08x}", index, begin / mapping::kTrajectoryBlock), std::move(value)});
-    }
-}
-
-void add_chunks(std::vector<store::CheckpointPart>& parts, const mapping::OccupancyView& view, Revision since) {
+void write_chunks(PieceWriter& out, const mapping::OccupancyView& view, Revision since) {
     view.visit({}, since, [&](mapping::ChunkKey key, const mapping::OccupancyChunk& chunk) {
-        std::string value;
-        put(value, chunk.revision);
-        put(value, chunk.cells);
-        parts.push_back({fmt::format("weave/occupancy/{:08x}/{:08x}", static_cast<std::uint32_t>(key.cj),
-                                     static_cast<std::uint32_t>(key.ci)),
-                         std::move(value)});
+        if (!out.written()) return;
+        out.add(chunk_key(key), chunk_part(chunk));
+        out.write_if_full();
     });
+}
+
+/// What must agree: one piece.
+void write_state(PieceWriter& out, const mapping::ProjectionState& state) {
+    out.add("head", head_part(state));
+    for (RobotIndex index = 0; index < state.robots.size(); ++index) {
+        out.add(fmt::format("robot/{:08x}", index), robot_part(state.robots[index]));
+        for (const auto& sensor : state.robots[index].sensors) {
+            out.add(fmt::format("sensor/{:08x}/{:08x}", index, sensor.id),
+                    wire::encode_entry(SensorDescribed{index, sensor}));
+        }
+    }
+    out.write();
 }
 
 } // namespace
 
-std::vector<store::CheckpointPart> checkpoint_parts(const mapping::Snapshot& snapshot,
-                                                    const mapping::ProjectionState& state, Revision since) {
-    std::vector<store::CheckpointPart> parts{{"head", head_part(state)}};
-    for (RobotIndex index = 0; index < state.robots.size(); ++index) {
-        add_robot(parts, index, state.robots[index]);
-        add_track(parts, index, snapshot.robots[index].trajectory, since);
+Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::Snapshot& snapshot,
+                          const mapping::ProjectionState& state, Revision since, const std::atomic<bool>& stop) {
+    try {
+        if (since == 0) {
+            if (auto cleared = log.clear_checkpoint(session); !cleared) return cleared;
+        }
+        PieceWriter out(log, session, stop);
+        out.add("format", format_part());
+        write_tracks(out, snapshot, since);
+        write_chunks(out, snapshot.occupancy, since);
+        write_state(out, state);
+        return out.written();
+    } catch (const std::bad_alloc&) {
+        return Error{Errc::kOverloaded, "there is no memory left to write it"};
     }
-    add_chunks(parts, snapshot.occupancy, since);
-    return parts;
 }
 
 const CheckpointReader::Kind CheckpointReader::kKinds[4] = {
@@ -132,6 +201,8 @@ const CheckpointReader::Kind CheckpointReader::kKinds[4] = {
 };
 
 Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
+    if (key == "format") return add_format(value);
+    if (!has_format_) return Error{Errc::kMalformed, "the checkpoint's part 'format' is missing"};
     if (key == "head") return add_head(value);
     for (const auto& kind : kKinds) {
         if (!key.starts_with(kind.prefix)) continue;
@@ -141,19 +212,26 @@ Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
     return damaged(key);
 }
 
-Result<> CheckpointReader::add_head(std::string_view value) {
+Result<> CheckpointReader::add_format(std::string_view value) {
     PartReader part(value);
     const auto version = part.take<std::uint32_t>();
+    if (!part.complete()) return damaged("format");
+    has_format_ = true;
+    if (version == mapping::kWeavingVersion) return {};
+    return Error{Errc::kUnsupportedVersion,
+                 fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
+                             mapping::kWeavingVersion)};
+}
+
+Result<> CheckpointReader::add_head(std::string_view value) {
+    PartReader part(value);
     state_.revision = part.take<Revision>();
     state_.bounds.i_begin = part.take<std::int32_t>();
     state_.bounds.j_begin = part.take<std::int32_t>();
     state_.bounds.i_end = part.take<std::int32_t>();
     state_.bounds.j_end = part.take<std::int32_t>();
     if (!part.complete()) return damaged("head");
-    if (version == mapping::kWeavingVersion) return {};
-    return Error{Errc::kUnsupportedVersion,
-                 fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
-                             mapping::kWeavingVersion)};
+    return {};
 }
 
 bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value) {
@@ -162,7 +240,9 @@ bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value)
     auto& robot = state_.robots.emplace_back();
     robot.last_seq = part.take<std::uint64_t>();
     robot.scan_count = part.take<std::uint64_t>();
-    robot.name = part.rest();
+    const auto name_end = std::min(part.rest().find('\0'), part.rest().size());
+    robot.name = part.rest().substr(0, name_end);
+    robot.source = part.rest().substr(std::min(name_end + 1, part.rest().size()));
     return !part.failed();
 }
 

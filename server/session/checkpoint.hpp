@@ -4,6 +4,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -11,18 +12,26 @@
 /// What a projection keeps in the store, so that recovery folds only the rest of the log.
 ///
 /// Parts, in the order in which the store visits them, integers little-endian:
-///   head                     weaving version, revision, bounds
-///   robot/<index>            last seq, scan count, name
+///   format                   weaving version
+///   head                     revision, bounds
+///   robot/<index>            last seq, scan count, name, a zero byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
 ///   track/<index>/<block>    512 points of a trajectory
 ///   weave/occupancy/<chunk>  revision and cells of one chunk
 /// <index>, <block> and the like are fixed-width hexadecimal.
+///
+/// Written in bounded pieces: the format first, then tracks and chunks, and what depends on the revision
+/// last and at once. Whatever a crash leaves is usable: tracks and chunks may then be newer than the head, and
+/// a chunk knows by its revision which entries of the log it holds already.
 namespace scanloom::session {
 
-/// The parts that changed after `since`; all of them for 0.
-/// Pre  snapshot and state were taken at the same revision.
-[[nodiscard]] std::vector<store::CheckpointPart>
-checkpoint_parts(const mapping::Snapshot& snapshot, const mapping::ProjectionState& state, Revision since);
+/// Writes the parts that changed after `since`; for 0 all of them, in place of whatever was there.
+/// Pre     snapshot and state were taken at the same revision.
+/// Errors  kStoreFailed; kGone: `stop` became true between two pieces; kOverloaded: memory ran out.
+/// Thread  any but the store's; waits for the disk.
+[[nodiscard]] Result<> write_checkpoint(store::ScanLog& log, store::SessionId session,
+                                        const mapping::Snapshot& snapshot, const mapping::ProjectionState& state,
+                                        Revision since, const std::atomic<bool>& stop);
 
 /// Rebuilds a projection from the parts of a checkpoint, fed one by one in rising order of keys.
 class CheckpointReader {
@@ -48,6 +57,7 @@ private:
     };
     static const Kind kKinds[4];
 
+    [[nodiscard]] Result<> add_format(std::string_view value);
     [[nodiscard]] Result<> add_head(std::string_view value);
     [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
@@ -57,6 +67,7 @@ private:
 
     mapping::Projection projection_;
     mapping::ProjectionState state_;
+    bool has_format_ = false;
     bool weaving_ = false; // the state is complete and in the projection
 };
 

@@ -4,40 +4,62 @@
 #include "server/session/checkpoint.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace scanloom::session {
 namespace {
 
-Result<> fold_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection) {
-    return log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
-        auto entry = wire::decode_entry(bytes);
-        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
-        return projection.fold(*entry);
-    });
-}
+Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
 
-Result<Recovered> from_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config) {
+Result<mapping::Projection> read_checkpoint(store::ScanLog& log, store::SessionId session,
+                                            const mapping::MapConfig& config) {
     CheckpointReader reader(config);
     auto read = log.read_checkpoint(
         session, [&](std::string_view key, std::string_view value) { return reader.add(key, value); });
     if (!read) return read.error();
-    auto projection = std::move(reader).finish();
-    if (!projection) return projection.error();
-    const Revision checkpointed = projection->revision();
-    if (auto folded = fold_rest(log, session, *projection); !folded) return folded.error();
-    return Recovered{std::move(*projection), checkpointed};
+    return std::move(reader).finish();
+}
+
+/// @return whether the log's end was reached.
+Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection,
+                       const std::atomic<bool>& stop) {
+    auto read = log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
+        if (stop) return stopped();
+        auto entry = wire::decode_entry(bytes);
+        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+        return projection.fold(*entry);
+    });
+    if (!read && read.error() == stopped()) return false;
+    if (!read) return read.error();
+    return true;
+}
+
+Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
+                                    const std::atomic<bool>& stop) {
+    auto checkpoint = read_checkpoint(log, session, config);
+    Recovered recovered{checkpoint ? std::move(*checkpoint) : mapping::Projection(config)};
+    if (!checkpoint) recovered.checkpoint_rejected = checkpoint.error();
+    recovered.checkpointed = recovered.projection.revision();
+    const auto complete = fold_rest(log, session, recovered.projection, stop);
+    if (!complete) return complete.error();
+    recovered.complete = *complete;
+    if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {
+        return Error{Errc::kStoreFailed,
+                     fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already; the store is "
+                                 "damaged, restore it from a backup or remove the session",
+                                 recovered.projection.revision(), recovered.projection.newest_restored())};
+    }
+    return recovered;
 }
 
 } // namespace
 
-Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config) {
-    auto recovered = from_checkpoint(log, session, config);
-    if (recovered) return recovered;
-    spdlog::warn("session {:016x}: {}; weaving it from the whole log", session, recovered.error().message);
-    mapping::Projection projection(config);
-    if (auto folded = fold_rest(log, session, projection); !folded) return folded.error();
-    return Recovered{std::move(projection), 0};
+Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
+                          const std::atomic<bool>& stop) {
+    try {
+        return recover_unguarded(log, session, config, stop);
+    } catch (const std::bad_alloc&) {
+        return Error{Errc::kOverloaded, "there is no memory left for its map"};
+    }
 }
 
 } // namespace scanloom::session

@@ -4,17 +4,23 @@
 #include "server/mapping/projection.hpp"
 #include "server/store/scan_log.hpp"
 
+#include <atomic>
+#include <optional>
+
 namespace scanloom::session {
 
 /// A session woven again, up to the end of its log.
 struct Recovered {
     mapping::Projection projection;
-    Revision checkpointed = 0; ///< revision of the checkpoint it began from, 0 for none
+    Revision checkpointed = 0;                  ///< revision of the checkpoint it began from, 0 for none
+    std::optional<Error> checkpoint_rejected{}; ///< why it was woven from the whole log instead
+    bool complete = true;                       ///< false: `stop` became true before the log's end
 };
 
 /// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used.
 /// Errors  kStoreFailed, kMalformed: the log is damaged; the message names the entry.
-[[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session,
-                                        const mapping::MapConfig& config);
+///         kOverloaded: memory ran out.
+[[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
+                                        const std::atomic<bool>& stop);
 
 } // namespace scanloom::session

@@ -2,7 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
-#include "server/session/recovery.hpp"
+#include "server/session/checkpoint.hpp"
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
@@ -19,47 +19,61 @@ SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_execut
 Result<> SessionRegistry::recover() {
     const auto stored = log_.sessions();
     if (!stored) return stored.error();
-    std::latch done(static_cast<std::ptrdiff_t>(stored->size()));
+    const auto done = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(stored->size()));
     for (const auto& session : *stored) {
-        boost::asio::post(compute_, [this, &session, &done] {
+        boost::asio::post(compute_, [this, &session, done] {
             recover_one(session);
-            done.count_down();
+            done->count_down();
         });
     }
-    done.wait();
+    done->wait();
     return {};
 }
 
 void SessionRegistry::recover_one(const store::StoredSession& stored) {
     if (draining_) return; // told to stop meanwhile: what is not woven now will be at the next start
-    std::string name = fmt::format("#{:016x}", stored.id); // until its record has told
-    const auto weave = [&]() -> Result<std::shared_ptr<Session>> {
-        const auto record = wire::decode_session(stored.record);
-        if (!record) return record.error();
-        name = record->name;
-        const auto config = mapping::resolve(record->options);
-        if (!config) return config.error();
-        auto recovered = session::recover(log_, stored.id, *config);
-        if (!recovered) return recovered.error();
-        return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
-                                         std::move(recovered->projection), recovered->checkpointed, log_, compute_,
-                                         counters_);
-    };
-    const auto guarded = [&]() -> Result<std::shared_ptr<Session>> {
-        try {
-            return weave();
-        } catch (const std::bad_alloc&) {
-            return Error{Errc::kTooLarge, "there is no memory left for its map"};
-        }
-    };
-    auto session = guarded();
+    std::string name = fmt::format("#{}", stored.id); // until its record has told
+    auto session = weave(stored, name);
     const std::unique_lock lock(mutex_);
-    if (session) {
+    if (session && *session) {
         sessions_[name] = std::move(*session);
-        return;
+    } else if (!session) {
+        spdlog::error("session '{}' cannot be recovered: {}", name, session.error().message);
+        damaged_[name] = {stored.id, session.error()};
     }
-    spdlog::error("session '{}' cannot be recovered: {}", name, session.error().message);
-    damaged_[name] = {stored.id, session.error()};
+}
+
+/// @return nothing when told to stop before its end.
+Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSession& stored, std::string& name) {
+    if (!stored.record) return stored.record.error();
+    const auto record = wire::decode_session(*stored.record);
+    if (!record) return record.error();
+    name = record->name;
+    if (stored.damage) return *stored.damage;
+    const auto config = mapping::resolve(record->options);
+    if (!config) return config.error();
+    auto recovered = session::recover(log_, stored.id, *config, draining_);
+    if (!recovered) return recovered.error();
+    if (recovered->checkpoint_rejected) {
+        spdlog::warn("session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", name,
+                     recovered->checkpoint_rejected->message);
+    }
+    if (!recovered->complete) {
+        keep_progress(stored.id, name, *recovered);
+        return std::shared_ptr<Session>();
+    }
+    return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
+                                     std::move(recovered->projection), recovered->checkpointed, log_, compute_,
+                                     counters_);
+}
+
+/// A long recovery that is stopped again and again must come to its end all the same.
+void SessionRegistry::keep_progress(store::SessionId id, const std::string& name, Recovered& recovered) {
+    const auto snapshot = recovered.projection.snapshot();
+    const auto written = write_checkpoint(log_, id, snapshot, recovered.projection.state(), recovered.checkpointed,
+                                          /*stop=*/false);
+    spdlog::info("session '{}': recovery stopped after entry {}{}", name, snapshot.revision,
+                 written ? "; the next start continues there" : "");
 }
 
 std::shared_ptr<Session> SessionRegistry::find(std::string_view name) const {
@@ -124,9 +138,11 @@ Result<> SessionRegistry::remove(std::string_view name) {
     store::SessionId id = 0;
     if (const auto session = find(name)) {
         id = session->info().id;
-        std::promise<void> closed;
-        session->close({Errc::kGone, fmt::format("session '{}' was deleted", name)}, [&closed] { closed.set_value(); });
-        closed.get_future().wait();
+        const auto closed = std::make_shared<std::promise<void>>();
+        auto is_closed = closed->get_future();
+        session->discard({Errc::kGone, fmt::format("session '{}' was deleted", name)},
+                         [closed] { closed->set_value(); });
+        is_closed.wait();
     } else {
         const std::shared_lock lock(mutex_);
         const auto damaged = damaged_.find(name);
@@ -146,12 +162,16 @@ void SessionRegistry::drain() {
     const std::lock_guard changing(changing_);
     draining_ = true;
     const auto sessions = list();
-    std::latch closed(static_cast<std::ptrdiff_t>(sessions.size()));
+    const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {
         session->close({Errc::kShuttingDown, "the server is shutting down; connect again when it is back"},
-                       [&closed] { closed.count_down(); });
+                       [closed] { closed->count_down(); });
     }
-    closed.wait();
+    closed->wait();
+}
+
+void SessionRegistry::hurry() {
+    for (const auto& session : list()) session->hurry();
 }
 
 } // namespace scanloom::session

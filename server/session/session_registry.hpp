@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/session/recovery.hpp"
 #include "server/session/session.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -27,7 +28,8 @@ public:
     SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now);
 
     /// Weaves every stored session again: newest checkpoint, then the rest of its log. A session whose
-    /// log is damaged is left out and listed by damaged(); the others are not held up by it.
+    /// log is damaged is left out and listed by damaged(); the others are not held up by it. drain() stops it
+    /// early and keeps what has been woven.
     /// Errors  kStoreFailed: the sessions cannot be listed.
     /// Pre     called once, before anything else, not from a thread of the compute executor.
     [[nodiscard]] Result<> recover();
@@ -44,12 +46,15 @@ public:
     [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options);
 
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
-    /// Pre  not called from a thread of the compute executor that is its only one.
+    /// Pre  never called from a thread of the compute executor.
     [[nodiscard]] Result<> remove(std::string_view name);
 
     /// Refuses new sessions, closes all, returns when everything submitted is durable.
     /// Pre  as for remove().
     void drain();
+
+    /// Lets drain() end soon, as Session::hurry() says.
+    void hurry();
 
     [[nodiscard]] const SessionCounters& counters() const noexcept { return *counters_; }
 
@@ -62,6 +67,8 @@ private:
     };
 
     void recover_one(const store::StoredSession& stored);
+    [[nodiscard]] Result<std::shared_ptr<Session>> weave(const store::StoredSession& stored, std::string& name);
+    void keep_progress(store::SessionId id, const std::string& name, Recovered& recovered);
 
     store::ScanLog& log_;
     boost::asio::any_io_executor compute_;

@@ -69,13 +69,19 @@ Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
 }
 
 /// The last entry's revision, found by its key alone; 0 for an empty log.
-Result<Revision> end_of_log(rocksdb::Iterator& iterator, const fs::path& directory, SessionId session) {
+Result<Revision> end_of_log(rocksdb::DB& database, const fs::path& directory, SessionId session) {
+    const auto damaged = [&](std::string_view what) {
+        return Error{Errc::kStoreFailed, fmt::format("the store {} is damaged: the end of the log of session {} ({}); "
+                                                     "restore it from a backup or remove the session",
+                                                     directory.native(), session, what)};
+    };
     const KeyRange range = entries_of(session);
-    iterator.SeekForPrev(range.end);
-    if (!iterator.status().ok()) return failure(directory, iterator.status());
-    if (!iterator.Valid() || iterator.key().compare(range.begin) < 0) return Revision{0};
-    const auto revision = revision_of(iterator.key().ToStringView());
-    if (!revision) return failure(directory, fmt::format("the log of session {} is damaged", session));
+    const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
+    iterator->SeekForPrev(range.end);
+    if (!iterator->status().ok()) return damaged(iterator->status().ToString());
+    if (!iterator->Valid() || iterator->key().compare(range.begin) < 0) return Revision{0};
+    const auto revision = revision_of(iterator->key().ToStringView());
+    if (!revision) return damaged("the key of the last entry");
     return *revision;
 }
 
@@ -86,14 +92,13 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
     ends.next_session = next->value_or(1);
 
     const std::unique_ptr<rocksdb::Iterator> sessions(database.NewIterator({}));
-    const std::unique_ptr<rocksdb::Iterator> entries(database.NewIterator({}));
     for (sessions->Seek(std::string(kSessionsBegin)); sessions->Valid(); sessions->Next()) {
         const auto session = session_of(sessions->key().ToStringView());
         if (!session) break;
         if (*session >= ends.next_session) return failure(directory, "its count of sessions is damaged");
-        const auto end = end_of_log(*entries, directory, *session);
-        if (!end) return end.error();
-        ends.revisions.emplace(*session, *end);
+        const auto end = end_of_log(database, directory, *session); // damage of one holds up no other
+        ends.revisions.emplace(*session, end ? *end : 0);
+        if (!end) ends.damaged.emplace(*session, end.error());
     }
     if (!sessions->status().ok()) return failure(directory, sessions->status());
     return ends;

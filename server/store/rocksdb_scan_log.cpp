@@ -107,9 +107,12 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
     const Scan scan(*database_, range);
     for (scan.iterator->Seek(range.begin); scan.iterator->Valid(); scan.iterator->Next()) {
         const auto session = session_of(view(scan.iterator->key()));
+        if (!session) return damaged(name(), 0, "the name");
         const auto record = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
-        if (!session || !record) return damaged(name(), session.value_or(0), "the record");
-        found.push_back({*session, std::string(*record)});
+        const auto damage = ends_.damaged.find(*session); // never changes after opening
+        found.push_back({*session,
+                         record ? Result<std::string>(std::string(*record)) : damaged(name(), *session, "the record"),
+                         damage == ends_.damaged.end() ? std::nullopt : std::optional(damage->second)});
     }
     if (const auto status = scan.iterator->status(); !status.ok()) {
         return Error{Errc::kStoreFailed,
@@ -163,6 +166,7 @@ void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::
     change.add_to = [this, session, first, pairs = std::move(pairs)](rocksdb::WriteBatch& batch) -> Result<> {
         const auto end = ends_.revisions.find(session);
         if (end == ends_.revisions.end()) return no_such_session(session);
+        if (const auto damage = ends_.damaged.find(session); damage != ends_.damaged.end()) return damage->second;
         if (first != end->second + 1) {
             return Error{Errc::kConflict, fmt::format("an append to session {} begins with revision {}, but its log "
                                                       "ends with {}",
@@ -201,6 +205,20 @@ Result<> RocksdbScanLog::read(SessionId session, Revision after, const VisitEntr
         return damaged(name(), session, fmt::format("the log ends before revision {}", after));
     }
     return {};
+}
+
+Result<> RocksdbScanLog::clear_checkpoint(SessionId session) {
+    Change change;
+    change.bytes = kChangeBytes;
+    change.add_to = [this, session](rocksdb::WriteBatch& batch) -> Result<> {
+        if (!ends_.revisions.contains(session)) return no_such_session(session);
+        const KeyRange range = parts_of(session);
+        if (const auto status = batch.DeleteRange(range.begin, range.end); !status.ok()) {
+            return Error{Errc::kStoreFailed, fmt::format("the store cannot take a change: {}", status.ToString())};
+        }
+        return {};
+    };
+    return committer_.submit_and_wait(std::move(change));
 }
 
 Result<> RocksdbScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {

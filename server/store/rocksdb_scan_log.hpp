@@ -15,6 +15,7 @@ namespace scanloom::store {
 struct LogEnds {
     SessionId next_session = 1;
     std::map<SessionId, Revision> revisions; ///< of each session's last entry, 0 for an empty log
+    std::map<SessionId, Error> damaged;      ///< sessions whose last entry cannot be found; never changes
 };
 
 /// The scan log in RocksDB. Readers go to the database themselves; changes go through the committer.
@@ -28,6 +29,7 @@ public:
     [[nodiscard]] Result<> remove_session(SessionId session) override;
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
     [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;
+    [[nodiscard]] Result<> clear_checkpoint(SessionId session) override;
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
     [[nodiscard]] StoreStats stats() const override;

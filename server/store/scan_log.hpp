@@ -24,9 +24,8 @@ using SessionId = std::uint64_t;
 
 struct StoredSession {
     SessionId id = 0;
-    std::string record; ///< opaque bytes
-
-    friend bool operator==(const StoredSession&, const StoredSession&) = default;
+    Result<std::string> record;    ///< opaque bytes; kStoreFailed: damaged
+    std::optional<Error> damage{}; ///< of the log's end: nothing can be appended
 };
 
 /// One named part of a session's checkpoint, for example one chunk of its map. Opaque bytes.
@@ -75,7 +74,7 @@ public:
     /// Durable when it returns.
     [[nodiscard]] virtual Result<SessionId> create_session(std::string_view record) = 0;
 
-    /// All sessions, by rising id.
+    /// All sessions, by rising id; damage of one holds up no other.
     [[nodiscard]] virtual Result<std::vector<StoredSession>> sessions() = 0;
 
     /// Durable when it returns: record, entries and checkpoint are gone. The disk is freed in time.
@@ -97,6 +96,9 @@ public:
     /// Errors  kStoreFailed, naming session and revision: a damaged entry; a missing one; a log that
     ///         ends before `after`, as a checkpoint ahead of its log would have it.
     [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
+
+    /// Removes all parts. Takes its turn in the commit queue and returns when written.
+    [[nodiscard]] virtual Result<> clear_checkpoint(SessionId session) = 0;
 
     /// Replaces the named parts, all or none of them; parts not named stay.
     /// Takes its turn in the commit queue and returns when written.

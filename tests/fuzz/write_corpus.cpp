@@ -5,6 +5,8 @@
 #include "server/mapping/projection.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/store/crc32c.hpp"
+#include "tests/support/log_reading.hpp"
+#include "tests/support/memory_scan_log.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
@@ -146,9 +148,12 @@ void write_checkpoint(const std::filesystem::path& folder) {
         if (const auto folded = projection.fold(entry); !folded) throw std::runtime_error(folded.error().message);
     }
     std::string parts;
-    for (const auto& part : session::checkpoint_parts(projection.snapshot(), projection.state(), 0)) {
-        append_text(parts, part.key);
-        append_text(parts, part.value);
+    store::MemoryScanLog log;
+    const auto id = log.create_session("s").value();
+    session::write_checkpoint(log, id, projection.snapshot(), projection.state(), 0, false).value();
+    for (const auto& [key, value] : store::checkpoint_of(log, id).value()) {
+        append_text(parts, key);
+        append_text(parts, value);
     }
     write_file(folder / "one_scan", parts);
 }

@@ -11,7 +11,7 @@ TEST_F(IngestTest, AWholeConversation) {
     RobotSocket robot(port());
     robot.send(hello("r"));
     const auto welcome = robot.receive_kind<wire::Welcome>();
-    EXPECT_EQ(welcome.session_id, "0000000000000001");
+    EXPECT_THAT(welcome.session_id, testing::MatchesRegex("[0-9a-f]{16}"));
     EXPECT_EQ(welcome.last_durable_seq, 0U);
     EXPECT_EQ(welcome.limits, (wire::Limits{1U << 20, 4096, 1024}));
     EXPECT_EQ(welcome.credit_bytes, 2U << 20);

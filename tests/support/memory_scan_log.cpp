@@ -125,6 +125,15 @@ Result<> MemoryScanLog::read(SessionId session, Revision after, const VisitEntry
     return {};
 }
 
+Result<> MemoryScanLog::clear_checkpoint(SessionId session) {
+    const std::lock_guard lock(mutex_);
+    if (failed_) return *failed_;
+    const auto found = sessions_.find(session);
+    if (found == sessions_.end()) return no_such_session(session);
+    found->second.parts.clear();
+    return {};
+}
+
 Result<> MemoryScanLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
     const std::lock_guard lock(mutex_);
     if (failed_) return *failed_;

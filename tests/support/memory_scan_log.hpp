@@ -14,7 +14,7 @@ namespace scanloom::store {
 /// Keeps ScanLog's contract but for two things: nothing survives the object, and `done` is called
 /// within append() (or release_completions()), so that tests need no thread and no waiting.
 /// Thread  any, at the same time; `done` and visitors run without the lock and may call back.
-class MemoryScanLog final : public ScanLog {
+class MemoryScanLog : public ScanLog {
 public:
     ~MemoryScanLog() override;
 
@@ -34,6 +34,7 @@ public:
     [[nodiscard]] Result<> remove_session(SessionId session) override;
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
     [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;
+    [[nodiscard]] Result<> clear_checkpoint(SessionId session) override;
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
     [[nodiscard]] StoreStats stats() const override;

@@ -6,21 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <bit>
-
 namespace scanloom::http {
-namespace {
-
-/// A bijection that spreads every bit over all. Source: Steele, Lea, Flood (2014), SplitMix64.
-std::uint64_t mixed(std::uint64_t bits) {
-    bits += 0x9E37'79B9'7F4A'7C15U;
-    bits = (bits ^ (bits >> 30)) * 0xBF58'476D'1CE4'E5B9U;
-    bits = (bits ^ (bits >> 27)) * 0x94D0'49BB'1331'11EBU;
-    return bits ^ (bits >> 31);
-}
-
-} // namespace
-
 Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions, const Call& call) {
     const auto& name = call.arguments["session"];
     if (auto session = sessions.find(name)) return session;
@@ -41,8 +27,7 @@ std::optional<Response> refusal_if_damaged(const session::SessionRegistry& sessi
 }
 
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
-    const auto making = mixed(std::uint64_t{versions.weaving} << 32 | versions.rendering);
-    return fmt::format("{:016x}", mixed(mixed(mixed(info.id) ^ std::bit_cast<std::uint64_t>(info.created)) ^ making));
+    return fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
 }
 
 Result<> check_layer(std::string_view layer) {

@@ -32,7 +32,7 @@ struct MakingVersions {
 
 /// What tells a session from every other one, also from one that had its name before, from those of a store that
 /// was here before, and from itself as another version of the program shows it: viewers keep what they were told is
-/// immutable. In every entity tag of what is made from the session. 16 hex digits.
+/// immutable. In every entity tag of what is made from the session. Begins with what robots are told as session_id.
 [[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
 
 /// Errors  kNotFound: no such layer.

@@ -101,7 +101,7 @@ protected:
         const auto session = registry_.find(name);
         const auto link = std::make_shared<Link>(count);
         std::promise<void> joined;
-        session->join("r1", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        session->join("r1", "", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
         session->submit(link, laser(), 0);
         std::vector<Scan> scans;

@@ -13,15 +13,15 @@ using testing::HasSubstr;
 
 using Parts = std::map<std::string, std::string>; // as the store keeps them
 
-void merge(Parts& parts, std::vector<store::CheckpointPart> newer) {
-    for (auto& part : newer) parts[part.key] = std::move(part.value);
+void merge(Parts& parts, Parts newer) {
+    for (auto& [key, value] : newer) parts[key] = std::move(value);
 }
 
 std::vector<LogEntry> log_of_two_robots(std::size_t scans) {
     Sensor second = small_laser();
     second.id = 40;
-    std::vector<LogEntry> log{RobotJoined{0, "a"}, SensorDescribed{0, small_laser()}, SensorDescribed{0, second},
-                              RobotJoined{1, "b"}, SensorDescribed{1, small_laser()}};
+    std::vector<LogEntry> log{RobotJoined{0, "a", "carmen:12"}, SensorDescribed{0, small_laser()},
+                              SensorDescribed{0, second}, RobotJoined{1, "b"}, SensorDescribed{1, small_laser()}};
     for (std::uint64_t seq = 1; seq <= scans; ++seq) {
         for (RobotIndex robot = 0; robot < 2; ++robot) log.push_back(ScanTaken{robot, random_scan(robot, seq)});
     }
@@ -32,8 +32,12 @@ void fold(mapping::Projection& projection, const std::vector<LogEntry>& log, std
     for (std::size_t n = begin; n < end; ++n) ASSERT_TRUE(projection.fold(log[n]));
 }
 
-std::vector<store::CheckpointPart> parts_of(mapping::Projection& projection, Revision since) {
-    return checkpoint_parts(projection.snapshot(), projection.state(), since);
+/// What a checkpoint of it writes.
+Parts parts_of(mapping::Projection& projection, Revision since) {
+    store::MemoryScanLog log;
+    const auto id = log.create_session("s").value();
+    EXPECT_TRUE(write_checkpoint(log, id, projection.snapshot(), projection.state(), since, false));
+    return store::checkpoint_of(log, id).value();
 }
 
 Result<mapping::Projection> read(const Parts& parts) {
@@ -56,7 +60,8 @@ void expect_same(mapping::Projection& a, mapping::Projection& b) {
         const auto& r = right.robots[n];
         EXPECT_EQ(std::tie(l.name, l.last_seq, l.scan_count, l.stamp, l.pose),
                   std::tie(r.name, r.last_seq, r.scan_count, r.stamp, r.pose));
-        EXPECT_EQ(a.sensors_of(n), b.sensors_of(n));
+        EXPECT_EQ(a.state().robots[n].sensors, b.state().robots[n].sensors);
+        EXPECT_EQ(a.state().robots[n].source, b.state().robots[n].source);
         ASSERT_EQ(l.trajectory.size(), r.trajectory.size());
         for (std::size_t i = 0; i < l.trajectory.size(); ++i) ASSERT_EQ(l.trajectory[i], r.trajectory[i]);
     }
@@ -109,7 +114,7 @@ TEST(Checkpoint, IncrementalOnesHoldOnlyTheChunksThatChanged) {
     ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
     const auto parts = parts_of(projection, since);
     const auto chunks = std::count_if(parts.begin(), parts.end(),
-                                      [](const auto& part) { return part.key.starts_with("weave/occupancy/"); });
+                                      [](const auto& part) { return part.first.starts_with("weave/occupancy/"); });
     EXPECT_GE(chunks, 1);
     EXPECT_LE(chunks, 4);
     EXPECT_LT(parts.size(), full);
@@ -147,6 +152,8 @@ TEST(Checkpoint, PosesThatAreMissingAreReported) {
     const auto refused = read(parts);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("513 poses of robot 'a', which took 600 scans"));
+    parts.erase("format");
+    EXPECT_THAT(read(parts).error().message, HasSubstr("part 'format' is missing"));
 }
 
 TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
@@ -170,7 +177,6 @@ TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
         {"weave/occupancy/0/0/0", ""},
         {"weave/", ""},
         {"zebra", ""},
-        {"", ""},
     };
     for (const auto& [key, value] : kImpossible) {
         Parts damaged = parts;
@@ -181,11 +187,120 @@ TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
     }
 }
 
+/// A store that loses power after so many pieces of a checkpoint.
+class PowerCutLog : public store::MemoryScanLog {
+public:
+    [[nodiscard]] Result<> write_checkpoint(store::SessionId session,
+                                            std::vector<store::CheckpointPart> parts) override {
+        if (pieces_left == 0) return Error{Errc::kStoreFailed, "no power"};
+        --pieces_left;
+        return MemoryScanLog::write_checkpoint(session, std::move(parts));
+    }
+
+    std::size_t pieces_left = 1'000'000;
+};
+
+/// A map that takes several pieces, and a robot that joins only in its second half.
+struct CutCheckpointTest : testing::Test {
+    CutCheckpointTest() {
+        std::vector<std::string> entries;
+        for (const auto& entry : log_of_two_robots(40)) entries.push_back(wire::encode_entry(entry));
+        half_ = entries.size() / 2;
+        entries.insert(entries.begin() + half_, wire::encode_entry(RobotJoined{2, "late"}));
+        id_ = log_.create_session("s").value();
+        EXPECT_TRUE(store::append_and_wait(log_, id_, 1, entries));
+        EXPECT_TRUE(whole_.fold_all(log_, id_));
+    }
+
+    struct Woven {
+        explicit Woven(const mapping::MapConfig& config) : projection(config) {}
+        Result<> fold_all(store::ScanLog& log, store::SessionId id) { return fold_to(log, id, ~Revision{0}); }
+        Result<> fold_to(store::ScanLog& log, store::SessionId id, Revision last) {
+            return log.read(id, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
+                return revision <= last ? projection.fold(wire::decode_entry(bytes).value()) : Result<>();
+            });
+        }
+        mapping::Projection projection;
+    };
+
+    Result<> write(Woven& woven, Revision since) {
+        return write_checkpoint(log_, id_, woven.projection.snapshot(), woven.projection.state(), since, false);
+    }
+
+    void expect_recovery_gives_the_whole(std::size_t pieces) {
+        auto recovered = recover(log_, id_, config_, false);
+        ASSERT_TRUE(recovered) << recovered.error().message;
+        EXPECT_FALSE(recovered->checkpoint_rejected) << recovered->checkpoint_rejected->message;
+        SCOPED_TRACE("cut after piece " + std::to_string(pieces));
+        expect_same(recovered->projection, whole_.projection);
+    }
+
+    mapping::MapConfig config_ = *mapping::resolve({.cell_size = 0.01});
+    PowerCutLog log_;
+    store::SessionId id_ = 0;
+    std::ptrdiff_t half_ = 0;
+    Woven whole_{config_};
+};
+
+TEST_F(CutCheckpointTest, WhateverOfAFirstCheckpointWasWrittenIsUsed) {
+    for (std::size_t pieces = 0;; ++pieces) {
+        log_.pieces_left = pieces;
+        const bool complete = write(whole_, 0).has_value();
+        expect_recovery_gives_the_whole(pieces);
+        if (complete) {
+            EXPECT_GE(pieces, 3U) << "or this test shows nothing";
+            return;
+        }
+    }
+}
+
+TEST_F(CutCheckpointTest, WhateverOfALaterCheckpointWasWrittenIsUsed) {
+    Woven first(config_);
+    ASSERT_TRUE(first.fold_to(log_, id_, static_cast<Revision>(half_)));
+    for (std::size_t pieces = 0;; ++pieces) {
+        log_.pieces_left = 1'000'000;
+        ASSERT_TRUE(write(first, 0)); // takes out what the last round has left
+        log_.pieces_left = pieces;
+        const bool complete = write(whole_, static_cast<Revision>(half_)).has_value();
+        EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed,
+                  complete ? whole_.projection.revision() : static_cast<Revision>(half_));
+        expect_recovery_gives_the_whole(pieces);
+        if (complete) {
+            EXPECT_GE(pieces, 2U) << "or this test shows nothing";
+            return;
+        }
+    }
+}
+
+TEST_F(CutCheckpointTest, StoppingItBetweenTwoPiecesIsNoHarmEither) {
+    const auto stopped = write_checkpoint(log_, id_, whole_.projection.snapshot(), whole_.projection.state(), 0, true);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().code, Errc::kGone);
+    expect_recovery_gives_the_whole(0);
+}
+
+TEST_F(CutCheckpointTest, ChunksNewerThanTheLogAreReported) {
+    ASSERT_TRUE(write(whole_, 0));
+    const auto parts = store::checkpoint_of(log_, id_).value();
+    PowerCutLog shorter;
+    const auto id = shorter.create_session("s").value();
+    std::vector<std::string> entries;
+    for (const auto& entry : log_of_two_robots(10)) entries.push_back(wire::encode_entry(entry));
+    ASSERT_TRUE(store::append_and_wait(shorter, id, 1, entries));
+    for (const auto& [key, value] : parts) {
+        if (key != "format" && !key.starts_with("weave/")) continue;
+        ASSERT_TRUE(shorter.write_checkpoint(id, {{key, value}}));
+    }
+    const auto recovered = recover(shorter, id, config_, false);
+    ASSERT_FALSE(recovered);
+    EXPECT_THAT(recovered.error().message, HasSubstr("the log ends with entry 25, but its checkpoint holds entry"));
+}
+
 TEST(Checkpoint, OfAnotherWeavingVersionIsReported) {
     mapping::Projection projection{mapping::MapConfig{}};
     Parts parts;
     merge(parts, parts_of(projection, 0));
-    parts["head"][0] = static_cast<char>(mapping::kWeavingVersion + 1);
+    parts["format"][0] = static_cast<char>(mapping::kWeavingVersion + 1);
     const auto refused = read(parts);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kUnsupportedVersion);

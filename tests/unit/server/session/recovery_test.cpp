@@ -40,7 +40,7 @@ protected:
 };
 
 TEST_F(RecoveryTest, CheckpointAndRestGiveTheMapOfTheWholeLog) {
-    auto recovered = recover(log_, id_, config_);
+    auto recovered = recover(log_, id_, config_, false);
     ASSERT_TRUE(recovered);
     EXPECT_EQ(recovered->checkpointed, 602U);
     EXPECT_EQ(recovered->projection.revision(), 652U);
@@ -52,13 +52,11 @@ TEST_F(RecoveryTest, CheckpointAndRestGiveTheMapOfTheWholeLog) {
 
 TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
     const auto parts = store::checkpoint_of(log_, id_).value();
-    std::string other_version = parts.at("head");
+    std::string other_version = parts.at("format");
     other_version[0] = 99;
-    std::string ahead_of_the_log = parts.at("head");
-    ahead_of_the_log[6] = 1; // revision + 65536
     const std::pair<std::string, std::string> kDamages[] = {
-        {"head", other_version},
-        {"head", ahead_of_the_log},
+        {"format", other_version},
+        {"format", "?"},
         {"head", "?"},
         {"robot/00000000", "short"},
         {"track/00000000/00000001", std::string(40, '\0')},
@@ -67,7 +65,7 @@ TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
     };
     for (const auto& [key, value] : kDamages) {
         damage(key, value);
-        auto recovered = recover(log_, id_, config_);
+        auto recovered = recover(log_, id_, config_, false);
         ASSERT_TRUE(recovered) << key;
         EXPECT_EQ(recovered->checkpointed, 0U) << key;
         EXPECT_EQ(recovered->projection.revision(), 652U) << key;
@@ -76,18 +74,35 @@ TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
     }
 }
 
+TEST_F(RecoveryTest, ALogThatEndsBeforeItsCheckpointIsReported) {
+    std::string ahead_of_the_log = store::checkpoint_of(log_, id_).value().at("head");
+    ahead_of_the_log[2] = 1; // revision + 65536
+    damage("head", ahead_of_the_log);
+    const auto recovered = recover(log_, id_, config_, false);
+    ASSERT_FALSE(recovered);
+    EXPECT_EQ(recovered.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(recovered.error().message, HasSubstr("ends before revision 66138"));
+}
+
+TEST_F(RecoveryTest, StoppedItKeepsWhatWasWovenUntilThen) {
+    const auto recovered = recover(log_, id_, config_, true);
+    ASSERT_TRUE(recovered);
+    EXPECT_FALSE(recovered->complete);
+    EXPECT_EQ(recovered->projection.revision(), 602U);
+}
+
 TEST_F(RecoveryTest, AfterADamagedCheckpointTheNextOneIsWhole) {
     damage("head", "?");
     start_session();
     close();
-    const auto recovered = recover(log_, id_, config_);
+    const auto recovered = recover(log_, id_, config_, false);
     ASSERT_TRUE(recovered);
     EXPECT_EQ(recovered->checkpointed, 652U);
 }
 
 TEST_F(RecoveryTest, ADamagedLogIsReportedByItsEntry) {
     ASSERT_TRUE(store::append_and_wait(log_, id_, 653, {"no entry"}));
-    const auto recovered = recover(log_, id_, config_);
+    const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
     EXPECT_EQ(recovered.error().code, Errc::kMalformed);
     EXPECT_THAT(recovered.error().message, HasSubstr("log entry 653: "));
@@ -95,7 +110,7 @@ TEST_F(RecoveryTest, ADamagedLogIsReportedByItsEntry) {
 
 TEST_F(RecoveryTest, AnEntryThatCannotFollowIsReported) {
     ASSERT_TRUE(store::append_and_wait(log_, id_, 653, {wire::encode_entry(ScanTaken{0, random_scan(1, 700)})}));
-    const auto recovered = recover(log_, id_, config_);
+    const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
     EXPECT_THAT(recovered.error().message, HasSubstr("log entry 653: scan 700 of robot 'r' follows scan 650"));
 }
@@ -114,12 +129,12 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     for (int batch = 0; batch < 4; ++batch) submit(1000);
     EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
     submit(1000);
-    EXPECT_EQ(recover(log_, id_, config_)->checkpointed, 5002U);
-    for (int batch = 0; batch < 4; ++batch) submit(1000);
-    EXPECT_EQ(recover(log_, id_, config_)->checkpointed, 5002U);
+    EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed, 4258U) << "the first group's end after 4096 entries";
+    for (int batch = 0; batch < 3; ++batch) submit(1000);
+    EXPECT_EQ(recover(log_, id_, config_, false)->checkpointed, 4258U);
     submit(1000);
-    auto recovered = recover(log_, id_, config_).value();
-    EXPECT_EQ(recovered.checkpointed, 10'002U);
+    auto recovered = recover(log_, id_, config_, false).value();
+    EXPECT_EQ(recovered.checkpointed, 8514U);
     EXPECT_EQ(mapping::digest_of(recovered.projection.snapshot().occupancy), digest());
 }
 

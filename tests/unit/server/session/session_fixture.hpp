@@ -48,9 +48,10 @@ protected:
 
     /// As after a restart: what is in the log is all that is known.
     void start_session() {
-        auto recovered = recover(log_, id_, config_).value();
+        auto recovered = recover(log_, id_, config_, false).value();
         session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
-                                             recovered.checkpointed, log_, compute_.get_executor());
+                                             recovered.checkpointed, log_, compute_.get_executor(),
+                                             std::make_shared<SessionCounters>(), limits_);
     }
 
     void run() {
@@ -64,9 +65,9 @@ protected:
         std::shared_ptr<std::optional<Result<Joined>>> answer = std::make_shared<std::optional<Result<Joined>>>();
     };
 
-    Join begin_join(const std::string& robot) {
+    Join begin_join(const std::string& robot, const std::string& source = {}) {
         Join join;
-        session_->join(robot, join.link,
+        session_->join(robot, source, join.link,
                        [answer = join.answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
         run();
         return join;
@@ -106,6 +107,7 @@ protected:
     store::MemoryScanLog log_;
     store::SessionId id_ = 0;
     mapping::MapConfig config_;
+    SessionLimits limits_;
     std::shared_ptr<Session> session_;
 };
 

@@ -47,7 +47,8 @@ struct AwaitedLink : RobotListener {
 Result<Joined> join_and_wait(Session& session, const std::string& robot, std::shared_ptr<RobotListener> link) {
     const auto promise = std::make_shared<std::promise<Result<Joined>>>();
     auto joined = promise->get_future();
-    session.join(robot, std::move(link), [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
+    session.join(robot, "", std::move(link),
+                 [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
     return joined.get();
 }
 
@@ -158,14 +159,14 @@ TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
     const auto damaged = registry_->damaged();
     ASSERT_THAT(damaged, SizeIs(2));
     EXPECT_THAT(damaged.at("bad").message, HasSubstr("log entry 1: "));
-    EXPECT_THAT(damaged.at("#0000000000000004").message, HasSubstr("a session in the store cannot be read"));
+    EXPECT_THAT(damaged.at("#4").message, HasSubstr("a session in the store cannot be read"));
 
     const auto again = registry_->create("bad", {});
     ASSERT_FALSE(again);
     EXPECT_THAT(again.error().message, HasSubstr("exists but is damaged"));
     ASSERT_TRUE(registry_->remove("bad"));
     EXPECT_TRUE(registry_->create("bad", {}));
-    ASSERT_TRUE(registry_->remove("#0000000000000004"));
+    ASSERT_TRUE(registry_->remove("#4"));
     EXPECT_THAT(registry_->damaged(), IsEmpty());
 }
 

@@ -190,7 +190,7 @@ TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
     std::vector<Join> joins;
     for (int n = 0; n < 1025; ++n) {
         joins.emplace_back();
-        session_->join("r" + std::to_string(n), joins.back().link,
+        session_->join("r" + std::to_string(n), "", joins.back().link,
                        [answer = joins.back().answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
     }
     run();

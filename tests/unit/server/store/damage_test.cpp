@@ -174,6 +174,10 @@ protected:
         if (!log) return log.error();
         auto sessions = (*log)->sessions();
         if (!sessions) return sessions.error();
+        for (const auto& stored : *sessions) {
+            if (!stored.record) return stored.record.error();
+            if (stored.damage) return *stored.damage;
+        }
         auto checkpoint = checkpoint_of(**log, session_);
         if (!checkpoint) return checkpoint.error();
         EXPECT_EQ(checkpoint->at("part"), "value");

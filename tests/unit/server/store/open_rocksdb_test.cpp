@@ -21,6 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
+using testing::SizeIs;
 
 std::string problem_of(const fs::path& directory) {
     const auto log = open_rocksdb(directory);
@@ -52,7 +53,10 @@ TEST_F(OpenRocksdb, EverythingIsThereAfterReopening) {
         ASSERT_TRUE(log->write_checkpoint(session, {{"k", "v"}}));
     }
     auto log = open_rocksdb(directory_).value();
-    EXPECT_THAT(log->sessions().value(), ElementsAre(StoredSession{session, "record"}));
+    const auto sessions = log->sessions().value();
+    ASSERT_THAT(sessions, SizeIs(1));
+    EXPECT_EQ(sessions[0].id, session);
+    EXPECT_EQ(sessions[0].record.value(), "record");
     EXPECT_EQ(entries_after(*log, session, 0).value(), distinct_entries(session, 1, 50));
     EXPECT_THAT(checkpoint_of(*log, session).value(), ElementsAre(Pair("k", "v")));
     EXPECT_EQ(append_and_wait(*log, session, 1, {"x"}).error().code, Errc::kConflict) << "it knows where the log ends";
@@ -192,10 +196,39 @@ TEST_F(OpenRocksdb, AMixedUpEntryIsReportedWithItsRevision) {
     EXPECT_THAT(checkpoint_of(*log, session).error().message, HasSubstr("a part of the checkpoint of session 1"));
 }
 
+TEST_F(OpenRocksdb, ADamagedSessionHoldsUpNoOther) {
+    const auto with_damaged_record = SessionId{1};
+    const auto with_damaged_end = SessionId{2};
+    {
+        auto log = open_rocksdb(directory_).value();
+        for (const auto session : {with_damaged_record, with_damaged_end}) {
+            ASSERT_EQ(log->create_session("a").value(), session);
+            ASSERT_TRUE(append_and_wait(*log, session, 1, {"entry"}));
+        }
+    }
+    write_raw(directory_, [&](rocksdb::DB& database) {
+        database.Put({}, session_key(with_damaged_record), "nonsense").PermitUncheckedError();
+        return database.Put({}, entry_key(with_damaged_end, 1) + "too long", "");
+    });
+    auto log = open_rocksdb(directory_).value();
+    const auto healthy = log->create_session("b").value();
+    const auto sessions = log->sessions().value();
+    ASSERT_THAT(sessions, SizeIs(3));
+    EXPECT_THAT(sessions[0].record.error().message, HasSubstr("the record of session 1"));
+    EXPECT_FALSE(sessions[0].damage);
+    EXPECT_THAT(sessions[1].damage.value().message, HasSubstr("the end of the log of session 2"));
+    EXPECT_FALSE(sessions[2].damage);
+    EXPECT_EQ(append_and_wait(*log, with_damaged_end, 1, {"entry"}).error(), *sessions[1].damage);
+    EXPECT_TRUE(append_and_wait(*log, healthy, 1, {"entry"}));
+    EXPECT_TRUE(log->remove_session(with_damaged_record));
+    EXPECT_TRUE(log->remove_session(with_damaged_end));
+}
+
 TEST_F(OpenRocksdb, ADamagedRecordIsReported) {
     { ASSERT_TRUE(open_rocksdb(directory_).value()->create_session("a")); }
     write_raw(directory_, [&](rocksdb::DB& database) { return database.Put({}, session_key(1), "nonsense"); });
-    EXPECT_THAT(open_rocksdb(directory_).value()->sessions().error().message, HasSubstr("the record of session 1"));
+    EXPECT_THAT(open_rocksdb(directory_).value()->sessions().value().at(0).record.error().message,
+                HasSubstr("the record of session 1"));
     write_raw(directory_,
               [&](rocksdb::DB& database) { return database.Put({}, std::string(kNextSessionKey), "nonsense"); });
     EXPECT_THAT(problem_of(directory_), HasSubstr("its record 'n' is damaged"));

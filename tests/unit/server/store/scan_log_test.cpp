@@ -18,6 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
+using testing::SizeIs;
 
 struct Memory {
     MemoryScanLog log;
@@ -47,7 +48,12 @@ TYPED_TEST(ScanLogContract, SessionsAreListedByRisingIdWithTheirRecords) {
     const auto first = this->log_.create_session("one").value();
     const auto second = this->log_.create_session(binary).value();
     EXPECT_LT(first, second);
-    EXPECT_THAT(this->log_.sessions().value(), ElementsAre(StoredSession{first, "one"}, StoredSession{second, binary}));
+    const auto sessions = this->log_.sessions().value();
+    ASSERT_THAT(sessions, SizeIs(2));
+    EXPECT_EQ(sessions[0].id, first);
+    EXPECT_EQ(sessions[0].record.value(), "one");
+    EXPECT_EQ(sessions[1].id, second);
+    EXPECT_EQ(sessions[1].record.value(), binary);
 }
 
 TYPED_TEST(ScanLogContract, IdsAreNotReusedAfterRemoval) {
@@ -151,11 +157,26 @@ TYPED_TEST(ScanLogContract, ARemovedSessionIsGoneAndItsNeighboursAreNot) {
     EXPECT_EQ(this->log_.write_checkpoint(removed, {}).error().code, Errc::kNotFound);
     EXPECT_EQ(entries_after(this->log_, removed, 0).error().code, Errc::kNotFound);
     EXPECT_EQ(checkpoint_of(this->log_, removed).error().code, Errc::kNotFound);
-    for (const auto& [id, record] : this->log_.sessions().value()) {
-        EXPECT_NE(id, removed);
-        EXPECT_THAT(entries_after(this->log_, id, 0).value(), ElementsAre(record));
-        EXPECT_THAT(checkpoint_of(this->log_, id).value(), ElementsAre(Pair(record, record)));
+    for (const auto& stored : this->log_.sessions().value()) {
+        EXPECT_NE(stored.id, removed);
+        const auto& record = stored.record.value();
+        EXPECT_THAT(entries_after(this->log_, stored.id, 0).value(), ElementsAre(record));
+        EXPECT_THAT(checkpoint_of(this->log_, stored.id).value(), ElementsAre(Pair(record, record)));
     }
+}
+
+TYPED_TEST(ScanLogContract, AClearedCheckpointIsGoneAndAnotherMayFollow) {
+    const auto session = this->log_.create_session("s").value();
+    const auto other = this->log_.create_session("t").value();
+    ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"entry"}));
+    for (const auto id : {session, other}) ASSERT_TRUE(this->log_.write_checkpoint(id, {{"a", "1"}, {"b", "2"}}));
+    ASSERT_TRUE(this->log_.clear_checkpoint(session));
+    EXPECT_THAT(checkpoint_of(this->log_, session).value(), IsEmpty());
+    EXPECT_THAT(checkpoint_of(this->log_, other).value(), SizeIs(2));
+    EXPECT_THAT(entries_after(this->log_, session, 0).value(), ElementsAre("entry"));
+    ASSERT_TRUE(this->log_.write_checkpoint(session, {{"c", "3"}}));
+    EXPECT_THAT(checkpoint_of(this->log_, session).value(), ElementsAre(Pair("c", "3")));
+    EXPECT_EQ(this->log_.clear_checkpoint(99).error().code, Errc::kNotFound);
 }
 
 TYPED_TEST(ScanLogContract, ManyThreadsAppendToTheirSessionsAtOnce) {

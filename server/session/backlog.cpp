@@ -1,0 +1,32 @@
+#include "server/session/backlog.hpp"
+
+#include <map>
+
+namespace scanloom::session {
+
+Group Backlog::next_group(std::int64_t room) {
+    Group group;
+    double work = 0.0;
+    std::map<RobotIndex, mapping::CellBox> boxes; // a robot's scans mostly overlap: one box for all of them
+    while (!waiting_.empty() && group.entries.size() < kGroupEntriesMax) {
+        const Submitted& next = waiting_.front();
+        if (!group.entries.empty() && work + next.reach.work > kGroupWorkMax) break;
+        auto& box = boxes[next.robot];
+        auto grown = box;
+        grown.include(next.reach.cells);
+        const auto chunks = group.chunks - mapping::chunk_count_of(box) + mapping::chunk_count_of(grown);
+        if (chunks > room) break;
+        box = grown;
+        group.chunks = chunks;
+        work += next.reach.work;
+        group.entries.push_back(std::move(waiting_.front()));
+        waiting_.pop_front();
+    }
+    return group;
+}
+
+void Backlog::drop(RobotIndex robot) {
+    std::erase_if(waiting_, [robot](const Submitted& entry) { return entry.robot == robot; });
+}
+
+} // namespace scanloom::session

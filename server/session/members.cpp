@@ -1,0 +1,209 @@
+#include "server/session/members.hpp"
+
+#include "common/wire/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanloom::session {
+namespace {
+
+constexpr std::size_t kRobotsMax = 1024; // of one session
+
+} // namespace
+
+void Members::restore(const mapping::ProjectionState& state) {
+    members_.resize(state.robots.size());
+    for (std::size_t n = 0; n < members_.size(); ++n) restore(members_[n], state.robots[n]);
+}
+
+void Members::restore(Member& member, const mapping::ProjectionState::Robot& state) {
+    member.name = state.name;
+    member.source = state.source;
+    member.received_seq = member.durable_seq = state.last_seq;
+    member.under_way = 0;
+    member.sensors.clear();
+    for (const auto& sensor : state.sensors) member.sensors[sensor.id] = sensor;
+}
+
+RobotIndex Members::index_of(const Member& member) const { return static_cast<RobotIndex>(&member - members_.data()); }
+
+Members::Member* Members::member_of(const std::shared_ptr<RobotListener>& listener) {
+    const auto member =
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.listener == listener; });
+    return member == members_.end() ? nullptr : &*member;
+}
+
+Submitted Members::submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes) {
+    ++member.under_way;
+    return {index_of(member), std::move(entry), {}, bytes};
+}
+
+// Joining and leaving
+
+std::optional<Submitted> Members::join(const std::string& robot, Joining joining) {
+    auto known = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == robot; });
+    if (known == members_.end() && members_.size() >= kRobotsMax) {
+        joining.done(Error{Errc::kTooLarge,
+                           fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
+                                       info_.name, members_.size())});
+        return std::nullopt;
+    }
+    const bool is_new = known == members_.end();
+    Member& member = is_new ? members_.emplace_back() : *known;
+    if (is_new) {
+        member.name = robot;
+    } else if (auto agrees = check_source(member, joining.source); !agrees) {
+        joining.done(agrees.error());
+        return std::nullopt;
+    } else {
+        fail(member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
+                                                   robot, info_.name)});
+    }
+    std::optional<Submitted> entry;
+    if (is_new || member.source != joining.source) {
+        member.source = joining.source;
+        entry = submitted(member, RobotJoined{index_of(member), robot, joining.source}, 0);
+    }
+    member.joining = std::move(joining);
+    admit(member);
+    return entry;
+}
+
+/// Scans are told apart by their number alone: those of another recording would be taken for the rest of this one.
+Result<> Members::check_source(const Member& member, const std::string& source) const {
+    if (member.received_seq == 0 || member.source == source) return {};
+    const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
+    return Error{Errc::kConflict,
+                 fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
+                             "continue with the same, or use another robot or session name",
+                             member.received_seq, member.name, info_.name, in_words(member.source), in_words(source))};
+}
+
+/// Lets the link in that waits to become the robot's, once nothing of the earlier ones is under way.
+void Members::admit(Member& member) {
+    if (!member.joining || member.under_way > 0) return;
+    const auto joining = *std::exchange(member.joining, std::nullopt);
+    member.listener = joining.listener;
+    set_connected(member, true);
+    joining.done(Joined{index_of(member), member.durable_seq});
+}
+
+void Members::leave(const std::shared_ptr<RobotListener>& listener) {
+    Member* member = member_of(listener);
+    if (member == nullptr) return;
+    member->listener.reset();
+    set_connected(*member, false);
+}
+
+void Members::fail(Member& member, const Error& error) {
+    if (const auto joining = std::exchange(member.joining, std::nullopt)) joining->done(error);
+    if (!member.listener) return;
+    const auto listener = std::move(member.listener);
+    member.listener.reset();
+    set_connected(member, false);
+    listener->on_failed(error);
+}
+
+void Members::fail_all(const Error& error) {
+    for (auto& member : members_) fail(member, error);
+}
+
+void Members::refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state) {
+    restore(members_[robot], state.robots[robot]);
+    fail(members_[robot], error);
+}
+
+bool Members::is_connected(RobotIndex robot) const {
+    const std::lock_guard lock(connected_mutex_);
+    return robot < connected_.size() && connected_[robot];
+}
+
+void Members::set_connected(const Member& member, bool connected) {
+    const std::lock_guard lock(connected_mutex_);
+    connected_.resize(std::max(connected_.size(), members_.size()));
+    connected_[index_of(member)] = connected;
+}
+
+// What they send
+
+std::vector<Submitted> Members::describe(const std::shared_ptr<RobotListener>& from, Sensor sensor, std::size_t bytes) {
+    std::vector<Submitted> entries;
+    Member* member = member_of(from);
+    if (member == nullptr) return entries;
+    if (auto ok = mapping::check_reach(info_.config, sensor); !ok) {
+        fail(*member, prefixed("sensor_description.", ok.error()));
+        return entries;
+    }
+    std::optional<LogEntry> entry;
+    const auto known = member->sensors.find(sensor.id);
+    if (known == member->sensors.end() || known->second != sensor) {
+        member->sensors[sensor.id] = sensor;
+        entry = SensorDescribed{index_of(*member), std::move(sensor)};
+    }
+    entries.push_back(submitted(*member, std::move(entry), bytes));
+    return entries;
+}
+
+std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
+                                     std::size_t bytes) {
+    std::vector<Submitted> entries;
+    Member* member = member_of(from);
+    if (member == nullptr) return entries;
+    std::optional<Error> fault;
+    for (std::size_t n = 0; n < scans.size() && !fault; ++n) {
+        Scan& scan = scans[n];
+        if (scan.seq <= member->received_seq) { // sent again after a reconnect: the log has it
+            ++counters_.scans_duplicates;
+            continue;
+        }
+        if (auto ok = check_next(*member, scan); !ok) {
+            fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
+            continue;
+        }
+        member->received_seq = scan.seq;
+        const auto reach = mapping::reach_of(info_.config, member->sensors.at(scan.sensor), scan);
+        entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
+        entries.back().reach = reach;
+    }
+    if (entries.empty()) entries.push_back(submitted(*member, std::nullopt, 0));
+    entries.back().bytes = bytes;     // given back when the whole frame is in the maps
+    if (fault) fail(*member, *fault); // the scans before it have been received and count as such
+    return entries;
+}
+
+Result<> Members::check_next(const Member& member, const Scan& scan) const {
+    if (scan.seq != member.received_seq + 1) {
+        return Error{
+            Errc::kOutOfOrder,
+            fmt::format("seq is {}, {} is the next of robot '{}'; connect again and continue after last_durable_seq",
+                        scan.seq, member.received_seq + 1, member.name)};
+    }
+    const auto sensor = member.sensors.find(scan.sensor);
+    if (sensor == member.sensors.end()) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
+    }
+    return wire::check_scan(scan, sensor->second);
+}
+
+// What became of it
+
+void Members::release(const Group& group) {
+    std::map<RobotIndex, std::size_t> bytes; // one message a robot
+    for (const auto& released : group.entries) {
+        Member& member = members_[released.robot];
+        bytes[released.robot] += released.bytes;
+        --member.under_way;
+        if (!released.entry) continue;
+        if (const auto* taken = std::get_if<ScanTaken>(&*released.entry)) member.durable_seq = taken->scan.seq;
+    }
+    for (const auto& [robot, released] : bytes) {
+        Member& member = members_[robot];
+        if (member.listener) member.listener->on_durable(member.durable_seq, released);
+        admit(member);
+    }
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace scanloom::session {
+
+/// What a session tells the link of a robot. Called on the session's strand: hand over, do not block.
+class RobotListener {
+public:
+    virtual ~RobotListener() = default;
+
+    /// Every scan up to durable_seq is in the log and in the map; `bytes` more of what was submitted
+    /// need no credit any longer.
+    virtual void on_durable(std::uint64_t durable_seq, std::size_t bytes) = 0;
+
+    /// The session will take nothing more from this link.
+    virtual void on_failed(const Error& error) = 0;
+};
+
+/// What a robot learns when it joins.
+struct Joined {
+    RobotIndex robot = 0;
+    std::uint64_t last_durable_seq = 0;
+};
+
+} // namespace scanloom::session

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "server/mapping/map_config.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace scanloom::session {
+
+/// What a session is, for as long as it exists.
+struct SessionInfo {
+    store::SessionId id = 0;
+    std::string name;
+    double created = 0.0; ///< seconds since the epoch
+    mapping::MapConfig config;
+};
+
+/// Tells a session from every other, also from a deleted one of the same name and from one of another
+/// store: 16 hexadecimal digits.
+[[nodiscard]] std::string tag_of(const SessionInfo& info);
+
+/// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
+struct SessionLimits {
+    std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 1 GiB of them, 1.3 square kilometres at 5 cm
+};
+
+/// What all sessions count together. Thread: any.
+struct SessionCounters {
+    std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
+    std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
+};
+
+} // namespace scanloom::session

@@ -1,0 +1,94 @@
+#include "server/mapping/reach.hpp"
+
+#include "server/mapping/projection.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <gtest/gtest.h>
+
+/// What is told of a scan beforehand, against what weaving it really does.
+namespace scanloom::mapping {
+namespace {
+
+Sensor sensor_of(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    Sensor sensor = testing_support::small_laser();
+    const auto beams = static_cast<std::uint32_t>(1 + random() % 90);
+    sensor.range_min = unit(random);
+    sensor.range_max = 1.0 + 20.0 * unit(random);
+    sensor.mount = {unit(random), -unit(random), 3.0 * unit(random)};
+    if (random() % 2 != 0) sensor.aperture = 0.2 * unit(random) + 0.001;
+    sensor.angles = UniformAngles{6.0 * unit(random), 0.001 + unit(random) * 6.2 / beams, beams};
+    if (random() % 3 == 0) {
+        ExplicitAngles angles(beams);
+        for (auto& angle : angles) angle = 6.0 * unit(random) - 3.0;
+        sensor.angles = angles;
+    }
+    return sensor;
+}
+
+Scan scan_of(const Sensor& sensor, std::mt19937& random) {
+    Scan scan = testing_support::random_scan(static_cast<unsigned>(random()), 1);
+    scan.ranges.assign(beam_count(sensor.angles), 0);
+    for (auto& range : scan.ranges) {
+        const auto kind = random() % 10;
+        range = kind == 0 ? kInvalidRange : kind == 1 ? kNoReturn : static_cast<RangeMm>(random() % 22'000);
+    }
+    return scan;
+}
+
+std::int64_t cells_seen(const Snapshot& snapshot) {
+    std::int64_t seen = 0;
+    snapshot.occupancy.visit({}, 0, [&](ChunkKey, const OccupancyChunk& chunk) {
+        seen += std::ranges::count_if(chunk.cells, [](LogOdds cell) { return cell != kUnknownLogOdds; });
+    });
+    return seen;
+}
+
+TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
+    std::mt19937 random(7);
+    for (int round = 0; round < 400; ++round) {
+        MapConfig config;
+        config.cell_size = 0.02 + 0.001 * static_cast<double>(random() % 300);
+        const Sensor sensor = sensor_of(random);
+        const Scan scan = scan_of(sensor, random);
+        Projection projection(config);
+        ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+        ASSERT_TRUE(projection.fold(SensorDescribed{0, sensor}));
+        ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+
+        const Reach reach = reach_of(config, sensor, scan);
+        const auto snapshot = projection.snapshot();
+        CellBox both = reach.cells;
+        both.include(snapshot.bounds);
+        EXPECT_EQ(both, reach.cells) << "round " << round;
+        EXPECT_GE(chunk_count_of(reach.cells), static_cast<std::int64_t>(projection.chunk_count()));
+        EXPECT_GE(reach.work, 0.95 * static_cast<double>(cells_seen(snapshot))) << "round " << round;
+    }
+}
+
+TEST(Reach, OfAScanThatShowsNothingIsEmpty) {
+    Scan scan = testing_support::random_scan(1, 1);
+    scan.ranges.assign(18, kInvalidRange);
+    const Reach reach = reach_of({}, testing_support::small_laser(), scan);
+    EXPECT_EQ(chunk_count_of(reach.cells), 0);
+    EXPECT_EQ(reach.work, 0.0);
+}
+
+TEST(Reach, FollowsTheLongestReadingNotTheSensor) {
+    Sensor sensor = testing_support::small_laser();
+    sensor.range_max = 80.0;
+    Scan scan = testing_support::random_scan(1, 1);
+    scan.ranges.assign(18, 2000);
+    const Reach reach = reach_of({}, sensor, scan);
+    EXPECT_LE(reach.cells.width(), 2 * 41 + 4);
+    EXPECT_LE(chunk_count_of(reach.cells), 9);
+}
+
+TEST(Reach, ChunksOfABoxAreCountedOnBothSidesOfTheOrigin) {
+    EXPECT_EQ(chunk_count_of({}), 0);
+    EXPECT_EQ(chunk_count_of({0, 0, 64, 64}), 1);
+    EXPECT_EQ(chunk_count_of({-1, -1, 65, 1}), 6);
+}
+
+} // namespace
+} // namespace scanloom::mapping
