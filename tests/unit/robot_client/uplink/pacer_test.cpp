@@ -21,5 +21,18 @@ TEST(Pacer, KeepsThePaceOfTheStampsFromTheFirstOn) {
     EXPECT_EQ(pacer.due(976052867.0, kStart + 10s), kStart + 5s);
 }
 
+TEST(Pacer, GapsBeyondAnyClockCountAsTheLargest) {
+    constexpr auto kLargest = std::chrono::duration_cast<Pacer::Time::duration>(1s * Pacer::kGapMax);
+    Pacer pacer(1.0);
+    EXPECT_EQ(pacer.due(0.0, kStart), kStart);
+    for (const double gap : {2e9, 1e10, 1e300}) {
+        EXPECT_EQ(pacer.due(gap, kStart), kStart + kLargest) << gap;
+        EXPECT_EQ(pacer.due(-gap, kStart), kStart - kLargest) << gap;
+    }
+    Pacer slow(1e-300);
+    EXPECT_EQ(slow.due(-1e308, kStart), kStart);
+    EXPECT_EQ(slow.due(1e308, kStart), kStart + kLargest) << "a gap that no double can hold";
+}
+
 } // namespace
 } // namespace scanloom::robot
