@@ -3,8 +3,8 @@
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/sim/simulator.hpp"
 #include "robot_client/source/carmen_log.hpp"
-#include "robot_client/source/recorded_source.hpp"
 #include "robot_client/source/simulated_source.hpp"
+#include "robot_client/source/simulation_fingerprint.hpp"
 
 #include <fmt/format.h>
 
@@ -19,13 +19,14 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
         if (++skipped > kSkippedLinesShown) return;
         console.note(fmt::format("{}:{}: skipped: {}", replay.file, line.line_number, line.reason));
     };
-    auto log = read_carmen_log(replay.file, {options.no_return, options.range_max, {}}, tell);
+    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, tell);
     if (skipped > kSkippedLinesShown) {
         console.note(fmt::format("{}: {} more lines skipped", replay.file, skipped - kSkippedLinesShown));
     }
     if (!log) return log.error();
-    return PreparedSource{std::make_unique<RecordedSource>(std::move(log->observations)), log->skipped_lines,
-                          replay.speed};
+    PreparedSource prepared{nullptr, log->skipped_lines(), replay.speed, log->fingerprint()};
+    prepared.source = std::make_unique<CarmenLog>(std::move(*log));
+    return prepared;
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& simulate, Console&) {
@@ -43,10 +44,11 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     SimulationLimits limits;
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
-    return PreparedSource{
-        std::make_unique<SimulatedSource>(Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits,
-                                          options.no_return.value_or(NoReturn::kFree)),
-        0, simulate.speed};
+    const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
+    PreparedSource prepared{nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return)};
+    prepared.source = std::make_unique<SimulatedSource>(
+        Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
+    return prepared;
 }
 
 } // namespace

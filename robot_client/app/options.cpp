@@ -12,8 +12,11 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr const char* kAbout = "Streams a robot's scans to a Scanloom server: a recorded log, or a simulated robot.\n"
-                               "Exits 0 when every scan is stored durably, and prints a summary as one line of JSON.";
+constexpr const char* kAbout =
+    "Streams a robot's scans to a Scanloom server: a recorded log, or a simulated robot.\n"
+    "The same command again continues behind the scans that are stored already.\n"
+    "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
+    "until it was interrupted), else 1; prints a summary as one line of JSON.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
@@ -117,9 +120,12 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->check(CLI::IsMember({"none", "gaussian"}))
         ->capture_default_str();
     simulate->add_option("--seed", options.seed, "The same seed gives the same scans")->capture_default_str();
-    simulate->add_option("--duration", options.duration, "Seconds to simulate; default: until interrupted")
+    simulate
+        ->add_option("--duration", options.duration,
+                     "Seconds to simulate, earlier runs included; default: until interrupted")
         ->check(check_positive);
-    simulate->add_option("--scans", options.scans, "Scans to take; default: until interrupted")->check(check_positive);
+    simulate->add_option("--scans", options.scans, "Scans to take, earlier runs included; default: until interrupted")
+        ->check(check_positive);
     simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
         ->check(check_not_negative)
         ->capture_default_str();

@@ -35,17 +35,27 @@ Result<std::string> read_token(const std::string& path) {
     return Error{Errc::kNotFound, fmt::format("{}: no token to be read; the first line is it", path)};
 }
 
-UplinkOptions uplink_options(const RobotOptions& options, std::string token, double speed, Console& console) {
+/// What the server has from earlier runs.
+std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
+    if (scan_count == stored) return fmt::format("all {} scans are stored from an earlier run", stored);
+    return fmt::format("continuing after scan {}: those up to it are stored from an earlier run", stored);
+}
+
+UplinkOptions uplink_options(const RobotOptions& options, std::string token, const PreparedSource& prepared,
+                             Console& console) {
     UplinkOptions uplink;
     uplink.host = options.host;
     uplink.port = options.port;
-    uplink.speed = speed;
+    uplink.speed = prepared.speed;
     uplink.give_up_after = options.give_up_after;
     uplink.backoff_seed = std::random_device{}();
     uplink.on_trouble = [&console, told = std::string()](const Error& error) mutable {
         if (error.message == told) return; // a server that is away for long is told once
         told = error.message;
         console.note(fmt::format("{}; trying again", error.message));
+    };
+    uplink.on_resume = [&console, scan_count = prepared.source->scan_count()](std::uint64_t stored) {
+        console.note(resume_text(stored, scan_count));
     };
     wire::Hello& hello = uplink.conversation.hello;
     hello.robot = options.robot;
@@ -54,6 +64,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, dou
     hello.create = SessionOptions{};
     hello.create->cell_size = options.cell_size;
     hello.client = fmt::format("scanloom-robot {}", kVersion);
+    hello.source = prepared.fingerprint;
     return uplink;
 }
 
@@ -92,7 +103,7 @@ ExitCode run(const RobotOptions& options) {
     if (!prepared) return fail(prepared.error());
 
     asio::io_context io(1);
-    Uplink uplink(io, uplink_options(options, *token, prepared->speed, console), *prepared->source);
+    Uplink uplink(io, uplink_options(options, *token, *prepared, console), *prepared->source);
     Result<> outcome = Error{Errc::kShuttingDown, "interrupted before every sent scan was acknowledged"};
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
@@ -105,9 +116,8 @@ ExitCode run(const RobotOptions& options) {
     io.run();
 
     console.finish();
-    const bool is_recording = std::holds_alternative<ReplayOptions>(options.source);
-    fmt::print("{}\n", summary_json({options.session, options.robot, uplink.status(), prepared->skipped_lines,
-                                     std::chrono::steady_clock::now() - begun, is_recording}));
+    fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, uplink.status(),
+                                     prepared->skipped_lines, std::chrono::steady_clock::now() - begun}));
     return outcome ? kExitDone : fail(outcome.error());
 }
 

@@ -6,12 +6,11 @@ namespace scanloom::robot {
 
 std::string summary_json(const Summary& summary) {
     const UplinkStatus& status = summary.status;
-    const std::uint64_t before = summary.is_recording ? 0 : status.resumed_after;
-    // Names are valid ones (is_valid_name): nothing in them needs escaping.
-    return fmt::format(R"({{"scans":{},"acknowledged":{},"bytes":{},"seconds":{:.3f},"resumed_after":{},)"
-                       R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}"}})",
-                       status.last - before, status.acknowledged - before, status.bytes, summary.elapsed.count(),
-                       status.resumed_after, summary.skipped_lines, status.reconnects, summary.session, summary.robot);
+    return fmt::format(R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},)"
+                       R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}","source":"{}"}})",
+                       status.last, status.acknowledged, status.resumed_after, status.sent, status.bytes,
+                       summary.elapsed.count(), summary.skipped_lines, status.reconnects, summary.session,
+                       summary.robot, summary.source);
 }
 
 } // namespace scanloom::robot

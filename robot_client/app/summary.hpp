@@ -10,13 +10,15 @@ namespace scanloom::robot {
 struct Summary {
     std::string session;
     std::string robot;
+    std::string source; ///< Hello.source
     UplinkStatus status;
     std::size_t skipped_lines = 0;
     std::chrono::duration<double> elapsed{};
-    bool is_recording = false; ///< scans count from the beginning of the recording, else from that of this run
 };
 
-/// One line of JSON, without its line break. Pre: the names are valid ones.
+/// One line of JSON, without its line break. Scans are counted as in the progress, from the first of the recording or
+/// simulation: `stored_before` of them in earlier runs, `sent` in this one.
+/// Pre  nothing in the texts needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 } // namespace scanloom::robot

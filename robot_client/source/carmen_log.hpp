@@ -1,42 +1,18 @@
 #pragma once
 
-#include "common/error/error.hpp"
-#include "robot_client/source/line_reader.hpp"
+#include "robot_client/source/carmen_index.hpp"
+#include "robot_client/source/carmen_record.hpp"
 #include "robot_client/source/source.hpp"
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <optional>
+#include <map>
 #include <string>
-#include <vector>
 
 namespace scanloom::robot {
 
-struct CarmenOptions {
-    /// Default: kFree where the log states its sensor's range (ROBOTLASER, RAWLASER), kDrop where it does not (FLASER).
-    std::optional<NoReturn> no_return;
-    /// Metres; readings of this length or more are no-return. Default: what the log states, at most kCarmenRangeMax.
-    std::optional<double> range_max;
-    LineLimits limits;
-};
-
-/// Logs write "no return" as 50, 80, 81.83, 81.91 ...: from 50 m on a reading is one, unless the user says otherwise.
-inline constexpr double kCarmenRangeMax = 50.0;
-
-/// A line that could not be used, and why.
-struct SkippedLine {
-    std::size_t line_number = 0;
-    std::string reason;
-};
-
-struct CarmenLog {
-    std::vector<Observation> observations; ///< by rising stamp; those of one stamp in the order of the file
-    std::size_t skipped_lines = 0;
-};
-
-/// Reads the laser lines of a CARMEN log (plain, gzip or bzip2) and puts them in the order of their ipc_timestamp:
-/// the order of a file is not always that of time. A line without a time stamp takes that of the line before it.
+/// The laser lines of a CARMEN log (plain, gzip or bzip2) as a source, in the order of their ipc_timestamp: the order
+/// of a file is not always that of time. A line without a time stamp takes that of the line before it.
 ///
 /// FLASER   scan.pose is the first triple (laser pose, often corrected) and the mount is the identity;
 ///          scan.odometry is the second triple.
@@ -46,9 +22,36 @@ struct CarmenLog {
 ///          between the ODOM lines around it, the mount is PARAM robot_frontlaser_offset.
 /// Ranges   rounded to millimetres here, once; NaN, infinite and negative readings are invalid beams.
 ///
-/// `report` hears of every line that cannot be used, in the order in which they are found.
-/// Errors  those of LineReader; kNotFound when no line is usable. Each names the file and a line.
-[[nodiscard]] Result<CarmenLog> read_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
+/// The file is read twice: open() learns the order of its scans, next() reads them as they are needed.
+/// Memory  some bytes for each laser line, and the scans that stand in the file before ones of an earlier time.
+class CarmenLog final : public Source {
+public:
+    /// Errors  those of index_carmen_log().
+    [[nodiscard]] static Result<CarmenLog> open(const std::filesystem::path& path, const CarmenOptions& options,
                                                 const std::function<void(const SkippedLine&)>& report);
+
+    /// Errors  those of LineReader; kConflict: the file is not any more what open() has read.
+    [[nodiscard]] Result<std::optional<Observation>> next() override;
+    [[nodiscard]] std::optional<std::uint64_t> scan_count() const override { return index_.scan_count; }
+
+    [[nodiscard]] std::size_t skipped_lines() const noexcept { return index_.skipped_lines; }
+    /// At most 64 printable bytes; the same for the same scans, whatever the file's name and compression.
+    [[nodiscard]] const std::string& fingerprint() const noexcept { return index_.fingerprint; }
+
+private:
+    CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, CarmenIndex index,
+              CarmenRecords records);
+
+    [[nodiscard]] Result<StampedScan> next_in_time();
+    [[nodiscard]] Error changed() const;
+
+    std::string path_;
+    CarmenIndex index_;
+    CarmenRecords records_;
+    CarmenObserver observer_;
+    std::size_t laser_lines_ = 0;                ///< read so far
+    std::uint32_t place_ = 0;                    ///< of the next scan
+    std::map<std::uint32_t, StampedScan> early_; ///< read before their time, by their place
+};
 
 } // namespace scanloom::robot

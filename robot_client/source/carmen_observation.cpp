@@ -33,17 +33,32 @@ Pose2 mount_of(const CarmenScan& line, double laser_offset_forward) {
     return compose(inverse(line.robot), line.laser);
 }
 
+Result<double> range_max_of(const CarmenScan& line, const CarmenOptions& options) {
+    if (options.range_max) return *options.range_max;
+    if (line.kind == CarmenKind::kFlaser) return kCarmenRangeMax;
+    if (line.range_max) return std::min(*line.range_max, kCarmenRangeMax);
+    return Error{Errc::kInvalidField, "maximum_range is not a length; give --max-range"};
+}
+
 std::string name_for(const CarmenScan& line) { return line.sensor == 0 ? "front laser" : "rear laser"; }
 
 } // namespace
 
+NoReturn no_return_of(CarmenKind kind, const CarmenOptions& options) {
+    return options.no_return.value_or(kind == CarmenKind::kFlaser ? NoReturn::kDrop : NoReturn::kFree);
+}
+
+Result<> check_usable(const CarmenScan& line, const CarmenOptions& options) {
+    if (const auto range_max = range_max_of(line, options); !range_max) return range_max.error();
+    const Pose2 mount = mount_of(line, 0.0);
+    if (std::max(std::abs(mount.x), std::abs(mount.y)) <= kCoordinateMax) return {};
+    return Error{Errc::kTooLarge, fmt::format("the laser is more than {:g} m from its robot", kCoordinateMax)};
+}
+
 Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp) {
-    auto range_max = range_max_of(line);
-    if (!range_max) return range_max.error();
+    if (auto ok = check_usable(line, options_); !ok) return ok.error();
+    const auto range_max = range_max_of(line, options_);
     const Pose2 mount = mount_of(line, laser_offset_forward_);
-    if (std::max(std::abs(mount.x), std::abs(mount.y)) > kCoordinateMax) {
-        return Error{Errc::kTooLarge, fmt::format("the laser is more than {:g} m from its robot", kCoordinateMax)};
-    }
     Observation observation;
     observation.sensor =
         sensor_like({line.sensor, SensorKind::kLaser, name_for(line), mount, line.angles, 0.0, 0.0, *range_max});
@@ -63,16 +78,8 @@ Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp
     return observation;
 }
 
-Result<double> CarmenObserver::range_max_of(const CarmenScan& line) const {
-    if (options_.range_max) return *options_.range_max;
-    if (line.kind == CarmenKind::kFlaser) return kCarmenRangeMax;
-    if (line.range_max) return std::min(*line.range_max, kCarmenRangeMax);
-    return Error{Errc::kInvalidField, "maximum_range is not a length; give --max-range"};
-}
-
 std::vector<RangeMm> CarmenObserver::ranges_of(const CarmenScan& line, double range_max) const {
-    const NoReturn by_kind = line.kind == CarmenKind::kFlaser ? NoReturn::kDrop : NoReturn::kFree;
-    const RangeMm no_return = options_.no_return.value_or(by_kind) == NoReturn::kFree ? kNoReturn : kInvalidRange;
+    const RangeMm no_return = no_return_of(line.kind, options_) == NoReturn::kFree ? kNoReturn : kInvalidRange;
     const RangeMm range_max_mm = to_range_mm(range_max);
     std::vector<RangeMm> ranges(line.ranges.size());
     std::transform(line.ranges.begin(), line.ranges.end(), ranges.begin(), [&](double range) {

@@ -5,6 +5,7 @@
 #include <boost/iostreams/filtering_streambuf.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,14 +18,8 @@ namespace io = boost::iostreams;
 
 enum class Packing { kPlain, kGzip, kBzip2 };
 
-std::string_view name_of(Packing packing) {
-    switch (packing) {
-    case Packing::kPlain: return "text";
-    case Packing::kGzip: return "gzip";
-    case Packing::kBzip2: return "bzip2";
-    }
-    return "";
-}
+/// Of the bytes unpacked at a time: what an error leaves unread is less than that.
+constexpr std::streamsize kUnpackBytes = 4096;
 
 Packing packing_of(std::istream& file) {
     std::array<char, 3> magic{};
@@ -44,7 +39,7 @@ struct LineReader::State {
     Packing packing = Packing::kPlain;
     std::ifstream file;
     io::filtering_streambuf<io::input> text;
-    std::array<char, 65536> chunk{};
+    std::array<char, kUnpackBytes> chunk{};
     std::size_t chunk_begin = 0;
     std::size_t chunk_end = 0;
     std::uint64_t text_bytes = 0;
@@ -55,17 +50,34 @@ struct LineReader::State {
         return {code, fmt::format("{}: {} after line {}", path, what, line_number)};
     }
 
+    [[nodiscard]] Error cannot_unpack() const;
+
     /// Fills the empty chunk; leaves it empty at the end of the text.
     [[nodiscard]] Result<> refill();
 };
 
+/// What Boost.Iostreams says ("bzip2 error") helps nobody.
+Error LineReader::State::cannot_unpack() const {
+    const bool is_gzip = packing == Packing::kGzip;
+    const std::string readable =
+        text_bytes == 0 ? "nothing of it can be read; get the file again"
+                        : fmt::format("only its first {} lines ({} bytes of text) can be read; get the file again, or "
+                                      "unpack those with {} and replay them",
+                                      line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
+    return {Errc::kMalformed,
+            fmt::format("{}: the {} data is damaged or cut short: {}", path, is_gzip ? "gzip" : "bzip2", readable)};
+}
+
 Result<> LineReader::State::refill() {
     chunk_begin = chunk_end = 0;
     try {
-        const std::streamsize count = text.sgetn(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-        if (count > 0) chunk_end = static_cast<std::size_t>(count);
-    } catch (const std::exception&) { // what Boost.Iostreams says ("bzip2 error") helps nobody
-        return failure(Errc::kMalformed, fmt::format("the {} data is damaged or cut short", name_of(packing)));
+        // Only what is unpacked already is taken, so that an error behind it does not take it away.
+        if (text.sgetc() != std::char_traits<char>::eof()) {
+            const auto size = std::clamp<std::streamsize>(text.in_avail(), 1, kUnpackBytes);
+            chunk_end = static_cast<std::size_t>(text.sgetn(chunk.data(), size));
+        }
+    } catch (const std::exception&) {
+        return cannot_unpack();
     }
     if (file.bad()) return failure(Errc::kMalformed, "reading failed");
     text_bytes += chunk_end;
@@ -97,8 +109,8 @@ Result<LineReader> LineReader::open(const std::filesystem::path& path, LineLimit
         return Error{Errc::kNotFound, fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno))};
     }
     state->packing = packing_of(state->file);
-    if (state->packing == Packing::kGzip) state->text.push(io::gzip_decompressor());
-    if (state->packing == Packing::kBzip2) state->text.push(io::bzip2_decompressor());
+    if (state->packing == Packing::kGzip) state->text.push(io::gzip_decompressor(), kUnpackBytes);
+    if (state->packing == Packing::kBzip2) state->text.push(io::bzip2_decompressor(), kUnpackBytes);
     state->text.push(*state->file.rdbuf());
     return LineReader(std::move(state));
 }

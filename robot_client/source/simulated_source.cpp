@@ -21,25 +21,20 @@ SimulatedSource::SimulatedSource(Simulator simulator, SimulationLimits limits, N
     limits_.scans = std::min(limits_.scans, scans_within(limits_.duration));
 }
 
-std::optional<Observation> SimulatedSource::next() {
-    if (scans_ == limits_.scans) return std::nullopt;
+Result<std::optional<Observation>> SimulatedSource::next() {
+    if (scans_ == limits_.scans) return std::optional<Observation>{};
     ++scans_;
     Observation observation{laser_, simulator_.next_scan()};
     if (no_return_ == NoReturn::kDrop) {
         auto& ranges = observation.scan.ranges;
         std::replace(ranges.begin(), ranges.end(), kNoReturn, kInvalidRange);
     }
-    return observation;
-}
-
-Result<> SimulatedSource::resume_after(std::uint64_t seq) {
-    resumed_after_ = seq;
-    return {};
+    return std::optional(std::move(observation));
 }
 
 std::optional<std::uint64_t> SimulatedSource::scan_count() const {
     if (limits_.scans == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
-    return resumed_after_ + limits_.scans;
+    return limits_.scans;
 }
 
 } // namespace scanloom::robot

@@ -17,8 +17,7 @@ class SimulatedSource final : public Source {
 public:
     SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return);
 
-    [[nodiscard]] std::optional<Observation> next() override;
-    [[nodiscard]] Result<> resume_after(std::uint64_t seq) override;
+    [[nodiscard]] Result<std::optional<Observation>> next() override;
     [[nodiscard]] std::optional<std::uint64_t> scan_count() const override;
 
 private:
@@ -26,7 +25,6 @@ private:
     SimulationLimits limits_;
     NoReturn no_return_;
     std::shared_ptr<const Sensor> laser_;
-    std::uint64_t resumed_after_ = 0;
     std::uint64_t scans_ = 0;
 };
 

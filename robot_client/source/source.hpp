@@ -27,15 +27,12 @@ class Source {
 public:
     virtual ~Source() = default;
 
-    /// The next scan; nothing when the source has ended.
-    [[nodiscard]] virtual std::optional<Observation> next() = 0;
+    /// The next scan; nothing when the source has ended. A source that is made anew gives the same scans again: that
+    /// is how a robot continues behind those the server has.
+    /// Errors  a recording that cannot be read on.
+    [[nodiscard]] virtual Result<std::optional<Observation>> next() = 0;
 
-    /// Called once, before next(): the server already holds `seq` scans of this robot.
-    /// A recording continues behind them, a simulation begins anew and its scans are numbered from seq + 1.
-    /// Errors  kConflict: the recording has fewer scans than that.
-    [[nodiscard]] virtual Result<> resume_after(std::uint64_t seq) = 0;
-
-    /// Scans this source will have given in the end, those skipped included; nothing where it cannot know.
+    /// Scans this source will have given in the end; nothing where it is endless.
     [[nodiscard]] virtual std::optional<std::uint64_t> scan_count() const = 0;
 };
 

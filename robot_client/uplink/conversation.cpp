@@ -2,6 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
+#include "robot_client/uplink/server_text.hpp"
 
 #include <fmt/format.h>
 
@@ -19,6 +20,15 @@ constexpr std::size_t kBatchOverhead = wire::kLengthPrefixBytes + 16;
 
 wire::LinkError retry(Errc code, std::string message) { return {{code, std::move(message)}, true}; }
 wire::LinkError give_up(Error error) { return {std::move(error), false}; }
+
+/// A server's failure with a sentence that can be shown.
+wire::LinkError in_plain_text(wire::LinkError failure) {
+    auto& [code, message] = failure.error;
+    message = message.empty()
+                  ? fmt::format("the server ended the link with the error {} and did not say why", name_of(code))
+                  : shown(message);
+    return failure;
+}
 
 double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -43,9 +53,11 @@ void Conversation::open(Time now) {
 std::optional<wire::LinkError> Conversation::receive(const wire::Message& message, Time now) {
     assert(link_);
     link_->heard = now;
-    if (const auto* failure = std::get_if<wire::LinkError>(&message)) return *failure;
+    if (const auto* failure = std::get_if<wire::LinkError>(&message)) return in_plain_text(*failure);
     if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
-        return retry(Errc::kShuttingDown, fmt::format("the server said goodbye: {}", goodbye->reason));
+        return retry(Errc::kShuttingDown, goodbye->reason.empty()
+                                              ? "the server said goodbye without a reason"
+                                              : "the server said goodbye: " + shown(goodbye->reason));
     }
     if (const auto* ping = std::get_if<wire::Ping>(&message)) {
         if (link_->pings_to_answer.size() == kPingsToAnswerMax) {

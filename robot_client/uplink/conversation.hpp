@@ -65,6 +65,7 @@ public:
     [[nodiscard]] std::optional<Time> stalled_since() const;
     [[nodiscard]] std::uint64_t acknowledged() const noexcept { return buffer_.acknowledged(); }
     [[nodiscard]] std::uint64_t last() const noexcept { return buffer_.last(); }
+    [[nodiscard]] std::uint64_t sent_ever() const noexcept { return buffer_.sent_ever(); }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
     [[nodiscard]] std::uint64_t welcomes() const noexcept { return welcomes_; }
 

@@ -43,6 +43,8 @@ public:
 
     [[nodiscard]] std::uint64_t acknowledged() const noexcept { return acknowledged_; }
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
+    /// The highest seq that went out on any link.
+    [[nodiscard]] std::uint64_t sent_ever() const noexcept { return sent_ever_; }
     [[nodiscard]] std::uint64_t last() const noexcept { return last_; }
 
 private:
@@ -51,7 +53,7 @@ private:
     std::deque<Observation> scans_; // acknowledged_ + 1 .. last_
     std::uint64_t acknowledged_ = 0;
     std::uint64_t sent_ = 0;
-    std::uint64_t sent_ever_ = 0; // highest seq that went out on any link
+    std::uint64_t sent_ever_ = 0;
     std::uint64_t last_ = 0;
 };
 

@@ -22,9 +22,27 @@ namespace {
 
 constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 16384;
-constexpr int kScansBetweenYields = 32; // a fast source must not keep the acknowledgements waiting
+constexpr std::uint64_t kScansBetweenYields = 32; // a fast source must not keep the acknowledgements waiting
 constexpr std::chrono::milliseconds kProgressPeriod{100};
 constexpr std::chrono::milliseconds kGoodbyeMax{1000};
+
+constexpr std::uint64_t kScansOfARobotMax = 1'000'000'000; // three years of ten a second
+
+/// Errors  kConflict: the server has more scans than there will be.
+Result<> check_resume(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
+    if (stored <= scan_count.value_or(kScansOfARobotMax)) return {};
+    if (!scan_count) {
+        return Error{Errc::kConflict, fmt::format("the server says that it has {} scans of this robot, more than any "
+                                                  "robot sends; check --server, or choose another --robot or --session",
+                                                  stored)};
+    }
+    return Error{Errc::kConflict,
+                 fmt::format("the server has {} scans of this robot, but there are only {} to be sent: perhaps it was "
+                             "another recording or simulation; choose another --robot or --session",
+                             stored, *scan_count)};
+}
+
+double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
 
@@ -36,6 +54,12 @@ Uplink::Uplink(asio::io_context& io, UplinkOptions options, Source& source)
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || feed() || watch_progress());
+    if (const auto count = source_.scan_count(); outcome_ && count && !source_ended_) {
+        co_return Error{Errc::kShuttingDown,
+                        fmt::format("interrupted after scan {} of {}; what was sent is stored, and the same command "
+                                    "sends the rest",
+                                    conversation_.last(), *count)};
+    }
     co_return outcome_;
 }
 
@@ -49,6 +73,7 @@ UplinkStatus Uplink::status() const {
     return {conversation_.resumed_after().value_or(0),
             conversation_.last(),
             conversation_.acknowledged(),
+            conversation_.sent_ever() - conversation_.resumed_after().value_or(0),
             conversation_.bytes_sent(),
             welcomes > 0 ? welcomes - 1 : 0,
             conversation_.is_welcome()};
@@ -58,32 +83,52 @@ UplinkStatus Uplink::status() const {
 
 asio::awaitable<void> Uplink::feed() {
     while (!conversation_.resumed_after()) co_await wait(feed_wake_, Clock::time_point::max());
-    if (auto ok = source_.resume_after(*conversation_.resumed_after()); !ok) {
-        outcome_ = ok.error();
+    Result<> fed = co_await pass_over(*conversation_.resumed_after());
+    if (fed) fed = co_await feed_scans();
+    if (!fed) {
+        outcome_ = fed.error();
         co_return;
     }
-    co_await feed_next();
     conversation_.end();
     wake_all();
     for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the others tell when all is done
 }
 
-asio::awaitable<void> Uplink::feed_next() {
-    int scans_since_yield = 0;
+/// The server has them from an earlier run.
+asio::awaitable<Result<>> Uplink::pass_over(std::uint64_t scans) {
+    if (scans == 0) co_return Result<>{};
+    if (auto ok = check_resume(scans, source_.scan_count()); !ok) co_return ok;
+    options_.on_resume(scans);
+    for (std::uint64_t passed = 1; passed <= scans && !stopped_; ++passed) {
+        auto observation = source_.next();
+        if (!observation) co_return observation.error();
+        if (passed % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
+    }
+    co_return Result<>{};
+}
+
+asio::awaitable<Result<>> Uplink::feed_scans() {
+    std::uint64_t scans_since_yield = 0;
     while (!stopped_) {
         if (!conversation_.has_room()) {
             co_await wait(feed_wake_, Clock::time_point::max());
             continue;
         }
-        auto observation = source_.next();
-        if (!observation) co_return;
+        auto next = source_.next();
+        if (!next) co_return next.error();
+        std::optional<Observation>& observation = *next;
+        if (!observation) {
+            source_ended_ = true;
+            break;
+        }
         const auto due = pacer_.due(observation->scan.stamp, Clock::now());
         while (!stopped_ && due > Clock::now()) co_await wait(feed_wake_, due);
-        if (stopped_) co_return; // this scan was not due yet
+        if (stopped_) break; // this scan was not due yet
         conversation_.add(std::move(*observation), Clock::now());
         write_wake_.cancel();
         if (++scans_since_yield % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
     }
+    co_return Result<>{};
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -104,23 +149,30 @@ asio::awaitable<void> Uplink::watch_progress() {
 }
 
 std::optional<Error> Uplink::reason_to_give_up() const {
-    const std::string trouble = last_trouble_ ? "; the last trouble: " + last_trouble_->message : "";
     const auto now = Clock::now();
     if (stopped_ && !conversation_.resumed_after()) {
-        return Error{Errc::kUnreachable, "interrupted before the server answered" + trouble};
+        return Error{Errc::kUnreachable, fmt::format("interrupted before the server answered: {}", what_is_wrong())};
     }
     if (stopped_ && now > *stopped_ + options_.drain_max) {
-        return Error{Errc::kTimeout, fmt::format("interrupted; {} scans were not acknowledged within {:g} s{}",
+        return Error{Errc::kTimeout, fmt::format("interrupted; {} scans were not acknowledged within {:g} s: {}",
                                                  conversation_.last() - conversation_.acknowledged(),
-                                                 std::chrono::duration<double>(options_.drain_max).count(), trouble)};
+                                                 seconds(options_.drain_max), what_is_wrong())};
     }
     const auto since = conversation_.stalled_since();
     if (since && options_.give_up_after.count() > 0 && now > *since + options_.give_up_after) {
-        return Error{Errc::kTimeout,
-                     fmt::format("gave up after {:g} s without progress{}",
-                                 std::chrono::duration<double>(options_.give_up_after).count(), trouble)};
+        return Error{Errc::kTimeout, fmt::format("gave up after {:g} s without progress: {}",
+                                                 seconds(options_.give_up_after), what_is_wrong())};
     }
     return std::nullopt;
+}
+
+std::string Uplink::what_is_wrong() const {
+    if (conversation_.is_welcome()) {
+        return "the server is connected but acknowledges nothing" +
+               (last_trouble_ ? fmt::format(" (before this link: {})", last_trouble_->message) : std::string());
+    }
+    if (last_trouble_) return last_trouble_->message;
+    return fmt::format("no answer from {}:{} yet", options_.host, options_.port);
 }
 
 // Links ---------------------------------------------------------------------------------------------------------------
@@ -163,7 +215,7 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(Socket& socket) 
         co_await (asio::async_connect(socket, addresses, kUse) || wait(timer, Clock::now() + options_.connect_timeout));
     if (connected.index() == 1) {
         co_return lost(fmt::format("no connection to {} within {:g} s; check --server and the network", where,
-                                   std::chrono::duration<double>(options_.connect_timeout).count()));
+                                   seconds(options_.connect_timeout)));
     }
     const auto refused = std::get<0>(std::get<0>(connected));
     if (refused) {
@@ -206,7 +258,10 @@ std::optional<wire::LinkError> Uplink::take(std::string_view body) {
     if (!message) return unreadable(message.error());
     const std::uint64_t acknowledged_before = conversation_.acknowledged();
     auto failure = conversation_.receive(*message, Clock::now());
-    if (conversation_.acknowledged() > acknowledged_before) backoff_.reset();
+    if (conversation_.acknowledged() > acknowledged_before) {
+        backoff_.reset();
+        last_trouble_.reset();
+    }
     wake_all();
     return failure;
 }

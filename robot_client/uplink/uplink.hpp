@@ -27,6 +27,8 @@ struct UplinkOptions {
     std::uint32_t backoff_seed = 1;
     /// Hears of every link that failed and is going to be replaced.
     std::function<void(const Error&)> on_trouble = [](const Error&) {};
+    /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
+    std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
 };
 
 /// How far an uplink is, for people and for the summary.
@@ -34,6 +36,7 @@ struct UplinkStatus {
     std::uint64_t resumed_after = 0; ///< scans the server held from earlier runs
     std::uint64_t last = 0;          ///< highest seq taken from the source, or resumed_after
     std::uint64_t acknowledged = 0;  ///< highest durable seq
+    std::uint64_t sent = 0;          ///< scans that went out in this run, each counted once
     std::uint64_t bytes = 0;         ///< sent, resent ones included
     std::uint64_t reconnects = 0;
     bool is_linked = false;
@@ -47,9 +50,10 @@ class Uplink {
 public:
     Uplink(boost::asio::io_context& io, UplinkOptions options, Source& source);
 
-    /// Completes when every scan is durable.
+    /// Completes when every scan is durable. Those the server holds from earlier runs are passed over.
     /// Errors  the server's, if it is final; kTimeout when nothing moves for give_up_after or not all sent scans
-    ///         were acknowledged within drain_max of stop(); those of the source's resume_after().
+    ///         were acknowledged within drain_max of stop(); kShuttingDown when stop() came before the end of a source
+    ///         that has one; kConflict when the server holds more scans than the source has; those of the source.
     [[nodiscard]] boost::asio::awaitable<Result<>> run();
 
     /// No more scans from the source; run() completes once those taken are durable, or after drain_max.
@@ -62,7 +66,8 @@ private:
     using Socket = boost::asio::ip::tcp::socket;
 
     [[nodiscard]] boost::asio::awaitable<void> feed();
-    [[nodiscard]] boost::asio::awaitable<void> feed_next();
+    [[nodiscard]] boost::asio::awaitable<Result<>> pass_over(std::uint64_t scans);
+    [[nodiscard]] boost::asio::awaitable<Result<>> feed_scans();
     [[nodiscard]] boost::asio::awaitable<void> keep_linked();
     [[nodiscard]] boost::asio::awaitable<void> watch_progress();
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
@@ -73,6 +78,7 @@ private:
     [[nodiscard]] wire::LinkError unreadable(const Error& error) const;
     [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
+    [[nodiscard]] std::string what_is_wrong() const;
 
     /// Waits until `time` or until the timer is cancelled, which is how the coroutines wake one another.
     [[nodiscard]] static boost::asio::awaitable<void> wait(boost::asio::steady_timer& timer, Clock::time_point time);
@@ -90,6 +96,7 @@ private:
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;
+    bool source_ended_ = false;
 };
 
 } // namespace scanloom::robot

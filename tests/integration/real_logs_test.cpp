@@ -1,5 +1,5 @@
-#include "robot_client/source/carmen_log.hpp"
 #include "tests/support/kernel_against_oracle.hpp"
+#include "tests/support/whole_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,11 +25,11 @@ protected:
         if (!std::filesystem::exists(path_of(GetParam()))) GTEST_SKIP() << "there is no " << path_of(GetParam());
     }
 
-    robot::CarmenLog read(robot::NoReturn no_return) {
-        auto log = robot::read_carmen_log(path_of(GetParam()), {.no_return = no_return, .range_max = {}, .limits = {}},
-                                          [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
+    robot::WholeLog read(robot::NoReturn no_return) {
+        auto log = robot::read_whole_log(path_of(GetParam()), {.no_return = no_return, .range_max = {}, .limits = {}},
+                                         [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
         EXPECT_TRUE(log) << log.error().message;
-        return log ? std::move(*log) : robot::CarmenLog{};
+        return log ? std::move(*log) : robot::WholeLog{};
     }
 };
 

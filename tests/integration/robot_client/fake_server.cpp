@@ -110,6 +110,7 @@ asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& messag
 
 asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
     hellos_.push_back(hello);
+    link.is_silent = link.script.silent_after_scans == 0;
     if (link.script.refuse_hello) {
         const wire::Message refusal = *link.script.refuse_hello;
         co_await link.send(refusal);

@@ -21,7 +21,7 @@ struct LinkScript {
     std::optional<std::uint64_t> durable_seq = {};         ///< told in the welcome instead of the truth
     std::optional<std::uint64_t> hang_up_after_scans = {}; ///< of this link
     std::optional<wire::LinkError> error_after_scans = {}; ///< sent where hang_up_after_scans stands
-    std::optional<std::uint64_t> silent_after_scans = {};  ///< neither acks nor pongs from then on
+    std::optional<std::uint64_t> silent_after_scans = {};  ///< nothing is said from then on; 0: no welcome
     std::optional<std::uint64_t> stop_reading_after_scans = {};
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches

@@ -1,13 +1,15 @@
 #include "robot_client/uplink/uplink.hpp"
 
-#include "robot_client/source/recorded_source.hpp"
 #include "tests/integration/robot_client/fake_server.hpp"
+#include "tests/support/recorded_source.hpp"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace scanloom::robot {
 namespace {
@@ -49,7 +51,7 @@ protected:
 
     /// Runs until the uplink has its outcome.
     Result<> run(const UplinkOptions& made, std::size_t scans = kScans) {
-        source_.emplace(recording(scans));
+        if (!source_) source_.emplace(recording(scans));
         uplink_.emplace(io_, made, *source_);
         Result<> outcome = Error{Errc::kTimeout, "it did not end"};
         boost::asio::co_spawn(io_, uplink_->run(), [&](std::exception_ptr failed, Result<> result) {
@@ -143,9 +145,20 @@ TEST_F(UplinkTest, AServerThatStopsReadingIsLeftForANewLink) {
 TEST_F(UplinkTest, AFreshProgramContinuesTheRecordingWhereTheServerStands) {
     serve({{}});
     server_->store_before(200);
-    EXPECT_TRUE(run(options()));
+    auto made = options();
+    std::vector<std::uint64_t> resumed;
+    made.on_resume = [&](std::uint64_t stored) { resumed.push_back(stored); };
+    EXPECT_TRUE(run(made));
     expect_all_stored_once(kScans, 200);
     EXPECT_EQ(uplink_->status().resumed_after, 200U);
+    EXPECT_EQ(uplink_->status().sent, kScans - 200);
+    EXPECT_THAT(resumed, ElementsAre(200U));
+}
+
+TEST_F(UplinkTest, ScansSentAgainCountOnceAsSent) {
+    serve({{.hang_up_after_scans = 33, .ack_every = 1000}, {}});
+    EXPECT_TRUE(run(options()));
+    EXPECT_EQ(uplink_->status().sent, kScans);
 }
 
 TEST_F(UplinkTest, ARecordingTheServerHasWholeIsDoneAtOnce) {
@@ -160,7 +173,8 @@ TEST_F(UplinkTest, AServerWithMoreScansThanTheRecordingHasAnother) {
     server_->store_before(kScans + 1);
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
-    EXPECT_THAT(outcome.error().message, HasSubstr("the recording only 500"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("the server has 501 scans of this robot, but there are only 500"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("perhaps it was another recording"));
     EXPECT_THAT(troubles_, IsEmpty()) << "hanging up for this is no trouble";
 }
 
@@ -187,6 +201,25 @@ TEST_F(UplinkTest, WithoutAServerItGivesUpAndSaysWhy) {
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("gave up after 0.3 s"));
     EXPECT_THAT(outcome.error().message, HasSubstr("is scanloom-server running there?"));
+}
+
+TEST_F(UplinkTest, GivingUpOnASilentServerNamesItNotACancelledRead) {
+    serve({{.silent_after_scans = 10}});
+    auto made = options();
+    made.give_up_after = 300ms;
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().message,
+              "gave up after 0.3 s without progress: the server is connected but acknowledges nothing");
+}
+
+TEST_F(UplinkTest, GivingUpWithoutAnAnswerNamesTheServer) {
+    serve({{.silent_after_scans = 0}});
+    auto made = options();
+    made.give_up_after = 300ms;
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("no answer from 127.0.0.1:"));
 }
 
 TEST_F(UplinkTest, AServerThatComesLateIsFound) {
@@ -217,18 +250,81 @@ TEST_F(UplinkTest, NoScanGoesBeforeItIsDue) {
 
 TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     serve({{}});
+    source_.emplace(recording());
+    source_->pretend_to_be_endless();
     auto made = options();
     made.speed = 50.0;
     server_->on_stored = [&](std::size_t scans) {
         if (scans >= 5) uplink_->stop();
     };
-    EXPECT_TRUE(run(made));
+    EXPECT_TRUE(run(made)) << "what has no end is whole whenever it is stopped";
     const auto status = uplink_->status();
     EXPECT_GE(status.last, 5U);
     EXPECT_LT(status.last, kScans);
     EXPECT_EQ(status.acknowledged, status.last);
     expect_all_stored_once(status.last);
     EXPECT_EQ(server_->goodbyes(), 1);
+}
+
+TEST_F(UplinkTest, ARecordingThatWasStoppedIsNotWhole) {
+    serve({{}});
+    auto made = options();
+    made.speed = 50.0;
+    server_->on_stored = [&](std::size_t scans) {
+        if (scans >= 5) uplink_->stop();
+    };
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    const auto status = uplink_->status();
+    EXPECT_EQ(status.acknowledged, status.last) << "what was sent is waited for all the same";
+    EXPECT_THAT(outcome.error().message, HasSubstr(fmt::format("interrupted after scan {} of 500", status.last)));
+}
+
+TEST_F(UplinkTest, StoppedAfterItsLastScanARecordingIsWhole) {
+    serve({{.ack_every = 1}});
+    server_->on_stored = [&](std::size_t scans) {
+        if (scans == 20) uplink_->stop();
+    };
+    EXPECT_TRUE(run(options(), 20));
+    EXPECT_EQ(uplink_->status().acknowledged, 20U);
+}
+
+TEST_F(UplinkTest, ARecordingThatCannotBeReadOnIsAnError) {
+    serve({{}});
+    source_.emplace(recording());
+    source_->fail_after(100);
+    const auto outcome = run(options());
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().message, "the recording cannot be read on");
+    EXPECT_THAT(troubles_, IsEmpty());
+}
+
+TEST_F(UplinkTest, AnImpossibleNumberOfStoredScansIsNotBelieved) {
+    for (const bool endless : {false, true}) {
+        serve({{.durable_seq = std::numeric_limits<std::uint64_t>::max()}});
+        source_.emplace(recording());
+        if (endless) source_->pretend_to_be_endless();
+        const auto outcome = run(options());
+        io_.restart();
+        ASSERT_FALSE(outcome);
+        EXPECT_EQ(outcome.error().code, Errc::kConflict);
+        EXPECT_THAT(outcome.error().message, HasSubstr("18446744073709551615 scans of this robot"));
+        EXPECT_EQ(uplink_->status().sent, 0U);
+        uplink_.reset();
+        server_.reset();
+    }
+}
+
+TEST_F(UplinkTest, AnotherRecordingsSessionEndsItWithTheServersSentence) {
+    const Error other{Errc::kConflict, "robot r1 has streamed carmen:9f3a; choose another session"};
+    serve({{.refuse_hello = wire::LinkError{other, false}}});
+    auto made = options();
+    made.conversation.hello.source = "carmen:0000";
+    const auto outcome = run(made);
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error(), other);
+    EXPECT_THAT(troubles_, IsEmpty()) << "there is nothing to try again";
+    EXPECT_EQ(server_->hellos().at(0).source, "carmen:0000");
 }
 
 TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {

@@ -1,5 +1,8 @@
 #include "robot_client/app/summary.hpp"
 
+#include "robot_client/app/progress.hpp"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace scanloom::robot {
@@ -8,19 +11,22 @@ namespace {
 using namespace std::chrono_literals;
 
 const Summary kSummary{
-    "lab", "r1",   {.resumed_after = 10, .last = 30, .acknowledged = 25, .bytes = 4321, .reconnects = 2},
-    3,     1500ms, true};
+    "lab",
+    "r1",
+    "carmen:9f3a",
+    {.resumed_after = 10, .last = 30, .acknowledged = 25, .sent = 18, .bytes = 4321, .reconnects = 2},
+    3,
+    1500ms};
 
-TEST(SummaryJson, ARecordingCountsFromItsBeginning) {
+TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
     EXPECT_EQ(summary_json(kSummary),
-              R"({"scans":30,"acknowledged":25,"bytes":4321,"seconds":1.500,"resumed_after":10,"skipped_lines":3,)"
-              R"("reconnects":2,"session":"lab","robot":"r1"})");
+              R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
+              R"("skipped_lines":3,"reconnects":2,"session":"lab","robot":"r1","source":"carmen:9f3a"})");
 }
 
-TEST(SummaryJson, ASimulationCountsThisRunOnly) {
-    Summary summary = kSummary;
-    summary.is_recording = false;
-    EXPECT_TRUE(summary_json(summary).starts_with(R"({"scans":20,"acknowledged":15,)"));
+TEST(SummaryJson, CountsAsTheProgressDoes) {
+    EXPECT_THAT(progress_text(kSummary.status, 30, 1s), testing::StartsWith("25 of 30 scans stored"));
+    EXPECT_THAT(summary_json(kSummary), testing::StartsWith(R"({"scans":30,"acknowledged":25,)"));
 }
 
 } // namespace

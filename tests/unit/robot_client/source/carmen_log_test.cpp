@@ -1,6 +1,6 @@
 #include "robot_client/source/carmen_log.hpp"
 
-#include "robot_client/source/recorded_source.hpp"
+#include "tests/support/whole_log.hpp"
 
 #include <boost/iostreams/filter/bzip2.hpp>
 #include <boost/iostreams/filter/gzip.hpp>
@@ -9,8 +9,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
+#include <random>
 #include <sstream>
 
 namespace scanloom::robot {
@@ -29,8 +32,8 @@ protected:
         return path;
     }
 
-    Result<CarmenLog> read(std::string_view bytes, const CarmenOptions& options = {}) {
-        return read_carmen_log(write(bytes), options, [&](const SkippedLine& line) { skipped_.push_back(line); });
+    Result<WholeLog> read(std::string_view bytes, const CarmenOptions& options = {}) {
+        return read_whole_log(write(bytes), options, [&](const SkippedLine& line) { skipped_.push_back(line); });
     }
 
     void TearDown() override {
@@ -226,14 +229,14 @@ TEST_F(CarmenLogFile, NothingUsableIsAnErrorThatNamesTheFile) {
     }
 }
 
-TEST_F(CarmenLogFile, CutOrDamagedPackedFilesAreErrorsThatNameFileAndLine) {
+TEST_F(CarmenLogFile, CutOrDamagedPackedFilesAreErrorsThatNameTheFile) {
     std::string text;
     for (int i = 0; i < 20000; ++i) text += flaser(0.37 * i);
     for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::size_t cut : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{5}}) {
             const auto log = read(std::string_view(whole).substr(0, cut));
             ASSERT_FALSE(log) << "cut after " << cut << " of " << whole.size();
-            EXPECT_THAT(log.error().message, HasSubstr("damaged or cut short after line"));
+            EXPECT_THAT(log.error().message, HasSubstr("damaged or cut short: "));
         }
         std::string flipped = whole;
         flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x10);
@@ -258,10 +261,79 @@ TEST_F(CarmenLogFile, AnEndlessLineIsRefused) {
     EXPECT_THAT(log.error().message, HasSubstr("after line 1"));
 }
 
+TEST_F(CarmenLogFile, ScansFarFromTheirPlaceInTimeFindIt) {
+    std::vector<int> stamps(500);
+    std::iota(stamps.begin(), stamps.end(), 1);
+    std::shuffle(stamps.begin(), stamps.end(), std::mt19937(5));
+    std::string text;
+    for (const int stamp : stamps) text += flaser(stamp, fmt::format("1 {}", stamp * 0.001));
+    const auto log = read(text);
+    ASSERT_TRUE(log);
+    ASSERT_EQ(log->observations.size(), 500U);
+    for (std::size_t i = 0; i < 500; ++i) EXPECT_EQ(log->observations[i].scan.ranges[0], i + 1);
+}
+
+TEST_F(CarmenLogFile, TellsHowManyScansThereWillBeBeforeTheFirst) {
+    const auto path = write(text_of({flaser(1), "FLASER 3 1 2\n", robot_laser("0 0 0", "0 0 0", 0.0), flaser(2)}));
+    auto log = CarmenLog::open(path, {}, [](const SkippedLine&) {});
+    ASSERT_TRUE(log);
+    EXPECT_EQ(log->scan_count(), 2U);
+    EXPECT_EQ(log->skipped_lines(), 2U) << "a broken line, and one whose laser's range is not known";
+    EXPECT_TRUE(*log->next());
+    EXPECT_TRUE(*log->next());
+    EXPECT_FALSE(*log->next());
+    EXPECT_FALSE(*log->next()) << "the end is the end";
+}
+
+TEST_F(CarmenLogFile, AFileThatIsChangedWhileItIsSentIsAnError) {
+    const auto path = write(text_of({flaser(1), flaser(2), flaser(3)}));
+    for (const std::string& changed : {flaser(1), text_of({flaser(1), robot_laser("0 0 0", "0 0 0", 0.0), flaser(3)}),
+                                       text_of({flaser(1), std::string_view("# a comment\n")})}) {
+        write(text_of({flaser(1), flaser(2), flaser(3)}));
+        auto log = CarmenLog::open(path, {}, [](const SkippedLine&) {});
+        ASSERT_TRUE(log);
+        write(changed);
+        auto scan = log->next();
+        while (scan && *scan) scan = log->next();
+        ASSERT_FALSE(scan) << changed;
+        EXPECT_EQ(scan.error().code, Errc::kConflict);
+        EXPECT_THAT(scan.error().message, HasSubstr("was changed while it was being sent"));
+    }
+}
+
+TEST_F(CarmenLogFile, TheFingerprintIsThatOfTheScansNotOfTheFile) {
+    const auto text = text_of({"# made on Monday\n", flaser(1), robot_laser("0 0 0", "0 0 0")});
+    const std::string fingerprint = read(text)->fingerprint;
+    EXPECT_THAT(fingerprint, testing::MatchesRegex("carmen:[0-9a-f]+"));
+    EXPECT_LE(fingerprint.size(), 64U);
+    EXPECT_EQ(read(gzip(text))->fingerprint, fingerprint);
+    EXPECT_EQ(read(bzip2(text))->fingerprint, fingerprint);
+    EXPECT_EQ(read(text_of({flaser(1), "# made on Tuesday\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint,
+              fingerprint);
+    EXPECT_EQ(read(text_of({flaser(1), "FLASER 3 1 2\n", robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint)
+        << "a line that cannot be used changes nothing";
+    EXPECT_NE(read(text_of({flaser(1), flaser(2), robot_laser("0 0 0", "0 0 0")}))->fingerprint, fingerprint);
+    EXPECT_NE(read(text_of({flaser(1), robot_laser("0 0 0", "0 0 0.1")}))->fingerprint, fingerprint);
+    EXPECT_NE(read(text_of({robot_laser("0 0 0", "0 0 0"), flaser(1)}))->fingerprint, fingerprint);
+}
+
+TEST_F(CarmenLogFile, TheFingerprintKnowsTheOptionsThatChangeTheScans) {
+    const std::string text = flaser(1);
+    const auto with = [&](std::optional<NoReturn> no_return, std::optional<double> range_max) {
+        return read(text, {no_return, range_max, {}})->fingerprint;
+    };
+    EXPECT_EQ(with(NoReturn::kDrop, kCarmenRangeMax), with({}, {})) << "the defaults, stated";
+    EXPECT_NE(with(NoReturn::kFree, {}), with({}, {}));
+    EXPECT_NE(with({}, 20.0), with({}, {}));
+    const auto stated = read(robot_laser("0 0 0", "0 0 0", 30.0));
+    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 30.0), {NoReturn::kFree, {}, {}})->fingerprint, stated->fingerprint);
+    EXPECT_NE(read(robot_laser("0 0 0", "0 0 0", 30.0), {NoReturn::kDrop, {}, {}})->fingerprint, stated->fingerprint);
+}
+
 TEST_F(CarmenLogFile, MissingFilesAndFoldersAreErrors) {
     const auto ignore = [](const SkippedLine&) {};
-    EXPECT_EQ(read_carmen_log("/nonexistent/x.clf", {}, ignore).error().code, Errc::kNotFound);
-    EXPECT_THAT(read_carmen_log(testing::TempDir(), {}, ignore).error().message, HasSubstr("not a regular file"));
+    EXPECT_EQ(read_whole_log("/nonexistent/x.clf", {}, ignore).error().code, Errc::kNotFound);
+    EXPECT_THAT(read_whole_log(testing::TempDir(), {}, ignore).error().message, HasSubstr("not a regular file"));
 }
 
 struct RealLog {
@@ -275,7 +347,7 @@ class RealCarmenLog : public testing::TestWithParam<RealLog> {};
 TEST_P(RealCarmenLog, IsReadWhole) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / GetParam().file;
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
-    const auto log = read_carmen_log(path, {}, [](const SkippedLine&) {});
+    const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->observations.size(), GetParam().scans);
     EXPECT_EQ(log->skipped_lines, 0U);
@@ -294,23 +366,6 @@ INSTANTIATE_TEST_SUITE_P(Logs, RealCarmenLog,
                                          RealLog{"fr079.clf.bz2", 4934, 360},
                                          RealLog{"fr079-corrected.log.gz", 4791, 360}),
                          [](const auto& log) { return fmt::format("Log{}", log.index); });
-
-TEST(RecordedSource, ContinuesBehindTheScansTheServerHas) {
-    std::vector<Observation> observations(5);
-    for (std::size_t i = 0; i < 5; ++i) observations[i].scan.stamp = static_cast<double>(i);
-    RecordedSource source(std::move(observations));
-    ASSERT_TRUE(source.resume_after(3));
-    EXPECT_EQ(source.next()->scan.stamp, 3.0);
-    EXPECT_EQ(source.next()->scan.stamp, 4.0);
-    EXPECT_FALSE(source.next());
-    EXPECT_EQ(source.scan_count(), 5U);
-}
-
-TEST(RecordedSource, AServerWithMoreScansHasAnotherRecording) {
-    RecordedSource source(std::vector<Observation>(5));
-    EXPECT_TRUE(source.resume_after(5));
-    EXPECT_EQ(source.resume_after(6).error().code, Errc::kConflict);
-}
 
 } // namespace
 } // namespace scanloom::robot

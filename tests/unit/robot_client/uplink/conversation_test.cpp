@@ -391,5 +391,23 @@ TEST(Conversation, EveryScanArrivesOnceAndInOrderHoweverLinksBreak) {
     }
 }
 
+TEST_F(ConversationTest, AServersTextIsShownWithoutItsControlCharacters) {
+    welcome();
+    const auto refused = conversation_.receive(wire::LinkError{{Errc::kConflict, "no\x1b[2J\xc2\x9b!"}, false}, now_);
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(*refused, (wire::LinkError{{Errc::kConflict, R"(no\x1b[2J\xc2\x9b!)"}, false}));
+    const auto left = conversation_.receive(wire::Goodbye{std::string(5'000, '\a')}, now_);
+    ASSERT_TRUE(left);
+    EXPECT_THAT(left->error.message, testing::StartsWith(R"(the server said goodbye: \x07\x07)"));
+    EXPECT_LT(left->error.message.size(), 600U);
+}
+
+TEST_F(ConversationTest, AServerThatDoesNotSayWhyIsSpokenFor) {
+    welcome();
+    EXPECT_EQ(conversation_.receive(wire::LinkError{{Errc::kConflict, ""}, false}, now_)->error.message,
+              "the server ended the link with the error conflict and did not say why");
+    EXPECT_EQ(conversation_.receive(wire::Goodbye{}, now_)->error.message, "the server said goodbye without a reason");
+}
+
 } // namespace
 } // namespace scanloom::robot

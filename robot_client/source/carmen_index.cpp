@@ -1,0 +1,170 @@
+#include "robot_client/source/carmen_index.hpp"
+
+#include "common/hash/sha256.hpp"
+#include "robot_client/source/carmen_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace scanloom::robot {
+namespace {
+
+struct LaserLine {
+    double stamp = 0.0;
+    std::size_t line_number = 0;
+    bool is_raw = false;
+    bool is_used = false;
+};
+
+class Indexer {
+public:
+    Indexer(const CarmenOptions& options, const std::function<void(const SkippedLine&)>& report)
+        : options_(options), report_(report) {
+        hash_.update("carmen 1\n"); // to be raised when the same lines begin to give other scans
+    }
+
+    [[nodiscard]] Result<> read(CarmenRecords& records);
+    [[nodiscard]] CarmenIndex build();
+
+private:
+    void take(const CarmenRecord& record, const StampedScan& line);
+    void take(const CarmenRecord& record, const CarmenOdometry& odometry);
+    void take(const CarmenRecord& record, const CarmenLaserOffset& offset);
+    void take(const CarmenRecord& record, const Error& error) { skip(record.line_number, error.message); }
+    void hash(std::string_view line);
+    void skip(std::size_t line_number, std::string reason);
+    void keep_one_view_of_each_scan();
+    void drop_lines_without_pose(const CarmenPath& path);
+    void order_by_time(CarmenIndex& index) const;
+    [[nodiscard]] std::string fingerprint();
+
+    const CarmenOptions& options_;
+    const std::function<void(const SkippedLine&)>& report_;
+    Sha256 hash_;
+    std::vector<LaserLine> lines_;
+    std::vector<CarmenOdometry> odometry_;
+    double laser_offset_forward_ = 0.0;
+    bool has_flaser_ = false;
+    bool has_robot_laser_ = false;
+    bool has_raw_ = false;
+    std::size_t skipped_ = 0;
+};
+
+Result<> Indexer::read(CarmenRecords& records) {
+    for (;;) {
+        const auto record = records.next();
+        if (!record) return record.error();
+        if (!*record) return {};
+        std::visit([&](const auto& content) { take(**record, content); }, (*record)->content);
+        if (lines_.size() == CarmenIndex::kUnused) {
+            return Error{Errc::kTooLarge, fmt::format("more than {} laser lines; split the log", lines_.size() - 1)};
+        }
+    }
+}
+
+void Indexer::take(const CarmenRecord& record, const StampedScan& line) {
+    hash(record.text);
+    const CarmenKind kind = line.scan.kind;
+    has_flaser_ |= kind == CarmenKind::kFlaser;
+    has_robot_laser_ |= kind == CarmenKind::kRobotLaser;
+    has_raw_ |= kind == CarmenKind::kRawLaser;
+    const auto usable = check_usable(line.scan, options_);
+    if (!usable) skip(record.line_number, usable.error().message);
+    lines_.push_back({line.stamp, record.line_number, kind == CarmenKind::kRawLaser, usable.has_value()});
+}
+
+void Indexer::take(const CarmenRecord& record, const CarmenOdometry& odometry) {
+    hash(record.text);
+    odometry_.push_back(odometry);
+}
+
+void Indexer::take(const CarmenRecord& record, const CarmenLaserOffset& offset) {
+    hash(record.text);
+    laser_offset_forward_ = offset.forward;
+}
+
+void Indexer::hash(std::string_view line) {
+    hash_.update(line);
+    hash_.update("\n");
+}
+
+void Indexer::skip(std::size_t line_number, std::string reason) {
+    ++skipped_;
+    report_({line_number, std::move(reason)});
+}
+
+/// Logs that hold RAWLASER and other laser lines hold every scan twice.
+void Indexer::keep_one_view_of_each_scan() {
+    if (!has_flaser_ && !has_robot_laser_) return;
+    for (LaserLine& line : lines_) line.is_used = line.is_used && !line.is_raw;
+    odometry_ = {};
+}
+
+void Indexer::drop_lines_without_pose(const CarmenPath& path) {
+    for (LaserLine& line : lines_) {
+        if (!line.is_used || !line.is_raw || path.at(line.stamp)) continue;
+        line.is_used = false;
+        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kOdometryGapMax));
+    }
+}
+
+void Indexer::order_by_time(CarmenIndex& index) const {
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t i = 0; i < lines_.size(); ++i) {
+        if (lines_[i].is_used) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return lines_[a].stamp < lines_[b].stamp; });
+    index.scan_count = static_cast<std::uint32_t>(order.size());
+    index.places.assign(lines_.size(), CarmenIndex::kUnused);
+    for (std::uint32_t place = 0; place < order.size(); ++place) index.places[order[place]] = place;
+}
+
+/// The options count as far as they change the scans: stating a default makes no difference.
+std::string Indexer::fingerprint() {
+    const auto hash_options = [&](std::string_view lines, CarmenKind kind, const std::string& range_max) {
+        hash_.update(fmt::format("{} {} {}\n", lines, range_max,
+                                 no_return_of(kind, options_) == NoReturn::kFree ? "free" : "drop"));
+    };
+    if (has_flaser_) {
+        const double range_max = options_.range_max.value_or(kCarmenRangeMax);
+        hash_options("flaser", CarmenKind::kFlaser, fmt::format("{}", range_max));
+    }
+    if (has_robot_laser_ || has_raw_) {
+        hash_options("robotlaser", CarmenKind::kRobotLaser,
+                     options_.range_max ? fmt::format("{}", *options_.range_max) : "as stated");
+    }
+    return "carmen:" + hash_.hex().substr(0, 32);
+}
+
+CarmenIndex Indexer::build() {
+    CarmenIndex index;
+    index.fingerprint = fingerprint();
+    keep_one_view_of_each_scan();
+    index.path = CarmenPath(std::move(odometry_));
+    drop_lines_without_pose(index.path);
+    order_by_time(index);
+    index.laser_offset_forward = laser_offset_forward_;
+    index.skipped_lines = skipped_;
+    return index;
+}
+
+} // namespace
+
+Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
+                                     const std::function<void(const SkippedLine&)>& report) {
+    auto records = CarmenRecords::open(path, options.limits);
+    if (!records) return records.error();
+    Indexer indexer(options, report);
+    if (auto ok = indexer.read(*records); !ok) return ok.error();
+    CarmenIndex index = indexer.build();
+    if (index.scan_count > 0) return index;
+    return Error{Errc::kNotFound,
+                 fmt::format("{}: no usable scan in its {} lines ({} skipped); a CARMEN log with FLASER, ROBOTLASER1, "
+                             "ROBOTLASER2 or RAWLASER1 lines is needed",
+                             path.string(), records->line_count(), index.skipped_lines)};
+}
+
+} // namespace scanloom::robot

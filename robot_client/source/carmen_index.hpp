@@ -1,0 +1,42 @@
+#pragma once
+
+#include "robot_client/source/carmen_observation.hpp"
+#include "robot_client/source/carmen_path.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// A line that could not be used, and why.
+struct SkippedLine {
+    std::size_t line_number = 0;
+    std::string reason;
+};
+
+/// What must be known of a whole log before its first scan can be sent: little, so that a log may be large.
+struct CarmenIndex {
+    /// For each laser line, in the order of the file: which place it has among the scans in the order of time,
+    /// from 0; kUnused for lines that are not sent.
+    std::vector<std::uint32_t> places;
+    static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+
+    std::uint32_t scan_count = 0;
+    CarmenPath path; ///< only where the scans come from RAWLASER lines
+    double laser_offset_forward = 0.0;
+    std::size_t skipped_lines = 0;
+    std::string fingerprint; ///< of the lines and options that determine the scans
+};
+
+/// Reads a log once. `report` hears of every line that cannot be used: broken ones in the order of the file, then
+/// RAWLASER lines without a pose.
+/// Errors  those of LineReader; kNotFound when no line is usable; kTooLarge: more than 2^32 - 2 laser lines.
+[[nodiscard]] Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
+                                                   const std::function<void(const SkippedLine&)>& report);
+
+} // namespace scanloom::robot

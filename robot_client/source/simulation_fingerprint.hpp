@@ -1,0 +1,15 @@
+#pragma once
+
+#include "robot_client/sim/simulator.hpp"
+#include "robot_client/source/source.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace scanloom::robot {
+
+/// Identifies the scans of a simulated robot: the same where the world, the drive, the laser, the noise, the seed and
+/// what becomes of beams without return are the same. At most 64 printable bytes.
+[[nodiscard]] std::string fingerprint_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return);
+
+} // namespace scanloom::robot

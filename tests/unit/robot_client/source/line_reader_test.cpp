@@ -1,0 +1,97 @@
+#include "robot_client/source/line_reader.hpp"
+
+#include <boost/iostreams/filter/bzip2.hpp>
+#include <boost/iostreams/filter/gzip.hpp>
+#include <boost/iostreams/filtering_stream.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace scanloom::robot {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+namespace io = boost::iostreams;
+
+class LineReaderTest : public testing::Test {
+protected:
+    /// The lines that could be read, and the error behind them.
+    std::pair<std::size_t, std::string> read(std::string_view bytes) {
+        std::ofstream(path_, std::ios::binary) << bytes;
+        auto reader = LineReader::open(path_);
+        EXPECT_TRUE(reader);
+        for (std::size_t lines = 0;; ++lines) {
+            const auto line = reader->next();
+            if (!line) return {lines, line.error().message};
+            if (!*line) return {lines, ""};
+        }
+    }
+
+    void TearDown() override { std::filesystem::remove(path_); }
+
+    const std::filesystem::path path_ =
+        std::filesystem::path(testing::TempDir()) /
+        fmt::format("scanloom_{}.log", testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+template <class Filter>
+std::string packed(std::string_view text, Filter filter) {
+    std::ostringstream out;
+    {
+        io::filtering_ostream stream;
+        stream.push(filter);
+        stream.push(out);
+        stream << text;
+    }
+    return out.str();
+}
+
+/// Lines that do not pack well, so that half of the packed bytes is about half of the lines.
+std::string noise(int lines) {
+    std::mt19937 random(3);
+    std::string text;
+    for (int i = 0; i < lines; ++i) text += fmt::format("{} {} {}\n", random(), random(), random());
+    return text;
+}
+
+TEST_F(LineReaderTest, ACutGzipFileTellsHowMuchOfItCanBeRead) {
+    const std::string whole = packed(noise(1000), io::gzip_compressor());
+    const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
+    EXPECT_GT(lines, 300U) << "what stands before the cut is read";
+    EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or cut short"));
+    EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
+    EXPECT_THAT(error, HasSubstr("unpack those with zcat"));
+}
+
+TEST_F(LineReaderTest, ACutBzip2FileTellsSoToo) {
+    const std::string whole = packed(noise(60'000), io::bzip2_compressor()); // more than one of bzip2's blocks
+    const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() - 10));
+    EXPECT_GT(lines, 10'000U);
+    EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
+    EXPECT_THAT(error, HasSubstr("unpack those with bzcat"));
+}
+
+TEST_F(LineReaderTest, WhereNothingCanBeReadItDoesNotSpeakOfLineZero) {
+    const std::string whole = packed(noise(100), io::bzip2_compressor());
+    const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
+    EXPECT_EQ(lines, 0U);
+    EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or cut short: nothing of it can be read"));
+    EXPECT_THAT(error, Not(HasSubstr("line")));
+}
+
+TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
+    const std::string text = noise(20'000);
+    for (const std::string& bytes : {text, packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+        const auto [lines, error] = read(bytes);
+        EXPECT_EQ(lines, 20'000U);
+        EXPECT_EQ(error, "");
+    }
+}
+
+} // namespace
+} // namespace scanloom::robot

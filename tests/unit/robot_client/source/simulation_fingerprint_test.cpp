@@ -1,0 +1,43 @@
+#include "robot_client/source/simulation_fingerprint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace scanloom::robot {
+namespace {
+
+SimulatorOptions options() { return {make_office(), *find_laser("reference"), Noise{}, 7}; }
+
+std::string fingerprint(const SimulatorOptions& of) { return fingerprint_of(of, "wall_follower", NoReturn::kFree); }
+
+TEST(SimulationFingerprint, IsTheSameForTheSameSimulation) {
+    EXPECT_EQ(fingerprint(options()), fingerprint(options()));
+    EXPECT_TRUE(fingerprint(options()).starts_with("simulation:"));
+    EXPECT_LE(fingerprint(options()).size(), 64U);
+}
+
+TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
+    std::set<std::string> seen{fingerprint(options()), fingerprint_of(options(), "another", NoReturn::kFree),
+                               fingerprint_of(options(), "wall_follower", NoReturn::kDrop)};
+    void (*const kChanges[])(SimulatorOptions&) = {
+        [](SimulatorOptions& o) { o.world = make_room(); },
+        [](SimulatorOptions& o) { o.world.solids.back().x_max += 1e-9; },
+        [](SimulatorOptions& o) { o.world.floors.pop_back(); },
+        [](SimulatorOptions& o) { o.laser = *find_laser("wide"); },
+        [](SimulatorOptions& o) { o.laser.range_max = 4.0; },
+        [](SimulatorOptions& o) { o.laser.mount.x = 0.1; },
+        [](SimulatorOptions& o) { o.noise.reset(); },
+        [](SimulatorOptions& o) { o.noise->odometry_drift = 0.03; },
+        [](SimulatorOptions& o) { o.seed = 8; },
+    };
+    for (const auto change : kChanges) {
+        SimulatorOptions changed = options();
+        change(changed);
+        seen.insert(fingerprint(changed));
+    }
+    EXPECT_EQ(seen.size(), 3 + std::size(kChanges));
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,48 @@
+#include "robot_client/uplink/server_text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::robot {
+namespace {
+
+TEST(ServerText, PrintableTextStaysAsItIs) {
+    for (const std::string_view text : {"", "scan 3 is missing; send it", "C:\\x",
+                                        "stra\xc3\x9f"
+                                        "e",
+                                        "\xc2\xa0\xe2\x82\xac", "\xf0\x9f\xa4\x96"}) {
+        EXPECT_EQ(shown(text), text);
+    }
+}
+
+TEST(ServerText, ControlCharactersAreWrittenOut) {
+    EXPECT_EQ(shown("a\x1b[2J\r\nb\x7f"), R"(a\x1b[2J\x0d\x0ab\x7f)");
+    EXPECT_EQ(shown(std::string_view("a\0b", 3)), R"(a\x00b)");
+    EXPECT_EQ(shown("\xc2\x9b"
+                    "31m \xc2\x80 \xc2\x9f"),
+              R"(\xc2\x9b31m \xc2\x80 \xc2\x9f)")
+        << "C1 as UTF-8";
+    EXPECT_EQ(shown("\x9b"
+                    "31m"),
+              R"(\x9b31m)")
+        << "C1 as a byte";
+}
+
+TEST(ServerText, BytesThatAreNoTextAreWrittenOut) {
+    EXPECT_EQ(shown("\xff\xfe"), R"(\xff\xfe)");
+    EXPECT_EQ(shown("\xc3"), R"(\xc3)") << "cut short";
+    EXPECT_EQ(shown("\xc0\x9b"
+                    "\xe0\x82\x9b"
+                    "\xf0\x80\x82\x9b"),
+              R"(\xc0\x9b\xe0\x82\x9b\xf0\x80\x82\x9b)")
+        << "a control character in more bytes than it needs";
+}
+
+TEST(ServerText, IsBoundedAndCutBetweenCharacters) {
+    EXPECT_EQ(shown(std::string(kServerTextMax, 'a')), std::string(kServerTextMax, 'a'));
+    EXPECT_EQ(shown(std::string(1'000'000, 'a')), std::string(kServerTextMax, 'a') + "...");
+    EXPECT_EQ(shown(std::string(kServerTextMax - 1, 'a') + "\xc3\x9f"), std::string(kServerTextMax - 1, 'a') + "...");
+    EXPECT_EQ(shown(std::string(1'000, '\x1b')).size(), kServerTextMax + 3);
+}
+
+} // namespace
+} // namespace scanloom::robot
