@@ -104,7 +104,7 @@ ExitCode run(const RobotOptions& options) {
 
     asio::io_context io(1);
     Uplink uplink(io, uplink_options(options, *token, *prepared, console), *prepared->source);
-    Result<> outcome = Error{Errc::kShuttingDown, "interrupted before every sent scan was acknowledged"};
+    std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
     asio::co_spawn(io, show_progress(io, uplink, *prepared->source, console), asio::detached);
@@ -115,10 +115,11 @@ ExitCode run(const RobotOptions& options) {
     });
     io.run();
 
+    if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
     fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, uplink.status(),
                                      prepared->skipped_lines, std::chrono::steady_clock::now() - begun}));
-    return outcome ? kExitDone : fail(outcome.error());
+    return *outcome ? kExitDone : fail(outcome->error());
 }
 
 } // namespace scanloom::robot

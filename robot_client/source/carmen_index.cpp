@@ -70,6 +70,7 @@ void Indexer::take(const CarmenRecord& record, const StampedScan& line) {
     has_flaser_ |= kind == CarmenKind::kFlaser;
     has_robot_laser_ |= kind == CarmenKind::kRobotLaser;
     has_raw_ |= kind == CarmenKind::kRawLaser;
+    if (kind != CarmenKind::kRawLaser) odometry_ = {}; // no RAWLASER line will be used, so none needs a pose
     const auto usable = check_usable(line.scan, options_);
     if (!usable) skip(record.line_number, usable.error().message);
     lines_.push_back({line.stamp, record.line_number, kind == CarmenKind::kRawLaser, usable.has_value()});
@@ -77,7 +78,7 @@ void Indexer::take(const CarmenRecord& record, const StampedScan& line) {
 
 void Indexer::take(const CarmenRecord& record, const CarmenOdometry& odometry) {
     hash(record.text);
-    odometry_.push_back(odometry);
+    if (!has_flaser_ && !has_robot_laser_) odometry_.push_back(odometry);
 }
 
 void Indexer::take(const CarmenRecord& record, const CarmenLaserOffset& offset) {
@@ -99,7 +100,6 @@ void Indexer::skip(std::size_t line_number, std::string reason) {
 void Indexer::keep_one_view_of_each_scan() {
     if (!has_flaser_ && !has_robot_laser_) return;
     for (LaserLine& line : lines_) line.is_used = line.is_used && !line.is_raw;
-    odometry_ = {};
 }
 
 void Indexer::drop_lines_without_pose(const CarmenPath& path) {

@@ -5,6 +5,7 @@
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/this_coro.hpp>
@@ -54,13 +55,19 @@ Uplink::Uplink(asio::io_context& io, UplinkOptions options, Source& source)
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || feed() || watch_progress());
-    if (const auto count = source_.scan_count(); outcome_ && count && !source_ended_) {
-        co_return Error{Errc::kShuttingDown,
-                        fmt::format("interrupted after scan {} of {}; what was sent is stored, and the same command "
-                                    "sends the rest",
-                                    conversation_.last(), *count)};
+    co_return outcome_&& stopped_ ? outcome_when_interrupted() : outcome_;
+}
+
+Result<> Uplink::outcome_when_interrupted() const {
+    const auto interrupted = [](std::string what) { return Error{Errc::kShuttingDown, "interrupted " + what}; };
+    if (!conversation_.resumed_after()) return interrupted("before the server answered: " + what_is_wrong());
+    if (const std::uint64_t missing = conversation_.last() - conversation_.acknowledged(); missing > 0) {
+        return interrupted(fmt::format("before {} scans were acknowledged", missing));
     }
-    co_return outcome_;
+    const auto count = source_.scan_count();
+    if (!count || source_ended_) return {};
+    return interrupted(fmt::format("after scan {} of {}; what was sent is stored, and the same command sends the rest",
+                                   conversation_.last(), *count));
 }
 
 void Uplink::stop() {
@@ -150,9 +157,7 @@ asio::awaitable<void> Uplink::watch_progress() {
 
 std::optional<Error> Uplink::reason_to_give_up() const {
     const auto now = Clock::now();
-    if (stopped_ && !conversation_.resumed_after()) {
-        return Error{Errc::kUnreachable, fmt::format("interrupted before the server answered: {}", what_is_wrong())};
-    }
+    if (stopped_ && !conversation_.resumed_after()) return outcome_when_interrupted().error();
     if (stopped_ && now > *stopped_ + options_.drain_max) {
         return Error{Errc::kTimeout, fmt::format("interrupted; {} scans were not acknowledged within {:g} s: {}",
                                                  conversation_.last() - conversation_.acknowledged(),
@@ -213,11 +218,12 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(Socket& socket) 
     asio::steady_timer timer(io_);
     const auto connected =
         co_await (asio::async_connect(socket, addresses, kUse) || wait(timer, Clock::now() + options_.connect_timeout));
-    if (connected.index() == 1) {
+    const bool in_time = connected.index() == 0;
+    const auto refused = in_time ? std::get<0>(std::get<0>(connected)) : boost::system::error_code();
+    if (!in_time || refused == asio::error::operation_aborted) {
         co_return lost(fmt::format("no connection to {} within {:g} s; check --server and the network", where,
                                    seconds(options_.connect_timeout)));
     }
-    const auto refused = std::get<0>(std::get<0>(connected));
     if (refused) {
         co_return lost(
             fmt::format("cannot connect to {}: {}; is scanloom-server running there?", where, refused.message()));

@@ -52,12 +52,16 @@ public:
 
     /// Completes when every scan is durable. Those the server holds from earlier runs are passed over.
     /// Errors  the server's, if it is final; kTimeout when nothing moves for give_up_after or not all sent scans
-    ///         were acknowledged within drain_max of stop(); kShuttingDown when stop() came before the end of a source
-    ///         that has one; kConflict when the server holds more scans than the source has; those of the source.
+    ///         were acknowledged within drain_max of stop(); those of outcome_when_interrupted(); kConflict when the
+    ///         server holds more scans than the source has; those of the source.
     [[nodiscard]] boost::asio::awaitable<Result<>> run();
 
     /// No more scans from the source; run() completes once those taken are durable, or after drain_max.
     void stop();
+
+    /// What it comes to when it is left now, after stop().
+    /// Errors  kShuttingDown: scans were sent and not acknowledged, or the source has an end and is not there yet.
+    [[nodiscard]] Result<> outcome_when_interrupted() const;
 
     [[nodiscard]] UplinkStatus status() const;
 

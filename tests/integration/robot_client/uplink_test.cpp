@@ -262,6 +262,7 @@ TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     EXPECT_GE(status.last, 5U);
     EXPECT_LT(status.last, kScans);
     EXPECT_EQ(status.acknowledged, status.last);
+    EXPECT_TRUE(uplink_->outcome_when_interrupted()) << "leaving at once would have lost nothing either";
     expect_all_stored_once(status.last);
     EXPECT_EQ(server_->goodbyes(), 1);
 }
@@ -335,6 +336,7 @@ TEST_F(UplinkTest, StopDoesNotWaitForeverForAcknowledgements) {
     const auto outcome = run(made);
     ASSERT_FALSE(outcome);
     EXPECT_THAT(outcome.error().message, HasSubstr("were not acknowledged within 0.2 s"));
+    EXPECT_THAT(uplink_->outcome_when_interrupted().error().message, HasSubstr("scans were acknowledged"));
 }
 
 TEST_F(UplinkTest, TheHelloIsTheSameOnEveryLink) {
