@@ -5,7 +5,6 @@
 #include <boost/iostreams/filtering_streambuf.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -18,7 +17,7 @@ namespace io = boost::iostreams;
 
 enum class Packing { kPlain, kGzip, kBzip2 };
 
-/// Of the bytes unpacked at a time: what an error leaves unread is less than that.
+/// Unpacked at a time: of what stands before damaged data not much more than that is lost.
 constexpr std::streamsize kUnpackBytes = 4096;
 
 Packing packing_of(std::istream& file) {
@@ -60,10 +59,11 @@ struct LineReader::State {
 Error LineReader::State::cannot_unpack() const {
     const bool is_gzip = packing == Packing::kGzip;
     const std::string readable =
-        text_bytes == 0 ? "nothing of it can be read; get the file again"
-                        : fmt::format("only its first {} lines ({} bytes of text) can be read; get the file again, or "
-                                      "unpack those with {} and replay them",
-                                      line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
+        text_bytes == 0
+            ? "nothing of it could be read; get the file again"
+            : fmt::format("only its first {} lines ({} bytes of text) could be read; get the file again, or "
+                          "unpack those with {} and replay them",
+                          line_number, text_bytes, is_gzip ? "zcat" : "bzcat");
     return {Errc::kMalformed,
             fmt::format("{}: the {} data is damaged or cut short: {}", path, is_gzip ? "gzip" : "bzip2", readable)};
 }
@@ -71,11 +71,8 @@ Error LineReader::State::cannot_unpack() const {
 Result<> LineReader::State::refill() {
     chunk_begin = chunk_end = 0;
     try {
-        // Only what is unpacked already is taken, so that an error behind it does not take it away.
-        if (text.sgetc() != std::char_traits<char>::eof()) {
-            const auto size = std::clamp<std::streamsize>(text.in_avail(), 1, kUnpackBytes);
-            chunk_end = static_cast<std::size_t>(text.sgetn(chunk.data(), size));
-        }
+        const std::streamsize count = text.sgetn(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+        if (count > 0) chunk_end = static_cast<std::size_t>(count);
     } catch (const std::exception&) {
         return cannot_unpack();
     }
