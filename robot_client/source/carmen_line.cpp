@@ -82,7 +82,7 @@ Result<Pose2> read_pose(std::string_view field, TokenSpan triple) {
 }
 
 /// `n r1..rn` at the front of `tokens`; takes them away.
-Result<std::vector<double>> take_ranges(TokenSpan& tokens) {
+Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     const auto count = tokens.empty() ? std::nullopt : to_count(tokens[0]);
     if (!count) return malformed("the number of beams is missing or no number");
     if (*count == 0) return Error{Errc::kInvalidField, "0 beams; a scan has at least 1"};
@@ -92,11 +92,11 @@ Result<std::vector<double>> take_ranges(TokenSpan& tokens) {
     if (tokens.size() - 1 < *count) {
         return malformed(fmt::format("{} beams are announced, {} values follow", *count, tokens.size() - 1));
     }
-    std::vector<double> ranges(*count);
+    std::vector<RangeMm> ranges(*count);
     for (std::size_t i = 0; i < *count; ++i) {
         const auto range = to_number(tokens[1 + i]);
         if (!range) return malformed(fmt::format("range {} is '{}', not a number", i + 1, shown(tokens[1 + i])));
-        ranges[i] = *range;
+        ranges[i] = std::isfinite(*range) ? to_range_mm(*range) : kInvalidRange;
     }
     tokens = tokens.subspan(1 + *count);
     return ranges;

@@ -2,7 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
-#include "common/scan/beam_angles.hpp"
+#include "common/scan/scan.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,13 @@ namespace scanloom::robot {
 
 enum class CarmenKind { kFlaser, kRobotLaser, kRawLaser };
 
-/// One laser line as written. Metres, radians, seconds.
+/// One laser line as written, its readings rounded. Metres, radians, seconds.
 struct CarmenScan {
     CarmenKind kind = CarmenKind::kFlaser;
     std::uint32_t sensor = 0;        ///< 0 front (FLASER, ROBOTLASER1, RAWLASER1), 1 rear (ROBOTLASER2)
     UniformAngles angles;            ///< first beam on the right, counter-clockwise
     std::optional<double> range_max; ///< what the line states; FLASER states nothing
-    std::vector<double> ranges;      ///< NaN and infinite where the log says so
+    std::vector<RangeMm> ranges;     ///< what is no finite length is kInvalidRange: in a log that is a failed reading
     Pose2 laser;                     ///< FLASER: first triple; ROBOTLASER: laser pose; RAWLASER: not given
     Pose2 robot;                     ///< FLASER: second triple (odometry); ROBOTLASER: robot pose; RAWLASER: not given
     std::optional<double> stamp;     ///< ipc_timestamp, else logger_timestamp, else nothing

@@ -82,11 +82,8 @@ std::vector<RangeMm> CarmenObserver::ranges_of(const CarmenScan& line, double ra
     const RangeMm no_return = no_return_of(line.kind, options_) == NoReturn::kFree ? kNoReturn : kInvalidRange;
     const RangeMm range_max_mm = to_range_mm(range_max);
     std::vector<RangeMm> ranges(line.ranges.size());
-    std::transform(line.ranges.begin(), line.ranges.end(), ranges.begin(), [&](double range) {
-        if (!std::isfinite(range)) return kInvalidRange; // in a log this is a failed reading, not a long one
-        const RangeMm mm = to_range_mm(range);
-        return mm >= range_max_mm ? no_return : mm;
-    });
+    std::transform(line.ranges.begin(), line.ranges.end(), ranges.begin(),
+                   [&](RangeMm range) { return range == kInvalidRange || range < range_max_mm ? range : no_return; });
     return ranges;
 }
 

@@ -40,7 +40,7 @@ std::string flaser(std::size_t beams) {
 TEST(CarmenLine, FlaserCarriesLaserPoseThenOdometry) {
     const auto scan = scan_of("FLASER 3 1.0 2.5 81.83 1 2 0.3 4 5 0.6 13.5 host 0.25");
     EXPECT_EQ(scan.kind, CarmenKind::kFlaser);
-    EXPECT_EQ(scan.ranges, (std::vector{1.0, 2.5, 81.83}));
+    EXPECT_EQ(scan.ranges, (std::vector<RangeMm>{1000, 2500, 81'830}));
     EXPECT_EQ(scan.laser, (Pose2{1, 2, 0.3}));
     EXPECT_EQ(scan.robot, (Pose2{4, 5, 0.6}));
     EXPECT_EQ(scan.stamp, 13.5);
@@ -100,12 +100,9 @@ TEST(CarmenLine, RawLaserNeedsNoPoses) {
     }
 }
 
-TEST(CarmenLine, FailedReadingsAreKeptAsSuch) {
-    const auto scan = scan_of("FLASER 5 nan inf -inf -1 1e999 1 2 0.3 4 5 0.6 13.5 host 0.25");
-    EXPECT_TRUE(std::isnan(scan.ranges[0]));
-    EXPECT_TRUE(std::isinf(scan.ranges[1]));
-    EXPECT_EQ(scan.ranges[3], -1.0);
-    EXPECT_TRUE(std::isinf(scan.ranges[4]));
+TEST(CarmenLine, ReadingsAreMillimetresAndFailedOnesInvalid) {
+    const auto scan = scan_of("FLASER 6 nan inf -inf -1 1e999 5e6 1 2 0.3 4 5 0.6 13.5 host 0.25");
+    EXPECT_EQ(scan.ranges, (std::vector<RangeMm>{0, 0, 0, 0, 0, kNoReturn})) << "only a length can be a long one";
 }
 
 TEST(CarmenLine, OtherLinesAreReadOver) {
