@@ -22,6 +22,10 @@ namespace {
 /// For robots and viewers to take their last answers; whoever has not by then is cut off.
 constexpr auto kPatience = std::chrono::seconds(15);
 
+/// For the sessions to weave and acknowledge what they were given; the rest stays in the log for the next start,
+/// or with the robots.
+constexpr auto kWeavingPatience = std::chrono::seconds(5);
+
 double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -37,7 +41,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)), // one large map must not hold up all tiles
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
-      patience_(io_) {}
+      patience_(io_), weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -123,11 +127,15 @@ void Server::announce() const {
 void Server::wait_for_signal() {
     signals_.emplace(io_, SIGTERM, SIGINT);
     signals_->async_wait([this](const boost::system::error_code& error, int) {
-        if (!error) drain();
+        if (error) return;
+        signals_->async_wait([this](const boost::system::error_code& cancelled, int) {
+            if (!cancelled) sessions_.hurry(); // asked twice
+        });
+        drain();
     });
 }
 
-/// Stops accepting robots; lets every session make durable and acknowledge what it was given; then
+/// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then
 /// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
@@ -136,9 +144,17 @@ void Server::drain() {
     patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();
     });
+    weaving_patience_.expires_after(kWeavingPatience);
+    weaving_patience_.async_wait([this](const boost::system::error_code& error) {
+        if (!error) sessions_.hurry();
+    });
     asio::post(changing_, [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();
-        http_->stop([this] { patience_.cancel(); });
+        asio::post(io_, [this] { weaving_patience_.cancel(); });
+        http_->stop([this] {
+            patience_.cancel();
+            signals_->cancel();
+        });
     });
 }
 

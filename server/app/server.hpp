@@ -67,6 +67,7 @@ private:
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;
     boost::asio::steady_timer patience_;
+    boost::asio::steady_timer weaving_patience_;
 };
 
 } // namespace scanloom::app
