@@ -9,7 +9,6 @@
 
 #include <atomic>
 #include <future>
-#include <latch>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -335,20 +334,21 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
 /// Holds up every request it is told to, until it goes.
 class Gate {
 public:
-    explicit Gate(std::size_t awaited) : all_in_(static_cast<std::ptrdiff_t>(awaited)) {}
+    explicit Gate(int awaited) : awaited_(awaited) {}
 
     void pass_slowly() {
-        all_in_.count_down();
+        if (--awaited_ == 0) all_in_.set_value();
         opened_.wait(false);
     }
-    void wait_until_all_are_in() { all_in_.wait(); }
+    void wait_until_all_are_in() { all_in_.get_future().wait(); }
     void open() {
         opened_ = true;
         opened_.notify_all();
     }
 
 private:
-    std::latch all_in_;
+    std::atomic<int> awaited_;
+    std::promise<void> all_in_;
     std::atomic<bool> opened_ = false;
 };
 
@@ -400,9 +400,9 @@ TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
     HttpClient first(server.port());
     first.send(post("/api/v1/sessions"));
     gate.wait_until_all_are_in();
-    const auto refused = answer_to(server, post("/api/v1/sessions"));
+    auto refused = answer_to(server, post("/api/v1/sessions"));
     EXPECT_EQ(refused.status, 503);
-    EXPECT_EQ(refused.fields.at("retry-after"), "1");
+    EXPECT_EQ(refused.fields["retry-after"], "1");
     gate.open();
     EXPECT_EQ(first.read().status, 200);
     EXPECT_EQ(answer_to(server, post("/api/v1/sessions")).status, 200);
