@@ -71,7 +71,7 @@ TEST_F(IngestTest, SilentConnectionsKeepNoRobotOut) {
     for (int n = 0; n < 8; ++n) EXPECT_FALSE(silent[n]->receive()) << "the oldest made room";
     const auto second = welcomed(port(), hello("r2"));
     RobotSocket third(port());
-    expect_refused(third, Errc::kTooLarge, true, "2 robots are connected");
+    expect_refused(third, Errc::kOverloaded, true, "2 robots are connected");
     silent.clear();
 }
 
