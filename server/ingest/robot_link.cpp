@@ -9,7 +9,6 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -59,9 +58,8 @@ bool is_retryable(Errc code) noexcept {
 }
 
 RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
-    : socket_(std::move(socket)), services_(services), config_(config), written_(socket_.get_executor()),
+    : socket_(std::move(socket)), services_(services), config_(config), outbox_(socket_),
       deadline_timer_(socket_.get_executor()) {
-    written_.expires_at(std::chrono::steady_clock::time_point::max());
     boost::system::error_code ignored;
     const auto endpoint = socket_.remote_endpoint(ignored);
     peer_ = fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
@@ -134,11 +132,12 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
-    send(wire::Welcome{session::tag_of(session_->info()), joined->last_durable_seq,
-                       wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
-                                    static_cast<std::uint32_t>(kBeamsMax),
-                                    static_cast<std::uint32_t>(kScansPerBatchMax)},
-                       config_.credit_bytes});
+    outbox_.send(wire::Welcome{session::tag_of(session_->info()), joined->last_durable_seq,
+                               wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
+                                            static_cast<std::uint32_t>(kBeamsMax),
+                                            static_cast<std::uint32_t>(kScansPerBatchMax)},
+                               config_.credit_bytes},
+                 shared_from_this());
     co_return Result<>();
 }
 
@@ -209,8 +208,8 @@ Result<> RobotLink::handle(wire::Message message) {
         return {};
     }
     if (const auto* ping = std::get_if<wire::Ping>(&message)) {
-        if (outbox_.size() > kReadBytes) return Error{Errc::kTooLarge, "too many pings without reading the pongs"};
-        send(wire::Pong{ping->nonce});
+        if (outbox_.waiting() > kReadBytes) return Error{Errc::kTooLarge, "too many pings without reading the pongs"};
+        outbox_.send(wire::Pong{ping->nonce}, self);
         return {};
     }
     if (std::holds_alternative<wire::Pong>(message)) return {};
@@ -247,9 +246,7 @@ void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
     asio::post(socket_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
         self->under_way_ -= std::min(bytes, self->under_way_);
         self->described_ = std::min(self->described_, self->under_way_);
-        if (self->last_words_) return;
-        self->ack_ = wire::Ack{durable_seq, durable_seq, self->config_.credit_bytes};
-        if (!self->writing_) asio::co_spawn(self->socket_.get_executor(), self->write_outbox(), asio::detached);
+        self->outbox_.acknowledge({durable_seq, durable_seq, self->config_.credit_bytes}, self);
     });
 }
 
@@ -263,44 +260,18 @@ void RobotLink::end(const Error& error) {
     stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
 }
 
-void RobotLink::send(const wire::Message& message) {
-    put_ack_into_outbox(); // what was acknowledged first is told first
-    wire::encode(message, outbox_);
-    if (!writing_) asio::co_spawn(socket_.get_executor(), write_outbox(), asio::detached);
-}
-
-void RobotLink::put_ack_into_outbox() {
-    if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), outbox_);
-}
-
-/// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
-asio::awaitable<void> RobotLink::write_outbox() {
-    if (writing_) co_return;
-    const auto self = shared_from_this();
-    writing_ = true;
-    while (ack_ || !outbox_.empty()) {
-        put_ack_into_outbox();
-        const std::string sending = std::exchange(outbox_, {});
-        const auto [error, bytes] = co_await asio::async_write(socket_, asio::buffer(sending), kAsTuple);
-        if (error) break;
-    }
-    writing_ = false;
-    written_.cancel();
-}
-
 /// Tells the robot why, and waits for it to hang up: closing at once with its bytes unread would
 /// reset the connection and take the error frame with it.
 asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
     ended_by_ = why.error;
     expect_something_within(config_.farewell_deadline);
     if (!session_ && decoder_.holds_http()) {
-        outbox_ += in_http(why.error.message); // whoever speaks HTTP to this port reads no frames
-        co_await write_outbox();
+        outbox_.send_bytes(in_http(why.error.message), shared_from_this()); // who speaks HTTP reads no frames
     } else {
-        send(why);
+        outbox_.send(why, shared_from_this());
     }
-    last_words_ = true;
-    if (writing_) co_await written_.async_wait(kAsTuple);
+    outbox_.close();
+    co_await outbox_.emptied();
     boost::system::error_code ignored;
     socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
     for (;;) {

@@ -2,6 +2,7 @@
 
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "server/ingest/outbox.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
@@ -72,12 +73,9 @@ private:
     [[nodiscard]] Result<> charge_batch();
     [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
-    boost::asio::awaitable<void> write_outbox();
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     void start_watch();
     void hang_up();
-    void send(const wire::Message& message);
-    void put_ack_into_outbox();
     void end(const Error& error);
     void expect_something_within(std::chrono::steady_clock::duration time);
 
@@ -95,11 +93,7 @@ private:
     std::size_t described_ = 0; // at least as many of them as are of sensor descriptions, never more than all
     bool goodbye_ = false;
 
-    std::string outbox_;           // bounded: answers to what was read, and at most one ack
-    std::optional<wire::Ack> ack_; // the newest, not yet in the outbox
-    bool writing_ = false;
-    bool last_words_ = false;           // the error is in the outbox; nothing may follow it
-    boost::asio::steady_timer written_; // never runs out; cancelled when the outbox is empty
+    Outbox outbox_;
 
     std::optional<Error> ended_by_; // why the link ends, when not by the peer
     boost::asio::cancellation_signal stop_reading_;

@@ -1,0 +1,63 @@
+#include "server/ingest/outbox.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+#include <utility>
+
+namespace scanloom::ingest {
+namespace asio = boost::asio;
+
+Outbox::Outbox(asio::ip::tcp::socket& socket) : socket_(socket), emptied_(socket.get_executor()) {
+    emptied_.expires_at(std::chrono::steady_clock::time_point::max());
+}
+
+void Outbox::send(const wire::Message& message, std::shared_ptr<void> owner) {
+    if (closed_) return;
+    put_ack(); // what was acknowledged first is told first
+    wire::encode(message, bytes_);
+    start(std::move(owner));
+}
+
+void Outbox::send_bytes(std::string_view bytes, std::shared_ptr<void> owner) {
+    if (closed_) return;
+    bytes_ += bytes;
+    start(std::move(owner));
+}
+
+void Outbox::acknowledge(const wire::Ack& ack, std::shared_ptr<void> owner) {
+    if (closed_) return;
+    ack_ = ack;
+    start(std::move(owner));
+}
+
+void Outbox::put_ack() {
+    if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), bytes_);
+}
+
+void Outbox::start(std::shared_ptr<void> owner) {
+    if (std::exchange(writing_, true)) return;
+    asio::co_spawn(socket_.get_executor(), write(std::move(owner)), asio::detached);
+}
+
+/// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
+asio::awaitable<void> Outbox::write([[maybe_unused]] std::shared_ptr<void> owner) {
+    while (ack_ || !bytes_.empty()) {
+        put_ack();
+        const std::string sending = std::exchange(bytes_, {});
+        const auto [error, written] =
+            co_await asio::async_write(socket_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
+        if (error) break;
+    }
+    writing_ = false;
+    emptied_.cancel();
+}
+
+asio::awaitable<void> Outbox::emptied() {
+    if (writing_) co_await emptied_.async_wait(asio::as_tuple(asio::use_awaitable));
+}
+
+} // namespace scanloom::ingest

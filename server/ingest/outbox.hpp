@@ -1,0 +1,54 @@
+#pragma once
+
+#include "common/wire/messages.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace scanloom::ingest {
+
+/// What a link still has to write to its robot, in order; of acks only the newest.
+///
+/// Queue   "link's outbox": answers to what was read, which whoever reads bounds by waiting(), and one ack.
+/// Thread  the socket's executor, a strand.
+class Outbox {
+public:
+    /// `socket` must outlive this. `owner` keeps both alive while something is being written.
+    explicit Outbox(boost::asio::ip::tcp::socket& socket);
+
+    void send(const wire::Message& message, std::shared_ptr<void> owner);
+    void send_bytes(std::string_view bytes, std::shared_ptr<void> owner);
+
+    /// Replaces an ack that was not written yet.
+    void acknowledge(const wire::Ack& ack, std::shared_ptr<void> owner);
+
+    /// Nothing may follow what is in it.
+    void close() { closed_ = true; }
+
+    /// Bytes that are not being written yet.
+    [[nodiscard]] std::size_t waiting() const noexcept { return bytes_.size(); }
+
+    /// Returns when all is written, or the connection has failed.
+    [[nodiscard]] boost::asio::awaitable<void> emptied();
+
+private:
+    void put_ack();
+    void start(std::shared_ptr<void> owner);
+    [[nodiscard]] boost::asio::awaitable<void> write(std::shared_ptr<void> owner);
+
+    boost::asio::ip::tcp::socket& socket_;
+    std::string bytes_;
+    std::optional<wire::Ack> ack_; // the newest, not in bytes_ yet
+    bool writing_ = false;
+    bool closed_ = false;
+    boost::asio::steady_timer emptied_; // never runs out; cancelled when there is nothing left
+};
+
+} // namespace scanloom::ingest
