@@ -37,12 +37,6 @@ bool needs_sessions(Operation operation) {
     }
 }
 
-/// Whether it is about what one session holds. Deleting is not: a damaged session can be deleted, too.
-bool asks_of_a_session(Operation operation) {
-    return needs_sessions(operation) && operation != Operation::kListSessions &&
-           operation != Operation::kCreateSession && operation != Operation::kDeleteSession;
-}
-
 } // namespace
 
 Response Api::answer(const Request& request) {
@@ -75,9 +69,6 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
         return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
     const Call call{request, match.arguments, target.query};
-    if (asks_of_a_session(match.operation)) {
-        if (auto refusal = refusal_if_damaged(sessions_, call)) return std::move(*refusal);
-    }
     switch (match.operation) {
     case Operation::kViewer: return get_viewer(web_, call);
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);

@@ -73,7 +73,7 @@ Response answer_guarded(const Answer& answer, const Request& request) {
         return answer(request);
     } catch (const std::exception& failure) {
         spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());
-        return problem(Status::internal_server_error, "the server failed to answer; its log says why",
+        return problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
                        instance_of(request.target));
     }
 }
@@ -184,8 +184,8 @@ net::awaitable<Response> Connection::compute(Request request) {
     if (lane == Lane::kChanging) {
         change = service_->changes.try_take();
         if (!change) {
-            co_return problem(Status::service_unavailable,
-                              "too many sessions are being created or deleted at this moment; try again soon",
+            co_return problem(Error{Errc::kOverloaded, "too many sessions are being created or deleted at this moment; "
+                                                       "try again soon"},
                               instance_of(request.target));
         }
     }

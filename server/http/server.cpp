@@ -96,7 +96,7 @@ void Server::take(tcp::socket socket) {
 /// Says why, as far as that is possible without waiting: nothing may pile up here.
 void Server::refuse(tcp::socket socket) {
     service_->counters.connections_refused.Increment();
-    const auto response = problem(Status::service_unavailable, "too many connections are open; try again later", "");
+    const auto response = problem(Error{Errc::kOverloaded, "too many connections are open; try again later"}, "");
     const auto text = head_text(response, false, "") + std::string(response.body.bytes());
     boost::system::error_code ignored;
     socket.non_blocking(true, ignored);

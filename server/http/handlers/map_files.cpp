@@ -80,8 +80,7 @@ Result<Response> get_image(const session::SessionRegistry& sessions, const Slots
     };
     auto image = std::make_shared<Image>(Image{images.try_take(), {}});
     if (!image->slot) {
-        return problem(Status::service_unavailable, "other map images are being made and sent; try again soon",
-                       instance_of(call.request.target));
+        return Error{Errc::kOverloaded, "other map images are being made and sent; try again soon"};
     }
     image->bytes = write(tiles::render_map(*wanted->snapshot, wanted->frame));
     return map_answer(content_type, Body(std::shared_ptr<const tiles::Bytes>(image, &image->bytes)), wanted->etag);

@@ -2,28 +2,23 @@
 
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
-#include "server/http/problem.hpp"
 
 #include <fmt/format.h>
 
 namespace scanloom::http {
+
 Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions, const Call& call) {
     const auto& name = call.arguments["session"];
     if (auto session = sessions.find(name)) return session;
+    const auto damaged = sessions.damaged();
+    if (const auto found = damaged.find(name); found != damaged.end()) {
+        return Error{Errc::kInternal,
+                     fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets "
+                                 "it",
+                                 name, found->second.message)};
+    }
     return Error{Errc::kNotFound,
                  fmt::format("there is no session {}; GET /api/v1/sessions lists them", in_quotes(name))};
-}
-
-std::optional<Response> refusal_if_damaged(const session::SessionRegistry& sessions, const Call& call) {
-    const auto& name = call.arguments["session"];
-    if (sessions.find(name)) return std::nullopt;
-    const auto damaged = sessions.damaged();
-    const auto found = damaged.find(name);
-    if (found == damaged.end()) return std::nullopt;
-    return problem(Status::internal_server_error,
-                   fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets it",
-                               name, found->second.message),
-                   instance_of(call.request.target));
 }
 
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {

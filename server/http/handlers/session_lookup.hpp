@@ -2,14 +2,12 @@
 
 #include "common/error/error.hpp"
 #include "server/http/handlers/call.hpp"
-#include "server/http/response.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/tiles/tile_version.hpp"
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 
 namespace scanloom::http {
@@ -17,12 +15,9 @@ namespace scanloom::http {
 inline constexpr std::string_view kOccupancy = "occupancy";
 
 /// The session of the call's path.
-/// Errors  kNotFound.
+/// Errors  kNotFound; kInternal: its log is damaged, and so it could not be recovered.
 [[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions,
                                                                      const Call& call);
-
-/// The answer, 500, when the log of the call's session is damaged; nothing when the session can be served or is none.
-[[nodiscard]] std::optional<Response> refusal_if_damaged(const session::SessionRegistry& sessions, const Call& call);
 
 /// How this program makes maps from logs, and bytes from maps.
 struct MakingVersions {
