@@ -40,8 +40,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                http::WebFiles web)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)), // one large map must not hold up all tiles
-      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch), api_(sessions_, *log_, metrics_, std::move(web)),
-      patience_(io_), weaving_patience_(io_) {}
+      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
+      api_(sessions_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -52,6 +52,7 @@ Server::~Server() {
 void Server::join_pools() {
     telling_.join();
     changing_.join();
+    checkpointing_.join();
     serving_.join();
     weaving_.join();
 }

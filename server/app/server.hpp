@@ -59,6 +59,7 @@ private:
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
     boost::asio::thread_pool changing_{2};
+    boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool telling_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;

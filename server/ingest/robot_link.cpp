@@ -155,7 +155,10 @@ asio::awaitable<Result<std::shared_ptr<session::Session>>> RobotLink::find_or_cr
         if (created.error().code != Errc::kAlreadyExists) co_return created;
         session = services_.sessions.find(hello.session); // another robot was quicker
     }
-    if (!session && services_.sessions.damaged().contains(hello.session)) {
+    const auto damaged = services_.sessions.damaged();
+    const auto damage = damaged.find(hello.session);
+    if (!session && damage != damaged.end()) {
+        if (damage->second.code == Errc::kOverloaded) co_return damage->second; // nothing is wrong with it
         co_return Error{Errc::kConflict, fmt::format("hello.session is '{}', whose log is damaged; delete the session "
                                                      "first, or choose another name",
                                                      hello.session)};

@@ -122,7 +122,7 @@ public:
     }
 
     void write() {
-        if (stop_ && written_) written_ = Error{Errc::kGone, "the session is being deleted"};
+        if (stop_ && written_) written_ = Error{Errc::kShuttingDown, "the session is being closed"};
         if (written_) written_ = log_.write_checkpoint(session_, std::exchange(parts_, {}));
         parts_.clear();
         bytes_ = 0;

@@ -27,7 +27,7 @@ namespace scanloom::session {
 
 /// Writes the parts that changed after `since`; for 0 all of them, in place of whatever was there.
 /// Pre     snapshot and state were taken at the same revision.
-/// Errors  kStoreFailed; kGone: `stop` became true between two pieces; kOverloaded: memory ran out.
+/// Errors  kStoreFailed; kShuttingDown: `stop` became true between two pieces; kOverloaded: memory ran out.
 /// Thread  any but the store's; waits for the disk.
 [[nodiscard]] Result<> write_checkpoint(store::ScanLog& log, store::SessionId session,
                                         const mapping::Snapshot& snapshot, const mapping::ProjectionState& state,

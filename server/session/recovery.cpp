@@ -58,7 +58,7 @@ Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const m
     try {
         return recover_unguarded(log, session, config, stop);
     } catch (const std::bad_alloc&) {
-        return Error{Errc::kOverloaded, "there is no memory left for its map"};
+        return Error{Errc::kOverloaded, "there is no memory left for its map; free some and start the server again"};
     }
 }
 

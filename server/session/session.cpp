@@ -25,10 +25,10 @@ Error full(std::size_t chunks, std::size_t chunks_max) {
 
 Session::Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
                  boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
-                 const SessionLimits& limits)
-    : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits), strand_(std::move(compute)),
-      members_(info_, *counters_), projection_(std::move(projection)), appended_(projection_.revision()),
-      checkpointed_(checkpointed) {
+                 const SessionLimits& limits, std::optional<boost::asio::any_io_executor> may_wait)
+    : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
+      may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), members_(info_, *counters_),
+      projection_(std::move(projection)), appended_(projection_.revision()), checkpointed_(checkpointed) {
     members_.restore(projection_.state());
     publish();
 }
@@ -184,21 +184,22 @@ void Session::write_checkpoint() {
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
                   since = checkpointed_] {
         const auto written =
-            session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->discarded_);
-        if (!written) spdlog::warn("session '{}': no checkpoint: {}", self->info_.name, written.error().message);
+            session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
+        if (!written && !self->hurried_)
+            spdlog::warn("session '{}': no checkpoint: {}", self->info_.name, written.error().message);
         self->on_strand([revision = written ? state.revision : since](Session& session) {
             session.checkpointed_ = revision;
             session.checkpointing_ = false;
             session.finish_closing();
         });
     };
-    boost::asio::post(strand_.get_inner_executor(), std::move(write)); // beside the strand: folding goes on
+    boost::asio::post(may_wait_, std::move(write)); // beside the strand: folding goes on
 }
 
 // When things go wrong, and the end
 
-/// The log could not be written. What the disk holds is unknown until the store is opened again, so
-/// nothing more is written; the maps stay readable as they are.
+/// The log could not be written, and what the disk holds is unknown until the store is opened again; or a durable
+/// entry could not be woven. Nothing more is taken; the maps stay readable as they are.
 void Session::stop_writing(const Error& error) {
     spdlog::error("session '{}': {}", info_.name, error.message);
     refusing_ = error;
@@ -229,7 +230,6 @@ void Session::hurry() {
 }
 
 void Session::discard(Error reason, std::function<void()> done) {
-    discarded_ = true;
     hurried_ = true;
     close(std::move(reason), std::move(done));
 }
@@ -240,11 +240,10 @@ void Session::finish_closing() {
     if (hurried_) {
         members_.fail_all(*refusing_);
         drop_what_is_under_way();
-        publish(); // part of a group may have been folded
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     members_.fail_all(*refusing_);
-    if (projection_.revision() > checkpointed_ && !broken_ && !discarded_ && !final_checkpoint_tried_) {
+    if (projection_.revision() > checkpointed_ && !broken_ && !hurried_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return write_checkpoint();
     }

@@ -34,11 +34,12 @@ namespace scanloom::session {
 class Session : public std::enable_shared_from_this<Session> {
 public:
     /// A session whose projection has been recovered from the log up to its end.
-    /// `checkpointed` is the revision that its stored checkpoint holds.
+    /// `checkpointed` is the revision that its stored checkpoint holds. Checkpoints are written on `may_wait`, by
+    /// default on `compute`, which they would hold up.
     Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
             boost::asio::any_io_executor compute,
             std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>(),
-            const SessionLimits& limits = {});
+            const SessionLimits& limits = {}, std::optional<boost::asio::any_io_executor> may_wait = std::nullopt);
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
@@ -74,10 +75,10 @@ public:
     void close(Error reason, std::function<void()> done);
 
     /// Lets close() end soon: what is not durable yet is dropped, what is not folded yet will be by the next
-    /// recovery.
+    /// recovery, no further piece of a checkpoint is written.
     void hurry();
 
-    /// Closes a session that is to be deleted: drops what is under way, writes no checkpoint.
+    /// Closes a session that is to be deleted: close() in a hurry.
     void discard(Error reason, std::function<void()> done);
 
 private:
@@ -102,6 +103,7 @@ private:
     store::ScanLog& log_;
     const std::shared_ptr<SessionCounters> counters_;
     const SessionLimits limits_;
+    boost::asio::any_io_executor may_wait_;
     boost::asio::strand<boost::asio::any_io_executor> strand_;
     Members members_;
 
@@ -118,11 +120,10 @@ private:
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why nothing more is taken
-    bool broken_ = false;           // the log failed: what it holds is unknown, nothing more is written
+    bool broken_ = false;           // the log or the memory failed: nothing more is appended, folded or written
     std::function<void()> closed_;  // to be called when closing is done
 
-    std::atomic<bool> hurried_ = false;   // set from any thread, as the strand may be busy
-    std::atomic<bool> discarded_ = false; // likewise
+    std::atomic<bool> hurried_ = false; // set from any thread, as the strand may be busy
 
     mutable std::mutex published_mutex_; // guards the pointer, held for a copy only
     std::shared_ptr<const mapping::Snapshot> published_;

@@ -13,8 +13,9 @@
 
 namespace scanloom::session {
 
-SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now)
-    : log_(log), compute_(std::move(compute)), now_(std::move(now)) {}
+SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now,
+                                 std::optional<boost::asio::any_io_executor> may_wait)
+    : log_(log), compute_(compute), may_wait_(may_wait.value_or(compute)), now_(std::move(now)) {}
 
 Result<> SessionRegistry::recover() {
     const auto stored = log_.sessions();
@@ -64,14 +65,14 @@ Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSessi
     }
     return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
                                      std::move(recovered->projection), recovered->checkpointed, log_, compute_,
-                                     counters_);
+                                     counters_, SessionLimits{}, may_wait_);
 }
 
 /// A long recovery that is stopped again and again must come to its end all the same.
 void SessionRegistry::keep_progress(store::SessionId id, const std::string& name, Recovered& recovered) {
     const auto snapshot = recovered.projection.snapshot();
-    const auto written = write_checkpoint(log_, id, snapshot, recovered.projection.state(), recovered.checkpointed,
-                                          /*stop=*/false);
+    const auto written =
+        write_checkpoint(log_, id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried_);
     spdlog::info("session '{}': recovery stopped after entry {}{}", name, snapshot.revision,
                  written ? "; the next start continues there" : "");
 }
@@ -126,8 +127,9 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
     const auto id =
         log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
     if (!id) return id.error();
-    auto session = std::make_shared<Session>(SessionInfo{*id, std::string(name), created, *config},
-                                             mapping::Projection(*config), 0, log_, compute_, counters_);
+    auto session =
+        std::make_shared<Session>(SessionInfo{*id, std::string(name), created, *config}, mapping::Projection(*config),
+                                  0, log_, compute_, counters_, SessionLimits{}, may_wait_);
     const std::unique_lock lock(mutex_);
     sessions_.emplace(name, session);
     return session;
@@ -171,6 +173,7 @@ void SessionRegistry::drain() {
 }
 
 void SessionRegistry::hurry() {
+    hurried_ = true;
     for (const auto& session : list()) session->hurry();
 }
 

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <string>
 #include <string_view>
@@ -25,7 +26,9 @@ namespace scanloom::session {
 class SessionRegistry {
 public:
     /// `now` gives seconds since the epoch, for SessionInfo::created.
-    SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now);
+    /// Sessions weave on `compute` and write checkpoints on `may_wait`, by default the same.
+    SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now,
+                    std::optional<boost::asio::any_io_executor> may_wait = std::nullopt);
 
     /// Weaves every stored session again: newest checkpoint, then the rest of its log. A session whose
     /// log is damaged is left out and listed by damaged(); the others are not held up by it. drain() stops it
@@ -72,9 +75,11 @@ private:
 
     store::ScanLog& log_;
     boost::asio::any_io_executor compute_;
+    boost::asio::any_io_executor may_wait_;
     std::function<double()> now_;
     const std::shared_ptr<SessionCounters> counters_ = std::make_shared<SessionCounters>();
     std::atomic<bool> draining_ = false;
+    std::atomic<bool> hurried_ = false;
 
     std::mutex changing_;             // held over create() and remove(), which write to the store first
     mutable std::shared_mutex mutex_; // guards the maps below

@@ -53,11 +53,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
     server.damaged.push({ name: 'broken', reason: 'entry 7 of its log is damaged' });
     painted('whole');
     await open();
-    await says(page, '#damaged', /broken.*damaged.*entry 7 of its log/s);
+    await says(page, '#damaged', /broken.*not served.*entry 7 of its log/s);
     await says(page, '#sessions', /whole/);
     await page.waitForSelector('#notice', { state: 'hidden' });
     await page.goto(`${server.address}#session=broken`);
-    await says(page, '#notice', /Session damaged.*entry 7 of its log/s);
+    await says(page, '#notice', /Session not served.*entry 7 of its log/s);
     complaints.splice(0); // the browser's own: a 500 is what was asked for
   });
 

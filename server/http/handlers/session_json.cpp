@@ -71,7 +71,9 @@ boost::json::object to_json(const session::Session& session) {
 }
 
 boost::json::object damaged_json(std::string_view name, const Error& reason) {
-    return {{"name", name}, {"state", "damaged"}, {"reason", reason.message}};
+    return {{"name", name},
+            {"state", reason.code == Errc::kOverloaded ? "not_loaded" : "damaged"},
+            {"reason", reason.message}};
 }
 
 Result<SessionRequest> parse_session_request(std::string_view body) {

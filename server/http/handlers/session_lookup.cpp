@@ -12,6 +12,10 @@ Result<std::shared_ptr<session::Session>> find_session(const session::SessionReg
     if (auto session = sessions.find(name)) return session;
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
+        if (found->second.code == Errc::kOverloaded) { // nothing is wrong with it
+            return Error{Errc::kOverloaded,
+                         fmt::format("the session {} is not loaded: {}", name, found->second.message)};
+        }
         return Error{Errc::kInternal,
                      fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets "
                                  "it",

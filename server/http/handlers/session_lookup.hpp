@@ -15,7 +15,8 @@ namespace scanloom::http {
 inline constexpr std::string_view kOccupancy = "occupancy";
 
 /// The session of the call's path.
-/// Errors  kNotFound; kInternal: its log is damaged, and so it could not be recovered.
+/// Errors  kNotFound; kInternal: its log is damaged, and so it could not be recovered;
+///         kOverloaded: it could not be loaded for want of memory.
 [[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions,
                                                                      const Call& call);
 

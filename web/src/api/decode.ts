@@ -31,7 +31,7 @@ export function decodeSessionPage(json: unknown): SessionPage {
 }
 
 function isDamaged(session: Fields): boolean {
-  return session['state'] === 'damaged';
+  return session['state'] !== undefined && session['state'] !== 'ok';
 }
 
 function decodeDamaged(session: Fields): DamagedSession {

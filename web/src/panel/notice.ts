@@ -51,7 +51,7 @@ function contentOf(state: NoticeState): Node[] {
       ];
     case 'damaged':
       return [
-        el('h2', {}, 'Session damaged'),
+        el('h2', {}, 'Session not served'),
         el('p', {}, 'The server cannot show the session ', named(state.name), ': ', state.reason, '.'),
         el('p', {}, 'The other sessions are not affected.'),
       ];

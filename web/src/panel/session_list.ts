@@ -66,6 +66,6 @@ function createRow(session: Session): SessionRow {
 function createDamagedRow({ name }: DamagedSession): DamagedRow {
   const reason = el('span', { class: 'row-detail' });
   const title = el('span', { class: 'row-name', dir: 'auto' }, name);
-  const mark = el('span', { class: 'damaged' }, 'damaged');
+  const mark = el('span', { class: 'damaged' }, 'not served');
   return { element: el('li', {}, el('div', { class: 'row' }, title, mark, reason)), reason };
 }

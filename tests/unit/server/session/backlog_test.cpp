@@ -31,7 +31,7 @@ TEST(Backlog, GroupsFollowTheOrderAndAreBoundedInEntries) {
 
 TEST(Backlog, GroupsAreBoundedInWorkButNeverEmptyForIt) {
     Backlog backlog;
-    for (const double work : {1e8, 1e8, 1e8, 9e9, 1.0}) backlog.add(scan_in(0, 0, work));
+    for (const double work : {1.4e8, 1.4e8, 1.4e8, 9e9, 1.0}) backlog.add(scan_in(0, 0, work));
     for (const std::size_t expected : {2U, 1U, 1U, 1U}) {
         EXPECT_EQ(backlog.next_group(kMuchRoom).entries.size(), expected);
     }

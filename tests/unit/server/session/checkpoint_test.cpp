@@ -275,7 +275,7 @@ TEST_F(CutCheckpointTest, WhateverOfALaterCheckpointWasWrittenIsUsed) {
 TEST_F(CutCheckpointTest, StoppingItBetweenTwoPiecesIsNoHarmEither) {
     const auto stopped = write_checkpoint(log_, id_, whole_.projection.snapshot(), whole_.projection.state(), 0, true);
     ASSERT_FALSE(stopped);
-    EXPECT_EQ(stopped.error().code, Errc::kGone);
+    EXPECT_EQ(stopped.error().code, Errc::kShuttingDown);
     expect_recovery_gives_the_whole(0);
 }
 
