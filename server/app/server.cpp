@@ -58,7 +58,9 @@ void Server::join_pools() {
 }
 
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits) {
-    auto log = store::open_rocksdb(options.store);
+    store::StoreOptions store;
+    store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
+    auto log = store::open_rocksdb(options.store, store);
     if (!log) return log.error();
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();

@@ -75,12 +75,27 @@ Result<> cut_off(const fs::path& file, std::size_t bytes) {
 
 /// RocksDB takes a damaged length near the manifest's end for its end, and would go on without the rest.
 Result<> check_manifest(const fs::path& directory) {
-    std::string name;
-    std::ifstream(directory / "CURRENT") >> name;
     std::error_code problem;
-    if (name.empty() || !fs::exists(directory / name, problem)) return {}; // RocksDB reports it
-    const auto check = checked(directory / name);
+    const fs::path current = directory / "CURRENT";
+    if (!fs::exists(current, problem)) return {}; // a new store
+    const auto name = contents_of(current);
+    if (!name) return name.error();
+    if (!name->starts_with("MANIFEST-") || name->find_first_not_of("0123456789", 9) != name->size() - 1 ||
+        !name->ends_with('\n')) {
+        return failure(fmt::format("{} of the store is damaged: it does not name a manifest; restore the store from a "
+                                   "backup",
+                                   current.native()));
+    }
+    const fs::path manifest = directory / name->substr(0, name->size() - 1);
+    if (!fs::exists(manifest, problem)) {
+        return failure(fmt::format("{} of the store is missing; restore the store from a backup", manifest.native()));
+    }
+    const auto check = checked(manifest);
     if (!check) return check.error();
+    if (check->whole_bytes == 0) {
+        return failure(
+            fmt::format("{} of the store has lost its contents; restore the store from a backup", manifest.native()));
+    }
     return {};
 }
 

@@ -1,3 +1,4 @@
+#include "server/store/compaction_watch.hpp"
 #include "server/store/crash_recovery.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
@@ -59,7 +60,9 @@ Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
     if (!version) return version.error();
     if (!*version) {
         if (is_empty(database)) return write_format(database, directory);
-        return failure(directory, "it is a RocksDB database, but not scanloom-server's; name another directory");
+        return failure(directory,
+                       "it holds a RocksDB database without the format record of scanloom-server; name another "
+                       "directory if it is another program's, restore it from a backup if it is not");
     }
     if (**version <= kFormatVersion) return {};
     return Error{Errc::kUnsupportedVersion,
@@ -112,15 +115,17 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
     const auto dropped = mend_after_crash(*locked);
     if (!dropped) return dropped.error();
 
+    const auto watch = std::make_shared<CompactionWatch>();
     rocksdb::DB* opened = nullptr;
-    const auto status = rocksdb::DB::Open(rocksdb_options(options), directory.native(), &opened);
+    const auto status = rocksdb::DB::Open(rocksdb_options(options, watch), directory.native(), &opened);
     std::unique_ptr<rocksdb::DB> database(opened);
     if (!status.ok()) return failure(directory, status);
 
     if (auto format = check_format(*database, directory); !format) return format.error();
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
-    return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped);
+    return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped, watch,
+                                            options.on_damage);
 }
 
 } // namespace scanloom::store

@@ -5,6 +5,8 @@
 #include <rocksdb/table.h>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace scanloom::store {
 namespace {
@@ -46,6 +48,9 @@ void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
     rocksdb.target_file_size_base = rocksdb.write_buffer_size;
     rocksdb.max_bytes_for_level_base = 4 * rocksdb.write_buffer_size;
     rocksdb.max_background_jobs = 2;
+    // Writes are slowed down when merging does not keep up, but never stopped: it may not go on, see CompactionWatch.
+    rocksdb.level0_stop_writes_trigger = std::numeric_limits<int>::max();
+    rocksdb.hard_pending_compaction_bytes_limit = 0;
     rocksdb.bytes_per_sync = 1 << 20; // writes tables out steadily, not in one burst that delays the log's fsync
     if (options.env != nullptr) rocksdb.env = options.env;
 }
@@ -60,12 +65,13 @@ void set_reports(rocksdb::Options& rocksdb) {
 
 } // namespace
 
-rocksdb::Options rocksdb_options(const StoreOptions& options) {
+rocksdb::Options rocksdb_options(const StoreOptions& options, std::shared_ptr<CompactionWatch> watch) {
     rocksdb::Options rocksdb;
     set_durability(rocksdb);
     set_memory(rocksdb, options);
     set_disk(rocksdb, options);
     set_reports(rocksdb);
+    rocksdb.listeners.push_back(std::move(watch));
     return rocksdb;
 }
 

@@ -79,9 +79,35 @@ struct Scan {
 } // namespace
 
 RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
-                               std::uint64_t torn_bytes_dropped)
+                               std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
+                               std::function<void(const Error&)> on_damage)
     : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
-      torn_bytes_dropped_(torn_bytes_dropped), committer_(*database_, name()) {}
+      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)), on_damage_(std::move(on_damage)),
+      committer_(*database_, name()) {
+    watch_->set_tell([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
+}
+
+RocksdbScanLog::~RocksdbScanLog() { watch_->set_tell(nullptr); }
+
+/// RocksDB would try again each second, for ever.
+void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
+    Error damage{Errc::kStoreFailed,
+                 fmt::format("the store {} is damaged: {}; what is stored from now on is whole, but its files are no "
+                             "longer merged and use more disk; restore it from a backup when you can",
+                             name(), reason.ToString())};
+    if (on_damage_) on_damage_(damage);
+    {
+        const std::lock_guard lock(damage_mutex_);
+        damage_ = std::move(damage);
+    }
+    Change change; // in its turn, as it must not meet a write that is held back
+    change.add_to = [this](rocksdb::WriteBatch&) -> Result<> {
+        database_->SetOptions({{"disable_auto_compactions", "true"}}).PermitUncheckedError(); // then it is slower
+        return {};
+    };
+    change.done = [](const Result<>&) {};
+    committer_.submit(std::move(change));
+}
 
 Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
     SessionId created = 0;
@@ -252,6 +278,8 @@ Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& vis
 StoreStats RocksdbScanLog::stats() const {
     StoreStats stats = committer_.stats();
     stats.torn_bytes_dropped = torn_bytes_dropped_;
+    const std::lock_guard lock(damage_mutex_);
+    if (damage_) stats.damage = damage_->message;
     return stats;
 }
 

@@ -1,13 +1,17 @@
 #pragma once
 
 #include "server/store/committer.hpp"
+#include "server/store/compaction_watch.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <rocksdb/db.h>
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 
 namespace scanloom::store {
 
@@ -22,7 +26,9 @@ struct LogEnds {
 class RocksdbScanLog final : public ScanLog {
 public:
     RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
-                   std::uint64_t torn_bytes_dropped);
+                   std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
+                   std::function<void(const Error&)> on_damage);
+    ~RocksdbScanLog() override;
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
     [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
@@ -39,12 +45,17 @@ private:
     [[nodiscard]] Result<> check_session(SessionId session);
     [[nodiscard]] std::string name() const { return directory_.path().native(); }
     void free_disk(SessionId session);
+    void go_on_without_compaction(const rocksdb::Status& reason);
 
     LockedDirectory directory_;
     std::unique_ptr<rocksdb::DB> database_;
     LogEnds ends_; // committer's thread only
     std::uint64_t torn_bytes_dropped_;
-    Committer committer_; // last: it is stopped before anything it uses goes
+    std::shared_ptr<CompactionWatch> watch_;
+    std::function<void(const Error&)> on_damage_;
+    mutable std::mutex damage_mutex_;
+    std::optional<Error> damage_; // guarded by damage_mutex_
+    Committer committer_;         // last: it is stopped before anything it uses goes
 };
 
 } // namespace scanloom::store

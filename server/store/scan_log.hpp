@@ -44,6 +44,7 @@ struct StoreStats {
     std::uint64_t queued_bytes = 0;        ///< waiting for the committer
     std::uint64_t torn_bytes_dropped = 0;  ///< of a write the last crash cut short, never acknowledged
     std::optional<std::string> last_error; ///< why nothing is written any more
+    std::optional<std::string> damage;     ///< found in the files while running; writing goes on
 };
 
 /// The truth: every session's append-only log of entries, and checkpoints of what was woven from them.
@@ -117,6 +118,10 @@ struct StoreOptions {
     /// Bound of write buffers and block cache together. The default suits 1 GB of memory and 24 GB:
     /// the log is read in order, so more cache would hardly be used, and the system caches files.
     std::size_t memory_bytes = std::size_t{128} << 20;
+
+    /// Called once, from a thread of the store, when a file turns out to be damaged while running. New entries are
+    /// stored as before; what the file held is told when it is read.
+    std::function<void(const Error&)> on_damage;
 
     /// The file layer, for tests that fail it. Null: the system's.
     rocksdb::Env* env = nullptr;

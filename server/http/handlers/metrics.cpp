@@ -20,6 +20,8 @@ Families store_families(const store::ScanLog& log) {
         gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
         gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
         gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
+        gauge_now("scanloom_store_damaged", "1 when a file of the store was found damaged while running.",
+                  stats.damage ? 1.0 : 0.0),
         counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
         counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),
         counter_now("scanloom_store_synced_writes_total", "Group commits, one fsync each.",

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
 #include <random>
 
 /// Files cut short by a crash, which must open, and damaged ones, which must not pass for whole.
@@ -15,9 +17,11 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr Revision kBatches = 12;
 constexpr Revision kBatchEntries = 5;
@@ -132,12 +136,14 @@ TEST_F(KilledStore, AFlippedBitInAnyByteOfTheManifestIsReported) {
 }
 
 TEST_F(KilledStore, AMissingOrDamagedCurrentIsReported) {
-    for (const char* contents : {"", "MANIFEST-999999\n", "MANIFEST", "nonsense\n"}) {
+    using namespace std::string_literals;
+    for (const auto& contents : {""s, "MANIFEST-999999\n"s, "MANIFEST"s, "nonsense\n"s, std::string(16, '\0')}) {
         copy_store(killed(), copy());
         write_bytes(copy() / "CURRENT", contents);
         const auto log = open_rocksdb(copy());
         ASSERT_FALSE(log) << contents;
         EXPECT_THAT(log.error().message, AnyOf(HasSubstr("CURRENT"), HasSubstr("MANIFEST"))) << contents;
+        EXPECT_THAT(log.error().message, AllOf(HasSubstr("from a backup"), Not(HasSubstr("\0"s))));
     }
     copy_store(killed(), copy());
     fs::remove(copy() / "CURRENT");
@@ -209,6 +215,39 @@ TEST_F(TableStore, AFlippedBitInATableIsReportedOrHarmless) {
     EXPECT_GE(reported, 50) << "nearly all of a table is entries";
 }
 
+// RocksDB alone takes no write any more once it has failed to merge its tables.
+TEST_F(TableStore, ATableThatCannotBeMergedIsReportedAndStopsNoWrite) {
+    const auto table = only_file_like(copy(), ".sst");
+    flip_bit(table, fs::file_size(table) / 2, 3);
+    std::promise<Error> found;
+    auto is_found = found.get_future();
+    StoreOptions options;
+    options.memory_bytes = 512 << 10; // tables of 64 KiB, merged by fours
+    options.on_damage = [&found](const Error& damage) { found.set_value(damage); };
+
+    SessionId other = 0;
+    Revision end = 0;
+    {
+        auto log = open_rocksdb(copy(), options).value();
+        other = log->create_session("another session").value();
+        const auto append = [&] {
+            append_and_wait(*log, other, end + 1, distinct_entries(other, end + 1, 20)).value();
+            end += 20;
+        };
+        while (is_found.wait_for(std::chrono::seconds(0)) != std::future_status::ready) append();
+        EXPECT_THAT(is_found.get().message, HasSubstr(table.filename().native()));
+        EXPECT_THAT(log->stats().damage.value_or(""), HasSubstr(table.filename().native()));
+        for (int batch = 0; batch < 100; ++batch) append();
+        EXPECT_FALSE(log->stats().last_error);
+        EXPECT_THAT(entries_after(*log, session_, 0).error().message, HasSubstr(table.filename().native()));
+    }
+    options.on_damage = nullptr;
+    const auto log = open_rocksdb(copy(), options).value();
+    EXPECT_EQ(entries_after(*log, other, 0).value(), distinct_entries(other, 1, end));
+    EXPECT_TRUE(append_and_wait(*log, other, end + 1, {"goes on"}));
+    EXPECT_TRUE(log->remove_session(session_));
+}
+
 TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
     auto file = only_file_like(copy(), ".sst");
     fs::resize_file(file, fs::file_size(file) / 2);
@@ -233,6 +272,17 @@ TEST_F(TableStore, ARecordOfTheManifestThatClaimsToBeLongerIsReported) {
         const auto log = open_rocksdb(copy());
         ASSERT_FALSE(log) << "flipped in byte " << byte;
         EXPECT_THAT(log.error().message, HasSubstr(file.native()));
+    }
+}
+
+TEST_F(TableStore, AnEmptyManifestIsReportedAndNoTableRemoved) {
+    for (const std::string& contents : {std::string(), std::string(100, '\0')}) {
+        restore();
+        const auto file = only_file_like(copy(), "MANIFEST-");
+        const auto table = only_file_like(copy(), ".sst");
+        write_bytes(file, contents);
+        EXPECT_THAT(read_all().error().message, AllOf(HasSubstr(file.native()), HasSubstr("from a backup")));
+        EXPECT_TRUE(fs::exists(table));
     }
 }
 

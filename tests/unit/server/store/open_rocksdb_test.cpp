@@ -141,7 +141,7 @@ TEST_F(OpenRocksdb, ANewerFormatIsRefused) {
 TEST_F(OpenRocksdb, AnotherProgramsDatabaseIsRefused) {
     fs::create_directories(directory_);
     write_raw(directory_, [](rocksdb::DB& database) { return database.Put({}, "key", "value"); });
-    EXPECT_THAT(problem_of(directory_), HasSubstr("not scanloom-server's"));
+    EXPECT_THAT(problem_of(directory_), HasSubstr("without the format record of scanloom-server"));
 }
 
 TEST_F(OpenRocksdb, ADirectoryOfOtherFilesIsRefused) {
