@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds the images of docker/Dockerfile without a Docker engine, on a base image made here, then starts
 # the server's, checks its health check, and lets the robot's stream a map to it.
-# usage: docker_images.sh        (as root; needs buildah, debootstrap, iproute2, and the network for packages)
+# usage: docker_images.sh        (as root; needs buildah, debootstrap, iproute2, procps, and the network for packages)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -72,7 +72,8 @@ run_images() {
     exec 3<>/dev/tcp/127.0.0.1/8080
     printf 'GET / HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
     [[ $(cat <&3) == *'<html'* ]] || { echo "the server's image has no viewer" >&2; exit 1; }
-    kill "$server"
+    # The server itself is told to stop: told to buildah, the signal would end the container around it.
+    kill "$(pgrep --ns $$ --nslist net --exact scanloom-server)"
     wait "$server" || { echo "the server's container did not end well when it was stopped" >&2; exit 1; }
 }
 
