@@ -1,7 +1,9 @@
 #pragma once
 
 #include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
 #include "server/mapping/beam_fan.hpp"
+#include "server/mapping/map_config.hpp"
 #include "server/mapping/scan_conversion.hpp"
 
 #include <algorithm>
@@ -21,6 +23,10 @@ struct ModelGeometry {
     double cell_size = 0.05;
 };
 
+[[nodiscard]] inline ModelGeometry geometry_of(const MapConfig& config, const Sensor& sensor) noexcept {
+    return {sensor.range_min, sensor.range_max, config.obstacle_thickness, config.cell_size};
+}
+
 /// Tells which cells one scan shows to be free or occupied: the inverse sensor model, cell by cell
 /// exact. Calls emit(Verdict, j, i_begin, i_end) for runs of cells of row j; no cell comes twice.
 ///
@@ -30,13 +36,14 @@ struct ModelGeometry {
 ///   free      r <= z, r <= range_max, and not occupied
 ///   (nothing) otherwise, and for readings below range_min or invalid.
 ///
-/// Shapes  ranges holds one reading for each beam that the fan was made from.
+/// Shapes  sectors are those of a BeamFan, or some of them: what they show is theirs alone; ranges holds one
+///         reading for each beam that the fan was made from.
 /// Frames  T_map_sensor takes sensor points to the map frame.
 /// Cost    the rows and cells of the area the scan sees; never the map's size.
 /// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. (A printed variant compares
 ///         r with z_max in the occupied test: a misprint.)
 template <class Emit>
-void inverse_sensor_model(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+void inverse_sensor_model(std::span<const Sector> sectors, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
                           const ModelGeometry& geometry, Emit&& emit) {
     const double cells_per_metre = 1.0 / geometry.cell_size;
     const double x0 = T_map_sensor.x * cells_per_metre;
@@ -46,7 +53,7 @@ void inverse_sensor_model(const BeamFan& fan, std::span<const RangeMm> ranges, c
     const double half_band = std::max(geometry.thickness, geometry.cell_size) / 2.0;
     const auto to_map = [&](Direction d) { return Direction{c * d.x - s * d.y, s * d.x + c * d.y}; };
 
-    for (const Sector& sensor_sector : fan) {
+    for (const Sector& sensor_sector : sectors) {
         const RangeMm reading = ranges[sensor_sector.beam];
         if (reading == kInvalidRange) continue;
         const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;

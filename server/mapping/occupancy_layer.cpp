@@ -29,13 +29,13 @@ void OccupancyLayer::apply(std::span<LogOdds> cells, const Step& step) noexcept 
     }
 }
 
-CellBox OccupancyLayer::integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
-                                  const ModelGeometry& geometry, Revision revision) {
+CellBox OccupancyLayer::integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges,
+                                  const Pose2& T_map_sensor, const ModelGeometry& geometry, Revision revision) {
     if (revision > newest_restored_) restored_.clear();
     CellBox changed;
     ChunkKey current_key;
     OccupancyChunk* current = nullptr; // neighbouring runs mostly fall into the same chunk
-    inverse_sensor_model(fan, ranges, T_map_sensor, geometry,
+    inverse_sensor_model(sectors, ranges, T_map_sensor, geometry,
                          [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
                              changed.include_row(j, begin, end);
                              const Step& step = verdict == Verdict::kFree ? free_ : occupied_;

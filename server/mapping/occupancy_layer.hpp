@@ -21,10 +21,10 @@ class OccupancyLayer {
 public:
     explicit OccupancyLayer(const MapConfig& config);
 
-    /// Adds the evidence of one scan; the cells changed carry `revision`.
+    /// Adds the evidence of one scan, or of some of its sectors; the cells changed carry `revision`.
     /// Pre     ranges has a reading for each beam of the fan; revision >= every earlier one.
     /// @return smallest box holding the changed cells.
-    CellBox integrate(const BeamFan& fan, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+    CellBox integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
                       const ModelGeometry& geometry, Revision revision);
 
     /// Puts back a chunk of a checkpoint. It holds everything up to its revision already, so that scans

@@ -1,6 +1,10 @@
 #include "server/mapping/projection.hpp"
 
+#include "server/mapping/reach.hpp"
+
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace scanloom::mapping {
 namespace {
@@ -16,19 +20,18 @@ Error misplaced(Revision revision, std::string what) {
 Projection::Projection(const MapConfig& config) : config_(config), occupancy_(config) {}
 
 Result<> Projection::fold(const LogEntry& entry) {
-    auto folded = std::visit(
-        [this](const auto& body) -> Result<> {
-            using Body = std::decay_t<decltype(body)>;
-            if constexpr (std::is_same_v<Body, RobotJoined>) return fold_joined(body);
-            if constexpr (std::is_same_v<Body, SensorDescribed>) return fold_described(body);
-            if constexpr (std::is_same_v<Body, ScanTaken>) return fold_scan(body);
-        },
-        entry);
-    if (folded) ++revision_;
+    double unbounded = HUGE_VAL;
+    if (auto folded = fold(entry, unbounded); !folded) return folded.error();
+    return {};
+}
+
+Result<bool> Projection::fold(const LogEntry& entry, double& work) {
+    auto folded = std::visit([&](const auto& body) { return fold_entry(body, work); }, entry);
+    if (folded && *folded) ++revision_;
     return folded;
 }
 
-Result<> Projection::fold_joined(const RobotJoined& joined) {
+Result<bool> Projection::fold_entry(const RobotJoined& joined, double&) {
     const bool again = joined.robot < robots_.size() && robots_[joined.robot].state.name == joined.name &&
                        robots_[joined.robot].state.last_seq == 0;
     if (joined.robot != robots_.size() && !again) {
@@ -36,20 +39,20 @@ Result<> Projection::fold_joined(const RobotJoined& joined) {
     }
     if (!again) robots_.emplace_back().state.name = joined.name;
     robots_[joined.robot].source = joined.source;
-    return {};
+    return true;
 }
 
-Result<> Projection::fold_described(const SensorDescribed& described) {
+Result<bool> Projection::fold_entry(const SensorDescribed& described, double&) {
     if (described.robot >= robots_.size()) {
         return misplaced(revision_ + 1, fmt::format("a sensor of robot {}, which never joined", described.robot));
     }
     auto& robot = robots_[described.robot];
     robot.sensors[described.sensor.id] = described.sensor;
     robot.fans.erase(described.sensor.id);
-    return {};
+    return true;
 }
 
-Result<> Projection::fold_scan(const ScanTaken& taken) {
+Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
     const Revision revision = revision_ + 1;
     if (taken.robot >= robots_.size()) {
         return misplaced(revision, fmt::format("a scan of robot {}, which never joined", taken.robot));
@@ -64,23 +67,30 @@ Result<> Projection::fold_scan(const ScanTaken& taken) {
         return misplaced(revision, fmt::format("scan {} of robot '{}' follows scan {}", scan.seq, robot.state.name,
                                                robot.state.last_seq));
     }
-    if (sensor->second.kind == SensorKind::kLaser) integrate(robot, sensor->second, scan, revision);
+    if (sensor->second.kind == SensorKind::kLaser && !integrate(robot, sensor->second, scan, work)) return false;
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
     robot.state.stamp = scan.stamp;
     robot.state.pose = scan.pose;
     robot.trajectory.append({revision, scan.stamp, scan.pose});
-    return {};
+    return true;
 }
 
-void Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, Revision revision) {
-    const ModelGeometry geometry{sensor.range_min, sensor.range_max, config_.obstacle_thickness, config_.cell_size};
-    bounds_.include(occupancy_.integrate(fan_of(robot, sensor, scan), scan.ranges, compose(scan.pose, sensor.mount),
-                                         geometry, revision));
+/// @return whether all sectors of the scan are in.
+bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
+    const ModelGeometry geometry = geometry_of(config_, sensor);
+    const auto missing = std::span(fan_of(robot, sensor, scan)).subspan(sectors_in_);
+    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
+    bounds_.include(
+        occupancy_.integrate(sectors, scan.ranges, compose(scan.pose, sensor.mount), geometry, revision_ + 1));
+    const bool complete = sectors.size() == missing.size();
+    sectors_in_ = complete ? 0 : sectors_in_ + sectors.size();
+    return complete;
 }
 
 const BeamFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
     auto& known = robot.fans[sensor.id];
+    if (sectors_in_ > 0) return known.fan;
     if (scan.angles || known.beams != scan.ranges.size()) {
         const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config_.beam_aperture;
         known.fan = make_beam_fan(angles_of(scan, sensor), aperture);

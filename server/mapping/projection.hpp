@@ -46,6 +46,11 @@ public:
     ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.
     [[nodiscard]] Result<> fold(const LogEntry& entry);
 
+    /// The same, but gives way within a large scan: when `work` (as Reach::work) is used up, what was used being
+    /// taken from it.
+    /// @return whether the entry is in; until then nothing but the same call may follow.
+    [[nodiscard]] Result<bool> fold(const LogEntry& entry, double& work);
+
     /// What has been woven so far. Cheap; the next writes copy the chunks they touch.
     [[nodiscard]] Snapshot snapshot();
 
@@ -77,10 +82,10 @@ private:
         std::map<std::uint32_t, KnownFan> fans;
     };
 
-    Result<> fold_joined(const RobotJoined& joined);
-    Result<> fold_described(const SensorDescribed& described);
-    Result<> fold_scan(const ScanTaken& taken);
-    void integrate(Robot& robot, const Sensor& sensor, const Scan& scan, Revision revision);
+    Result<bool> fold_entry(const RobotJoined& joined, double& work);
+    Result<bool> fold_entry(const SensorDescribed& described, double& work);
+    Result<bool> fold_entry(const ScanTaken& taken, double& work);
+    [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
     [[nodiscard]] const BeamFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     MapConfig config_;
@@ -88,6 +93,7 @@ private:
     CellBox bounds_;
     OccupancyLayer occupancy_;
     std::vector<Robot> robots_;
+    std::size_t sectors_in_ = 0; // of the scan that is being folded
 };
 
 /// Whether a sensor's reach is possible at this cell size.

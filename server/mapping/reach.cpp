@@ -15,23 +15,28 @@ double sector_width(const MapConfig& config, const Sensor& sensor, const Scan& s
     return uniform != nullptr ? std::max(aperture, std::abs(uniform->increment)) : 2.0 * std::numbers::pi;
 }
 
+/// How far a reading shows anything; metres, 0 when it shows nothing.
+double reached(RangeMm reading, const ModelGeometry& geometry) {
+    const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;
+    if (reading == kInvalidRange || z < geometry.range_min) return 0.0;
+    return std::min(geometry.range_max, z + std::max(geometry.thickness, geometry.cell_size) / 2.0);
+}
+
 std::int32_t floor_cell(double cells) { return static_cast<std::int32_t>(std::floor(cells)); }
 
 } // namespace
 
 Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
     if (sensor.kind != SensorKind::kLaser) return {};
-    const double half_band = std::max(config.obstacle_thickness, config.cell_size) / 2.0;
+    const ModelGeometry geometry = geometry_of(config, sensor);
     double longest = 0.0; // metres
     double sum = 0.0;
     double sum_of_squares = 0.0;
     for (const RangeMm reading : scan.ranges) {
-        const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;
-        if (reading == kInvalidRange || z < sensor.range_min) continue;
-        const double reached = std::min(sensor.range_max, z + half_band);
-        longest = std::max(longest, reached);
-        sum += reached;
-        sum_of_squares += reached * reached;
+        const double metres = reached(reading, geometry);
+        longest = std::max(longest, metres);
+        sum += metres;
+        sum_of_squares += metres * metres;
     }
     if (longest == 0.0) return {};
 
@@ -44,6 +49,19 @@ Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan) 
     const double area = std::min(disc, 0.5 * sector_width(config, sensor, scan) * sum_of_squares);
     return {{floor_cell(x - radius), floor_cell(y - radius), floor_cell(x + radius) + 1, floor_cell(y + radius) + 1},
             area * per_metre * per_metre + 2.0 * sum * per_metre};
+}
+
+std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
+                           const ModelGeometry& geometry) {
+    std::size_t count = 0;
+    while (count < sectors.size() && (count == 0 || work > 0.0)) {
+        const Sector& sector = sectors[count++];
+        const double cells = reached(ranges[sector.beam], geometry) / geometry.cell_size;
+        // For angles up to a quarter turn, pi / 2 of the sine is no less than the angle.
+        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x;
+        work -= 0.25 * std::numbers::pi * sine * cells * cells + 2.0 * cells + 1.0;
+    }
+    return count;
 }
 
 std::int64_t chunk_count_of(const CellBox& box) noexcept {

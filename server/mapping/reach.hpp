@@ -2,9 +2,12 @@
 
 #include "common/scan/scan.hpp"
 #include "server/mapping/chunk.hpp"
+#include "server/mapping/inverse_sensor_model.hpp"
 #include "server/mapping/map_config.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace scanloom::mapping {
 
@@ -16,6 +19,11 @@ struct Reach {
 
 /// Cost  the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
+
+/// How many of the sectors, from the first, can be woven with this much work; at least one of them.
+/// @param work  what there is, as Reach::work; what the sectors take is taken from it.
+[[nodiscard]] std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
+                                         const ModelGeometry& geometry);
 
 /// How many chunks hold any cell of the box.
 [[nodiscard]] std::int64_t chunk_count_of(const CellBox& box) noexcept;

@@ -10,7 +10,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 3e7;            // as Reach::work: some tens of milliseconds
+constexpr double kSliceWork = 5e6;            // as Reach::work: some tens of milliseconds
 constexpr std::size_t kGroupsDurableMax = 2;  // one is folded, one waits for that
 constexpr Revision kCheckpointEvery = 4096;   // entries folded between two checkpoints, or
 constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again
@@ -133,7 +133,7 @@ void Session::on_appended(Group group, const Result<>& appended) {
 void Session::fold_slice() {
     if (hurried_) return finish_closing();
     if (durable_.empty()) return; // dropped meanwhile
-    if (auto folded = fold_up_to(kSliceWork); !folded) return stop_writing(folded.error());
+    if (auto folded = fold_some(kSliceWork); !folded) return stop_writing(folded.error());
     if (folded_ == durable_.front().entries.size()) finish_group();
     if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
     finish_closing();
@@ -141,15 +141,16 @@ void Session::fold_slice() {
 
 /// Fails by a mistake of ours (Members lets only entries through that can follow) or for want of memory,
 /// which must not end the other sessions.
-Result<> Session::fold_up_to(double work_max) {
+Result<> Session::fold_some(double work) {
     try {
         const auto& entries = durable_.front().entries;
-        for (double work = 0.0; folded_ < entries.size() && work < work_max && !hurried_; ++folded_) {
+        for (; folded_ < entries.size() && work > 0.0 && !hurried_; ++folded_) {
             const Submitted& next = entries[folded_];
-            work += next.reach.work;
-            work_since_checkpoint_ += next.reach.work;
             if (!next.entry) continue;
-            if (auto folded = projection_.fold(*next.entry); !folded) return folded.error();
+            const auto folded = projection_.fold(*next.entry, work);
+            if (!folded) return folded.error();
+            if (!*folded) return {}; // goes on in the next slice
+            work_since_checkpoint_ += next.reach.work;
             if (std::holds_alternative<ScanTaken>(*next.entry)) ++counters_->scans_applied;
         }
         return {};

@@ -91,7 +91,7 @@ private:
     void refuse_first(const Error& error);
     void on_appended(Group group, const Result<>& appended);
     void fold_slice();
-    [[nodiscard]] Result<> fold_up_to(double work);
+    [[nodiscard]] Result<> fold_some(double work);
     void finish_group();
     void publish();
     void stop_writing(const Error& error);

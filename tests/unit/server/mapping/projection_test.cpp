@@ -112,6 +112,34 @@ TEST(Projection, SnapshotsTakenBetweenScansChangeNothing) {
     }
 }
 
+TEST(Projection, ScansFoldedALittleAtATimeGiveTheSameMap) {
+    auto log = random_log(3, 40);
+    for (auto& entry : log) { // angles of its own, in any order: a fan that is made for one scan
+        auto* taken = std::get_if<ScanTaken>(&entry);
+        if (taken == nullptr || taken->scan.seq % 3 != 0) continue;
+        ExplicitAngles angles(taken->scan.ranges.size());
+        for (std::size_t n = 0; n < angles.size(); ++n) angles[n] = 0.7 * static_cast<double>(n * 5 % angles.size());
+        taken->scan.angles = angles;
+    }
+    Projection whole{MapConfig{}};
+    Projection sliced{MapConfig{}};
+    std::size_t slices = 0;
+    for (const auto& entry : log) {
+        ASSERT_TRUE(whole.fold(entry));
+        for (bool in = false; !in; ++slices) {
+            double work = 100.0;
+            in = sliced.fold(entry, work).value();
+            EXPECT_EQ(sliced.revision(), in ? whole.revision() : whole.revision() - 1);
+        }
+    }
+    EXPECT_GT(slices, 3 * log.size());
+    const auto a = whole.snapshot();
+    const auto b = sliced.snapshot();
+    EXPECT_EQ(a.bounds, b.bounds);
+    EXPECT_EQ(cells_of(a.occupancy), cells_of(b.occupancy));
+    EXPECT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
+}
+
 TEST(Projection, ContinuesFromACheckpointToTheSameMap) {
     const auto log = random_log(2, 900);
     Projection whole{MapConfig{}};

@@ -54,15 +54,32 @@ TEST_F(HeavySessionTest, WeavingGivesWayToOthersBetweenItsScans) {
     EXPECT_EQ(digest(), digest_of_log());
 }
 
+TEST_F(HeavySessionTest, WeavingGivesWayToOthersWithinAScan) {
+    session_->submit(link_, far_scans(1, 1), 10);
+    run_until([&] { return log_.stats().entries == 3; });
+    int turns = 0;
+    while (link_->durable_seq() == 0) {
+        bool answered = false;
+        boost::asio::post(compute_, [&] { answered = true; }); // another session's work
+        run_until([&] { return answered; });
+        ++turns;
+    }
+    EXPECT_GE(turns, 5);
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
 TEST_F(HeavySessionTest, ItsOwnRobotsAreHeardBetweenItsScans) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
-    session_->join("r2", "", std::make_shared<RecordedLink>(), [](const Result<Joined>&) {}); // one group later
+    bool joined = false; // one group later
+    session_->join("r2", "", std::make_shared<RecordedLink>(),
+                   [&](const Result<Joined>& answer) { joined = !!answer; });
     session_->leave(link_);
     run_until([&] { return !session_->is_connected(0); });
     EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U);
     run();
     EXPECT_EQ(session_->snapshot()->robots[0].last_seq, 5U) << "what it submitted stays";
+    EXPECT_TRUE(joined);
 }
 
 TEST_F(HeavySessionTest, InAHurryClosingEndsAtOnceAndARestartWeavesTheRest) {
@@ -80,6 +97,22 @@ TEST_F(HeavySessionTest, InAHurryClosingEndsAtOnceAndARestartWeavesTheRest) {
     EXPECT_EQ(link_->durable_seq(), 0U);
     start_session();
     EXPECT_EQ(last_durable_seq_on_joining("r"), 4U) << "in the log, though never acknowledged";
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
+TEST_F(HeavySessionTest, AHurryBeforeTheClosingIsNotForgotten) {
+    session_->submit(link_, far_scans(1, 5), 10);
+    run_until([&] { return log_.stats().entries == 7; });
+    session_->hurry();
+    run();
+    bool closed = false;
+    session_->close({Errc::kShuttingDown, "bye"}, [&] { closed = true; });
+    run();
+    EXPECT_TRUE(closed);
+    EXPECT_THAT(link_->failures, SizeIs(1));
+    EXPECT_LT(link_->durable_seq(), 5U) << "in a hurry nothing more is woven";
+    start_session();
+    EXPECT_EQ(last_durable_seq_on_joining("r"), 5U);
     EXPECT_EQ(digest(), digest_of_log());
 }
 

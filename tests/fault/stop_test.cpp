@@ -1,0 +1,64 @@
+#include "tests/support/random_scans.hpp"
+#include "tests/support/robot_socket.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/json/value.hpp>
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+/// A server that is told to stop while it has much to weave.
+namespace scanloom::test {
+namespace {
+
+using testing_support::RobotSocket;
+
+/// Sees 40 m all around: at 1 cm a scan of it is 50 million cells.
+Sensor far_laser() {
+    Sensor sensor = testing_support::small_laser();
+    sensor.angles = UniformAngles{-std::numbers::pi, std::numbers::pi / 180, 360};
+    sensor.range_max = 40.0;
+    return sensor;
+}
+
+std::vector<Scan> far_scans(std::uint64_t first_seq, std::size_t count) {
+    auto scans = testing_support::random_scans(1, first_seq, count);
+    for (auto& scan : scans) scan.ranges.assign(360, 39'000);
+    return scans;
+}
+
+/// Joins and describes the laser. @return what the server has already.
+std::uint64_t join(RobotSocket& robot) {
+    wire::Hello hello{.robot = "r", .session = "far"};
+    hello.create = SessionOptions{.cell_size = 0.01};
+    robot.send(hello);
+    const auto welcome = robot.receive_kind<wire::Welcome>();
+    robot.send(far_laser());
+    return welcome.last_durable_seq;
+}
+
+TEST(Stop, AskedTwiceTheServerEndsWellAndTheNextStartHasWhatWasAcknowledged) {
+    constexpr std::uint64_t kScans = 12;
+    TemporaryDirectory place;
+    {
+        RunningServer server(place.path() / "store", place.path() / "log");
+        RobotSocket robot(server.robot_port());
+        ASSERT_EQ(join(robot), 0U);
+        robot.send(wire::ScanBatch{far_scans(1, kScans)});
+        robot.wait_for_ack(1);
+        server.process().signal(SIGTERM);
+        server.process().signal(SIGTERM);
+        EXPECT_EQ(server.process().wait(), 0);
+    }
+    RunningServer server(place.path() / "store", place.path() / "log");
+    RobotSocket robot(server.robot_port());
+    const auto stored = join(robot);
+    EXPECT_GE(stored, 1U);
+    EXPECT_EQ(server.get_json("/api/v1/sessions/far").at("scans").to_number<std::uint64_t>(), stored);
+    if (stored < kScans) robot.send(wire::ScanBatch{far_scans(stored + 1, kScans - stored)});
+    robot.wait_for_ack(kScans);
+}
+
+} // namespace
+} // namespace scanloom::test
