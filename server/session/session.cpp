@@ -167,7 +167,7 @@ void Session::finish_group() {
     publish();
     members_.release(group);
     if (projection_.revision() - checkpointed_ >= kCheckpointEvery || work_since_checkpoint_ >= kCheckpointEveryWork) {
-        write_checkpoint();
+        begin_checkpoint();
     }
     append_next();
 }
@@ -178,7 +178,7 @@ void Session::publish() {
     published_.swap(snapshot);
 }
 
-void Session::write_checkpoint() {
+void Session::begin_checkpoint() {
     if (checkpointing_) return;
     checkpointing_ = true;
     work_since_checkpoint_ = 0.0;
@@ -246,7 +246,7 @@ void Session::finish_closing() {
     members_.fail_all(*refusing_);
     if (projection_.revision() > checkpointed_ && !broken_ && !hurried_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
-        return write_checkpoint();
+        return begin_checkpoint();
     }
     const auto closed = std::move(closed_);
     closed_ = nullptr;

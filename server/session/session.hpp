@@ -96,7 +96,7 @@ private:
     void publish();
     void stop_writing(const Error& error);
     void drop_what_is_under_way();
-    void write_checkpoint();
+    void begin_checkpoint();
     void finish_closing();
 
     SessionInfo info_;
