@@ -117,6 +117,7 @@ Result<> Server::run() {
     threads.clear(); // joins: until drain() has let everything come to its end
     join_pools();
     spdlog::info("stopped");
+    if (const auto failure = log_->stats().last_error) return Error{Errc::kStoreFailed, *failure};
     return {};
 }
 

@@ -22,11 +22,12 @@ namespace scanloom::app {
 
 /// The parts of scanloom-server, and what connects them.
 ///
-///   io        sockets: frames and requests come in, answers go out; health and the viewer's files
-///   weaving   the sessions' strands: everything that changes a map
-///   serving   answers made from snapshots
-///   changing  creating and deleting sessions: waits for the disk and for strands
-///   telling   metrics
+///   io             sockets: frames and requests come in, answers go out; health and the viewer's files
+///   weaving        the sessions' strands: everything that changes a map
+///   serving        answers made from snapshots
+///   changing       creating and deleting sessions: waits for the disk and for strands
+///   checkpointing  writes checkpoints: waits for the disk
+///   telling        metrics
 ///
 /// Thread  open() and run() from the main thread.
 class Server {
@@ -38,7 +39,7 @@ public:
     ~Server();
 
     /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains.
-    /// Errors  the sessions cannot be listed.
+    /// Errors  kStoreFailed: the sessions cannot be listed, or the store failed meanwhile.
     [[nodiscard]] Result<> run();
 
 private:

@@ -10,7 +10,6 @@ namespace scanloom::mapping {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kQuarter = std::numbers::pi / 2.0;
 
 /// Beams closer than this point the same way: the last beam of a full turn may repeat the first.
 constexpr double kSameDirection = 1e-9;
@@ -18,6 +17,9 @@ constexpr double kSameDirection = 1e-9;
 /// A gap to the neighbour that is wider than the aperture by less than this is none: with the aperture
 /// equal to the spacing, rounding must not open one between two beams.
 constexpr double kSharedEdge = 1e-9;
+
+/// Gaps between beams at explicit angles that are more than this times the median gap are blind.
+constexpr double kBlindGaps = 4.0;
 
 struct Beam {
     double angle; // in (-pi, pi]
@@ -53,20 +55,35 @@ struct Edge {
     Direction direction;
 };
 
-/// The edge of `beam` towards a neighbour `gap` away; `side` is +1 for the counter-clockwise edge,
-/// `bisector` the direction half-way. A beam without a near neighbour sees to half its aperture.
-Edge edge_towards(const Beam& beam, double gap, Direction bisector, double half_aperture, double side) {
-    if (gap / 2.0 - half_aperture > kSharedEdge) {
-        const double limit = beam.angle + side * half_aperture;
-        return {limit, direction_of(limit)};
-    }
-    return {beam.angle + side * gap / 2.0, bisector};
+/// From each beam to the next counter-clockwise; a full turn for a single beam.
+std::vector<double> gaps_of(const std::vector<Beam>& beams) {
+    std::vector<double> gaps(beams.size());
+    for (std::size_t k = 0; k + 1 < beams.size(); ++k) gaps[k] = beams[k + 1].angle - beams[k].angle;
+    gaps.back() = beams.front().angle + kTurn - beams.back().angle;
+    return gaps;
 }
 
-/// Appends the sector in pieces of at most a quarter turn.
-void append_sector(BeamFan& fan, std::uint32_t beam, const Edge& low, const Edge& high) {
+/// How far beams are apart, and up to which gap they see all that is between them.
+struct Spacing {
+    double usual = 0.0;
+    double widest = 0.0;
+};
+
+Spacing spacing_of(const BeamAngles& angles, std::vector<double> gaps) {
+    if (gaps.size() < 2) return {};
+    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
+        const double increment = std::abs(uniform->increment);
+        return {increment, increment};
+    }
+    std::sort(gaps.begin(), gaps.end());
+    const double median = gaps[(gaps.size() - 2) / 2]; // of all but the widest
+    return {median, kBlindGaps * median};
+}
+
+/// Appends the sectors of one beam.
+void append_sectors(BeamFan& fan, std::uint32_t beam, const Edge& low, const Edge& high) {
     const double width = high.angle - low.angle;
-    const int pieces = static_cast<int>(std::ceil(width / kQuarter - kSharedEdge));
+    const int pieces = static_cast<int>(std::ceil(width / kSectorWidthMax - kSharedEdge));
     Sector sector{beam, low.direction, {}};
     for (int piece = 1; piece <= pieces; ++piece) {
         const bool last = piece == pieces;
@@ -78,37 +95,27 @@ void append_sector(BeamFan& fan, std::uint32_t beam, const Edge& low, const Edge
 
 } // namespace
 
-double beam_spacing(const BeamAngles& angles) {
-    const std::size_t count = beam_count(angles);
-    if (count < 2) return 0.0;
-    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) return std::abs(uniform->increment);
-    auto sorted = std::get<ExplicitAngles>(angles);
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<double> gaps(count - 1);
-    for (std::size_t i = 0; i + 1 < count; ++i) gaps[i] = sorted[i + 1] - sorted[i];
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::nth_element(gaps.begin(), middle, gaps.end());
-    return *middle;
-}
-
 BeamFan make_beam_fan(const BeamAngles& angles, double aperture) {
     const auto beams = sorted_beams(angles);
     const std::size_t count = beams.size();
-    const double half_aperture = std::min(std::max(aperture, beam_spacing(angles)), kTurn) / 2.0;
+    const auto gaps = gaps_of(beams);
+    const Spacing spacing = spacing_of(angles, gaps);
+    const double half_width = std::min(std::max(aperture, spacing.usual), kTurn) / 2.0;
+    const double gap_max = std::max(2.0 * half_width, spacing.widest);
 
-    std::vector<double> gaps(count); // from beam k to the next, a full turn for a single beam
     std::vector<Direction> bisectors(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        gaps[k] = k + 1 < count ? beams[k + 1].angle - beams[k].angle : beams[0].angle + kTurn - beams[k].angle;
-        bisectors[k] = direction_of(beams[k].angle + gaps[k] / 2.0);
-    }
+    for (std::size_t k = 0; k < count; ++k) bisectors[k] = direction_of(beams[k].angle + gaps[k] / 2.0);
+    /// A beam without a near neighbour sees to half its width. `side` is +1 for the counter-clockwise edge.
+    const auto edge_of = [&](std::size_t beam, std::size_t gap, double side) -> Edge {
+        if (gaps[gap] - gap_max <= kSharedEdge) return {beams[beam].angle + side * gaps[gap] / 2.0, bisectors[gap]};
+        const double limit = beams[beam].angle + side * half_width;
+        return {limit, direction_of(limit)};
+    };
 
     BeamFan fan;
     fan.reserve(count);
     for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t before = (k + count - 1) % count;
-        append_sector(fan, beams[k].index, edge_towards(beams[k], gaps[before], bisectors[before], half_aperture, -1.0),
-                      edge_towards(beams[k], gaps[k], bisectors[k], half_aperture, +1.0));
+        append_sectors(fan, beams[k].index, edge_of(k, (k + count - 1) % count, -1.0), edge_of(k, k, +1.0));
     }
     return fan;
 }

@@ -3,6 +3,7 @@
 #include "common/scan/beam_angles.hpp"
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace scanloom::mapping {
@@ -13,8 +14,10 @@ struct Direction {
     double y = 0.0;
 };
 
-/// The directions for which one beam is the nearest and within half the aperture: from `low`
-/// counter-clockwise up to, but not including, `high`; at most a quarter turn.
+/// Directions for which one beam is the nearest and near enough: from `low` counter-clockwise up to, but
+/// not including, `high`; at most kSectorWidthMax. A wider beam has several sectors.
+inline constexpr double kSectorWidthMax = std::numbers::pi / 24.0; ///< radians
+
 struct Sector {
     std::uint32_t beam = 0;
     Direction low;
@@ -31,12 +34,11 @@ using BeamFan = std::vector<Sector>;
 /// two is below what rounding can tell, but never both and never neither.
 ///
 /// Units   radians; `aperture` is the full width beta of a beam. The beam spacing is used where it is
-///         larger, so that no gap opens between neighbours: the increment of uniform angles, the
-///         median gap of explicit ones (so that a blind part of the circle stays unseen).
+///         larger, so that no gap opens between neighbours: the increment of uniform angles; for explicit
+///         ones, which need not be even, the gap itself up to four times the median gap. What is wider
+///         is a blind part of the circle and stays unseen but for half an aperture, or median gap, at its ends.
+///         (The widest gap does not count for the median: mostly it is the part behind the sensor.)
 /// Pre     1..4096 finite angles; 0 < aperture <= pi.
 [[nodiscard]] BeamFan make_beam_fan(const BeamAngles& angles, double aperture);
-
-/// The beam spacing as above; 0 for a single beam.
-[[nodiscard]] double beam_spacing(const BeamAngles& angles);
 
 } // namespace scanloom::mapping

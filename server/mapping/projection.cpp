@@ -47,7 +47,7 @@ Result<bool> Projection::fold_entry(const SensorDescribed& described, double&) {
         return misplaced(revision_ + 1, fmt::format("a sensor of robot {}, which never joined", described.robot));
     }
     auto& robot = robots_[described.robot];
-    robot.sensors[described.sensor.id] = described.sensor;
+    robot.sensors[described.sensor.id] = {revision_ + 1, std::make_shared<const Sensor>(described.sensor)};
     robot.fans.erase(described.sensor.id);
     return true;
 }
@@ -59,15 +59,16 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
     }
     auto& robot = robots_[taken.robot];
     const auto& scan = taken.scan;
-    const auto sensor = robot.sensors.find(scan.sensor);
-    if (sensor == robot.sensors.end()) {
+    const auto known = robot.sensors.find(scan.sensor);
+    if (known == robot.sensors.end()) {
         return misplaced(revision, fmt::format("a scan of sensor {}, which was never described", scan.sensor));
     }
     if (scan.seq != robot.state.last_seq + 1) {
         return misplaced(revision, fmt::format("scan {} of robot '{}' follows scan {}", scan.seq, robot.state.name,
                                                robot.state.last_seq));
     }
-    if (sensor->second.kind == SensorKind::kLaser && !integrate(robot, sensor->second, scan, work)) return false;
+    const Sensor& sensor = *known->second.sensor;
+    if (sensor.kind == SensorKind::kLaser && !integrate(robot, sensor, scan, work)) return false;
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
     robot.state.stamp = scan.stamp;
@@ -114,7 +115,7 @@ ProjectionState Projection::state() const {
     for (const auto& robot : robots_) {
         auto& out = state.robots.emplace_back(
             ProjectionState::Robot{robot.state.name, robot.source, robot.state.last_seq, robot.state.scan_count, {}});
-        for (const auto& [id, sensor] : robot.sensors) out.sensors.push_back(sensor);
+        for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
     }
     return state;
 }
@@ -128,7 +129,7 @@ void Projection::restore(const ProjectionState& state) {
         robot.source = saved.source;
         robot.state.last_seq = saved.last_seq;
         robot.state.scan_count = saved.scan_count;
-        for (const auto& sensor : saved.sensors) robot.sensors[sensor.id] = sensor;
+        for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;
     }
 }
 

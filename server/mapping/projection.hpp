@@ -5,12 +5,20 @@
 #include "server/mapping/snapshot.hpp"
 
 #include <map>
+#include <memory>
 #include <span>
+#include <vector>
 
 namespace scanloom::mapping {
 
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
-inline constexpr std::uint32_t kWeavingVersion = 1;
+inline constexpr std::uint32_t kWeavingVersion = 2;
+
+/// A sensor as a log entry described it. The description is shared, never changed.
+struct KnownSensor {
+    Revision revision = 0; ///< of that entry, or of a checkpoint after it
+    std::shared_ptr<const Sensor> sensor;
+};
 
 /// Everything but the chunks and trajectories of a projection: what a checkpoint keeps besides them.
 struct ProjectionState {
@@ -19,7 +27,7 @@ struct ProjectionState {
         std::string source; ///< RobotJoined::source
         std::uint64_t last_seq = 0;
         std::uint64_t scan_count = 0;
-        std::vector<Sensor> sensors;
+        std::vector<KnownSensor> sensors; ///< by rising id
     };
 
     Revision revision = 0;
@@ -78,7 +86,7 @@ private:
         RobotState state; // its trajectory view is filled in by snapshot()
         std::string source;
         Trajectory trajectory;
-        std::map<std::uint32_t, Sensor> sensors;
+        std::map<std::uint32_t, KnownSensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;
     };
 

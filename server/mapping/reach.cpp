@@ -57,9 +57,8 @@ std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::s
     while (count < sectors.size() && (count == 0 || work > 0.0)) {
         const Sector& sector = sectors[count++];
         const double cells = reached(ranges[sector.beam], geometry) / geometry.cell_size;
-        // For angles up to a quarter turn, pi / 2 of the sine is no less than the angle.
-        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x;
-        work -= 0.25 * std::numbers::pi * sine * cells * cells + 2.0 * cells + 1.0;
+        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x; // nearly the angle
+        work -= 0.5 * sine * cells * cells + 2.0 * cells + 1.0;
     }
     return count;
 }

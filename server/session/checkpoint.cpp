@@ -161,14 +161,15 @@ void write_chunks(PieceWriter& out, const mapping::OccupancyView& view, Revision
     });
 }
 
-/// What must agree: one piece.
-void write_state(PieceWriter& out, const mapping::ProjectionState& state) {
+/// What must agree: one piece. A sensor must not be newer than the head, or earlier scans would be read as its.
+void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revision since) {
     out.add("head", head_part(state));
     for (RobotIndex index = 0; index < state.robots.size(); ++index) {
         out.add(fmt::format("robot/{:08x}", index), robot_part(state.robots[index]));
-        for (const auto& sensor : state.robots[index].sensors) {
-            out.add(fmt::format("sensor/{:08x}/{:08x}", index, sensor.id),
-                    wire::encode_entry(SensorDescribed{index, sensor}));
+        for (const auto& [revision, sensor] : state.robots[index].sensors) {
+            if (revision <= since) continue;
+            out.add(fmt::format("sensor/{:08x}/{:08x}", index, sensor->id),
+                    wire::encode_entry(SensorDescribed{index, *sensor}));
         }
     }
     out.write();
@@ -177,16 +178,18 @@ void write_state(PieceWriter& out, const mapping::ProjectionState& state) {
 } // namespace
 
 Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::Snapshot& snapshot,
-                          const mapping::ProjectionState& state, Revision since, const std::atomic<bool>& stop) {
+                          const mapping::ProjectionState& state, std::optional<Revision> since,
+                          const std::atomic<bool>& stop) {
     try {
-        if (since == 0) {
+        if (!since) {
             if (auto cleared = log.clear_checkpoint(session); !cleared) return cleared;
         }
+        const Revision stored = since.value_or(0);
         PieceWriter out(log, session, stop);
         out.add("format", format_part());
-        write_tracks(out, snapshot, since);
-        write_chunks(out, snapshot.occupancy, since);
-        write_state(out, state);
+        write_tracks(out, snapshot, stored);
+        write_chunks(out, snapshot.occupancy, stored);
+        write_state(out, state, stored);
         return out.written();
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left to write it"};
@@ -251,7 +254,8 @@ bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value
     if (!entry || numbers[0] >= state_.robots.size()) return false;
     auto* described = std::get_if<SensorDescribed>(&*entry);
     if (described == nullptr) return false;
-    state_.robots[numbers[0]].sensors.push_back(std::move(described->sensor));
+    state_.robots[numbers[0]].sensors.push_back(
+        {state_.revision, std::make_shared<const Sensor>(std::move(described->sensor))});
     return true;
 }
 

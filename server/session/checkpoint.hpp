@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -20,18 +21,19 @@
 ///   weave/occupancy/<chunk>  revision and cells of one chunk
 /// <index>, <block> and the like are fixed-width hexadecimal.
 ///
-/// Written in bounded pieces: the format first, then tracks and chunks, and what depends on the revision
-/// last and at once. Whatever a crash leaves is usable: tracks and chunks may then be newer than the head, and
-/// a chunk knows by its revision which entries of the log it holds already.
+/// Written in pieces of 4 MiB: the format first, then tracks and chunks. What depends on the revision comes last
+/// and at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves is usable:
+/// tracks and chunks may then be newer than the head, and a chunk knows by its revision which entries of the log it
+/// holds already.
 namespace scanloom::session {
 
-/// Writes the parts that changed after `since`; for 0 all of them, in place of whatever was there.
+/// Writes the parts that changed after `since`; for none all of them, in place of whatever was there.
 /// Pre     snapshot and state were taken at the same revision.
 /// Errors  kStoreFailed; kShuttingDown: `stop` became true between two pieces; kOverloaded: memory ran out.
 /// Thread  any but the store's; waits for the disk.
 [[nodiscard]] Result<> write_checkpoint(store::ScanLog& log, store::SessionId session,
                                         const mapping::Snapshot& snapshot, const mapping::ProjectionState& state,
-                                        Revision since, const std::atomic<bool>& stop);
+                                        std::optional<Revision> since, const std::atomic<bool>& stop);
 
 /// Rebuilds a projection from the parts of a checkpoint, fed one by one in rising order of keys.
 class CheckpointReader {

@@ -24,7 +24,7 @@ void Members::restore(Member& member, const mapping::ProjectionState::Robot& sta
     member.received_seq = member.durable_seq = state.last_seq;
     member.under_way = 0;
     member.sensors.clear();
-    for (const auto& sensor : state.sensors) member.sensors[sensor.id] = sensor;
+    for (const auto& known : state.sensors) member.sensors[known.sensor->id] = *known.sensor;
 }
 
 RobotIndex Members::index_of(const Member& member) const { return static_cast<RobotIndex>(&member - members_.data()); }

@@ -11,10 +11,12 @@ namespace {
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
 
 Result<mapping::Projection> read_checkpoint(store::ScanLog& log, store::SessionId session,
-                                            const mapping::MapConfig& config) {
+                                            const mapping::MapConfig& config, const std::atomic<bool>& stop) {
     CheckpointReader reader(config);
-    auto read = log.read_checkpoint(
-        session, [&](std::string_view key, std::string_view value) { return reader.add(key, value); });
+    auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
+        if (stop) return stopped();
+        return reader.add(key, value);
+    });
     if (!read) return read.error();
     return std::move(reader).finish();
 }
@@ -35,10 +37,17 @@ Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::P
 
 Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                     const std::atomic<bool>& stop) {
-    auto checkpoint = read_checkpoint(log, session, config);
+    auto checkpoint = read_checkpoint(log, session, config, stop);
     Recovered recovered{checkpoint ? std::move(*checkpoint) : mapping::Projection(config)};
-    if (!checkpoint) recovered.checkpoint_rejected = checkpoint.error();
-    recovered.checkpointed = recovered.projection.revision();
+    if (!checkpoint && checkpoint.error() == stopped()) {
+        recovered.complete = false;
+        return recovered;
+    }
+    if (checkpoint) {
+        recovered.checkpointed = recovered.projection.revision();
+    } else {
+        recovered.checkpoint_rejected = checkpoint.error();
+    }
     const auto complete = fold_rest(log, session, recovered.projection, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;

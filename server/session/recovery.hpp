@@ -12,7 +12,8 @@ namespace scanloom::session {
 /// A session woven again, up to the end of its log.
 struct Recovered {
     mapping::Projection projection;
-    Revision checkpointed = 0;                  ///< revision of the checkpoint it began from, 0 for none
+    /// Revision of the checkpoint it began from, 0 if there was none; nothing if there is one that cannot be used.
+    std::optional<Revision> checkpointed{};
     std::optional<Error> checkpoint_rejected{}; ///< why it was woven from the whole log instead
     bool complete = true;                       ///< false: `stop` became true before the log's end
 };

@@ -10,10 +10,11 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 5e6;            // as Reach::work: some tens of milliseconds
+constexpr double kSliceWork = 5e6;            // as Reach::work: some tens of milliseconds, with a sector of 8192 cells
 constexpr std::size_t kGroupsDurableMax = 2;  // one is folded, one waits for that
 constexpr Revision kCheckpointEvery = 4096;   // entries folded between two checkpoints, or
 constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again
+constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
 
 Error full(std::size_t chunks, std::size_t chunks_max) {
     return {Errc::kTooLarge, fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, "
@@ -23,8 +24,8 @@ Error full(std::size_t chunks, std::size_t chunks_max) {
 
 } // namespace
 
-Session::Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
-                 boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
+Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
+                 store::ScanLog& log, boost::asio::any_io_executor compute, std::shared_ptr<SessionCounters> counters,
                  const SessionLimits& limits, std::optional<boost::asio::any_io_executor> may_wait)
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
       may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), members_(info_, *counters_),
@@ -123,8 +124,9 @@ void Session::refuse_first(const Error& error) {
 void Session::on_appended(Group group, const Result<>& appended) {
     appending_ = false;
     if (!appended) return stop_writing(appended.error());
-    if (broken_ || hurried_) return finish_closing();
+    if (broken_) return finish_closing();
     durable_.push_back(std::move(group));
+    if (hurried_) return finish_closing();
     append_next(); // the disk works while this group is folded
     if (durable_.size() == 1) fold_slice();
 }
@@ -152,6 +154,7 @@ Result<> Session::fold_some(double work) {
             if (!*folded) return {}; // goes on in the next slice
             work_since_checkpoint_ += next.reach.work;
             if (std::holds_alternative<ScanTaken>(*next.entry)) ++counters_->scans_applied;
+            if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
         }
         return {};
     } catch (const std::bad_alloc&) {
@@ -166,9 +169,7 @@ void Session::finish_group() {
     chunks_under_way_ -= group.chunks;
     publish();
     members_.release(group);
-    if (projection_.revision() - checkpointed_ >= kCheckpointEvery || work_since_checkpoint_ >= kCheckpointEveryWork) {
-        begin_checkpoint();
-    }
+    if (is_checkpoint_due()) begin_checkpoint();
     append_next();
 }
 
@@ -178,17 +179,23 @@ void Session::publish() {
     published_.swap(snapshot);
 }
 
+bool Session::is_checkpoint_due() const {
+    return projection_.revision() - checkpointed_.value_or(0) >= kCheckpointEvery ||
+           work_since_checkpoint_ >= kCheckpointEveryWork || described_since_checkpoint_ >= kCheckpointEveryDescribed;
+}
+
 void Session::begin_checkpoint() {
     if (checkpointing_) return;
     checkpointing_ = true;
     work_since_checkpoint_ = 0.0;
+    described_since_checkpoint_ = 0;
     auto write = [self = shared_from_this(), snapshot = snapshot(), state = projection_.state(),
                   since = checkpointed_] {
         const auto written =
             session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
         if (!written && !self->hurried_)
             spdlog::warn("session '{}': no checkpoint: {}", self->info_.name, written.error().message);
-        self->on_strand([revision = written ? state.revision : since](Session& session) {
+        self->on_strand([revision = written ? std::optional(state.revision) : since](Session& session) {
             session.checkpointed_ = revision;
             session.checkpointing_ = false;
             session.finish_closing();
@@ -239,12 +246,13 @@ void Session::discard(Error reason, std::function<void()> done) {
 void Session::finish_closing() {
     if (!closed_ || appending_ || checkpointing_) return;
     if (hurried_) {
+        for (const Group& group : durable_) members_.release(group); // in the maps before anybody can look again
         members_.fail_all(*refusing_);
         drop_what_is_under_way();
     }
     if (!waiting_.empty() || !durable_.empty()) return;
     members_.fail_all(*refusing_);
-    if (projection_.revision() > checkpointed_ && !broken_ && !hurried_ && !final_checkpoint_tried_) {
+    if (projection_.revision() > checkpointed_.value_or(0) && !broken_ && !hurried_ && !final_checkpoint_tried_) {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }

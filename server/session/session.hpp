@@ -34,9 +34,9 @@ namespace scanloom::session {
 class Session : public std::enable_shared_from_this<Session> {
 public:
     /// A session whose projection has been recovered from the log up to its end.
-    /// `checkpointed` is the revision that its stored checkpoint holds. Checkpoints are written on `may_wait`, by
-    /// default on `compute`, which they would hold up.
-    Session(SessionInfo info, mapping::Projection projection, Revision checkpointed, store::ScanLog& log,
+    /// `checkpointed` is the revision that its stored checkpoint holds, as in Recovered. Checkpoints are written on
+    /// `may_wait`, by default on `compute`, which they would hold up.
+    Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed, store::ScanLog& log,
             boost::asio::any_io_executor compute,
             std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>(),
             const SessionLimits& limits = {}, std::optional<boost::asio::any_io_executor> may_wait = std::nullopt);
@@ -74,8 +74,8 @@ public:
     /// `reason`, writes a checkpoint and calls `done`.
     void close(Error reason, std::function<void()> done);
 
-    /// Lets close() end soon: what is not durable yet is dropped, what is not folded yet will be by the next
-    /// recovery, no further piece of a checkpoint is written.
+    /// Lets close() end soon: what is not durable yet is dropped; what is durable is acknowledged, and folded by the
+    /// next recovery; no further piece of a checkpoint is written.
     void hurry();
 
     /// Closes a session that is to be deleted: close() in a hurry.
@@ -96,6 +96,7 @@ private:
     void publish();
     void stop_writing(const Error& error);
     void drop_what_is_under_way();
+    [[nodiscard]] bool is_checkpoint_due() const;
     void begin_checkpoint();
     void finish_closing();
 
@@ -115,8 +116,9 @@ private:
     Revision appended_ = 0;     // newest entry handed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended and folded may add
-    Revision checkpointed_ = 0;
+    std::optional<Revision> checkpointed_;
     double work_since_checkpoint_ = 0.0;
+    std::size_t described_since_checkpoint_ = 0; // bytes of sensor descriptions
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why nothing more is taken

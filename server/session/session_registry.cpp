@@ -20,6 +20,7 @@ SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_execut
 Result<> SessionRegistry::recover() {
     const auto stored = log_.sessions();
     if (!stored) return stored.error();
+    const std::lock_guard changing(changing_); // drain() waits
     const auto done = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(stored->size()));
     for (const auto& session : *stored) {
         boost::asio::post(compute_, [this, &session, done] {
@@ -68,8 +69,9 @@ Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSessi
                                      counters_, SessionLimits{}, may_wait_);
 }
 
-/// A long recovery that is stopped again and again must come to its end all the same.
+/// A long recovery that is stopped again and again should come to its end all the same.
 void SessionRegistry::keep_progress(store::SessionId id, const std::string& name, Recovered& recovered) {
+    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // there is none
     const auto snapshot = recovered.projection.snapshot();
     const auto written =
         write_checkpoint(log_, id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried_);
@@ -161,8 +163,8 @@ Result<> SessionRegistry::remove(std::string_view name) {
 }
 
 void SessionRegistry::drain() {
+    draining_ = true; // recover() gives up
     const std::lock_guard changing(changing_);
-    draining_ = true;
     const auto sessions = list();
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {

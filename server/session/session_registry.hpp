@@ -52,7 +52,7 @@ public:
     /// Pre  never called from a thread of the compute executor.
     [[nodiscard]] Result<> remove(std::string_view name);
 
-    /// Refuses new sessions, closes all, returns when everything submitted is durable.
+    /// Refuses new sessions, lets recover() give up, closes all, returns when everything submitted is durable.
     /// Pre  as for remove().
     void drain();
 
@@ -81,7 +81,7 @@ private:
     std::atomic<bool> draining_ = false;
     std::atomic<bool> hurried_ = false;
 
-    std::mutex changing_;             // held over create() and remove(), which write to the store first
+    std::mutex changing_;             // held over recover(), create() and remove(), which write to the store first
     mutable std::shared_mutex mutex_; // guards the maps below
     std::map<std::string, std::shared_ptr<Session>, std::less<>> sessions_;
     std::map<std::string, Damaged, std::less<>> damaged_;

@@ -31,7 +31,7 @@ struct Change {
 /// The only writer of the database: one thread, one queue, one synced write after another.
 ///
 /// As each write is synced before the next one begins, only the last write in RocksDB's log can be
-/// torn by a crash, which is what mend_write_ahead_log() relies on; and RocksDB fills its memtable
+/// torn by a crash, which is what mend_after_crash() relies on; and RocksDB fills its memtable
 /// only after the sync, so nothing reaches a table file before it is durable in the log.
 /// A failed write leaves the disk unknown: from then on every change fails.
 /// Thread  any.

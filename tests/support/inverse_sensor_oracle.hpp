@@ -2,6 +2,7 @@
 
 #include "common/geometry/pose2.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -11,15 +12,24 @@
 /// (Thrun, Burgard, Fox, Probabilistic Robotics, Table 9.2) and from nothing of the production code.
 namespace scanloom::oracle {
 
+/// How beams share the directions between them: uniform ones are an increment apart; a list may have wider gaps
+/// and still be gapless, up to four times the median of all gaps but the widest.
+struct Sight {
+    double beta = 0.0;    // full width of a beam
+    double gap_max = 0.0; // wider gaps between beams are blind
+};
+
 struct Scene {
     std::vector<double> beam_angles; // radians, sensor frame, any order and turn
+    bool explicit_angles = false;    // a list, of which nothing says that it is even
     std::vector<double> readings;    // metres; NaN = invalid, infinity = no return
     double range_min = 0.0;
     double range_max = 0.0;
     double alpha = 0.1;
-    double beta = 0.0174533; // already at least the beam spacing
+    double aperture = 0.0174533;
     double cell_size = 0.05;
     Pose2 T_map_sensor;
+    Sight sight; // sight_of() the above
 };
 
 enum class Verdict { kNothing, kFree, kOccupied };
@@ -45,11 +55,62 @@ inline Nearest nearest_beam(const Scene& scene, double phi) {
     return nearest;
 }
 
-inline Verdict verdict_at(const Scene& scene, double r, const Nearest& nearest) {
+/// The counter-clockwise turn from a to b, in [0, 2 pi).
+inline double turn_to(double a, double b) {
+    const double d = std::fmod(b - a, 2.0 * std::numbers::pi);
+    return d < 0.0 ? d + 2.0 * std::numbers::pi : d;
+}
+
+/// The turns from each beam to the next one that looks elsewhere.
+inline std::vector<double> gaps_between_beams(const Scene& scene) {
+    std::vector<double> gaps;
+    for (std::size_t a = 0; a < scene.beam_angles.size(); ++a) {
+        double gap = 2.0 * std::numbers::pi;
+        bool first_of_its_direction = true;
+        for (std::size_t b = 0; b < scene.beam_angles.size(); ++b) {
+            const double turn = turn_to(scene.beam_angles[a], scene.beam_angles[b]);
+            const bool same = turn < 1e-9 || turn > 2.0 * std::numbers::pi - 1e-9;
+            if (same && b < a) first_of_its_direction = false;
+            if (!same) gap = std::min(gap, turn);
+        }
+        if (first_of_its_direction) gaps.push_back(gap);
+    }
+    return gaps;
+}
+
+inline Sight sight_of(const Scene& scene) {
+    auto gaps = gaps_between_beams(scene);
+    if (scene.beam_angles.size() < 2 || gaps.size() < 2) return {scene.aperture, 0.0};
+    if (!scene.explicit_angles) {
+        const double increment = std::abs(scene.beam_angles[1] - scene.beam_angles[0]);
+        return {std::max(scene.aperture, increment), 0.0};
+    }
+    std::sort(gaps.begin(), gaps.end());
+    gaps.pop_back();
+    const double median = gaps[(gaps.size() - 1) / 2];
+    return {std::max(scene.aperture, median), 4.0 * median};
+}
+
+/// The gap between the two beams on either side of a direction.
+inline double gap_around(const Scene& scene, double phi) {
+    double ahead = 2.0 * std::numbers::pi;
+    double behind = 2.0 * std::numbers::pi;
+    for (const double angle : scene.beam_angles) {
+        ahead = std::min(ahead, turn_to(phi, angle));
+        behind = std::min(behind, turn_to(angle, phi));
+    }
+    return ahead + behind;
+}
+
+inline bool is_seen(const Scene& scene, double phi, const Nearest& nearest) {
+    return nearest.distance <= scene.sight.beta / 2.0 || gap_around(scene, phi) <= scene.sight.gap_max;
+}
+
+inline Verdict verdict_at(const Scene& scene, double r, double phi, const Nearest& nearest) {
     const double alpha = std::max(scene.alpha, scene.cell_size);
     const double z = scene.readings[nearest.beam];
     if (std::isnan(z) || z <= 0.0 || z < scene.range_min) return Verdict::kNothing;
-    if (r > std::min(scene.range_max, z + alpha / 2.0) || nearest.distance > scene.beta / 2.0) return Verdict::kNothing;
+    if (r > std::min(scene.range_max, z + alpha / 2.0) || !is_seen(scene, phi, nearest)) return Verdict::kNothing;
     if (z < scene.range_max && std::abs(r - z) < alpha / 2.0) return Verdict::kOccupied;
     if (r <= z) return Verdict::kFree;
     return Verdict::kNothing;
@@ -64,11 +125,11 @@ inline std::optional<Verdict> verdict_of_cell(const Scene& scene, int i, int j) 
     const double step = 2e-5;
     if (r < step) return std::nullopt; // a centre on the sensor itself has no direction
     if (r > scene.range_max + step) return Verdict::kNothing;
-    const Verdict verdict = verdict_at(scene, r, nearest_beam(scene, phi));
+    const Verdict verdict = verdict_at(scene, r, phi, nearest_beam(scene, phi));
     for (const double dphi : {-step, 0.0, step}) {
         const Nearest nearest = nearest_beam(scene, phi + dphi);
         for (const double dr : {-step, 0.0, step}) {
-            if (verdict_at(scene, r + dr, nearest) != verdict) return std::nullopt;
+            if (verdict_at(scene, r + dr, phi + dphi, nearest) != verdict) return std::nullopt;
         }
     }
     return verdict;

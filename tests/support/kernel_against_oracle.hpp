@@ -49,13 +49,19 @@ inline Verdicts run_kernel(const Case& c) {
 }
 
 inline oracle::Scene scene_of(const Case& c) {
-    oracle::Scene scene{{}, {}, c.range_min, c.range_max, c.thickness, 0.0, c.cell_size, c.T_map_sensor};
+    oracle::Scene scene{.explicit_angles = std::holds_alternative<ExplicitAngles>(c.angles),
+                        .range_min = c.range_min,
+                        .range_max = c.range_max,
+                        .alpha = c.thickness,
+                        .aperture = c.aperture,
+                        .cell_size = c.cell_size,
+                        .T_map_sensor = c.T_map_sensor};
     for (std::size_t b = 0; b < beam_count(c.angles); ++b) {
         scene.beam_angles.push_back(beam_angle(c.angles, b));
         const RangeMm mm = c.ranges[b];
         scene.readings.push_back(mm == kInvalidRange ? NAN : mm == kNoReturn ? HUGE_VAL : mm / 1000.0);
     }
-    scene.beta = std::max(c.aperture, beam_spacing(c.angles));
+    scene.sight = oracle::sight_of(scene);
     return scene;
 }
 

@@ -126,6 +126,58 @@ TEST(InverseSensorModel, InvalidReadingsChangeNothing) {
     EXPECT_TRUE(run_kernel(too_near).empty());
 }
 
+/// All readings alike: which directions are seen, looking from the middle of a fine grid at 2 m.
+Case all_around(BeamAngles angles) {
+    Case c;
+    c.shape = "all around";
+    c.angles = std::move(angles);
+    c.cell_size = 0.01;
+    c.range_max = 4.0;
+    c.T_map_sensor = {0.005, 0.005, 0.0};
+    c.ranges.assign(beam_count(c.angles), 3000);
+    return c;
+}
+
+bool is_free_towards(const Verdicts& verdicts, double degrees) {
+    const double angle = degrees * kDegree;
+    return cell(verdicts, static_cast<int>(std::lround(200.0 * std::cos(angle))),
+                static_cast<int>(std::lround(200.0 * std::sin(angle)))) == oracle::Verdict::kFree;
+}
+
+TEST(InverseSensorModel, UnevenBeamsLeaveNoSpokesUnseen) {
+    ExplicitAngles tangent;
+    for (int i = -60; i <= 60; ++i) tangent.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
+    const auto verdicts = run_kernel(all_around(tangent));
+    for (double degrees = -59.5; degrees <= 59.5; degrees += 0.1) {
+        EXPECT_TRUE(is_free_towards(verdicts, degrees)) << degrees;
+    }
+    EXPECT_FALSE(is_free_towards(verdicts, 62.0));
+    EXPECT_FALSE(is_free_towards(verdicts, 180.0));
+}
+
+TEST(InverseSensorModel, ABlindPartOfTheCircleStaysUnseen) {
+    ExplicitAngles list; // a lidar with 10 degrees missing, and one beam alone behind it
+    for (int degree = 0; degree <= 80; ++degree) {
+        if (degree < 40 || degree >= 50) list.push_back(degree * kDegree);
+    }
+    list.push_back(kPi);
+    const auto verdicts = run_kernel(all_around(list));
+    for (const double degrees : {0.0, 20.5, 39.3, 49.7, 80.3, 180.0}) {
+        EXPECT_TRUE(is_free_towards(verdicts, degrees)) << degrees;
+    }
+    for (const double degrees : {41.0, 45.0, 49.0, 82.0, 120.0, 178.0, 182.0, 270.0}) {
+        EXPECT_FALSE(is_free_towards(verdicts, degrees)) << degrees;
+    }
+}
+
+TEST(InverseSensorModel, OnlyTheIncrementJoinsUniformBeams) {
+    const auto verdicts = run_kernel(all_around(UniformAngles{0.0, -10 * kDegree, 5}));
+    for (const double degrees : {4.5, 0.0, -5.0, -15.0, -35.0, -44.5}) {
+        EXPECT_TRUE(is_free_towards(verdicts, degrees)) << degrees;
+    }
+    for (const double degrees : {5.5, -45.5, 180.0}) EXPECT_FALSE(is_free_towards(verdicts, degrees)) << degrees;
+}
+
 TEST(InverseSensorModel, ABandThinnerThanACellIsWidenedSoThatWallsSurvive) {
     auto c = one_beam(1.0);
     c.thickness = 0.001;

@@ -67,7 +67,7 @@ TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
         damage(key, value);
         auto recovered = recover(log_, id_, config_, false);
         ASSERT_TRUE(recovered) << key;
-        EXPECT_EQ(recovered->checkpointed, 0U) << key;
+        EXPECT_EQ(recovered->checkpointed, std::nullopt) << key;
         EXPECT_EQ(recovered->projection.revision(), 652U) << key;
         EXPECT_EQ(mapping::digest_of(recovered->projection.snapshot().occupancy), digest_of_log()) << key;
         if (const auto whole = parts.find(key); whole != parts.end()) damage(key, whole->second);
@@ -84,11 +84,12 @@ TEST_F(RecoveryTest, ALogThatEndsBeforeItsCheckpointIsReported) {
     EXPECT_THAT(recovered.error().message, HasSubstr("ends before revision 66138"));
 }
 
-TEST_F(RecoveryTest, StoppedItKeepsWhatWasWovenUntilThen) {
+TEST_F(RecoveryTest, StoppedAtItsBeginningItReadsNothing) {
     const auto recovered = recover(log_, id_, config_, true);
     ASSERT_TRUE(recovered);
     EXPECT_FALSE(recovered->complete);
-    EXPECT_EQ(recovered->projection.revision(), 602U);
+    EXPECT_EQ(recovered->projection.revision(), 0U);
+    EXPECT_FALSE(recovered->checkpoint_rejected) << "it may be whole";
 }
 
 TEST_F(RecoveryTest, AfterADamagedCheckpointTheNextOneIsWhole) {

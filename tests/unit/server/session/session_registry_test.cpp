@@ -233,6 +233,82 @@ TEST_F(SessionRegistryTest, DrainingMakesEverythingDurableAndRefusesTheNew) {
     ASSERT_TRUE(registry_->remove("s0")) << "what has been drained can still be deleted";
 }
 
+/// A log that lets a recovery read up to an entry, then keeps it waiting.
+class GatedLog : public store::MemoryScanLog {
+public:
+    Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
+        return MemoryScanLog::read(session, after, [&](Revision revision, std::string_view entry) {
+            if (revision == gate) {
+                reached.set_value();
+                opened.get_future().wait();
+            }
+            return visit(revision, entry);
+        });
+    }
+
+    Revision gate = 0; // none
+    std::promise<void> reached;
+    std::promise<void> opened;
+};
+
+/// A registry that is told to stop while it recovers a session of 60 scans, after 30 of them.
+class StoppedRecoveryTest : public SessionRegistryTest {
+protected:
+    void SetUp() override {
+        SessionRegistry first(gated_, compute_.get_executor(), [] { return 0.0; });
+        const auto session = first.create("lab", {}).value();
+        stream(*session, "r", 60);
+        id_ = session->info().id;
+        digest_ = mapping::digest_of(session->snapshot()->occupancy);
+    }
+
+    void stop_in_the_middle(bool in_a_hurry) {
+        gated_.gate = 32;
+        SessionRegistry registry(gated_, compute_.get_executor(), [] { return 0.0; });
+        std::atomic<bool> recovered = false;
+        std::thread recovering([&] {
+            EXPECT_TRUE(registry.recover());
+            recovered = true;
+        });
+        gated_.reached.get_future().wait();
+        std::thread draining([&] {
+            registry.drain();
+            EXPECT_TRUE(recovered || registry.list().empty()) << "drain() has waited for recover()";
+        });
+        while (!registry.is_draining()) std::this_thread::yield();
+        if (in_a_hurry) registry.hurry();
+        gated_.opened.set_value();
+        recovering.join();
+        draining.join();
+        gated_.gate = 0;
+        EXPECT_TRUE(registry.list().empty());
+        EXPECT_TRUE(registry.damaged().empty());
+    }
+
+    void expect_that_the_next_start_has_everything() {
+        SessionRegistry next(gated_, compute_.get_executor(), [] { return 0.0; });
+        ASSERT_TRUE(next.recover());
+        ASSERT_TRUE(next.find("lab"));
+        EXPECT_EQ(mapping::digest_of(next.find("lab")->snapshot()->occupancy), digest_);
+    }
+
+    GatedLog gated_;
+    store::SessionId id_ = 0;
+    std::string digest_;
+};
+
+TEST_F(StoppedRecoveryTest, KeepsWhatItHasWovenForTheNextStart) {
+    stop_in_the_middle(false);
+    EXPECT_EQ(recover(gated_, id_, {}, false)->checkpointed, 31U);
+    expect_that_the_next_start_has_everything();
+}
+
+TEST_F(StoppedRecoveryTest, InAHurryWritesNothing) {
+    stop_in_the_middle(true);
+    EXPECT_THAT(store::checkpoint_of(gated_, id_).value(), IsEmpty());
+    expect_that_the_next_start_has_everything();
+}
+
 TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
     std::vector<std::thread> threads;
     std::atomic<int> created = 0;
