@@ -21,6 +21,7 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kUnauthorized: return "unauthorized";
     case Errc::kUnreachable: return "unreachable";
     case Errc::kOverloaded: return "overloaded";
+    case Errc::kFull: return "full";
     case Errc::kInternal: return "internal";
     }
     return "unknown";

@@ -18,7 +18,7 @@ enum class Errc {
     kInvalidField,       ///< a value out of its range; the message names the field
     kNotFound,           ///< no such session, layer, tile, file
     kAlreadyExists,      ///< a session of that name
-    kConflict,           ///< settings that contradict those in force
+    kConflict,           ///< what contradicts what is there: other settings, another source, a damaged session
     kOutOfOrder,         ///< a scan's seq is missing
     kCreditExceeded,     ///< a robot sent more than it was allowed
     kTimeout,            ///< a deadline passed
@@ -29,6 +29,7 @@ enum class Errc {
     kUnauthorized,       ///< no valid token
     kUnreachable,        ///< the peer cannot be reached, or hung up
     kOverloaded,         ///< no room or no time for this now; later there may be
+    kFull,               ///< a session or its map holds the most it can; waiting makes no room
     kInternal,           ///< a fault of this program
 };
 

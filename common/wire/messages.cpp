@@ -44,6 +44,7 @@ constexpr ErrorCodePair kErrorCodes[] = {
     {Errc::kShuttingDown, v1::ERROR_CODE_SHUTTING_DOWN},
     {Errc::kUnauthorized, v1::ERROR_CODE_UNAUTHORIZED},
     {Errc::kOverloaded, v1::ERROR_CODE_OVERLOADED},
+    {Errc::kFull, v1::ERROR_CODE_SESSION_FULL},
     {Errc::kInternal, v1::ERROR_CODE_INTERNAL},
 };
 

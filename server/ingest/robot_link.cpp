@@ -20,6 +20,9 @@ namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10;
 
+/// Answers to pings that a robot has not read.
+constexpr std::size_t kPongBytesMax = std::size_t{64} << 10;
+
 /// Sensor descriptions under way besides the credit, which is for scans: twice what 64 sensors of 4096 explicit
 /// angles take.
 constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
@@ -211,7 +214,12 @@ Result<> RobotLink::handle(wire::Message message) {
         return {};
     }
     if (const auto* ping = std::get_if<wire::Ping>(&message)) {
-        if (outbox_.waiting() > kReadBytes) return Error{Errc::kTooLarge, "too many pings without reading the pongs"};
+        if (outbox_.waiting() > kPongBytesMax) {
+            return Error{
+                Errc::kCreditExceeded,
+                fmt::format("{} bytes of pongs wait to be read, at most {} may; read them before the next ping",
+                            outbox_.waiting(), kPongBytesMax)};
+        }
         outbox_.send(wire::Pong{ping->nonce}, self);
         return {};
     }

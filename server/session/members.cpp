@@ -45,7 +45,7 @@ Submitted Members::submitted(Member& member, std::optional<LogEntry> entry, std:
 std::optional<Submitted> Members::join(const std::string& robot, Joining joining) {
     auto known = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == robot; });
     if (known == members_.end() && members_.size() >= kRobotsMax) {
-        joining.done(Error{Errc::kTooLarge,
+        joining.done(Error{Errc::kFull,
                            fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
                                        info_.name, members_.size())});
         return std::nullopt;

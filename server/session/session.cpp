@@ -17,9 +17,9 @@ constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a res
 constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
 
 Error full(std::size_t chunks, std::size_t chunks_max) {
-    return {Errc::kTooLarge, fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, "
-                                         "the most there may be; use larger cells or another session",
-                                         chunks, chunks_max)};
+    return {Errc::kFull, fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, "
+                                     "the most there may be; use larger cells or another session",
+                                     chunks, chunks_max)};
 }
 
 } // namespace

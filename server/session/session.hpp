@@ -54,7 +54,7 @@ public:
     /// `done` is called once, on the strand, when everything the robot's earlier links submitted is
     /// durable: so last_durable_seq is exact, and no more than one link's credit is under way.
     /// Errors  kReplaced, kConflict (the robot's scans come from another source), kGone, kStoreFailed,
-    ///         kShuttingDown, kTooLarge.
+    ///         kShuttingDown, kFull.
     void join(std::string robot, std::string source, std::shared_ptr<RobotListener> listener,
               std::function<void(Result<Joined>)> done);
 
@@ -64,7 +64,7 @@ public:
 
     /// Adds scans. Those the log already has are dropped; a missing one fails the link (kOutOfOrder),
     /// as do a scan of a sensor that was not described or with beams that do not fit it, and one that might
-    /// need more chunks than a map may have (kTooLarge).
+    /// need more chunks than a map may have (kFull).
     void submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes);
 
     /// The link is gone; what it submitted stays.

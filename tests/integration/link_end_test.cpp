@@ -102,7 +102,26 @@ TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
     }
     sending.join();
     ASSERT_TRUE(refused);
-    EXPECT_EQ(refused->error.message, "too many pings without reading the pongs");
+    EXPECT_EQ(refused->error.code, Errc::kCreditExceeded);
+    EXPECT_FALSE(refused->retryable);
+    EXPECT_THAT(refused->error.message, testing::HasSubstr("bytes of pongs wait to be read, at most 65536 may"));
+}
+
+TEST_F(IngestTest, ARobotThatFindsTheSessionFullNeedNotTryAgain) {
+    start();
+    struct Silent : session::RobotListener {
+        void on_durable(std::uint64_t, std::size_t) override {}
+        void on_failed(const Error&) override {}
+    };
+    const auto robot = welcomed(port(), hello("r"));
+    const auto session = running_->sessions().find("lab");
+    for (int n = 1; n < 1024; ++n) {
+        session->join("r" + std::to_string(n), "", std::make_shared<Silent>(), [](const Result<session::Joined>&) {});
+    }
+    RobotSocket last(port());
+    last.send(hello("last"));
+    expect_refused(last, Errc::kFull, false, "session 'lab' has 1024 robots already");
+    welcomed(port(), hello("r"));
 }
 
 TEST_F(IngestTest, ARobotOfASessionWhoseDiskFailsMayTryAgain) {

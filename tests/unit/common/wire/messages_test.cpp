@@ -71,10 +71,10 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
 }
 
 TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
-    for (const Errc code :
-         {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField, Errc::kNotFound,
-          Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout, Errc::kReplaced, Errc::kGone,
-          Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized, Errc::kOverloaded, Errc::kInternal}) {
+    for (const Errc code : {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField,
+                            Errc::kNotFound, Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout,
+                            Errc::kReplaced, Errc::kGone, Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized,
+                            Errc::kOverloaded, Errc::kInternal, Errc::kFull}) {
         const Message message = LinkError{{code, "why"}, false};
         EXPECT_EQ(decode(body_of(message)).value(), message) << name_of(code);
     }

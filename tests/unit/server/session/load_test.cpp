@@ -179,7 +179,7 @@ TEST_F(SmallMapTest, AScanThatCouldOverfillTheMapIsRefusedNotLeftOut) {
         session_->submit(link_, {scan_at(seq, 10.0 * static_cast<double>(seq))}, 10);
         run();
     }
-    EXPECT_EQ(link_->failures[0].code, Errc::kTooLarge);
+    EXPECT_EQ(link_->failures[0].code, Errc::kFull);
     EXPECT_THAT(link_->failures[0].message, HasSubstr("a scan could take it beyond 40"));
     EXPECT_GE(seq, 3U);
     EXPECT_EQ(link_->durable_seq(), seq - 1);

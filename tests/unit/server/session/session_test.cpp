@@ -195,7 +195,7 @@ TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
     }
     run();
     EXPECT_TRUE(joins[1023].answer->value());
-    EXPECT_EQ(joins[1024].answer->value().error().code, Errc::kTooLarge);
+    EXPECT_EQ(joins[1024].answer->value().error().code, Errc::kFull);
     EXPECT_THAT(joins[1024].answer->value().error().message, HasSubstr("1024 robots already"));
 }
 
