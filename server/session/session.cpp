@@ -39,6 +39,11 @@ std::shared_ptr<const mapping::Snapshot> Session::snapshot() const {
     return published_;
 }
 
+std::optional<Error> Session::failure() const {
+    const std::lock_guard lock(published_mutex_);
+    return failure_;
+}
+
 template <class Work>
 void Session::on_strand(Work work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable { work(*self); });
@@ -212,6 +217,10 @@ void Session::stop_writing(const Error& error) {
     spdlog::error("session '{}': {}", info_.name, error.message);
     refusing_ = error;
     broken_ = true;
+    {
+        const std::lock_guard lock(published_mutex_);
+        failure_ = error;
+    }
     members_.fail_all(error);
     drop_what_is_under_way();
     finish_closing();

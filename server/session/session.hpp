@@ -46,6 +46,10 @@ public:
     /// The newest maps; they hold every scan acknowledged so far.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const;
 
+    /// Why the session takes no scans until the server is started again, its maps being served all the same: the log
+    /// could not be written, or the memory ran out. Nothing while all is well.
+    [[nodiscard]] std::optional<Error> failure() const;
+
     /// Whether the robot has a link at present.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return members_.is_connected(robot); }
 
@@ -127,8 +131,9 @@ private:
 
     std::atomic<bool> hurried_ = false; // set from any thread, as the strand may be busy
 
-    mutable std::mutex published_mutex_; // guards the pointer, held for a copy only
+    mutable std::mutex published_mutex_; // guards what follows, held for a copy only
     std::shared_ptr<const mapping::Snapshot> published_;
+    std::optional<Error> failure_;
 };
 
 } // namespace scanloom::session

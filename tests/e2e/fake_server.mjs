@@ -30,6 +30,8 @@ export class FakeSession {
     this.robots = [];
     this.tracks = new Map();
     this.tiles = new Map();
+    /** Why it takes no scans; null: it does. */
+    this.failure = null;
   }
 
   /** Gives a whole native tile one probability of occupation, in percent, and touches what lies above it. */
@@ -73,7 +75,7 @@ export class FakeSession {
   toJson() {
     return {
       name: this.name,
-      state: 'ok',
+      ...(this.failure ? { state: 'failed', reason: this.failure } : { state: 'ok' }),
       id: this.id,
       created: this.created,
       revision: this.revision,

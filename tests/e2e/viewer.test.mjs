@@ -61,6 +61,18 @@ describe('the viewer', { timeout: 180_000 }, () => {
     complaints.splice(0); // the browser's own: a 500 is what was asked for
   });
 
+  it('shows the map of a session that takes no scans, and says so', async () => {
+    const session = painted('full-disk');
+    await open();
+    await says(page, '#sessions', /full-disk/);
+    await page.waitForSelector('#sessions .damaged', { state: 'hidden' });
+    session.failure = 'no space left on the disk';
+    await page.waitForSelector('#sessions .damaged', { state: 'visible' });
+    await says(page, '#sessions', /full-disk.*takes no scans.*no space left on the disk/);
+    await keepPicture(page, 'takes-no-scans');
+    await page.waitForSelector('#notice', { state: 'hidden' });
+  });
+
   it('tells the same of a session in the list and beside the map', async () => {
     const session = painted('map');
     await open();

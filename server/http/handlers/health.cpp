@@ -9,15 +9,20 @@
 namespace scanloom::http {
 namespace {
 
-/// Damaged sessions keep nobody from using the others.
+/// Damaged and failed sessions keep nobody from using the others.
 boost::json::object readiness(const session::SessionRegistry& sessions, const RobotPort& robots) {
     boost::json::array damaged;
     for (const auto& [name, reason] : sessions.damaged()) damaged.push_back(damaged_json(name, reason));
+    boost::json::array failed;
+    for (const auto& session : sessions.list()) {
+        if (const auto reason = session->failure()) failed.push_back(failed_json(session->info().name, *reason));
+    }
     boost::json::value host;
     if (!robots.host.empty()) host = boost::json::string(robots.host);
     return {{"status", "ready"},
             {"robots", boost::json::object{{"host", std::move(host)}, {"port", robots.port}}},
-            {"damaged", std::move(damaged)}};
+            {"damaged", std::move(damaged)},
+            {"failed", std::move(failed)}};
 }
 
 } // namespace

@@ -19,8 +19,8 @@ struct RobotPort {
 /// GET /livez: the process answers.
 [[nodiscard]] Result<Response> get_livez(const Call& call);
 
-/// GET /readyz: 200 with the sessions that are damaged and where robots connect, or 503 with the reasons: sessions not
-/// recovered yet, draining, a failed store. It waits for nothing.
+/// GET /readyz: 200 with the sessions that are damaged or take no scans and where robots connect, or 503 with the
+/// reasons: sessions not recovered yet, draining, a failed store. It waits for nothing.
 [[nodiscard]] Result<Response> get_readyz(const session::SessionRegistry& sessions, const store::ScanLog& log,
                                           bool recovered, const RobotPort& robots, const Call& call);
 

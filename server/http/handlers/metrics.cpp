@@ -3,6 +3,7 @@
 #include "server/metrics/families.hpp"
 #include "server/metrics/process.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <vector>
 
@@ -32,8 +33,13 @@ Families store_families(const store::ScanLog& log) {
 }
 
 Families session_families(const session::SessionRegistry& sessions) {
+    const auto served = sessions.list();
+    const auto failed =
+        std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
     return {
-        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.list().size())),
+        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(served.size())),
+        gauge_now("scanloom_sessions_failed", "Sessions that take no scans until the server is started again.",
+                  static_cast<double>(failed)),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
                   static_cast<double>(sessions.damaged().size())),
         counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",

@@ -58,16 +58,23 @@ boost::json::object to_json(const session::Session& session) {
                                              {"pose", pose_json(robot.pose)}});
     }
     const auto& info = session.info();
-    return {{"name", info.name},
-            {"state", "ok"},
-            {"id", session_tag(info)},
-            {"created", rfc3339(info.created)},
-            {"revision", snapshot->revision},
-            {"scans", scans},
-            {"config", config_json(info.config)},
-            {"layers", boost::json::array{kOccupancy}},
-            {"bounds", bounds_json(*snapshot)},
-            {"robots", std::move(robots)}};
+    const auto failure = session.failure();
+    boost::json::object json{{"name", info.name},
+                             {"state", failure ? "failed" : "ok"},
+                             {"id", session_tag(info)},
+                             {"created", rfc3339(info.created)},
+                             {"revision", snapshot->revision},
+                             {"scans", scans},
+                             {"config", config_json(info.config)},
+                             {"layers", boost::json::array{kOccupancy}},
+                             {"bounds", bounds_json(*snapshot)},
+                             {"robots", std::move(robots)}};
+    if (failure) json["reason"] = failure->message;
+    return json;
+}
+
+boost::json::object failed_json(std::string_view name, const Error& reason) {
+    return {{"name", name}, {"state", "failed"}, {"reason", reason.message}};
 }
 
 boost::json::object damaged_json(std::string_view name, const Error& reason) {

@@ -14,6 +14,9 @@ namespace scanloom::http {
 /// Everything about a session, as the API shows it.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);
 
+/// A session that takes no scans until the server is started again, in short: its name, its state and why.
+[[nodiscard]] boost::json::object failed_json(std::string_view name, const Error& reason);
+
 /// A session whose log is damaged, so that there is no more to show of it than that.
 [[nodiscard]] boost::json::object damaged_json(std::string_view name, const Error& reason);
 

@@ -31,7 +31,7 @@ export function decodeSessionPage(json: unknown): SessionPage {
 }
 
 function isDamaged(session: Fields): boolean {
-  return session['state'] !== undefined && session['state'] !== 'ok';
+  return session['state'] !== undefined && session['state'] !== 'ok' && session['state'] !== 'failed';
 }
 
 function decodeDamaged(session: Fields): DamagedSession {
@@ -59,6 +59,7 @@ export function decodeSession(json: unknown): Session {
     cellSize,
     bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),
     robots: list(session['robots'], 'robots').map(decodeRobot),
+    failure: session['state'] === 'failed' ? text(session['reason'], 'reason') : null,
   };
 }
 

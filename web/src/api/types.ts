@@ -32,6 +32,8 @@ export interface Session {
   /** Null while nothing has been seen. */
   bounds: Bounds | null;
   robots: Robot[];
+  /** Why it takes no scans until the server is started again; null while it does. */
+  failure: string | null;
 }
 
 /** A session that the server cannot weave again from its log. */

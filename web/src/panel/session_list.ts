@@ -8,6 +8,8 @@ interface SessionRow extends Row {
   link: HTMLAnchorElement;
   summary: HTMLElement;
   live: HTMLElement;
+  failed: HTMLElement;
+  failure: HTMLElement;
 }
 
 interface DamagedRow extends Row {
@@ -48,6 +50,8 @@ export class SessionList {
 
   private update(row: SessionRow, session: Session): void {
     setText(row.summary, `${counted(session.scans, 'scan')} \u00b7 ${counted(session.robots.length, 'robot')}`);
+    row.failed.hidden = row.failure.hidden = session.failure === null;
+    setText(row.failure, session.failure ?? '');
     row.live.hidden = !session.robots.some(({ connected }) => connected);
     if (session.name === this.chosen) row.link.setAttribute('aria-current', 'true');
     else row.link.removeAttribute('aria-current');
@@ -57,9 +61,11 @@ export class SessionList {
 function createRow(session: Session): SessionRow {
   const summary = el('span', { class: 'row-detail' });
   const live = el('span', { class: 'live' }, 'live');
+  const failed = el('span', { class: 'damaged' }, 'takes no scans');
+  const failure = el('span', { class: 'row-detail' });
   const name = el('span', { class: 'row-name', dir: 'auto' }, session.name);
-  const link = el('a', { href: hashOfSession(session.name), class: 'row' }, name, live, summary);
-  return { element: el('li', {}, link), link, summary, live };
+  const link = el('a', { href: hashOfSession(session.name), class: 'row' }, name, live, failed, summary, failure);
+  return { element: el('li', {}, link), link, summary, live, failed, failure };
 }
 
 /** Nothing to open: the server cannot weave its map. */

@@ -31,12 +31,14 @@ public:
     void on_durable(std::uint64_t durable_seq, std::size_t) override {
         if (durable_seq == awaited_) done_.set_value();
     }
-    void on_failed(const Error&) override {}
+    void on_failed(const Error&) override { failed_.set_value(); }
     void wait() { done_.get_future().wait(); }
+    void wait_for_failure() { failed_.get_future().wait(); }
 
 private:
     std::uint64_t awaited_;
     std::promise<void> done_;
+    std::promise<void> failed_;
 };
 
 Sensor laser() {
@@ -523,6 +525,29 @@ TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
     EXPECT_EQ(rest.at("sessions").at(0).at("name"), "a");
     EXPECT_EQ(json("/readyz").at("damaged"), boost::json::array{damaged});
     registry.drain();
+}
+
+TEST_F(ApiTest, ASessionThatTakesNoScansSaysSoAndItsMapIsServed) {
+    create("a");
+    create("b");
+    stream("a", 1);
+    EXPECT_EQ(get_json("/readyz").at("failed"), boost::json::array{});
+    EXPECT_FALSE(get_json("/api/v1/sessions/a").as_object().contains("reason"));
+    log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
+    registry_.find("a")->submit(links_[0], {scan(2)}, 1);
+    links_[0]->wait_for_failure();
+    const auto shown = get_json("/api/v1/sessions/a");
+    EXPECT_EQ(shown.at("state"), "failed");
+    EXPECT_EQ(shown.at("reason"), "the disk is full");
+    EXPECT_EQ(shown.at("scans"), 1);
+    EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(0), shown);
+    EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(1).at("state"), "ok");
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok);
+    EXPECT_THAT(std::string(get("/metrics").body.bytes()), HasSubstr("scanloom_sessions_failed 1\n"));
+
+    log_.reopen(); // as when it was not the store that failed
+    EXPECT_EQ(get_json("/readyz").at("failed"),
+              (boost::json::array{{{"name", "a"}, {"state", "failed"}, {"reason", "the disk is full"}}}));
 }
 
 TEST_F(ApiTest, ReadinessTellsWhereRobotsConnect) {

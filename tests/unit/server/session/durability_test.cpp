@@ -115,6 +115,7 @@ TEST_F(SessionTest, AFailedAppendFailsEveryLinkAndTheMapsStay) {
     session_->submit(a, random_scans(1, 1, 3), 10);
     run();
     const auto good = session_->snapshot();
+    EXPECT_FALSE(session_->failure());
     log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
     session_->submit(a, random_scans(1, 4, 3), 10);
     session_->submit(b, random_scans(2, 1, 3), 10);
@@ -126,6 +127,7 @@ TEST_F(SessionTest, AFailedAppendFailsEveryLinkAndTheMapsStay) {
     EXPECT_EQ(a->durable_seq(), 3U);
     EXPECT_EQ(b->durable_seq(), 0U);
     EXPECT_EQ(session_->snapshot(), good);
+    EXPECT_EQ(session_->failure(), (Error{Errc::kStoreFailed, "no space left"}));
     EXPECT_FALSE(session_->is_connected(0));
     const auto refused = begin_join("a");
     EXPECT_EQ(refused.answer->value().error().code, Errc::kStoreFailed);

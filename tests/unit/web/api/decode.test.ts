@@ -34,7 +34,16 @@ describe('decoding', () => {
       cellSize: 0.05,
       bounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
       robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 } }],
+      failure: null,
     });
+  });
+
+  it('shows a session that takes no scans, and why', () => {
+    const failed = { ...session(), state: 'failed', reason: 'no space left' };
+    const page = decodeSessionPage({ sessions: [failed], next: null });
+    assert.deepEqual(page.damaged, []);
+    assert.equal(page.sessions[0]?.failure, 'no space left');
+    assert.throws(() => decodeSession({ ...session(), state: 'failed' }), /reason is not a text/);
   });
 
   it('tells damaged sessions from those that are served', () => {
