@@ -1,13 +1,18 @@
 #pragma once
 
+#include "common/app/config_text.hpp"
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <istream>
+#include <iterator>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,14 +31,29 @@ namespace scanloom {
 /// TOML without what the environment sets: CLI11 by itself would let the file win.
 class EnvironmentFirstToml final : public CLI::ConfigTOML {
 public:
+    /// `app` must outlive this; its configuration file is named where it is at fault.
+    explicit EnvironmentFirstToml(const CLI::App& app) : app_(app) {
+        comment('\n'); // none: they are gone before CLI11 reads a line
+    }
+
+    /// Throws CLI::ConfigError where the file is no TOML.
     [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-        auto settings = CLI::ConfigTOML::from_config(input);
+        const auto text = one_line_a_setting(std::string(std::istreambuf_iterator<char>(input), {}));
+        if (!text) {
+            throw CLI::ConfigError(
+                fmt::format("{}:{}", app_.get_config_ptr()->as<std::string>(), text.error().message));
+        }
+        std::istringstream lines(*text);
+        auto settings = CLI::ConfigTOML::from_config(lines);
         std::erase_if(settings, [](const CLI::ConfigItem& item) {
             const char* value = std::getenv(environment_name(item.name).c_str());
             return value != nullptr && *value != '\0';
         });
         return settings;
     }
+
+private:
+    const CLI::App& app_;
 };
 
 /// Call it after all options and subcommands were added. Unknown settings in the file are errors of app.parse().
@@ -48,7 +68,7 @@ inline void read_settings_from_environment_and_file(CLI::App& app) {
     };
     name_options(app);
     for (CLI::App* source : app.get_subcommands({})) name_options(*source);
-    app.config_formatter(std::make_shared<EnvironmentFirstToml>());
+    app.config_formatter(std::make_shared<EnvironmentFirstToml>(app));
     app.allow_config_extras(CLI::config_extras_mode::error);
 
     // CLI11 reads the file before the environment, so the name in the environment is given as the default.

@@ -7,7 +7,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace scanloom::robot {
 namespace {
@@ -54,6 +57,18 @@ std::string check_not_negative(const std::string& text) {
     return fmt::format("'{}' is not 0 or more", text);
 }
 
+/// CLI11 by itself would take -1 for the largest number.
+auto check_whole_number_from(std::uint64_t low) {
+    return [=](const std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stopped, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc{} && stopped == end && value >= low) return std::string();
+        return fmt::format("'{}' is not a whole number from {} to {}", text, low,
+                           std::numeric_limits<std::uint64_t>::max());
+    };
+}
+
 /// HOST:PORT or [ADDRESS]:PORT.
 bool split_server(const std::string& server, RobotOptions& options) {
     const std::size_t colon = server.rfind(':');
@@ -87,7 +102,10 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 }
 
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
-    app.add_option("--max-range", options.range_max, "Metres; readings of this length or more are no-return")
+    app.add_option(
+           "--max-range", options.range_max,
+           "Metres; readings of this length or more are no-return. Default: what the source states, and for logs 50 "
+           "at most")
         ->check(check_within(0.001, kRangeMax));
     app.add_option("--no-return", raw.no_return,
                    "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "
@@ -119,13 +137,15 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     simulate->add_option("--noise", options.noise, "What its measurements suffer from")
         ->check(CLI::IsMember({"none", "gaussian"}))
         ->capture_default_str();
-    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")->capture_default_str();
+    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
+        ->check(check_whole_number_from(0))
+        ->capture_default_str();
     simulate
         ->add_option("--duration", options.duration,
                      "Seconds to simulate, earlier runs included; default: until interrupted")
         ->check(check_positive);
     simulate->add_option("--scans", options.scans, "Scans to take, earlier runs included; default: until interrupted")
-        ->check(check_positive);
+        ->check(check_whole_number_from(1));
     simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
         ->check(check_not_negative)
         ->capture_default_str();

@@ -37,10 +37,11 @@ Result<> check_resume(std::uint64_t stored, std::optional<std::uint64_t> scan_co
                                                   "robot sends; check --server, or choose another --robot or --session",
                                                   stored)};
     }
-    return Error{Errc::kConflict,
-                 fmt::format("the server has {} scans of this robot, but there are only {} to be sent: perhaps it was "
-                             "another recording or simulation; choose another --robot or --session",
-                             stored, *scan_count)};
+    return Error{
+        Errc::kConflict,
+        fmt::format("the server has {} scans of this robot already, and this run ends with scan {}; let a simulation "
+                    "run longer (--scans, --duration), or choose another --robot or --session",
+                    stored, *scan_count)};
 }
 
 double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
@@ -55,7 +56,8 @@ Uplink::Uplink(asio::io_context& io, UplinkOptions options, Source& source)
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || feed() || watch_progress());
-    co_return outcome_&& stopped_ ? outcome_when_interrupted() : outcome_;
+    const bool is_cut_short = outcome_ && stopped_;
+    co_return is_cut_short ? outcome_when_interrupted() : outcome_;
 }
 
 Result<> Uplink::outcome_when_interrupted() const {

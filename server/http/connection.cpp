@@ -220,7 +220,8 @@ net::awaitable<bool> Connection::write(const Response& response, bool with_body,
     const std::string head = head_text(response, keep_alive, date_now());
     const bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
     must_linger_ = written && !keep_alive;
-    co_return written&& keep_alive;
+    const bool can_go_on = written && keep_alive;
+    co_return can_go_on;
 }
 
 /// A deadline for each piece, so that a large answer may take its time as long as somebody reads it; and one for all,

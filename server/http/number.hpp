@@ -3,22 +3,19 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
 namespace scanloom::http {
 
-/// A whole number in decimal digits, one minus sign before it at most. What does not fit is clamped to the
-/// nearest that does: too large is a matter of range, not of form.
+/// A whole number in decimal digits, one minus sign before it at most; nothing also when it does not fit.
 template <std::integral T>
 [[nodiscard]] std::optional<T> parse_integer(std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
-    if (error != std::errc::result_out_of_range) return value;
-    return text.front() == '-' ? std::numeric_limits<T>::min() : std::numeric_limits<T>::max();
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
 }
 
 /// A finite number, as JSON writes them.

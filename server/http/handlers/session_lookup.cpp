@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace scanloom::http {
 
 Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions, const Call& call) {
@@ -39,8 +41,8 @@ Result<> check_layer_parameter(const Query& query) { return check_layer(query.fi
 Result<Revision> since_parameter(const Query& query) {
     const auto text = query.find("since").value_or("0");
     if (const auto since = parse_integer<Revision>(text)) return *since;
-    return Error{Errc::kInvalidField,
-                 fmt::format("since is {}; a revision is needed, a whole number from 0 on", in_quotes(text))};
+    return Error{Errc::kInvalidField, fmt::format("since is {}; a revision is needed, a whole number from 0 to {}",
+                                                  in_quotes(text), std::numeric_limits<Revision>::max())};
 }
 
 Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {

@@ -168,13 +168,13 @@ TEST_F(UplinkTest, ARecordingTheServerHasWholeIsDoneAtOnce) {
     EXPECT_EQ(server_->goodbyes(), 1);
 }
 
-TEST_F(UplinkTest, AServerWithMoreScansThanTheRecordingHasAnother) {
+TEST_F(UplinkTest, ARunThatEndsBeforeWhatIsStoredSaysSo) {
     serve({{}});
     server_->store_before(kScans + 1);
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
-    EXPECT_THAT(outcome.error().message, HasSubstr("the server has 501 scans of this robot, but there are only 500"));
-    EXPECT_THAT(outcome.error().message, HasSubstr("perhaps it was another recording"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("501 scans of this robot already, and this run ends with scan 500"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("--scans"));
     EXPECT_THAT(troubles_, IsEmpty()) << "hanging up for this is no trouble";
 }
 

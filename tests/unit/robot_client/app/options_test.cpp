@@ -156,9 +156,13 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {with({"--speed", "-1"}), "--speed"},
         {with({"--speed", "inf"}), "--speed"},
         {with({"--scans", "0"}), "--scans"},
+        {with({"--scans", "1.5"}), "--scans"},
+        {with({"--scans", "18446744073709551616"}), "--scans"},
         {with({"--duration", "nan"}), "--duration"},
         {with({"--duration", "-1"}), "--duration"},
         {with({"--seed", "x"}), "--seed"},
+        {with({"--seed", "-1"}), "--seed: '-1' is not a whole number"},
+        {with({"--seed", "18446744073709551616"}), "--seed"},
         {with({"--token-file", "/nonexistent"}), "/nonexistent"},
         {with({"--bogus"}), "--bogus"},
         {with({"--config", "/nonexistent.toml"}), "/nonexistent.toml"},
@@ -171,6 +175,16 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         EXPECT_EQ(std::count(leave.text.begin(), leave.text.end(), '\n'), 1) << leave.text;
     }
 }
+
+TEST_F(Options, SeedsReachAsFarAsTheirTypeAlsoInTheFile) {
+    const std::vector<std::string> words{
+        "simulate", "--session", "s", "--robot", "r", "--config", file("[simulate]\nseed = -1\n")};
+    EXPECT_THAT(left(words).text, HasSubstr("--seed"));
+    const auto largest = parsed({"simulate", "--session", "s", "--robot", "r", "--seed", "18446744073709551615"});
+    EXPECT_EQ(std::get<SimulateOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST_F(Options, HelpTellsWhereLogsEnd) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs 50")); }
 
 TEST_F(Options, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(left({"--help"}).code, kExitDone);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 namespace scanloom::app {
@@ -46,6 +47,25 @@ TEST_F(ServerOptionsTest, FaultsOfTheFileAreToldInItsOwnTerms) {
     const auto missing = refusal({"--config", "no-such-file.toml"});
     EXPECT_THAT(missing, AllOf(HasSubstr("the file of --config cannot be read"), HasSubstr("no-such-file.toml")));
     EXPECT_THAT(refusal({"--config", file("b.toml", "threads = 0\n")}), HasSubstr("--threads"));
+}
+
+TEST_F(ServerOptionsTest, AFileThatIsNotClosedIsNamedWithItsLine) {
+    const auto string = file("string.toml", "threads = 2\nlog-level = \"info\nlisten = \"127.0.0.1:0\"\n");
+    EXPECT_THAT(refusal({"--config", string}), HasSubstr(string + ":2: a string is not closed; end it with \""));
+    const auto array = file("array.toml", "http-host = [\"maps.lab\"\n");
+    EXPECT_THAT(refusal({"--config", array}), HasSubstr(array + ":1: a [ is not closed; end it with ]"));
+    setenv("SCANLOOM_CONFIG", array.c_str(), 1);
+    EXPECT_THAT(refusal({}), HasSubstr(array + ":1:"));
+    unsetenv("SCANLOOM_CONFIG");
+}
+
+TEST_F(ServerOptionsTest, WhatLooksLikeACommentInAStringIsNone) {
+    const auto config =
+        file("a.toml", "store = \"/maps#1, old\" # not here\nhttp-host = [ # two\n \"a\",\n \"b\", # b\n]\n");
+    std::vector<const char*> argv = {"scanloom-server", "--config", config.c_str()};
+    const auto options = std::get<ServerOptions>(read_options(static_cast<int>(argv.size()), argv.data()));
+    EXPECT_EQ(options.store, "/maps#1, old");
+    EXPECT_THAT(options.http_hosts, ElementsAre("a", "b"));
 }
 
 TEST_F(ServerOptionsTest, ANamedDirectoryWithoutAViewerIsRefused) {

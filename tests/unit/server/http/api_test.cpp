@@ -194,7 +194,7 @@ TEST_F(ApiTest, SessionsAreListedInPages) {
 }
 
 TEST_F(ApiTest, BadPagesAreRefusedByParameter) {
-    for (const auto* query : {"limit=0", "limit=1001", "limit=x", "limit=", "limit=-1"}) {
+    for (const auto* query : {"limit=0", "limit=1001", "limit=x", "limit=", "limit=-1", "limit=18446744073709551616"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions?{}", query)), Status::bad_request),
                     StartsWith("limit is"));
     }
@@ -325,8 +325,9 @@ TEST_F(ApiTest, TilesThatCannotBeAreRefused) {
           "occupancy/9/0/99999999999999999999.png", "height/0/0/0.png", "height.json"}) {
         EXPECT_EQ(status(tile), Status::not_found) << tile;
     }
-    for (const auto* tile : {"occupancy/x/0/0.png", "occupancy/0/0.5/0.png", "occupancy/0/0/0x0.png",
-                             "occupancy/0/0/0.png?w=1", "occupancy/0/0/0.png?v=new", "occupancy/0/%20/0.png"}) {
+    for (const auto* tile :
+         {"occupancy/x/0/0.png", "occupancy/0/0.5/0.png", "occupancy/0/0/0x0.png", "occupancy/0/0/0.png?w=1",
+          "occupancy/0/0/0.png?v=new", "occupancy/0/0/0.png?v=18446744073709551616", "occupancy/0/%20/0.png"}) {
         EXPECT_EQ(status(tile), Status::bad_request) << tile;
     }
 }
@@ -356,10 +357,12 @@ TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
 
 TEST_F(ApiTest, BadChangesAreRefusedByParameter) {
     create("a");
-    for (const auto* since : {"x", "-1", "1.5", ""}) {
+    for (const auto* since : {"x", "-1", "1.5", "", "18446744073709551616"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/a/changes?since={}", since)), Status::bad_request),
                     StartsWith("since is"));
     }
+    EXPECT_EQ(get("/api/v1/sessions/a/changes?since=18446744073709551615").status, Status::ok);
+    EXPECT_EQ(get("/api/v1/sessions/a/trajectory.geojson?since=18446744073709551616").status, Status::bad_request);
     EXPECT_EQ(get("/api/v1/sessions/a/changes?layer=height").status, Status::not_found);
     EXPECT_THAT(detail(get("/api/v1/sessions/a/changes?until=3"), Status::bad_request), HasSubstr("\"until\""));
 }

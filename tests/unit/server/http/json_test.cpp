@@ -122,11 +122,13 @@ TEST(JsonWriter, WhatItWritesIsReadAgainUnchanged) {
     EXPECT_EQ(boost::json::parse(json_text(value)), value);
 }
 
-TEST(Number, IntegersAreDigitsAndClampedToWhatFits) {
+TEST(Number, IntegersAreDigitsAndFit) {
     EXPECT_EQ(parse_integer<std::uint64_t>("42"), 42U);
-    EXPECT_EQ(parse_integer<std::uint64_t>("99999999999999999999999"), std::numeric_limits<std::uint64_t>::max());
-    EXPECT_EQ(parse_integer<std::int64_t>("-99999999999999999999999"), std::numeric_limits<std::int64_t>::min());
-    for (const auto* text : {"", " 1", "1 ", "+1", "0x1", "1.0", "1e3", "-", "-1"}) {
+    EXPECT_EQ(parse_integer<std::uint64_t>("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
+    EXPECT_EQ(parse_integer<std::int64_t>("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
+    EXPECT_EQ(parse_integer<std::int64_t>("-9223372036854775809"), std::nullopt);
+    for (const auto* text :
+         {"18446744073709551616", "99999999999999999999999", "", " 1", "1 ", "+1", "0x1", "1.0", "1e3", "-", "-1"}) {
         EXPECT_EQ(parse_integer<std::uint64_t>(text), std::nullopt) << text;
     }
 }

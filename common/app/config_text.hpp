@@ -1,0 +1,17 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace scanloom {
+
+/// A TOML file as CLI11 reads it without mistakes: no comments, every array on one line. By itself CLI11 takes what is
+/// not closed for closed, lines after an array for a part of it, and a '#' within a string for a comment.
+///
+/// Errors  kMalformed: a string or an array that is not closed, or with something behind it; the message begins with
+///         the number of the line.
+[[nodiscard]] Result<std::string> one_line_a_setting(std::string_view toml);
+
+} // namespace scanloom
