@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <string_view>
 
 namespace scanloom {
@@ -12,6 +13,10 @@ inline constexpr std::size_t kScansPerBatchMax = 1024;
 inline constexpr std::size_t kNameBytesMax = 64; ///< session, robot and sensor names
 inline constexpr double kCoordinateMax = 1e6;    ///< metres from the origin, each axis
 inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
+
+/// Radians from a scan's first beam to its last: a sensor may repeat its first direction at the end of a turn, and
+/// rounding may exceed it a little.
+inline constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-6;
 
 /// Session and robot names: [A-Za-z0-9_-]{1,64}. Safe in URLs; never used as paths.
 [[nodiscard]] constexpr bool is_valid_name(std::string_view name) noexcept {

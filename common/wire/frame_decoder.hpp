@@ -41,9 +41,6 @@ public:
     /// The view is valid until the next call of prepare().
     [[nodiscard]] Result<std::optional<std::string_view>> next();
 
-    /// True when the stream stands between two frames: closing here loses nothing.
-    [[nodiscard]] bool at_frame_border() const noexcept { return begin_ == end_; }
-
     /// True when the error was HTTP in the place of a frame, as from a browser that found the wrong port.
     [[nodiscard]] bool holds_http() const noexcept { return holds_http_; }
 

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace scanloom::wire {
 namespace {
@@ -229,7 +228,7 @@ Result<> check_scan(const Scan& scan, const Sensor& sensor) {
     if (scan.angles) return {}; // decode() has checked them against the ranges
     if (const auto* uniform = std::get_if<UniformAngles>(&sensor.angles)) {
         const double span = std::abs(uniform->increment) * static_cast<double>(scan.ranges.size() - 1);
-        if (span <= 2.0 * std::numbers::pi + 1e-6) return {};
+        if (span <= kFullTurn) return {};
         return invalid_field(
             fmt::format("ranges has {} beams, which span {:.3f} rad at the increment of sensor {}, more "
                         "than a full turn; send the scan's own angles",

@@ -10,9 +10,6 @@
 namespace scanloom::wire {
 namespace {
 
-/// A sensor may repeat its first direction at the end of a turn, and rounding may exceed it a little.
-constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-6;
-
 Result<> check_angles(const BeamAngles& angles) {
     const std::size_t count = beam_count(angles);
     if (count == 0) return invalid_field("angles describe 0 beams; at least 1 is needed");

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "common/geometry/pose2.hpp"
-
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -16,30 +13,6 @@ struct Cell {
     std::int32_t j = 0;
 
     friend bool operator==(const Cell&, const Cell&) = default;
-};
-
-/// Between metres and cells. Source: design models, section 1.
-class GridGeometry {
-public:
-    /// Pre: cell_size_m > 0.
-    explicit GridGeometry(double cell_size_m) : cell_size_(cell_size_m), cells_per_metre_(1.0 / cell_size_m) {}
-
-    [[nodiscard]] double cell_size() const noexcept { return cell_size_; }
-    [[nodiscard]] double cells_per_metre() const noexcept { return cells_per_metre_; }
-
-    /// The cell that holds a point. Multiplies, never divides: 0.3 / 0.1 floors to 2.
-    [[nodiscard]] Cell cell_at(const Point2& point_map) const noexcept {
-        return {static_cast<std::int32_t>(std::floor(point_map.x() * cells_per_metre_)),
-                static_cast<std::int32_t>(std::floor(point_map.y() * cells_per_metre_))};
-    }
-
-    [[nodiscard]] Point2 centre_of(Cell cell) const noexcept {
-        return {(cell.i + 0.5) * cell_size_, (cell.j + 0.5) * cell_size_};
-    }
-
-private:
-    double cell_size_;
-    double cells_per_metre_;
 };
 
 /// The cells (i, j) with i_begin <= i < i_end and j_begin <= j < j_end; empty by default.

@@ -78,8 +78,8 @@ inline double reach_of(const Case& c) {
 inline void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
     const auto kernel = run_kernel(c);
     const auto scene = scene_of(c);
-    const GridGeometry grid(c.cell_size);
-    const Cell centre = grid.cell_at({c.T_map_sensor.x, c.T_map_sensor.y});
+    const auto index_of = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / c.cell_size)); };
+    const Cell centre{index_of(c.T_map_sensor.x), index_of(c.T_map_sensor.y)};
     const int reach = static_cast<int>(std::ceil(reach_of(c) / c.cell_size)) + 2;
     for (const auto& [cell, verdict] : kernel) {
         EXPECT_LE(std::max(std::abs(cell.first - centre.i), std::abs(cell.second - centre.j)), reach) << c.shape;
