@@ -27,7 +27,9 @@ wire::LinkError too_many(std::size_t links) {
 IngestServer::IngestServer(asio::io_context& io, const asio::ip::tcp::endpoint& endpoint, LinkServices services,
                            const IngestConfig& config)
     : io_(io), acceptor_(asio::make_strand(io), endpoint), port_(acceptor_.local_endpoint().port()),
-      services_(services), config_(config) {}
+      services_(services), config_(config) {
+    services_.may_wait = asio::make_strand(services.may_wait);
+}
 
 void IngestServer::start() {
     asio::co_spawn(acceptor_.get_executor(),

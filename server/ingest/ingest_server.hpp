@@ -23,6 +23,8 @@ struct IngestConfig {
 ///
 /// Connections on which no hello was said have a limit of their own, so that silent ones keep no robot out: a robot
 /// greets at once. Those who say hello at the same moment may pass links_max, by greeting_max at most.
+/// Sessions that robots ask for are made one at a time: however many wait for theirs, they leave the rest of
+/// LinkServices::may_wait to others.
 /// Thread  the io_context's; start() and stop() from any.
 class IngestServer {
 public:

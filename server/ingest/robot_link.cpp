@@ -1,9 +1,9 @@
 #include "server/ingest/robot_link.hpp"
 
 #include "common/scan/limits.hpp"
+#include "server/ingest/entrance.hpp"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/async_result.hpp>
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -28,20 +28,6 @@ constexpr std::size_t kPongBytesMax = std::size_t{64} << 10;
 constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
 
 constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
-
-asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
-                                              std::shared_ptr<session::RobotListener> listener) {
-    const auto executor = co_await asio::this_coro::executor;
-    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
-        [&](auto handler) {
-            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            session.join(hello.robot, hello.source, std::move(listener),
-                         [shared, executor](Result<session::Joined> joined) {
-                             asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
-                         });
-        },
-        asio::use_awaitable);
-}
 
 Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the connection"}; }
 
@@ -127,7 +113,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
 
 asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     robot_ = hello.robot;
-    auto session = co_await find_or_create(hello);
+    auto session = co_await session_for(hello, services_.sessions, services_.may_wait);
     if (!session) co_return session.error();
     const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
@@ -142,42 +128,6 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
                                config_.credit_bytes},
                  shared_from_this());
     co_return Result<>();
-}
-
-asio::awaitable<Result<std::shared_ptr<session::Session>>> RobotLink::find_or_create(const wire::Hello& hello) {
-    auto session = services_.sessions.find(hello.session);
-    if (!session && hello.create) {
-        auto created = co_await asio::co_spawn(
-            services_.may_wait,
-            [&]() -> asio::awaitable<Result<std::shared_ptr<session::Session>>> {
-                co_return services_.sessions.create(hello.session, *hello.create);
-            },
-            asio::use_awaitable);
-        if (created) co_return created;
-        if (created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
-        if (created.error().code != Errc::kAlreadyExists) co_return created;
-        session = services_.sessions.find(hello.session); // another robot was quicker
-    }
-    const auto damaged = services_.sessions.damaged();
-    const auto damage = damaged.find(hello.session);
-    if (!session && damage != damaged.end()) {
-        if (damage->second.code == Errc::kOverloaded) co_return damage->second; // nothing is wrong with it
-        co_return Error{Errc::kConflict, fmt::format("hello.session is '{}', whose log is damaged; delete the session "
-                                                     "first, or choose another name",
-                                                     hello.session)};
-    }
-    if (!session) {
-        co_return Error{Errc::kNotFound,
-                        fmt::format("hello.session is '{}', which does not exist; create it first, or send "
-                                    "hello.create",
-                                    hello.session)};
-    }
-    if (hello.create) {
-        if (auto agrees = mapping::check_agreement(session->info().config, *hello.create); !agrees) {
-            co_return prefixed("hello.create: ", agrees.error());
-        }
-    }
-    co_return session;
 }
 
 asio::awaitable<Result<wire::Message>> RobotLink::receive() {

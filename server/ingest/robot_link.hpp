@@ -67,7 +67,6 @@ public:
 private:
     boost::asio::awaitable<Result<>> serve();
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
-    boost::asio::awaitable<Result<std::shared_ptr<session::Session>>> find_or_create(const wire::Hello& hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
     [[nodiscard]] Result<> handle(wire::Message message);
     [[nodiscard]] Result<> charge_batch();

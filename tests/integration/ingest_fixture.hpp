@@ -51,6 +51,7 @@ public:
 
     void stop_accepting() { server_->stop(); }
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot(const std::string& session) {
@@ -66,7 +67,7 @@ private:
 
     boost::asio::thread_pool compute_{2};
     metrics::Metrics metrics_{"test"};
-    boost::asio::thread_pool may_wait_{1};
+    boost::asio::thread_pool may_wait_{2};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     std::unique_ptr<IngestServer> server_;

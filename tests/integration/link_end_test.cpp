@@ -1,7 +1,11 @@
 #include "tests/integration/ingest_fixture.hpp"
 #include "tests/support/http_client.hpp"
 
+#include <boost/asio/post.hpp>
+
 #include <atomic>
+#include <future>
+#include <latch>
 
 /// Links that the server ends: deadlines, limits, a failing disk, deletion, shutting down.
 namespace scanloom::ingest {
@@ -73,6 +77,44 @@ TEST_F(IngestTest, SilentConnectionsKeepNoRobotOut) {
     RobotSocket third(port());
     expect_refused(third, Errc::kOverloaded, true, "2 robots are connected");
     silent.clear();
+}
+
+/// A log that makes no session before the gate is open.
+class GatedLog final : public store::MemoryScanLog {
+public:
+    [[nodiscard]] Result<store::SessionId> create_session(std::string_view record) override {
+        reached_.count_down();
+        open_.wait();
+        return MemoryScanLog::create_session(record);
+    }
+    void wait_until_reached() { reached_.wait(); }
+    void open() { opener_.set_value(); }
+
+private:
+    std::latch reached_{1};
+    std::promise<void> opener_;
+    std::shared_future<void> open_ = opener_.get_future().share();
+};
+
+TEST(Ingest, SessionsThatRobotsMakeLeaveRoomForOtherChanges) {
+    GatedLog log;
+    RunningIngest ingest(log);
+    std::vector<std::unique_ptr<RobotSocket>> robots;
+    for (int n = 0; n < 8; ++n) {
+        robots.push_back(std::make_unique<RobotSocket>(ingest.port()));
+        robots.back()->send(hello("r" + std::to_string(n), "same"));
+    }
+    log.wait_until_reached();
+    for (int n = 0; n < 1000; ++n) { // meanwhile the other hellos arrive
+        const auto changed = std::make_shared<std::promise<void>>();
+        boost::asio::post(ingest.may_wait(), [changed] { changed->set_value(); });
+        const auto outcome = changed->get_future().wait_for(10s);
+        EXPECT_EQ(outcome, std::future_status::ready) << "robots hold every thread";
+        if (outcome != std::future_status::ready) break;
+    }
+    log.open();
+    for (const auto& robot : robots) robot->receive_kind<wire::Welcome>();
+    EXPECT_EQ(ingest.sessions().list().size(), 1U);
 }
 
 TEST_F(IngestTest, APersonWithABrowserIsSentToTheOtherPort) {

@@ -1,0 +1,77 @@
+#include "server/ingest/entrance.hpp"
+
+#include "server/mapping/map_config.hpp"
+
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+#include <string>
+
+namespace scanloom::ingest {
+namespace asio = boost::asio;
+namespace {
+
+using Found = Result<std::shared_ptr<session::Session>>;
+
+asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions,
+                              asio::any_io_executor may_wait) {
+    auto created = co_await asio::co_spawn(
+        may_wait, [&]() -> asio::awaitable<Found> { co_return sessions.create(hello.session, *hello.create); },
+        asio::use_awaitable);
+    if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
+    co_return created;
+}
+
+/// Why there is no such session to be served.
+Error absence_of(const std::string& name, const session::SessionRegistry& sessions) {
+    const auto damaged = sessions.damaged();
+    const auto damage = damaged.find(name);
+    if (damage == damaged.end()) {
+        return {
+            Errc::kNotFound,
+            fmt::format("hello.session is '{}', which does not exist; create it first, or send hello.create", name)};
+    }
+    if (damage->second.code == Errc::kOverloaded) return damage->second; // nothing is wrong with it
+    return {Errc::kConflict,
+            fmt::format("hello.session is '{}', whose log is damaged; delete the session first, or choose another name",
+                        name)};
+}
+
+} // namespace
+
+asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionRegistry& sessions,
+                                   asio::any_io_executor may_wait) {
+    auto session = sessions.find(hello.session);
+    if (!session && hello.create) {
+        auto created = co_await create(hello, sessions, std::move(may_wait));
+        if (created || created.error().code != Errc::kAlreadyExists) co_return created;
+        session = sessions.find(hello.session); // another robot was quicker
+    }
+    if (!session) co_return absence_of(hello.session, sessions);
+    if (hello.create) {
+        if (auto agrees = mapping::check_agreement(session->info().config, *hello.create); !agrees) {
+            co_return prefixed("hello.create: ", agrees.error());
+        }
+    }
+    co_return session;
+}
+
+asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
+                                              std::shared_ptr<session::RobotListener> listener) {
+    const auto executor = co_await asio::this_coro::executor;
+    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
+        [&](auto handler) {
+            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+            session.join(hello.robot, hello.source, std::move(listener),
+                         [shared, executor](Result<session::Joined> joined) {
+                             asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
+                         });
+        },
+        asio::use_awaitable);
+}
+
+} // namespace scanloom::ingest
