@@ -79,6 +79,11 @@ void SessionRegistry::keep_progress(store::SessionId id, const std::string& name
                  written ? "; the next start continues there" : "");
 }
 
+Error no_such_session(std::string_view name) {
+    if (!is_valid_name(name)) return {Errc::kNotFound, "there is no session of that name; see the list of sessions"};
+    return {Errc::kNotFound, fmt::format("there is no session '{}'; see the list of sessions", name)};
+}
+
 std::shared_ptr<Session> SessionRegistry::find(std::string_view name) const {
     const std::shared_lock lock(mutex_);
     const auto found = sessions_.find(name);
@@ -150,9 +155,7 @@ Result<> SessionRegistry::remove(std::string_view name) {
     } else {
         const std::shared_lock lock(mutex_);
         const auto damaged = damaged_.find(name);
-        if (damaged == damaged_.end()) {
-            return Error{Errc::kNotFound, fmt::format("there is no session '{}'", name)};
-        }
+        if (damaged == damaged_.end()) return no_such_session(name);
         id = damaged->second.id;
     }
     if (auto removed = log_.remove_session(id); !removed) return removed.error();

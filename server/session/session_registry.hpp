@@ -21,6 +21,9 @@
 
 namespace scanloom::session {
 
+/// What whoever names a session that does not exist is told. `name` may be anything.
+[[nodiscard]] Error no_such_session(std::string_view name);
+
 /// All sessions by name.
 /// Thread  any. create(), remove(), recover() and drain() wait for the disk: not on I/O threads.
 class SessionRegistry {

@@ -23,8 +23,7 @@ Result<std::shared_ptr<session::Session>> find_session(const session::SessionReg
                                  "it",
                                  name, found->second.message)};
     }
-    return Error{Errc::kNotFound,
-                 fmt::format("there is no session {}; GET /api/v1/sessions lists them", in_quotes(name))};
+    return session::no_such_session(name);
 }
 
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {

@@ -1,10 +1,12 @@
 #include "server/http/api.hpp"
 
 #include "server/http/handlers/session_lookup.hpp"
+#include "server/http/router.hpp"
 #include "server/mapping/digest.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/tiles/occupancy_tile.hpp"
 #include "tests/support/memory_scan_log.hpp"
+#include "tests/unit/server/http/described_answer.hpp"
 
 #include <boost/asio/thread_pool.hpp>
 #include <boost/json/array.hpp>
@@ -74,7 +76,14 @@ protected:
         request.content_type = "application/json";
         request.if_none_match = std::move(if_none_match);
         request.body = std::move(body);
-        return api_.answer(request);
+        return answer(api_, request);
+    }
+
+    /// Whatever is answered, openapi.json has to say so.
+    static Response answer(Api& api, const Request& request) {
+        auto response = api.answer(request);
+        EXPECT_THAT(undescribed(request, response), testing::IsEmpty());
+        return response;
     }
 
     Response get(std::string target, std::string if_none_match = "") {
@@ -168,9 +177,9 @@ TEST_F(ApiTest, ASessionIsMadeOnce) {
 TEST_F(ApiTest, OnlyJsonIsTaken) {
     Request request{
         .method = "POST", .target = "/api/v1/sessions", .content_type = "text/plain", .body = R"({"name":"a"})"};
-    EXPECT_THAT(detail(api_.answer(request), Status::unsupported_media_type), HasSubstr("application/json"));
+    EXPECT_THAT(detail(answer(api_, request), Status::unsupported_media_type), HasSubstr("application/json"));
     request.content_type = "application/json; charset=utf-8";
-    EXPECT_EQ(api_.answer(request).status, Status::created);
+    EXPECT_EQ(answer(api_, request).status, Status::created);
 }
 
 TEST_F(ApiTest, AFailedStoreIsUnavailable) {
@@ -336,7 +345,14 @@ TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {
     for (const auto* path : {"", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/0/0/0.bin", "/tiles/occupancy.json",
                              "/changes", "/map.png", "/map.pgm", "/map.yaml", "/digest", "/trajectory.geojson"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/nobody{}", path)), Status::not_found),
-                    HasSubstr("\"nobody\""));
+                    HasSubstr("there is no session 'nobody'"));
+    }
+    for (const auto* name : {"nobody",
+                             "%23"
+                             "12",
+                             "%FFno%22body"}) {
+        const auto target = fmt::format("/api/v1/sessions/{}", name);
+        EXPECT_EQ(detail(ask("DELETE", target), Status::not_found), detail(get(target), Status::not_found));
     }
 }
 
@@ -457,11 +473,11 @@ TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
 
 TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
     Api starting(registry_, log_, metrics_, {});
-    const auto ready = [&](Api& api) { return api.answer({.target = "/readyz"}); };
+    const auto ready = [&](Api& api) { return answer(api, {.target = "/readyz"}); };
     EXPECT_EQ(ready(starting).status, Status::service_unavailable);
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("recovered"));
-    EXPECT_EQ(starting.answer({.target = "/api/v1/sessions"}).status, Status::service_unavailable);
-    EXPECT_EQ(starting.answer({.target = "/livez"}).status, Status::ok);
+    EXPECT_EQ(answer(starting, {.target = "/api/v1/sessions"}).status, Status::service_unavailable);
+    EXPECT_EQ(answer(starting, {.target = "/livez"}).status, Status::ok);
     starting.set_recovered();
     EXPECT_EQ(ready(starting).status, Status::ok);
     registry_.drain();
@@ -492,12 +508,12 @@ TEST_F(ApiTest, ADamagedSessionSaysSo) {
     api.set_recovered();
     const auto path = "/api/v1/sessions/%23" + name.substr(1);
     for (const auto* rest : {"", "/changes", "/map.png", "/tiles/occupancy/0/0/0.png"}) {
-        const auto response = api.answer({.target = path + rest});
+        const auto response = answer(api, {.target = path + rest});
         EXPECT_THAT(detail(response, Status::internal_server_error), HasSubstr("could not be recovered"));
         EXPECT_EQ(response.get("Retry-After"), "") << "waiting does not help";
     }
-    EXPECT_EQ(api.answer({.method = "DELETE", .target = path}).status, Status::no_content);
-    EXPECT_EQ(api.answer({.target = path}).status, Status::not_found);
+    EXPECT_EQ(answer(api, {.method = "DELETE", .target = path}).status, Status::no_content);
+    EXPECT_EQ(answer(api, {.target = path}).status, Status::not_found);
 }
 
 TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
@@ -508,7 +524,7 @@ TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
     Api api(registry, log_, metrics_, {});
     api.set_recovered();
     const auto json = [&](std::string target) {
-        const auto response = api.answer({.target = std::move(target)});
+        const auto response = answer(api, {.target = std::move(target)});
         EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
         return boost::json::parse(response.body.bytes());
     };
@@ -569,6 +585,39 @@ TEST_F(ApiTest, MetricsNameNoSession) {
     EXPECT_THAT(text, HasSubstr("scanloom_store_failed 0\n"));
     EXPECT_THAT(text, HasSubstr("process_resident_memory_bytes"));
     EXPECT_THAT(text, Not(HasSubstr("private-name")));
+}
+
+/// The address of a route in which every variable has a value.
+std::string address_of(const Route& route, std::string_view session) {
+    std::string address(route.pattern);
+    for (const auto& [name, value] : {std::pair<std::string, std::string_view>{"{session}", session},
+                                      {"{layer}", "occupancy"},
+                                      {"{file}", "x.js"},
+                                      {"{z}", "0"},
+                                      {"{x}", "0"},
+                                      {"{y}", "0"}}) {
+        if (const auto at = address.find(name); at != std::string::npos) address.replace(at, name.size(), value);
+    }
+    return address;
+}
+
+TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
+    create("a");
+    stream("a", 2);
+    Api starting(registry_, log_, metrics_, {});
+    for (const auto& route : routes()) {
+        if (route.operation == Operation::kDeleteSession) continue; // at the end
+        for (const std::string session : {"a", "nobody"}) {
+            const auto address = address_of(route, session);
+            for (const auto* query : {"", "?odd=1", "?since=x", "?v=x", "?bbox=x", "?layer=height"}) {
+                ask(std::string(route.method), address + query, R"({"name":"b"})"); // asks openapi.json, too
+            }
+            answer(starting,
+                   {.method = std::string(route.method), .target = address, .content_type = "application/json"});
+        }
+    }
+    for (const auto* session : {"a", "a", "a?odd=1"}) ask("DELETE", fmt::format("/api/v1/sessions/{}", session));
+    answer(starting, {.method = "DELETE", .target = "/api/v1/sessions/a"});
 }
 
 TEST_F(ApiTest, RoutesThatAreNotAreProblems) {
