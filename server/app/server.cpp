@@ -39,7 +39,7 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
                http::WebFiles web)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
-      serving_(std::max<std::size_t>(2, options.threads)), // one large map must not hold up all tiles
+      serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
       api_(sessions_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
 
@@ -53,6 +53,7 @@ void Server::join_pools() {
     telling_.join();
     changing_.join();
     checkpointing_.join();
+    survey_.join();
     serving_.join();
     weaving_.join();
 }
@@ -92,8 +93,8 @@ Result<> Server::listen() {
     config.host_names = options_.http_hosts;
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
-        io_, {telling_.get_executor(), serving_.get_executor(), changing_.get_executor()}, config,
-        [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
+        io_, {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), changing_.get_executor()},
+        config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};

@@ -24,7 +24,8 @@ namespace scanloom::app {
 ///
 ///   io             sockets: frames and requests come in, answers go out; health and the viewer's files
 ///   weaving        the sessions' strands: everything that changes a map
-///   serving        answers made from snapshots
+///   serving        answers made from a part of a snapshot
+///   survey         answers made from a whole snapshot: one at a time, as they may take a second
 ///   changing       creating and deleting sessions: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   telling        metrics
@@ -59,6 +60,7 @@ private:
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
+    boost::asio::thread_pool survey_{1};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool telling_{1};

@@ -84,11 +84,11 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kTileBin: return get_tile_bin(sessions_, call);
     case Operation::kTileJson: return get_tilejson(sessions_, call);
     case Operation::kChanges: return get_changes(sessions_, call);
-    case Operation::kMapPng: return get_map_png(sessions_, map_images_, call);
-    case Operation::kMapPgm: return get_map_pgm(sessions_, map_images_, call);
+    case Operation::kMapPng: return get_map_png(sessions_, slots_, call);
+    case Operation::kMapPgm: return get_map_pgm(sessions_, slots_, call);
     case Operation::kMapYaml: return get_map_yaml(sessions_, call);
     case Operation::kDigest: return get_digest(sessions_, call);
-    case Operation::kTrajectory: return get_trajectory(sessions_, call);
+    case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
     }
     return Error{Errc::kNotFound, "this operation has no handler"};
 }

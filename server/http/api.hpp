@@ -1,9 +1,9 @@
 #pragma once
 
+#include "server/http/answer_slots.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
-#include "server/http/slots.hpp"
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
@@ -18,12 +18,10 @@ struct Match;
 struct Target;
 
 /// From a request to its answer: target -> route -> handler. Here each handler is given what it uses.
-/// Bounds  map images, up to 64 MB each, exist at most kMapImagesMax at once, from rendering until they are sent.
+/// Bounds  large answers, map images of up to 64 MB above all, have slots.
 /// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
 class Api {
 public:
-    static constexpr std::size_t kMapImagesMax = 2;
-
     Api(session::SessionRegistry& sessions, const store::ScanLog& log, const metrics::Metrics& metrics, WebFiles web)
         : sessions_(sessions), log_(log), metrics_(metrics), web_(std::move(web)) {}
 
@@ -43,7 +41,7 @@ private:
     const store::ScanLog& log_;
     const metrics::Metrics& metrics_;
     const WebFiles web_;
-    const Slots map_images_{kMapImagesMax};
+    const AnswerSlots slots_;
     RobotPort robots_;
     std::atomic<bool> recovered_ = false;
 };

@@ -199,6 +199,7 @@ net::awaitable<Response> Connection::compute(Request request) {
 const net::any_io_executor& Connection::executor_of(Lane lane) const {
     switch (lane) {
     case Lane::kTelling: return service_->executors.telling;
+    case Lane::kSurvey: return service_->executors.survey;
     case Lane::kChanging: return service_->executors.changing;
     default: return service_->executors.serving;
     }

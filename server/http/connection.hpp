@@ -29,6 +29,7 @@ using Answer = std::function<Response(const Request&)>;
 struct Executors {
     boost::asio::any_io_executor telling;
     boost::asio::any_io_executor serving;
+    boost::asio::any_io_executor survey;
     boost::asio::any_io_executor changing;
 };
 

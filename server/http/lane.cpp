@@ -1,21 +1,36 @@
 #include "server/http/lane.hpp"
 
+#include "server/http/number.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
 
+#include <string>
 #include <variant>
 
 namespace scanloom::http {
 namespace {
 
-Lane lane_of(Operation operation) {
-    switch (operation) {
+/// A tile of a lower zoom shows more than a thousand native ones.
+constexpr int kServedZoomMin = 5;
+
+Lane lane_of_tile(const std::string& zoom) {
+    const auto level = parse_integer<int>(zoom);
+    return level && *level < kServedZoomMin ? Lane::kSurvey : Lane::kServing;
+}
+
+Lane lane_of(const Match& match) {
+    switch (match.operation) {
     case Operation::kViewer:
     case Operation::kViewerAsset:
     case Operation::kLivez:
     case Operation::kReadyz:
     case Operation::kOpenapi: return Lane::kAtOnce;
     case Operation::kMetrics: return Lane::kTelling;
+    case Operation::kTilePng:
+    case Operation::kTileBin: return lane_of_tile(match.arguments["z"]);
+    case Operation::kDigest:
+    case Operation::kMapPng:
+    case Operation::kMapPgm: return Lane::kSurvey;
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;
@@ -29,7 +44,7 @@ Lane lane_of(const Request& request) {
     if (!target) return Lane::kAtOnce;
     const auto routing = find_route(request.method, target->segments);
     const auto* match = std::get_if<Match>(&routing);
-    return match == nullptr ? Lane::kAtOnce : lane_of(match->operation);
+    return match == nullptr ? Lane::kAtOnce : lane_of(*match);
 }
 
 } // namespace scanloom::http

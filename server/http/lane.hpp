@@ -8,7 +8,8 @@ namespace scanloom::http {
 enum class Lane {
     kAtOnce,   ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
     kTelling,  ///< a look at the system: metrics
-    kServing,  ///< its own work on a snapshot: tiles, maps
+    kServing,  ///< its own work on a part of a snapshot: tiles, facts
+    kSurvey,   ///< its own work on a whole map, which may take a second: digests, images, tiles that show much
     kChanging, ///< the disk, or a session's strand: creating and deleting sessions
 };
 

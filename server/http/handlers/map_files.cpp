@@ -69,7 +69,7 @@ Response map_answer(std::string_view content_type, Body body, std::string_view e
 
 using Write = tiles::Bytes (*)(const tiles::MapImage&);
 
-Result<Response> get_image(const session::SessionRegistry& sessions, const Slots& images, const Call& call,
+Result<Response> get_image(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call,
                            std::string_view content_type, Write write) {
     const auto wanted = wanted_map(sessions, call);
     if (!wanted) return wanted.error();
@@ -78,22 +78,22 @@ Result<Response> get_image(const session::SessionRegistry& sessions, const Slots
         std::shared_ptr<const void> slot;
         tiles::Bytes bytes;
     };
-    auto image = std::make_shared<Image>(Image{images.try_take(), {}});
-    if (!image->slot) {
-        return Error{Errc::kOverloaded, "other map images are being made and sent; try again soon"};
-    }
+    const auto pixels = static_cast<std::size_t>(wanted->frame.cells.width() * wanted->frame.cells.height());
+    auto slot = slots.take(pixels); // a byte each, before compression
+    if (!slot) return slot.error();
+    auto image = std::make_shared<Image>(Image{std::move(*slot), {}});
     image->bytes = write(tiles::render_map(*wanted->snapshot, wanted->frame));
     return map_answer(content_type, Body(std::shared_ptr<const tiles::Bytes>(image, &image->bytes)), wanted->etag);
 }
 
 } // namespace
 
-Result<Response> get_map_png(const session::SessionRegistry& sessions, const Slots& images, const Call& call) {
-    return get_image(sessions, images, call, "image/png", tiles::map_png);
+Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+    return get_image(sessions, slots, call, "image/png", tiles::map_png);
 }
 
-Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const Slots& images, const Call& call) {
-    return get_image(sessions, images, call, "image/x-portable-graymap", tiles::map_pgm);
+Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+    return get_image(sessions, slots, call, "image/x-portable-graymap", tiles::map_pgm);
 }
 
 Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call) {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "server/http/answer_slots.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
-#include "server/http/slots.hpp"
 #include "server/session/session_registry.hpp"
 
 namespace scanloom::http {
@@ -10,10 +10,10 @@ namespace scanloom::http {
 /// GET .../map.png, .../map.pgm, .../map.yaml: the whole map, or with `bbox=min_x,min_y,max_x,max_y`
 /// (metres) the cells which that rectangle overlaps. The PGM and the YAML are what ROS loads.
 ///
-/// An image takes a slot until its last byte was sent; when there is none, the answer is 503.
-[[nodiscard]] Result<Response> get_map_png(const session::SessionRegistry& sessions, const Slots& images,
+/// A large image takes a slot until its last byte was sent; when there is none, the answer is 503.
+[[nodiscard]] Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots,
                                            const Call& call);
-[[nodiscard]] Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const Slots& images,
+[[nodiscard]] Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots,
                                            const Call& call);
 [[nodiscard]] Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call);
 

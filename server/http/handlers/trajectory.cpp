@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -28,9 +30,16 @@ void append_feature(std::string& text, const mapping::RobotState& robot, Revisio
     text += "]}}";
 }
 
+std::size_t bytes_about(const mapping::Snapshot& snapshot, Revision since) {
+    constexpr std::size_t kPointBytes = 24;
+    std::size_t points = 0;
+    for (const auto& robot : snapshot.robots) points += robot.trajectory.size() - robot.trajectory.first_after(since);
+    return points * kPointBytes;
+}
+
 } // namespace
 
-Result<Response> get_trajectory(const session::SessionRegistry& sessions, const Call& call) {
+Result<Response> get_trajectory(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
     if (auto known = call.query.check_only({"since"}); !known) return known.error();
     const auto since = since_parameter(call.query);
     if (!since) return since.error();
@@ -38,16 +47,24 @@ Result<Response> get_trajectory(const session::SessionRegistry& sessions, const 
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();
+    const Revision after = since_in(*snapshot, *since);
+    auto slot = slots.take(bytes_about(*snapshot, after));
+    if (!slot) return slot.error();
     std::string text = fmt::format(
         R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", snapshot->revision);
     const char* separator = "";
     for (const auto& robot : snapshot->robots) {
         text += separator;
-        append_feature(text, robot, since_in(*snapshot, *since));
+        append_feature(text, robot, after);
         separator = ",";
     }
     text += "]}";
-    return ok(kGeoJson, Body(std::move(text))).set("Cache-Control", kNotKept);
+    struct Path {
+        std::shared_ptr<const void> slot;
+        std::string text;
+    };
+    const auto path = std::make_shared<const Path>(Path{std::move(*slot), std::move(text)});
+    return ok(kGeoJson, Body(std::shared_ptr<const std::string>(path, &path->text))).set("Cache-Control", kNotKept);
 }
 
 } // namespace scanloom::http

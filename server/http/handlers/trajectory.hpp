@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/answer_slots.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/session_registry.hpp"
@@ -7,7 +8,9 @@
 namespace scanloom::http {
 
 /// GET .../trajectory.geojson?since: where each robot was, one feature a robot, in metres of the map
-/// frame (RFC 7946 knows only degrees; the foreign members say so).
-[[nodiscard]] Result<Response> get_trajectory(const session::SessionRegistry& sessions, const Call& call);
+/// frame (RFC 7946 knows only degrees; the foreign members say so). A long path takes a slot, as a large map image
+/// does.
+[[nodiscard]] Result<Response> get_trajectory(const session::SessionRegistry& sessions, const AnswerSlots& slots,
+                                              const Call& call);
 
 } // namespace scanloom::http

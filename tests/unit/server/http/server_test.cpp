@@ -57,7 +57,7 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(), serving_.get_executor(), changing_.get_executor()};
+        return {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), changing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
@@ -66,6 +66,7 @@ private:
     metrics::HttpCounters counters_{registry_};
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool serving_{1};
+    boost::asio::thread_pool survey_{1};
     boost::asio::thread_pool changing_{1};
     boost::asio::io_context io_;
     std::shared_ptr<Server> server_;

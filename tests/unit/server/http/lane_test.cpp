@@ -1,0 +1,39 @@
+#include "server/http/lane.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::http {
+namespace {
+
+Lane lane(std::string method, std::string target) {
+    return lane_of({.method = std::move(method), .target = std::move(target)});
+}
+
+TEST(Lane, WhatNeedsNothingIsAnsweredAtOnce) {
+    for (const char* target : {"/", "/livez", "/readyz", "/openapi.json", "/no/such/path", "not a target"}) {
+        EXPECT_EQ(lane("GET", target), Lane::kAtOnce) << target;
+    }
+}
+
+TEST(Lane, WholeMapsDoNotHoldUpParts) {
+    const std::string session = "/api/v1/sessions/s";
+    for (const char* whole :
+         {"/digest", "/map.png", "/map.pgm?bbox=0,0,1,1", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/4/0/0.bin"}) {
+        EXPECT_EQ(lane("GET", session + whole), Lane::kSurvey) << whole;
+    }
+    for (const char* part :
+         {"", "/map.yaml", "/changes?since=3", "/trajectory.geojson", "/tiles/occupancy.json",
+          "/tiles/occupancy/5/0/0.png", "/tiles/occupancy/9/256/255.bin", "/tiles/occupancy/x/0/0.png"}) {
+        EXPECT_EQ(lane("GET", session + part), Lane::kServing) << part;
+    }
+}
+
+TEST(Lane, WhatWaitsForTheDiskOrTheSystemHasItsOwn) {
+    EXPECT_EQ(lane("POST", "/api/v1/sessions"), Lane::kChanging);
+    EXPECT_EQ(lane("DELETE", "/api/v1/sessions/s"), Lane::kChanging);
+    EXPECT_EQ(lane("GET", "/api/v1/sessions"), Lane::kServing);
+    EXPECT_EQ(lane("GET", "/metrics"), Lane::kTelling);
+}
+
+} // namespace
+} // namespace scanloom::http
