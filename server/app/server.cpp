@@ -19,8 +19,9 @@ namespace scanloom::app {
 namespace asio = boost::asio;
 namespace {
 
-/// For robots and viewers to take their last answers; whoever has not by then is cut off.
-constexpr auto kPatience = std::chrono::seconds(15);
+/// For everything: whoever has not taken the last answer by then is cut off. Who supervises servers kills those
+/// that take longer than ten seconds to stop.
+constexpr auto kPatience = std::chrono::seconds(9);
 
 /// For the sessions to weave and acknowledge what they were given; the rest stays in the log for the next start,
 /// or with the robots.

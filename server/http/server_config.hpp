@@ -26,7 +26,7 @@ struct ServerConfig {
     std::chrono::milliseconds write{30'000};   ///< in which some of the answer must go out
     std::uint64_t write_rate_min = 256 * 1024; ///< bytes a second that may be added to `write` for all of the answer
     std::chrono::milliseconds linger{2'000};   ///< for the peer to read the last answer and hang up
-    std::chrono::milliseconds drain{10'000};   ///< after stop(), for requests under way
+    std::chrono::milliseconds drain{3'000};    ///< after stop(), for requests under way
 
     /// Names besides localhost and addresses under which the server is asked. On a loopback address all
     /// other names are refused; elsewhere they are as soon as there is one here.
