@@ -126,11 +126,13 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
     }
     const WebFile& file = found->second;
     const auto cache_control = file.immutable ? kImmutable : kRevalidate;
-    if (if_none_match_has(if_none_match, file.etag)) return not_modified(file.etag, cache_control);
-    return ok(file.content_type, Body(file.content))
-        .set("ETag", file.etag)
-        .set("Cache-Control", cache_control)
-        .set("Content-Security-Policy", kViewerPolicy);
+    auto response =
+        if_none_match_has(if_none_match, file.etag)
+            ? not_modified(file.etag, cache_control)
+            : ok(file.content_type, Body(file.content)).set("ETag", file.etag).set("Cache-Control", cache_control);
+    // Of a 304, too: a browser applies its fields to the page it has (RFC 9111, section 3.2).
+    response.set("Content-Security-Policy", kViewerPolicy);
+    return response;
 }
 
 } // namespace scanloom::http

@@ -39,9 +39,15 @@ export async function openPage(browser, address, { hash = '', size = [1280, 800]
     deviceScaleFactor: scale,
     hasTouch: size[0] < 700,
   });
+  const complaints = [];
+  const page = await openTab(context, address, complaints, hash);
+  return { page, complaints };
+}
+
+/** One more page in the same browser window: what its pages have cached, they share. */
+export async function openTab(context, address, complaints, hash = '') {
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
-  const complaints = [];
   page.on('pageerror', (error) => complaints.push(`script error: ${error.stack ?? error}`));
   page.on('console', (message) => {
     if (message.text().includes('Content Security Policy')) complaints.push(message.text());
@@ -53,7 +59,7 @@ export async function openPage(browser, address, { hash = '', size = [1280, 800]
     }
   });
   await page.goto(address + hash);
-  return { page, complaints };
+  return page;
 }
 
 /** Waits until an element says something that matches. */

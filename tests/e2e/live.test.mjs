@@ -1,7 +1,17 @@
 /** The whole way: a robot streams to the real server, and a person watches the map grow. */
 import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
-import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, showsColour, textOf } from './browser.mjs';
+import {
+  colourOf,
+  countPixels,
+  keepPicture,
+  launchBrowser,
+  openPage,
+  openTab,
+  says,
+  showsColour,
+  textOf,
+} from './browser.mjs';
 import { Server, startRobot, stop } from './programs.mjs';
 
 const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '4'];
@@ -64,6 +74,20 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     await says(page, '#cursor-value', /^\d+ % occupied$/);
     assert.match(await textOf(page, '#cursor-x'), /^\u2212?\d+\.\d\d$/);
     await page.click('#fit');
+  });
+
+  it('is there again after a reload, and in a second tab', async () => {
+    const isShown = async (tab) => {
+      await tab.waitForSelector('[data-robot="r1"]');
+      await says(tab, '#sessions', /demo/);
+      await showsColour(tab, '--cell-free');
+    };
+    await page.reload();
+    await isShown(page);
+    const tab = await openTab(page.context(), server.address, complaints);
+    await isShown(tab);
+    await tab.close();
+    assert.deepEqual(complaints, []);
   });
 
   it('leaves a picture of what was seen', async () => {

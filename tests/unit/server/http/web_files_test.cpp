@@ -58,6 +58,26 @@ TEST_F(WebFilesTest, EntityTagFollowsTheContent) {
     EXPECT_EQ(serve_web_file(load(), "index.html", etag).value().status, Status::ok);
 }
 
+TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
+    write("index.html", "<p>hello");
+    write("assets/index-BvC3kD9x.js", "1");
+    const auto files = load();
+    const auto policies = [](const Response& response) {
+        const auto head = head_text(response, true, "");
+        const auto begin = head.find("Content-Security-Policy:");
+        EXPECT_EQ(head.find("Content-Security-Policy:", begin + 1), std::string::npos);
+        return head.substr(begin, head.find("\r\n", begin) - begin);
+    };
+    for (const auto* name : {"index.html", "assets/index-BvC3kD9x.js"}) {
+        const auto whole = serve_web_file(files, name, "").value();
+        const auto again = serve_web_file(files, name, whole.get("ETag")).value();
+        EXPECT_EQ(again.status, Status::not_modified);
+        EXPECT_EQ(policies(again), policies(whole)) << name;
+        EXPECT_THAT(policies(again), HasSubstr("default-src 'self'"));
+        EXPECT_EQ(again.get("Cache-Control"), whole.get("Cache-Control"));
+    }
+}
+
 TEST_F(WebFilesTest, OnlyWhatWasReadAtTheStartIsServed) {
     write("index.html", "");
     write("secret.txt", "secret");
