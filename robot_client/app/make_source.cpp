@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::size_t kSkippedLinesShown = 5;
 
+std::string order_text(const StampReport& stamps) {
+    return fmt::format("stamps go back {} times, by up to {:.3f} s: {}", stamps.steps_back, stamps.back_max,
+                       stamps.file_order ? "they jitter, and the scans are sent in the order of the file"
+                                         : "parts are out of their place, and the scans are sent in the order of time");
+}
+
 Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& replay, Console& console) {
     std::size_t skipped = 0;
     const auto tell = [&](const SkippedLine& line) {
@@ -24,7 +30,10 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
         console.note(fmt::format("{}: {} more lines skipped", replay.file, skipped - kSkippedLinesShown));
     }
     if (!log) return log.error();
-    PreparedSource prepared{nullptr, log->skipped_lines(), replay.speed, log->fingerprint()};
+    const StampReport& stamps = log->stamps();
+    if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", replay.file, order_text(stamps)));
+    PreparedSource prepared{nullptr, log->skipped_lines(), replay.speed, log->fingerprint(),
+                            stamps.file_order ? "file" : "time"};
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
     return prepared;
 }
@@ -45,7 +54,7 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
-    PreparedSource prepared{nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return)};
+    PreparedSource prepared{nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return), "time"};
     prepared.source = std::make_unique<SimulatedSource>(
         Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
     return prepared;

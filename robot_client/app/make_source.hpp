@@ -5,6 +5,8 @@
 #include "robot_client/source/source.hpp"
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 namespace scanloom::robot {
 
@@ -13,10 +15,12 @@ struct PreparedSource {
     std::size_t skipped_lines = 0;
     double speed = 0.0;
     std::string fingerprint; ///< for Hello.source
+    std::string_view order;  ///< of its scans: "file" or "time", a literal
 };
 
 /// Reads the log or sets up the simulation. Lines of the log that cannot be used are told to the console, the first
-/// few. Errors  those of CarmenLog::open().
+/// few, and whether its stamps go back.
+/// Errors  those of CarmenLog::open().
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

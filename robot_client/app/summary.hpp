@@ -4,13 +4,15 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace scanloom::robot {
 
 struct Summary {
     std::string session;
     std::string robot;
-    std::string source; ///< Hello.source
+    std::string source;     ///< Hello.source
+    std::string_view order; ///< of the scans: "file" or "time"
     UplinkStatus status;
     std::size_t skipped_lines = 0;
     std::chrono::duration<double> elapsed{};

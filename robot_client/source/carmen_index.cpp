@@ -2,11 +2,11 @@
 
 #include "common/hash/sha256.hpp"
 #include "robot_client/source/carmen_record.hpp"
+#include "robot_client/source/scan_order.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace scanloom::robot {
 namespace {
@@ -37,7 +37,7 @@ private:
     void skip(std::size_t line_number, std::string reason);
     void keep_one_view_of_each_scan();
     void drop_lines_without_pose(const CarmenPath& path);
-    void order_by_time(CarmenIndex& index) const;
+    void order_scans(CarmenIndex& index);
     [[nodiscard]] std::string fingerprint();
 
     const CarmenOptions& options_;
@@ -110,16 +110,20 @@ void Indexer::drop_lines_without_pose(const CarmenPath& path) {
     }
 }
 
-void Indexer::order_by_time(CarmenIndex& index) const {
-    std::vector<std::uint32_t> order;
+void Indexer::order_scans(CarmenIndex& index) {
+    std::vector<std::uint32_t> used;
+    std::vector<double> stamps;
     for (std::uint32_t i = 0; i < lines_.size(); ++i) {
-        if (lines_[i].is_used) order.push_back(i);
+        if (!lines_[i].is_used) continue;
+        used.push_back(i);
+        stamps.push_back(lines_[i].stamp);
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return lines_[a].stamp < lines_[b].stamp; });
-    index.scan_count = static_cast<std::uint32_t>(order.size());
+    const ScanOrder scans = order_of(stamps);
+    index.scan_count = static_cast<std::uint32_t>(used.size());
     index.places.assign(lines_.size(), CarmenIndex::kUnused);
-    for (std::uint32_t place = 0; place < order.size(); ++place) index.places[order[place]] = place;
+    for (std::uint32_t place = 0; place < used.size(); ++place) index.places[used[scans.order[place]]] = place;
+    index.stamps = {scans.steps_back, scans.back_max, scans.is_of_file};
+    if (!scans.is_of_stamps) hash_.update("with jitter in its place\n"); // "carmen 1" alone: strictly by stamp
 }
 
 /// The options count as far as they change the scans: stating a default makes no difference.
@@ -141,11 +145,11 @@ std::string Indexer::fingerprint() {
 
 CarmenIndex Indexer::build() {
     CarmenIndex index;
-    index.fingerprint = fingerprint();
     keep_one_view_of_each_scan();
     index.path = CarmenPath(std::move(odometry_));
     drop_lines_without_pose(index.path);
-    order_by_time(index);
+    order_scans(index);
+    index.fingerprint = fingerprint();
     index.laser_offset_forward = laser_offset_forward_;
     index.skipped_lines = skipped_;
     return index;

@@ -19,10 +19,17 @@ struct SkippedLine {
     std::string reason;
 };
 
+/// What the stamps of the scans say about their order, see ScanOrder.
+struct StampReport {
+    std::size_t steps_back = 0;
+    double back_max = 0.0;  ///< seconds
+    bool file_order = true; ///< the scans are sent in the order of the file, else by time
+};
+
 /// What must be known of a whole log before its first scan can be sent: little, so that a log may be large.
 struct CarmenIndex {
-    /// For each laser line, in the order of the file: which place it has among the scans in the order of time,
-    /// from 0; kUnused for lines that are not sent.
+    /// For each laser line, in the order of the file: which place it has among the scans as they are sent, from 0;
+    /// kUnused for lines that are not sent.
     std::vector<std::uint32_t> places;
     static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
@@ -30,7 +37,8 @@ struct CarmenIndex {
     CarmenPath path; ///< only where the scans come from RAWLASER lines
     double laser_offset_forward = 0.0;
     std::size_t skipped_lines = 0;
-    std::string fingerprint; ///< of the lines and options that determine the scans
+    StampReport stamps;
+    std::string fingerprint; ///< of the lines and options that determine the scans, and of their order
 };
 
 /// Reads a log once. `report` hears of every line that cannot be used: broken ones in the order of the file, then

@@ -20,7 +20,7 @@ CarmenLog::CarmenLog(const std::filesystem::path& path, const CarmenOptions& opt
 
 Result<std::optional<Observation>> CarmenLog::next() {
     if (place_ == index_.scan_count) return std::optional<Observation>{};
-    auto line = next_in_time();
+    auto line = next_in_place();
     if (!line) return line.error();
     if (line->scan.kind == CarmenKind::kRawLaser) {
         const auto pose = index_.path.at(line->stamp);
@@ -33,7 +33,7 @@ Result<std::optional<Observation>> CarmenLog::next() {
     return std::optional(std::move(*observation));
 }
 
-Result<StampedScan> CarmenLog::next_in_time() {
+Result<StampedScan> CarmenLog::next_in_place() {
     if (auto early = early_.extract(place_)) return std::move(early.mapped());
     for (;;) {
         auto record = records_.next();

@@ -11,8 +11,9 @@
 
 namespace scanloom::robot {
 
-/// The laser lines of a CARMEN log (plain, gzip or bzip2) as a source, in the order of their ipc_timestamp: the order
-/// of a file is not always that of time. A line without a time stamp takes that of the line before it.
+/// The laser lines of a CARMEN log (plain, gzip or bzip2) as a source, in the order of the file; only where parts of it
+/// are out of their place in time, in that of their ipc_timestamp (see ScanOrder). A line without a time stamp takes
+/// that of the line before it.
 ///
 /// FLASER   scan.pose is the first triple (laser pose, often corrected) and the mount is the identity;
 ///          scan.odometry is the second triple.
@@ -23,7 +24,7 @@ namespace scanloom::robot {
 /// Ranges   rounded to millimetres here, once; NaN, infinite and negative readings are invalid beams.
 ///
 /// The file is read twice: open() learns the order of its scans, next() reads them as they are needed.
-/// Memory  some bytes for each laser line, and the scans that stand in the file before ones of an earlier time.
+/// Memory  some bytes for each laser line, and the scans that stand in the file before ones that are sent earlier.
 class CarmenLog final : public Source {
 public:
     /// Errors  those of index_carmen_log().
@@ -35,6 +36,7 @@ public:
     [[nodiscard]] std::optional<std::uint64_t> scan_count() const override { return index_.scan_count; }
 
     [[nodiscard]] std::size_t skipped_lines() const noexcept { return index_.skipped_lines; }
+    [[nodiscard]] const StampReport& stamps() const noexcept { return index_.stamps; }
     /// At most 64 printable bytes; the same for the same scans, whatever the file's name and compression.
     [[nodiscard]] const std::string& fingerprint() const noexcept { return index_.fingerprint; }
 
@@ -42,7 +44,7 @@ private:
     CarmenLog(const std::filesystem::path& path, const CarmenOptions& options, CarmenIndex index,
               CarmenRecords records);
 
-    [[nodiscard]] Result<StampedScan> next_in_time();
+    [[nodiscard]] Result<StampedScan> next_in_place();
     [[nodiscard]] Error changed() const;
 
     std::string path_;
@@ -51,7 +53,7 @@ private:
     CarmenObserver observer_;
     std::size_t laser_lines_ = 0;                ///< read so far
     std::uint32_t place_ = 0;                    ///< of the next scan
-    std::map<std::uint32_t, StampedScan> early_; ///< read before their time, by their place
+    std::map<std::uint32_t, StampedScan> early_; ///< read before they are sent, by their place
 };
 
 } // namespace scanloom::robot

@@ -14,14 +14,16 @@ const Summary kSummary{
     "lab",
     "r1",
     "carmen:9f3a",
+    "time",
     {.resumed_after = 10, .last = 30, .acknowledged = 25, .sent = 18, .bytes = 4321, .reconnects = 2},
     3,
     1500ms};
 
 TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
-    EXPECT_EQ(summary_json(kSummary),
-              R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
-              R"("skipped_lines":3,"reconnects":2,"session":"lab","robot":"r1","source":"carmen:9f3a"})");
+    EXPECT_EQ(
+        summary_json(kSummary),
+        R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
+        R"("skipped_lines":3,"reconnects":2,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
 }
 
 TEST(SummaryJson, CountsAsTheProgressDoes) {

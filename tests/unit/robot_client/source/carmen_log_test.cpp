@@ -95,16 +95,42 @@ TEST_F(CarmenLogFile, ALastLineWithoutLineBreakCounts) {
     EXPECT_EQ(read(text)->observations.size(), 2U);
 }
 
-TEST_F(CarmenLogFile, ScansComeInOrderOfTimeAndEqualTimesInOrderOfTheFile) {
-    const auto log = read(text_of({flaser(3, "1 0.3"), flaser(1, "1 0.1"), flaser(2, "1 0.21"), flaser(2, "1 0.22")}));
+/// One beam of each scan, by which the scan is known.
+std::vector<RangeMm> first_ranges(const WholeLog& log) {
+    std::vector<RangeMm> ranges;
+    for (const auto& observation : log.observations) ranges.push_back(observation.scan.ranges[0]);
+    return ranges;
+}
+
+TEST_F(CarmenLogFile, PartsOutOfTheirPlaceComeInOrderOfTimeAndEqualTimesInOrderOfTheFile) {
+    const auto log =
+        read(text_of({flaser(30, "1 0.3"), flaser(10, "1 0.1"), flaser(20, "1 0.21"), flaser(20, "1 0.22")}));
     ASSERT_TRUE(log);
-    std::vector<RangeMm> order;
-    for (const auto& observation : log->observations) order.push_back(observation.scan.ranges[0]);
-    EXPECT_EQ(order, (std::vector<RangeMm>{100, 210, 220, 300}));
+    EXPECT_EQ(first_ranges(*log), (std::vector<RangeMm>{100, 210, 220, 300}));
+    EXPECT_FALSE(log->stamps.file_order);
+    EXPECT_EQ(log->stamps.steps_back, 1U);
+    EXPECT_DOUBLE_EQ(log->stamps.back_max, 20.0);
+}
+
+TEST_F(CarmenLogFile, StampsThatJitterLeaveTheOrderOfTheFile) {
+    const auto log = read(text_of({flaser(3, "1 0.1"), flaser(1, "1 0.2"), flaser(2, "1 0.3"), flaser(1.5, "1 0.4")}));
+    ASSERT_TRUE(log);
+    EXPECT_EQ(first_ranges(*log), (std::vector<RangeMm>{100, 200, 300, 400}));
+    EXPECT_TRUE(log->stamps.file_order);
+    EXPECT_EQ(log->stamps.steps_back, 2U);
+    EXPECT_DOUBLE_EQ(log->stamps.back_max, 2.0);
+}
+
+TEST_F(CarmenLogFile, TheFingerprintFollowsTheOrderOfTheScans) {
+    const auto rising = text_of({flaser(1), flaser(2), flaser(3)});
+    const auto jittering = text_of({flaser(2), flaser(1), flaser(3)});
+    EXPECT_NE(read(rising)->fingerprint, read(jittering)->fingerprint);
+    EXPECT_EQ(read(flaser(1))->fingerprint, "carmen:d4bfaa8d490f9a80ff3f167a63709ac5");
+    EXPECT_NE(read(jittering)->fingerprint, "carmen:b4e2f736ab9cae529515ea4b23307515") << "once sent strictly by stamp";
 }
 
 TEST_F(CarmenLogFile, ALineWithoutStampTakesThatOfTheLineBefore) {
-    const auto log = read(text_of({flaser(5), "FLASER 1 0.7 0 0 0 0 0 0\n", flaser(4)}));
+    const auto log = read(text_of({flaser(5), "FLASER 1 0.7 0 0 0 0 0 0\n", flaser(1)}));
     EXPECT_EQ(log->observations[1].scan.stamp, 5.0);
     EXPECT_EQ(log->observations[2].scan.stamp, 5.0);
     EXPECT_EQ(log->observations[2].scan.ranges[0], 700U);
@@ -266,7 +292,7 @@ TEST_F(CarmenLogFile, ScansFarFromTheirPlaceInTimeFindIt) {
     std::iota(stamps.begin(), stamps.end(), 1);
     std::shuffle(stamps.begin(), stamps.end(), std::mt19937(5));
     std::string text;
-    for (const int stamp : stamps) text += flaser(stamp, fmt::format("1 {}", stamp * 0.001));
+    for (const int stamp : stamps) text += flaser(3 * stamp, fmt::format("1 {}", stamp * 0.001));
     const auto log = read(text);
     ASSERT_TRUE(log);
     ASSERT_EQ(log->observations.size(), 500U);
@@ -351,13 +377,32 @@ TEST_P(RealCarmenLog, IsReadWhole) {
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->observations.size(), GetParam().scans);
     EXPECT_EQ(log->skipped_lines, 0U);
-    double stamp = log->observations[0].scan.stamp;
+    EXPECT_TRUE(log->stamps.file_order);
+    EXPECT_LT(log->stamps.back_max, 0.9);
     for (const auto& [sensor, scan] : log->observations) {
         EXPECT_EQ(scan.ranges.size(), GetParam().beams);
         EXPECT_EQ(sensor, log->observations[0].sensor);
-        EXPECT_GE(scan.stamp, stamp);
-        stamp = scan.stamp;
     }
+}
+
+/// Its stamps go back 631 times. Sorted by them, the robot would jump to and fro: 661 m, in steps of up to 0.87 m.
+TEST(RealCarmenLogs, TheIntelLogsPathIsThatOfARobot) {
+    const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
+    ASSERT_TRUE(log) << log.error().message;
+    EXPECT_EQ(log->stamps.steps_back, 631U);
+    double length = 0.0;
+    double step_max = 0.0;
+    for (std::size_t i = 1; i < log->observations.size(); ++i) {
+        const Pose2& from = log->observations[i - 1].scan.pose;
+        const Pose2& to = log->observations[i].scan.pose;
+        const double step = std::hypot(to.x - from.x, to.y - from.y);
+        length += step;
+        step_max = std::max(step_max, step);
+    }
+    EXPECT_NEAR(length, 508.0, 5.0);
+    EXPECT_LT(step_max, 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Logs, RealCarmenLog,

@@ -21,6 +21,15 @@ TEST(Pacer, KeepsThePaceOfTheStampsFromTheFirstOn) {
     EXPECT_EQ(pacer.due(976052867.0, kStart + 10s), kStart + 5s);
 }
 
+TEST(Pacer, AStampThatGoesBackIsDueAtOnceAndShiftsNoneAfterIt) {
+    Pacer pacer(1.0);
+    EXPECT_EQ(pacer.due(100.0, kStart), kStart);
+    EXPECT_LT(pacer.due(99.2, kStart + 1s), kStart + 1s);
+    EXPECT_EQ(pacer.due(103.0, kStart + 1s), kStart + 3s);
+    EXPECT_LT(pacer.due(102.5, kStart + 3s), kStart + 3s);
+    EXPECT_EQ(pacer.due(104.0, kStart + 3s), kStart + 4s);
+}
+
 TEST(Pacer, GapsBeyondAnyClockCountAsTheLargest) {
     constexpr auto kLargest = std::chrono::duration_cast<Pacer::Time::duration>(1s * Pacer::kGapMax);
     Pacer pacer(1.0);
