@@ -156,6 +156,9 @@ Result<Scan> from_proto(const v1::Scan& proto) {
         return invalid_field(fmt::format("stamp is {}; a finite number of seconds is needed", scan.stamp));
     }
     scan.sensor = proto.sensor();
+    if (!proto.has_pose()) {
+        return invalid_field("pose is absent; send where the robot was, an empty Pose2 if that is (0, 0, 0)");
+    }
     auto pose = from_proto(proto.pose());
     if (!pose) return prefixed("pose.", pose.error());
     scan.pose = *pose;

@@ -97,6 +97,15 @@ TEST(BadSensor, KindMustBeKnown) {
     }
 }
 
+TEST(SensorDescription, WithoutAMountSitsAtTheRobotsOrigin) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
+    frame.mutable_sensor_description()->clear_mount();
+    const auto decoded = decode(frame.SerializeAsString());
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(std::get<Sensor>(*decoded).mount, Pose2{});
+}
+
 struct SpoiltAngles {
     BeamAngles angles;
     const char* message;
@@ -182,6 +191,18 @@ TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
                            "scan_batch.scans[" + std::to_string(place) + "]." + spoilt.beginning);
         }
     }
+}
+
+TEST(BadScan, WithoutAPoseIsRefusedAndNotTakenForOneAtTheOrigin) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_batch())));
+    auto& scan = *frame.mutable_scan_batch()->mutable_scans(2);
+    scan.mutable_pose()->Clear();
+    const auto decoded = decode(frame.SerializeAsString());
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(std::get<ScanBatch>(*decoded).scans[2].pose, Pose2{}) << "an empty pose is one";
+    scan.clear_pose();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "scan_batch.scans[2].pose is absent;");
 }
 
 TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
