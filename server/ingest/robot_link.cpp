@@ -48,6 +48,7 @@ bool is_retryable(Errc code) noexcept {
 
 RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
     : socket_(std::move(socket)), services_(services), config_(config), outbox_(socket_),
+      settled_(socket_.get_executor(), std::chrono::steady_clock::time_point::max()),
       deadline_timer_(socket_.get_executor()) {
     boost::system::error_code ignored;
     const auto endpoint = socket_.remote_endpoint(ignored);
@@ -68,6 +69,7 @@ asio::awaitable<void> RobotLink::run() {
     if (session_) session_->leave(self);
     if (ended_by_) served = *ended_by_;
     if (!served) services_.counters.failed(served.error().code).Increment();
+    if (served) co_await part();
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
     spdlog::info("robot '{}' at {} left: {}", robot_, peer_,
@@ -108,6 +110,14 @@ asio::awaitable<Result<>> RobotLink::serve() {
         if (!message) co_return message.error();
         if (auto handled = handle(std::move(*message)); !handled) co_return handled.error();
     }
+    co_return co_await settle();
+}
+
+/// What was submitted before the goodbye is acknowledged after it. How long that takes is our disk's matter.
+asio::awaitable<Result<>> RobotLink::settle() {
+    deadline_ = std::chrono::steady_clock::time_point::max();
+    while (under_way_ > 0 && !ended_by_) co_await settled_.async_wait(kAsTuple);
+    if (ended_by_) co_return *ended_by_;
     co_return Result<>();
 }
 
@@ -208,6 +218,7 @@ void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
         self->under_way_ -= std::min(bytes, self->under_way_);
         self->described_ = std::min(self->described_, self->under_way_);
         self->outbox_.acknowledge({durable_seq, durable_seq, self->config_.credit_bytes}, self);
+        if (self->under_way_ == 0) self->settled_.cancel();
     });
 }
 
@@ -218,19 +229,26 @@ void RobotLink::on_failed(const Error& error) {
 void RobotLink::end(const Error& error) {
     if (ended_by_) return;
     ended_by_ = error;
+    settled_.cancel();
     stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
 }
 
-/// Tells the robot why, and waits for it to hang up: closing at once with its bytes unread would
-/// reset the connection and take the error frame with it.
+/// Tells the robot why.
 asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
     ended_by_ = why.error;
-    expect_something_within(config_.farewell_deadline);
     if (!session_ && decoder_.holds_http()) {
         outbox_.send_bytes(in_http(why.error.message), shared_from_this()); // who speaks HTTP reads no frames
     } else {
         outbox_.send(why, shared_from_this());
     }
+    co_await part();
+}
+
+/// Finishes what is being written, and waits for the robot to hang up: closing at once with its bytes unread would
+/// reset the connection and take the last frame with it.
+asio::awaitable<void> RobotLink::part() {
+    parting_ = true;
+    expect_something_within(config_.farewell_deadline);
     outbox_.close();
     co_await outbox_.emptied();
     boost::system::error_code ignored;
@@ -266,7 +284,7 @@ asio::awaitable<void> RobotLink::watch_deadline() {
         co_await deadline_timer_.async_wait(kAsTuple);
         if (!socket_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
         boost::system::error_code ignored;
-        if (ended_by_) { // the farewell took too long
+        if (ended_by_ || parting_) { // the farewell took too long
             socket_.close(ignored);
             co_return;
         }

@@ -39,7 +39,8 @@ struct LinkServices {
 /// One robot's connection, from the hello to the farewell.
 ///
 /// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
-/// go to the session, acks come back -> goodbye, an error, or the end of the connection.
+/// go to the session, acks come back -> goodbye, after which what is under way is still acknowledged; an error; or
+/// the end of the connection.
 /// A fault ends this link with an Error frame and disturbs no other.
 /// Thread  run() and everything private on the socket's strand; the listener's calls from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
@@ -66,6 +67,7 @@ public:
 
 private:
     boost::asio::awaitable<Result<>> serve();
+    boost::asio::awaitable<Result<>> settle();
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
     [[nodiscard]] Result<> handle(wire::Message message);
@@ -73,6 +75,7 @@ private:
     [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
     boost::asio::awaitable<void> farewell(wire::LinkError why);
+    boost::asio::awaitable<void> part();
     void start_watch();
     void hang_up();
     void end(const Error& error);
@@ -91,8 +94,10 @@ private:
     std::size_t under_way_ = 0; // bytes submitted and not yet durable
     std::size_t described_ = 0; // at least as many of them as are of sensor descriptions, never more than all
     bool goodbye_ = false;
+    bool parting_ = false; // nothing more is said or heard
 
     Outbox outbox_;
+    boost::asio::steady_timer settled_; // never runs out; cancelled when nothing is under way any more
 
     std::optional<Error> ended_by_; // why the link ends, when not by the peer
     boost::asio::cancellation_signal stop_reading_;

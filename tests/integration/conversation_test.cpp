@@ -24,6 +24,53 @@ TEST_F(IngestTest, AWholeConversation) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 55U);
 }
 
+/// The newest ack before the server closes in good order.
+std::uint64_t acknowledged_at_the_end(RobotSocket& robot) {
+    std::uint64_t durable_seq = 0;
+    while (const auto message = robot.receive()) {
+        if (const auto* ack = std::get_if<wire::Ack>(&*message)) durable_seq = ack->durable_seq;
+        EXPECT_FALSE(std::holds_alternative<wire::LinkError>(*message));
+    }
+    return durable_seq;
+}
+
+TEST_F(IngestTest, WhatIsSentInOneGoWithTheGoodbyeIsAcknowledged) {
+    auto& ingest = start();
+    RobotSocket robot(port());
+    robot.send_bytes(frame_of(hello("r")) + frame_of(small_laser()) +
+                     frame_of(wire::ScanBatch{random_scans(1, 1, 500)}) + frame_of(wire::Goodbye{"done"}));
+    robot.receive_kind<wire::Welcome>();
+    EXPECT_EQ(acknowledged_at_the_end(robot), 500U);
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 500U);
+}
+
+TEST_F(IngestTest, AGoodbyeWaitsForTheDiskAndNothingAfterItIsTaken) {
+    auto& ingest = start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 10);
+    log_.hold_completions();
+    std::string more = frame_of(wire::ScanBatch{random_scans(1, 31, 10)});
+    while (more.size() < std::size_t{1} << 20) wire::encode(wire::Pong{1}, more);
+    robot->send_bytes(frame_of(wire::ScanBatch{random_scans(1, 11, 20)}) + frame_of(wire::Ping{1}) +
+                      frame_of(wire::Goodbye{"done"}) + more);
+    EXPECT_EQ(robot->receive_kind<wire::Pong>().nonce, 1U);
+    EXPECT_TRUE(ingest.sessions().find("lab")->is_connected(0));
+    log_.release_completions();
+    EXPECT_EQ(acknowledged_at_the_end(*robot), 30U);
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 30U);
+}
+
+TEST_F(IngestTest, AGoodbyeBeforeTheDiskFailsIsAnsweredWithAnError) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 10);
+    log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
+    robot->send_bytes(frame_of(wire::ScanBatch{random_scans(1, 11, 1)}) + frame_of(wire::Goodbye{"done"}));
+    expect_refused(*robot, Errc::kStoreFailed, true, "no space left");
+}
+
 TEST_F(IngestTest, AnyPlaceWhereTheBytesAreSplitGivesTheSameConversation) {
     auto& ingest = start();
     std::size_t robots = 0;
