@@ -19,7 +19,8 @@ constexpr const char* kAbout =
     "Streams a robot's scans to a Scanloom server: a recorded log, or a simulated robot.\n"
     "The same command again continues behind the scans that are stored already.\n"
     "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
-    "until it was interrupted), else 1; prints a summary as one line of JSON.";
+    "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
+    "of JSON, with the reason (\"error\") where it exits 1.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
@@ -162,7 +163,9 @@ Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
         const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
         return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
     }
-    return usage_error(sentence_of(reason));
+    const std::string what = sentence_of(reason);
+    if (what == "A subcommand is required") return usage_error("say what to stream: replay FILE, or simulate");
+    return usage_error(what);
 }
 
 } // namespace

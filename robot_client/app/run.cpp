@@ -117,9 +117,9 @@ ExitCode run(const RobotOptions& options) {
 
     if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
-    fmt::print("{}\n",
-               summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
-                             prepared->skipped_lines, std::chrono::steady_clock::now() - begun}));
+    fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
+                                     uplink.status(), prepared->skipped_lines, std::chrono::steady_clock::now() - begun,
+                                     prepared->source->scan_count(), *outcome ? "" : outcome->error().message}));
     return *outcome ? kExitDone : fail(outcome->error());
 }
 

@@ -1,16 +1,20 @@
 #include "robot_client/app/summary.hpp"
 
+#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 namespace scanloom::robot {
 
 std::string summary_json(const Summary& summary) {
     const UplinkStatus& status = summary.status;
-    return fmt::format(R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},)"
-                       R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}","source":"{}","order":"{}"}})",
-                       status.last, status.acknowledged, status.resumed_after, status.sent, status.bytes,
-                       summary.elapsed.count(), summary.skipped_lines, status.reconnects, summary.session,
-                       summary.robot, summary.source, summary.order);
+    const std::string error =
+        summary.error.empty() ? "" : fmt::format(R"(,"error":{})", boost::json::serialize(summary.error));
+    return fmt::format(
+        R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},)"
+        R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}","source":"{}","order":"{}"{}}})",
+        summary.scan_count.value_or(status.last), status.acknowledged, status.resumed_after, status.sent, status.bytes,
+        summary.elapsed.count(), summary.skipped_lines, status.reconnects, summary.session, summary.robot,
+        summary.source, summary.order, error);
 }
 
 } // namespace scanloom::robot

@@ -3,6 +3,8 @@
 #include "robot_client/uplink/uplink.hpp"
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,11 +18,14 @@ struct Summary {
     UplinkStatus status;
     std::size_t skipped_lines = 0;
     std::chrono::duration<double> elapsed{};
+    std::optional<std::uint64_t> scan_count; ///< of the source, where it has an end
+    std::string error;                       ///< why it failed; empty: it did not
 };
 
 /// One line of JSON, without its line break. Scans are counted as in the progress, from the first of the recording or
-/// simulation: `stored_before` of them in earlier runs, `sent` in this one.
-/// Pre  nothing in the texts needs escaping: valid names, a fingerprint.
+/// simulation: `scans` there are (of an endless one: were taken so far), `acknowledged` of them are stored,
+/// `stored_before` from earlier runs, and `sent` in this one. A run that failed has an `error`, one sentence.
+/// Pre  nothing in the texts but the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 } // namespace scanloom::robot

@@ -72,10 +72,12 @@ asio::awaitable<void> RobotLink::run() {
     if (served) co_await part();
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
-    spdlog::info("robot '{}' at {} left: {}", robot_, peer_,
-                 goodbye_ ? "goodbye"
-                 : served ? "end"
-                          : served.error().message);
+    spdlog::info("{} {}", who_ended(), served ? "goodbye" : served.error().message);
+}
+
+std::string RobotLink::who_ended() const {
+    if (robot_.empty()) return fmt::format("a link from {} that never said a valid hello ended:", peer_);
+    return fmt::format("robot '{}' at {} left:", robot_, peer_);
 }
 
 void RobotLink::cut_off() {

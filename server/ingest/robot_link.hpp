@@ -76,6 +76,7 @@ private:
     boost::asio::awaitable<void> watch_deadline();
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     boost::asio::awaitable<void> part();
+    [[nodiscard]] std::string who_ended() const;
     void start_watch();
     void hang_up();
     void end(const Error& error);

@@ -47,7 +47,8 @@ struct Fault {
 
 std::vector<Fault> faults_before_the_hello() {
     return {
-        {length_prefix(wire::kFrameBytesMaxBeforeHello + 1), Errc::kTooLarge, "a frame announces 16385 bytes"},
+        {length_prefix(wire::kFrameBytesMaxBeforeHello + 1), Errc::kTooLarge,
+         "a frame announces 16385 bytes, at most 16384 are allowed before the hello; send the hello first"},
         {length_prefix(0xFFFFFFFF), Errc::kTooLarge, "a frame announces 4294967295 bytes"},
         {length_prefix(0), Errc::kMalformed, "a frame of 0 bytes"},
         {frame_around("garbage that is no protobuf"), Errc::kMalformed, "27 bytes that are not a scanloom.v1.Frame"},
@@ -71,7 +72,8 @@ std::vector<Fault> faults_before_the_hello() {
 std::vector<Fault> faults_after_the_hello() {
     const auto laser = frame_of(small_laser());
     return {
-        {length_prefix(wire::kFrameBytesMax + 1), Errc::kTooLarge, "a frame announces 1048577 bytes"},
+        {length_prefix(wire::kFrameBytesMax + 1), Errc::kTooLarge,
+         "a frame announces 1048577 bytes, at most 1048576 are allowed here; send fewer scans a batch"},
         {frame_around("garbage that is no protobuf"), Errc::kMalformed, "27 bytes that are not a scanloom.v1.Frame"},
         {frame_of(hello("faulty")), Errc::kMalformed, "a hello frame is not for the server"},
         {frame_of(wire::Ack{}), Errc::kMalformed, "a ack frame is not for the server"},

@@ -2,10 +2,13 @@
 #include "tests/support/http_client.hpp"
 
 #include <boost/asio/post.hpp>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <future>
 #include <latch>
+#include <sstream>
 
 /// Links that the server ends: deadlines, limits, a failing disk, deletion, shutting down.
 namespace scanloom::ingest {
@@ -125,6 +128,43 @@ TEST_F(IngestTest, APersonWithABrowserIsSentToTheOtherPort) {
     EXPECT_EQ(answer.status, 400);
     EXPECT_THAT(answer.body, testing::HasSubstr("browsers to the HTTP port"));
     EXPECT_TRUE(browser.ends_in_order());
+}
+
+/// What the server logs while this lives.
+class CapturedLog {
+public:
+    CapturedLog() {
+        spdlog::set_default_logger(
+            std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
+    }
+    CapturedLog(const CapturedLog&) = delete;
+    CapturedLog& operator=(const CapturedLog&) = delete;
+    ~CapturedLog() { spdlog::set_default_logger(earlier_); }
+
+    /// Pre: nobody logs any more.
+    [[nodiscard]] std::string text() const { return text_.str(); }
+
+private:
+    std::shared_ptr<spdlog::logger> earlier_ = spdlog::default_logger();
+    std::ostringstream text_;
+};
+
+TEST_F(IngestTest, TheLogTellsRobotsFromThoseThatNeverSaidHello) {
+    CapturedLog log;
+    start();
+    {
+        testing_support::HttpClient browser(port());
+        browser.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+        EXPECT_EQ(browser.read().status, 400);
+        const auto robot = welcomed(port(), hello("r7"));
+        robot->send(wire::Goodbye{});
+        EXPECT_FALSE(robot->receive());
+    }
+    running_.reset();
+    EXPECT_THAT(log.text(), testing::HasSubstr("a link from 127.0.0.1:"));
+    EXPECT_THAT(log.text(), testing::HasSubstr(" that never said a valid hello ended: what came begins with \"GET \""));
+    EXPECT_THAT(log.text(), testing::ContainsRegex("robot 'r7' at 127.0.0.1:[0-9]+ left: goodbye"));
+    EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("robot ''")));
 }
 
 TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {

@@ -17,13 +17,26 @@ const Summary kSummary{
     "time",
     {.resumed_after = 10, .last = 30, .acknowledged = 25, .sent = 18, .bytes = 4321, .reconnects = 2},
     3,
-    1500ms};
+    1500ms,
+    std::nullopt,
+    ""};
 
 TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
     EXPECT_EQ(
         summary_json(kSummary),
         R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
         R"("skipped_lines":3,"reconnects":2,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
+}
+
+TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
+    Summary refused = kSummary;
+    refused.status = {};
+    refused.scan_count = 910;
+    refused.error = "hello.session is \"lab\",\nwhich is full";
+    EXPECT_EQ(summary_json(refused),
+              R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
+              R"("reconnects":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
+              R"("error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
 TEST(SummaryJson, CountsAsTheProgressDoes) {
