@@ -91,9 +91,9 @@ export class FakeSession {
     const tiles = [];
     for (const [key, { revision }] of this.tiles) {
       const [z, x, y] = key.split('/').map(Number);
-      if (revision > since) tiles.push({ z, x, y, revision });
+      if (revision > since || since > this.revision) tiles.push({ z, x, y, revision });
     }
-    return { layer: 'occupancy', since, revision: this.revision, tiles };
+    return { layer: 'occupancy', since, reset: since > this.revision, revision: this.revision, tiles };
   }
 
   trajectory(since) {

@@ -21,8 +21,11 @@ Result<Response> get_changes(const session::SessionRegistry& sessions, const Cal
     for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, since_in(*snapshot, *since))) {
         changed.push_back(boost::json::object{{"z", key.zoom}, {"x", key.x}, {"y", key.y}, {"revision", revision}});
     }
-    return ok(boost::json::object{
-        {"layer", kOccupancy}, {"since", *since}, {"revision", snapshot->revision}, {"tiles", std::move(changed)}});
+    return ok(boost::json::object{{"layer", kOccupancy},
+                                  {"since", *since},
+                                  {"reset", since_in(*snapshot, *since) != *since},
+                                  {"revision", snapshot->revision},
+                                  {"tiles", std::move(changed)}});
 }
 
 } // namespace scanloom::http

@@ -360,7 +360,8 @@ TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
     create("a");
     EXPECT_EQ(
         get_json("/api/v1/sessions/a/changes"),
-        (boost::json::object{{"layer", "occupancy"}, {"since", 0}, {"revision", 0}, {"tiles", boost::json::array{}}}));
+        (boost::json::object{
+            {"layer", "occupancy"}, {"since", 0}, {"reset", false}, {"revision", 0}, {"tiles", boost::json::array{}}}));
     stream("a", 3);
     const auto all = get_json("/api/v1/sessions/a/changes?layer=occupancy&since=0");
     EXPECT_EQ(all.at("revision"), 5);
@@ -368,7 +369,11 @@ TEST_F(ApiTest, ChangesAreTheTilesTouchedSince) {
     EXPECT_THAT(changed, testing::Contains(boost::json::value{{"z", 0}, {"x", 0}, {"y", 0}, {"revision", 5}}));
     EXPECT_THAT(changed, testing::Contains(boost::json::value{{"z", 9}, {"x", 256}, {"y", 255}, {"revision", 5}}));
     EXPECT_TRUE(get_json("/api/v1/sessions/a/changes?since=5").at("tiles").as_array().empty());
-    EXPECT_EQ(get_json("/api/v1/sessions/a/changes?since=9").at("tiles"), all.at("tiles")); // of a session before
+    EXPECT_EQ(all.at("reset"), false);
+    EXPECT_EQ(get_json("/api/v1/sessions/a/changes?since=5").at("reset"), false);
+    const auto of_a_session_before = get_json("/api/v1/sessions/a/changes?since=9");
+    EXPECT_EQ(of_a_session_before.at("tiles"), all.at("tiles"));
+    EXPECT_EQ(of_a_session_before.at("reset"), true);
 }
 
 TEST_F(ApiTest, BadChangesAreRefusedByParameter) {
