@@ -13,21 +13,34 @@ constexpr double kFrontRange = 0.4;
 constexpr double kRecoveredRange = 0.4;
 constexpr double kWallRange = 0.7;
 constexpr double kWallDistance = 0.6;
+constexpr double kRoundingRadius = 0.55; // a little less than the distance, so that the wall comes near again
 // metres a second
 constexpr double kCruise = 0.4;
 constexpr double kBackOff = -0.2;
 constexpr double kRecovery = -0.08;
+constexpr double kRounding = 0.3;
 // radians a second
 constexpr double kTurnMax = std::numbers::pi / 4.0;
 constexpr double kSearchTurn = -0.05;
 constexpr double kWallGain = 0.5; // radians a second for each metre
 // control steps
+constexpr double kStepsPerSecond = 20.0;
 constexpr int kRecoverySteps = 40;
 constexpr int kBlockedStepsMax = 30;
+constexpr int kRoundingStepsMax = 180; // some three quarters of a circle
+// radians
+constexpr double kIslandTurn = -2.5 * std::numbers::pi; // more than a door post asks for, coming and going
 
 } // namespace
 
 Velocity WallFollower::step(const SectorRanges& nearest) {
+    const Velocity velocity = decide(nearest);
+    turned_ += velocity.turn / kStepsPerSecond;
+    if (turned_ < kIslandTurn && mode_ != Mode::kSearching) mode_ = Mode::kLeaving;
+    return velocity;
+}
+
+Velocity WallFollower::decide(const SectorRanges& nearest) {
     const double d_min = std::min({nearest.right, nearest.front, nearest.left});
     if (recovery_steps_left_ > 0) {
         --recovery_steps_left_;
@@ -42,13 +55,35 @@ Velocity WallFollower::step(const SectorRanges& nearest) {
         return {0.0, 0.0};
     }
     blocked_steps_ = 0;
-    // Backing off turns left, too: straight back, a robot beside a wall keeps its distance from it and never gets free.
-    if (d_min < kBackOffRange) return {kBackOff, kTurnMax};
-    if (nearest.front < kFrontRange) return {0.0, kTurnMax};
-    // Positive turns are counter-clockwise: away from the wall when it is nearer than wanted, towards it when farther.
-    // (Printed as 0.5 (d_right - 0.6), which would leave a wall that is farther than 0.6 m.)
-    if (nearest.right < kWallRange) return {kCruise, kWallGain * (kWallDistance - nearest.right)};
+    if (d_min < kBackOffRange || nearest.front < kFrontRange) {
+        if (mode_ == Mode::kLeaving) search(); // here is another wall
+        // Backing off turns left, too: straight back, a robot beside a wall keeps its distance from it and never gets
+        // free.
+        return {d_min < kBackOffRange ? kBackOff : 0.0, kTurnMax};
+    }
+    return go_on(nearest.right);
+}
+
+Velocity WallFollower::go_on(double right) {
+    if (mode_ == Mode::kLeaving) return {kCruise, 0.0};
+    if (right < (mode_ == Mode::kRounding ? kWallDistance : kWallRange)) {
+        mode_ = Mode::kFollowing;
+        // Positive turns are counter-clockwise: away from the wall when it is nearer than wanted, towards it when
+        // farther. (Printed as 0.5 (d_right - 0.6), which would leave a wall that is farther than 0.6 m.)
+        return {kCruise, kWallGain * (kWallDistance - right)};
+    }
+    if (mode_ == Mode::kFollowing) {
+        mode_ = Mode::kRounding;
+        rounding_steps_left_ = kRoundingStepsMax;
+    }
+    if (mode_ == Mode::kRounding && rounding_steps_left_-- > 0) return {kRounding, -kRounding / kRoundingRadius};
+    search();
     return {kCruise, kSearchTurn};
+}
+
+void WallFollower::search() {
+    mode_ = Mode::kSearching;
+    turned_ = 0.0;
 }
 
 } // namespace scanloom::robot

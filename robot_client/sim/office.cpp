@@ -63,7 +63,7 @@ void add_inner_rooms(std::vector<Box>& solids) {
 void add_furniture(std::vector<Box>& solids) {
     for (const double x : {-12.0, -6.0, 0.0, 6.0, 12.0}) {
         // northern offices: two desks face to face at the window, a cabinet on the western wall
-        solids.push_back({x - 0.8, 7.6, x + 0.8, 9.2});
+        solids.push_back({x - 0.8, 8.4, x + 0.8, 10.0});
         solids.push_back({x - 3.0, 5.6, x - 2.5, 6.8});
         // southern offices: a desk along the window, a cabinet on the eastern wall
         solids.push_back({x - 1.6, -10.0, x + 0.8, -9.2});

@@ -12,7 +12,7 @@ namespace {
 /// Doubles are written so that different ones differ.
 std::string text_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return) {
     // The number is to be raised when the same options begin to give other scans: another drive, another simulator.
-    std::string text = fmt::format("simulation 1\nseed {}\ndrive {}\nno-return {}\n", options.seed, drive,
+    std::string text = fmt::format("simulation 2\nseed {}\ndrive {}\nno-return {}\n", options.seed, drive,
                                    no_return == NoReturn::kFree ? "free" : "drop");
     const auto add = [&](std::string_view what, auto... numbers) {
         text += what;

@@ -56,6 +56,39 @@ TEST(WallFollower, StopsAreCountedInARow) {
     }
 }
 
+TEST(WallFollower, GoesAroundTheEndOfAWallUntilItIsNearAgain) {
+    WallFollower follower;
+    EXPECT_EQ(follower.step({0.65, 5, 5}).forward, 0.4);
+    for (const double right : {5.0, 0.71, 0.65}) {
+        const Velocity around = follower.step({right, 5, 5});
+        EXPECT_EQ(around.forward, 0.3) << right;
+        EXPECT_NEAR(around.forward / around.turn, -0.55, 1e-12) << "a circle around what is on the right hand";
+    }
+    EXPECT_EQ(follower.step({0.59, 5, 5}).forward, 0.4);
+    EXPECT_EQ(follower.step({0.69, 5, 5}).forward, 0.4) << "a wall that is there is one up to 0.7 m";
+}
+
+TEST(WallFollower, SearchesOnWhereNoWallComesAfterACorner) {
+    WallFollower follower;
+    static_cast<void>(follower.step({0.6, 5, 5}));
+    for (int i = 0; i < 180; ++i) EXPECT_EQ(follower.step({5, 5, 5}).forward, 0.3) << i;
+    EXPECT_EQ(follower.step({5, 5, 5}), (Velocity{0.4, -0.05}));
+}
+
+TEST(WallFollower, LeavesWhatItHasGoneAround) {
+    WallFollower follower;
+    double turned = 0.0;
+    for (int step = 0; turned > -2.5 * std::numbers::pi; ++step) {
+        ASSERT_LT(step, 400);
+        const bool is_beside = step % 60 == 0; // a table: past each corner comes a side
+        turned += follower.step({is_beside ? 0.59 : 5.0, 5, 5}).turn / 20.0;
+    }
+    for (const double right : {0.6, 0.5, 5.0}) EXPECT_EQ(follower.step({right, 5, 5}), (Velocity{0.4, 0.0})) << right;
+    EXPECT_EQ(follower.step({0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "here is another wall";
+    EXPECT_LT(follower.step({0.65, 5, 5}).turn, 0.0);
+    EXPECT_GT(follower.step({0.55, 5, 5}).turn, 0.0);
+}
+
 TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
     constexpr double kDegree = std::numbers::pi / 180.0;
     Sensor laser;

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace scanloom::robot {
 namespace {
@@ -119,10 +121,34 @@ INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
                          testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
                                          Setting{"office", "reference", false}, Setting{"office", "lidar360", true}));
 
-TEST(WallFollowerDrives, GoesAllAroundTheOffice) {
-    const World world = make_office();
-    const Drive drive = watch(make("office", 1), world, 300.0);
-    EXPECT_GT(drive.square_metres, 70U) << "the ring of corridors has some 80 m";
+/// The rooms of the office in the order in which the robot came into them: 0 to 4 in the north, 5 to 9 in the south,
+/// each row from the west.
+std::vector<int> rooms_entered(Simulator simulator, int scans) {
+    std::vector<int> entered;
+    bool is_inside = false;
+    for (int i = 0; i < scans; ++i) {
+        const Pose2 pose = simulator.next_scan().pose;
+        const bool was_inside = std::exchange(is_inside, std::abs(pose.y) > 4.0);
+        const int row = pose.y > 0.0 ? 0 : 5;
+        if (is_inside && !was_inside) entered.push_back(row + static_cast<int>((pose.x + 15.0) / 6.0));
+    }
+    return entered;
+}
+
+TEST(WallFollowerDrives, GoesIntoTheOfficesRoomsThroughTheirDoorsAndOutAgain) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        for (const bool noisy : {false, true}) {
+            const auto rooms = rooms_entered(make("office", seed, noisy ? std::optional(Noise{}) : std::nullopt), 3000);
+            EXPECT_GE(rooms.size(), 2U) << seed;
+            EXPECT_EQ(std::set(rooms.begin(), rooms.end()).size(), rooms.size()) << "one after the other";
+        }
+    }
+}
+
+TEST(WallFollowerDrives, GoesAllAroundTheOfficeThroughEveryRoomOnTheWay) {
+    const auto rooms = rooms_entered(make("office", 3, Noise{}), 13'000); // it starts at a table, and leaves it
+    ASSERT_GE(rooms.size(), 10U);
+    EXPECT_EQ(std::vector(rooms.begin(), rooms.begin() + 10), (std::vector{5, 6, 7, 8, 9, 4, 3, 2, 1, 0}));
 }
 
 } // namespace
