@@ -1,11 +1,14 @@
+#include "common/app/standard_error.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <exception>
 
 int main(int argc, char** argv) try {
+    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
     const auto options = scanloom::robot::parse_options(argc, argv);
     if (const auto* leave = std::get_if<scanloom::robot::Leave>(&options)) {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
@@ -13,6 +16,6 @@ int main(int argc, char** argv) try {
     }
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));
 } catch (const std::exception& error) {
-    fmt::print(stderr, "scanloom-robot: {}\n", error.what());
+    scanloom::standard_error().write(fmt::format("scanloom-robot: {}\n", error.what()));
     return scanloom::kExitFailed;
 }

@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace scanloom::robot {
 namespace {
@@ -33,32 +29,22 @@ std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_
     return text;
 }
 
-bool Console::stderr_is_terminal() {
-    const char* terminal = std::getenv("TERM");
-    return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
 std::chrono::milliseconds Console::progress_period() const {
-    return is_terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
+    return out_.is_terminal() ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
 }
 
 void Console::progress(std::string_view text) {
-    if (!is_terminal_) {
-        fmt::print(stderr, "{}\n", text);
-        return;
-    }
-    fmt::print(stderr, "\r\x1b[K{}", text);
-    std::fflush(stderr);
-    line_is_open_ = true;
+    line_is_open_ = out_.is_terminal();
+    out_.write(line_is_open_ ? fmt::format("\r\x1b[K{}", text) : fmt::format("{}\n", text));
 }
 
 void Console::note(std::string_view text) {
-    fmt::print(stderr, "{}{}\n", line_is_open_ ? "\r\x1b[K" : "", text);
+    out_.write(fmt::format("{}{}\n", line_is_open_ ? "\r\x1b[K" : "", text));
     line_is_open_ = false;
 }
 
 void Console::finish() {
-    if (line_is_open_) fmt::print(stderr, "\n");
+    if (line_is_open_) out_.write("\n");
     line_is_open_ = false;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/app/standard_error.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 #include <chrono>
@@ -16,12 +17,10 @@ namespace scanloom::robot {
 
 /// What the program tells while it runs, on stderr. On a terminal the progress stays on one line that is written over;
 /// elsewhere it is a plain line every few seconds. No colours, so there is nothing for NO_COLOR to switch off.
+/// Nothing ever waits for a reader.
 class Console {
 public:
-    explicit Console(bool is_terminal) : is_terminal_(is_terminal) {}
-
-    /// True for a stderr on which lines can be written over.
-    [[nodiscard]] static bool stderr_is_terminal();
+    explicit Console(StandardError& out) : out_(out) {}
 
     /// How often progress() is worth calling.
     [[nodiscard]] std::chrono::milliseconds progress_period() const;
@@ -32,7 +31,7 @@ public:
     void finish();
 
 private:
-    bool is_terminal_;
+    StandardError& out_;
     bool line_is_open_ = false;
 };
 

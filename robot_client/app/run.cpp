@@ -92,7 +92,7 @@ asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, 
 } // namespace
 
 ExitCode run(const RobotOptions& options) {
-    Console console(Console::stderr_is_terminal());
+    Console console(standard_error());
     const auto fail = [&](const Error& error) {
         console.note("scanloom-robot: " + error.message);
         return kExitFailed;

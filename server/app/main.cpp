@@ -1,8 +1,10 @@
+#include "common/app/standard_error.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
+#include "server/app/standard_error_sink.hpp"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <csignal>
@@ -14,7 +16,7 @@ namespace {
 using namespace scanloom;
 
 int run(const app::ServerOptions& options) {
-    spdlog::set_default_logger(spdlog::stderr_color_mt("scanloom-server"));
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("scanloom-server", app::standard_error_sink()));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
@@ -22,7 +24,7 @@ int run(const app::ServerOptions& options) {
     auto server = app::Server::open(options, app::limits_within(descriptors));
     auto ended = server ? (*server)->run() : Result<>(server.error());
     if (ended) return kExitDone;
-    std::cerr << "scanloom-server: " << ended.error().message << '\n';
+    standard_error().write(fmt::format("scanloom-server: {}\n", ended.error().message));
     return kExitFailed;
 }
 
@@ -38,7 +40,7 @@ int main(int argc, char** argv) {
         }
         return run(std::get<app::ServerOptions>(options));
     } catch (const std::exception& failure) {
-        std::cerr << "scanloom-server: " << failure.what() << '\n';
+        standard_error().write(fmt::format("scanloom-server: {}\n", failure.what()));
         return kExitFailed;
     }
 }

@@ -1,0 +1,41 @@
+#include "server/app/standard_error_sink.hpp"
+
+#include "common/app/standard_error.hpp"
+
+#include <spdlog/sinks/base_sink.h>
+
+#include <mutex>
+#include <string_view>
+
+namespace scanloom::app {
+namespace {
+
+std::string_view colour_of(spdlog::level::level_enum level) {
+    if (level >= spdlog::level::err) return "\x1b[31m";
+    if (level == spdlog::level::warn) return "\x1b[33m";
+    return "\x1b[32m";
+}
+
+class StandardErrorSink final : public spdlog::sinks::base_sink<std::mutex> {
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        spdlog::memory_buf_t text;
+        formatter_->format(message, text);
+        const std::string_view plain(text.data(), text.size());
+        if (!standard_error().is_terminal()) {
+            standard_error().write(plain);
+            return;
+        }
+        const auto begin = message.color_range_start;
+        const auto end = message.color_range_end;
+        standard_error().write(fmt::format("{}{}{}\x1b[0m{}", plain.substr(0, begin), colour_of(message.level),
+                                           plain.substr(begin, end - begin), plain.substr(end)));
+    }
+
+    void flush_() override {} // nothing is kept back
+};
+
+} // namespace
+
+spdlog::sink_ptr standard_error_sink() { return std::make_shared<StandardErrorSink>(); }
+
+} // namespace scanloom::app

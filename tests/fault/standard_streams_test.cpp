@@ -1,0 +1,56 @@
+#include "tests/support/robot_socket.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/support/unread_pipe.hpp"
+
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+
+/// Programs whose standard streams are of no use.
+namespace scanloom::test {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::RobotSocket;
+
+TEST(StandardStreams, AServerWhoseLogNobodyReadsServesOnAndStops) {
+    const TemporaryDirectory place;
+    UnreadPipe log(place.path() / "log");
+    RunningServer server(place.path() / "store", log.path());
+    for (int visit = 0; visit < 300; ++visit) {
+        RobotSocket robot(server.robot_port());
+        robot.send(wire::Hello{.robot = "r", .session = "s", .create = SessionOptions{}});
+        (void)robot.receive_kind<wire::Welcome>();
+    }
+    EXPECT_EQ(server.get("/livez").status, 200U);
+    EXPECT_THAT(log.empty(), HasSubstr("joined"));
+    log.fill();
+    server.process().signal(SIGTERM);
+    EXPECT_EQ(server.process().wait(), 0);
+}
+
+TEST(StandardStreams, ARobotWhoseProgressNobodyReadsSendsEverything) {
+    const TemporaryDirectory place;
+    const RunningServer server(place.path() / "store", place.path() / "log");
+    UnreadPipe progress(place.path() / "progress");
+    progress.fill();
+    const auto recording = place.path() / "recording.log";
+    std::ofstream(recording) << "FLASER is broken here and told on stderr\n"
+                                "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 1 host 1\n";
+    ChildProcess robot(
+        program("scanloom-robot"),
+        {"--server", server.robot_address(), "--session", "s", "--robot", "r", "replay", recording.string()},
+        progress.path());
+    const auto summary = robot.read_line();
+    EXPECT_EQ(robot.wait(), 0);
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(boost::json::parse(*summary).at("acknowledged"), 1);
+    EXPECT_EQ(boost::json::parse(*summary).at("skipped_lines"), 1);
+}
+
+} // namespace
+} // namespace scanloom::test
