@@ -1,4 +1,5 @@
 #include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"
 
@@ -9,6 +10,7 @@
 
 int main(int argc, char** argv) try {
     std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
+    scanloom::open_missing_standard_streams();
     const auto options = scanloom::robot::parse_options(argc, argv);
     if (const auto* leave = std::get_if<scanloom::robot::Leave>(&options)) {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);

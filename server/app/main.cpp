@@ -1,4 +1,5 @@
 #include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
@@ -33,6 +34,7 @@ int run(const app::ServerOptions& options) {
 int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
     try {
+        open_missing_standard_streams();
         const auto options = app::read_options(argc, argv);
         if (const auto* leave = std::get_if<app::Leave>(&options)) {
             (leave->code == kExitDone ? std::cout : std::cerr) << leave->text << (leave->code == kExitDone ? "" : "\n");

@@ -22,6 +22,8 @@ public:
     /// Waits for the next line of its standard output; nothing at its end.
     [[nodiscard]] std::optional<std::string> read_line();
 
+    [[nodiscard]] pid_t id() const noexcept { return pid_; }
+
     void signal(int number) const;
 
     /// Waits for its end. @return the exit code, or minus the signal that ended it.
