@@ -118,7 +118,10 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     auto* replay = app.add_subcommand("replay", "Replay a CARMEN log");
     // not required() by the parser: an environment meant for both sources would then ask for it everywhere
     replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
-    replay->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server takes it")
+    replay
+        ->add_option("--speed", options.speed,
+                     "1 = as recorded, 0 = as fast as the server takes it. A pause of more than 10 minutes in the log "
+                     "counts as 10")
         ->check(check_not_negative)
         ->capture_default_str();
     return replay;

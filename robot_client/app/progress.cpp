@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace scanloom::robot {
 namespace {
 
 std::string as_clock(double seconds) {
-    const auto whole = static_cast<std::int64_t>(std::min(std::ceil(seconds), 1e9));
+    const auto whole = static_cast<std::int64_t>(std::clamp(std::ceil(seconds), 0.0, 1e9));
     if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
@@ -22,11 +23,17 @@ std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_
     std::string text = total ? fmt::format("{} of {} scans stored", status.acknowledged, *total)
                              : fmt::format("{} scans stored", status.acknowledged);
     text += fmt::format(", {:.0f} a second", rate);
-    if (total && rate > 0.0 && *total >= status.acknowledged) {
+    if (status.next_scan_in) {
+        text += fmt::format(", next scan in {}", as_clock(status.next_scan_in->count()));
+    } else if (total && rate > 0.0 && *total >= status.acknowledged) {
         text += fmt::format(", {} left", as_clock(static_cast<double>(*total - status.acknowledged) / rate));
     }
     if (!status.is_linked) text += fmt::format(", not connected, {} waiting", status.last - status.acknowledged);
     return text;
+}
+
+std::string pause_text(std::chrono::duration<double> pause) {
+    return fmt::format("the next scan is due in {}; --speed 0 would not wait for it", as_clock(pause.count()));
 }
 
 std::chrono::milliseconds Console::progress_period() const {

@@ -15,6 +15,9 @@ namespace scanloom::robot {
 [[nodiscard]] std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
                                         std::chrono::duration<double> elapsed);
 
+/// Why nothing is sent for a while.
+[[nodiscard]] std::string pause_text(std::chrono::duration<double> pause);
+
 /// What the program tells while it runs, on stderr. On a terminal the progress stays on one line that is written over;
 /// elsewhere it is a plain line every few seconds. No colours, so there is nothing for NO_COLOR to switch off.
 /// Nothing ever waits for a reader.

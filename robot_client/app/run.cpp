@@ -57,6 +57,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     uplink.on_resume = [&console, scan_count = prepared.source->scan_count()](std::uint64_t stored) {
         console.note(resume_text(stored, scan_count));
     };
+    uplink.on_long_pause = [&console](std::chrono::duration<double> pause) { console.note(pause_text(pause)); };
     wire::Hello& hello = uplink.conversation.hello;
     hello.robot = options.robot;
     hello.session = options.session;

@@ -85,7 +85,8 @@ UplinkStatus Uplink::status() const {
             conversation_.sent_ever() - conversation_.resumed_after().value_or(0),
             conversation_.bytes_sent(),
             welcomes > 0 ? welcomes - 1 : 0,
-            conversation_.is_welcome()};
+            conversation_.is_welcome(),
+            pause_ends_ ? std::optional<std::chrono::duration<double>>(*pause_ends_ - Clock::now()) : std::nullopt};
 }
 
 // The source ----------------------------------------------------------------------------------------------------------
@@ -130,14 +131,22 @@ asio::awaitable<Result<>> Uplink::feed_scans() {
             source_ended_ = true;
             break;
         }
-        const auto due = pacer_.due(observation->scan.stamp, Clock::now());
-        while (!stopped_ && due > Clock::now()) co_await wait(feed_wake_, due);
+        co_await wait_until_due(pacer_.due(observation->scan.stamp, Clock::now()));
         if (stopped_) break; // this scan was not due yet
         conversation_.add(std::move(*observation), Clock::now());
         write_wake_.cancel();
         if (++scans_since_yield % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
     }
     co_return Result<>{};
+}
+
+asio::awaitable<void> Uplink::wait_until_due(Clock::time_point due) {
+    if (const auto pause = due - Clock::now(); pause > kLongPause) {
+        pause_ends_ = due;
+        options_.on_long_pause(pause);
+    }
+    while (!stopped_ && due > Clock::now()) co_await wait(feed_wake_, due);
+    pause_ends_.reset();
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------

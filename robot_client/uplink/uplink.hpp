@@ -12,9 +12,13 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace scanloom::robot {
+
+/// A pause between two scans that people are told of.
+inline constexpr std::chrono::seconds kLongPause{60};
 
 struct UplinkOptions {
     std::string host;
@@ -29,6 +33,8 @@ struct UplinkOptions {
     std::function<void(const Error&)> on_trouble = [](const Error&) {};
     /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
     std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
+    /// Hears how long nothing will be sent, when the next scan is due in more than kLongPause only.
+    std::function<void(std::chrono::duration<double>)> on_long_pause = [](std::chrono::duration<double>) {};
 };
 
 /// How far an uplink is, for people and for the summary.
@@ -40,6 +46,7 @@ struct UplinkStatus {
     std::uint64_t bytes = 0;         ///< sent, resent ones included
     std::uint64_t reconnects = 0;
     bool is_linked = false;
+    std::optional<std::chrono::duration<double>> next_scan_in = {}; ///< only in a long pause
 };
 
 /// Carries a source's scans to the server: connects, reconnects, keeps the pace. The protocol is Conversation's;
@@ -72,6 +79,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> feed();
     [[nodiscard]] boost::asio::awaitable<Result<>> pass_over(std::uint64_t scans);
     [[nodiscard]] boost::asio::awaitable<Result<>> feed_scans();
+    [[nodiscard]] boost::asio::awaitable<void> wait_until_due(Clock::time_point due);
     [[nodiscard]] boost::asio::awaitable<void> keep_linked();
     [[nodiscard]] boost::asio::awaitable<void> watch_progress();
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
@@ -100,6 +108,7 @@ private:
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;
+    std::optional<Clock::time_point> pause_ends_; ///< of a long pause
     bool source_ended_ = false;
 };
 

@@ -248,6 +248,25 @@ TEST_F(UplinkTest, NoScanGoesBeforeItIsDue) {
     EXPECT_GE(std::chrono::steady_clock::now() - begun, 39 * 5ms);
 }
 
+TEST_F(UplinkTest, ALongPauseIsToldAndCutToTenMinutes) {
+    serve({{}});
+    auto scans = recording(3);
+    scans[2].scan.stamp = 1e9; // the clock was set
+    source_.emplace(std::move(scans));
+    auto made = options();
+    made.speed = 5.0;
+    std::vector<double> pauses;
+    made.on_long_pause = [&](std::chrono::duration<double> pause) {
+        pauses.push_back(pause.count());
+        EXPECT_LE(uplink_->status().next_scan_in.value().count(), 120.0);
+        uplink_->stop();
+    };
+    EXPECT_FALSE(run(made)) << "stopped before its last scan";
+    EXPECT_THAT(pauses, ElementsAre(testing::Le(120.0)));
+    EXPECT_FALSE(uplink_->status().next_scan_in);
+    expect_all_stored_once(2);
+}
+
 TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     serve({{}});
     source_.emplace(recording());

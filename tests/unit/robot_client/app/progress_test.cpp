@@ -19,5 +19,11 @@ TEST(ProgressText, TellsThatTheServerIsAway) {
     EXPECT_EQ(progress_text(status, std::nullopt, 10s), "600 scans stored, 60 a second, not connected, 300 waiting");
 }
 
+TEST(ProgressText, InALongPauseItTellsWhenTheNextScanIsDueInsteadOfAWrongEnd) {
+    const UplinkStatus status{.last = 3, .acknowledged = 3, .is_linked = true, .next_scan_in = 598.2s};
+    EXPECT_EQ(progress_text(status, 5, 1s), "3 of 5 scans stored, 3 a second, next scan in 9:59");
+    EXPECT_EQ(pause_text(600s), "the next scan is due in 10:00; --speed 0 would not wait for it");
+}
+
 } // namespace
 } // namespace scanloom::robot
