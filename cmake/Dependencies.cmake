@@ -1,6 +1,8 @@
 # What Scanloom is built from: Debian 12 packages, listed in packages.txt.
 find_package(Threads REQUIRED)
-find_package(Boost 1.81 REQUIRED COMPONENTS url json iostreams)
+find_package(Boost 1.81 REQUIRED COMPONENTS url json iostreams) # iostreams: for tests only
+find_package(BZip2 REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(Protobuf 3.21 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)

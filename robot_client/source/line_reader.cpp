@@ -1,44 +1,22 @@
 #include "robot_client/source/line_reader.hpp"
 
-#include <boost/iostreams/filter/bzip2.hpp>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filtering_streambuf.hpp>
+#include "robot_client/source/unpacked_file.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 namespace scanloom::robot {
-namespace {
-
-namespace io = boost::iostreams;
-
-enum class Packing { kPlain, kGzip, kBzip2 };
-
-/// Unpacked at a time: of what stands before damaged data not much more than that is lost.
-constexpr std::streamsize kUnpackBytes = 4096;
-
-Packing packing_of(std::istream& file) {
-    std::array<char, 3> magic{};
-    file.read(magic.data(), magic.size());
-    file.clear();
-    file.seekg(0);
-    if (magic[0] == '\x1f' && magic[1] == '\x8b') return Packing::kGzip;
-    if (magic == std::array{'B', 'Z', 'h'}) return Packing::kBzip2;
-    return Packing::kPlain;
-}
-
-} // namespace
 
 struct LineReader::State {
+    State(const std::filesystem::path& name, LineLimits given) : path(name.string()), limits(given), file(name) {}
+
     std::string path;
     LineLimits limits;
-    Packing packing = Packing::kPlain;
-    std::ifstream file;
-    io::filtering_streambuf<io::input> text;
-    std::array<char, kUnpackBytes> chunk{};
+    UnpackedFile file;
+    std::array<char, 16384> chunk{};
     std::size_t chunk_begin = 0;
     std::size_t chunk_end = 0;
     std::uint64_t text_bytes = 0;
@@ -55,9 +33,8 @@ struct LineReader::State {
     [[nodiscard]] Result<> refill();
 };
 
-/// What Boost.Iostreams says ("bzip2 error") helps nobody.
 Error LineReader::State::cannot_unpack() const {
-    const bool is_gzip = packing == Packing::kGzip;
+    const bool is_gzip = file.packing() == Packing::kGzip;
     const std::string readable =
         text_bytes == 0
             ? "nothing of it could be read; get the file again"
@@ -69,15 +46,12 @@ Error LineReader::State::cannot_unpack() const {
 }
 
 Result<> LineReader::State::refill() {
-    chunk_begin = chunk_end = 0;
-    try {
-        const std::streamsize count = text.sgetn(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-        if (count > 0) chunk_end = static_cast<std::size_t>(count);
-    } catch (const std::exception&) {
-        return cannot_unpack();
-    }
-    if (file.bad()) return failure(Errc::kMalformed, "reading failed");
-    text_bytes += chunk_end;
+    const auto count = file.read(chunk);
+    if (file.has_failed()) return failure(Errc::kMalformed, "reading failed");
+    if (!count) return cannot_unpack();
+    chunk_begin = 0;
+    chunk_end = *count;
+    text_bytes += *count;
     if (text_bytes > limits.text_bytes_max) {
         return failure(Errc::kTooLarge,
                        fmt::format("more than {} bytes of text; split the log", limits.text_bytes_max));
@@ -98,17 +72,10 @@ Result<LineReader> LineReader::open(const std::filesystem::path& path, LineLimit
     if (!std::filesystem::is_regular_file(path, failed)) {
         return Error{Errc::kNotFound, fmt::format("{}: not a regular file; name a log file", path.string())};
     }
-    auto state = std::make_unique<State>();
-    state->path = path.string();
-    state->limits = limits;
-    state->file.open(path, std::ios::binary);
-    if (!state->file) {
+    auto state = std::make_unique<State>(path, limits);
+    if (!state->file.is_open()) {
         return Error{Errc::kNotFound, fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno))};
     }
-    state->packing = packing_of(state->file);
-    if (state->packing == Packing::kGzip) state->text.push(io::gzip_decompressor(), kUnpackBytes);
-    if (state->packing == Packing::kBzip2) state->text.push(io::bzip2_decompressor(), kUnpackBytes);
-    state->text.push(*state->file.rdbuf());
     return LineReader(std::move(state));
 }
 

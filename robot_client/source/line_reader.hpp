@@ -19,6 +19,7 @@ struct LineLimits {
 };
 
 /// The lines of a text file, plain or compressed with gzip or bzip2; its first bytes tell, not its name.
+/// Zero bytes behind compressed data are ignored.
 ///
 /// Errors  kNotFound: no such file, or not to be read; kMalformed: damaged or cut short;
 ///         kTooLarge: beyond the limits. Each names the file and how many whole lines could be read.

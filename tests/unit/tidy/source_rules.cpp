@@ -70,7 +70,8 @@ const std::vector<Package> kPackages = {
      {"server/session", "server/sockets", "server/ingest", "server/http", "server/app", "robot_client/uplink",
       "robot_client/app"}},
     {"boost/beast", {"server/http", "server/app"}},
-    {"boost/iostreams/", {"robot_client/source"}},
+    {"bzlib.h", {"robot_client/source"}},
+    {"zlib.h", {"robot_client/source"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app"}},
 };
 

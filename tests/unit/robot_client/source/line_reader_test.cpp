@@ -93,5 +93,45 @@ TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
     }
 }
 
+TEST_F(LineReaderTest, SeveralPackedFilesInARowAreOneText) {
+    const std::string text = noise(100);
+    EXPECT_EQ(read(packed(text, io::gzip_compressor()) + packed(text, io::gzip_compressor())).first, 200U);
+    EXPECT_EQ(read(packed(text, io::bzip2_compressor()) + packed(text, io::bzip2_compressor())).first, 200U);
+}
+
+TEST_F(LineReaderTest, ZeroBytesBehindPackedDataArePadding) {
+    const std::string text = noise(100);
+    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+        for (const std::size_t zeros : {1U, 10U, 512U, 100'000U}) {
+            const auto [lines, error] = read(whole + std::string(zeros, '\0'));
+            EXPECT_EQ(lines, 100U) << zeros;
+            EXPECT_EQ(error, "") << zeros;
+        }
+    }
+}
+
+TEST_F(LineReaderTest, AnythingElseBehindPackedDataIsDamage) {
+    const std::string text = noise(100);
+    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+        for (const std::string& rest : {std::string("x"), std::string(20'000, '\0') + "x", std::string(1, '\0') + whole,
+                                        whole.substr(0, 2), whole.substr(0, 12)}) {
+            const auto [lines, error] = read(whole + rest);
+            EXPECT_EQ(lines, 100U) << "what stands before it is read";
+            EXPECT_THAT(error, HasSubstr("data is damaged or cut short"));
+        }
+    }
+}
+
+TEST_F(LineReaderTest, ZerosInThePlaceOfPackedDataAreDamage) {
+    const std::string text = noise(1000);
+    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+        for (const std::size_t kept : {3U, 12U, 5000U, static_cast<unsigned>(whole.size() - 10)}) {
+            std::string zeroed = whole.substr(0, kept);
+            zeroed.resize(whole.size() + 512, '\0'); // as after a power failure
+            EXPECT_THAT(read(zeroed).second, HasSubstr("data is damaged or cut short")) << kept;
+        }
+    }
+}
+
 } // namespace
 } // namespace scanloom::robot
