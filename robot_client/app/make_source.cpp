@@ -8,8 +8,12 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 namespace scanloom::robot {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kSkippedLinesShown = 5;
 
@@ -25,7 +29,13 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
         if (++skipped > kSkippedLinesShown) return;
         console.note(fmt::format("{}:{}: skipped: {}", replay.file, line.line_number, line.reason));
     };
-    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, tell);
+    auto next_progress = Clock::now() + console.progress_period();
+    const auto show = [&](const ReadProgress& progress) {
+        if (Clock::now() < next_progress) return;
+        next_progress = Clock::now() + console.progress_period();
+        console.progress(reading_text(replay.file, progress));
+    };
+    auto log = CarmenLog::open(replay.file, {options.no_return, options.range_max, {}}, tell, show);
     if (skipped > kSkippedLinesShown) {
         console.note(fmt::format("{}: {} more lines skipped", replay.file, skipped - kSkippedLinesShown));
     }

@@ -32,6 +32,12 @@ std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_
     return text;
 }
 
+std::string reading_text(std::string_view file, const ReadProgress& progress) {
+    constexpr double kBytesPerMegabyte = 1e6;
+    return fmt::format("{}: {:.1f} of {:.1f} MB read", file, static_cast<double>(progress.bytes) / kBytesPerMegabyte,
+                       static_cast<double>(progress.bytes_total) / kBytesPerMegabyte);
+}
+
 std::string pause_text(std::chrono::duration<double> pause) {
     return fmt::format("the next scan is due in {}; --speed 0 would not wait for it", as_clock(pause.count()));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/app/standard_error.hpp"
+#include "robot_client/source/line_reader.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 #include <chrono>
@@ -14,6 +15,9 @@ namespace scanloom::robot {
 /// `total` is the highest seq there will be, if that is known.
 [[nodiscard]] std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
                                         std::chrono::duration<double> elapsed);
+
+/// How far a log has been read before its first scan is sent.
+[[nodiscard]] std::string reading_text(std::string_view file, const ReadProgress& progress);
 
 /// Why nothing is sent for a while.
 [[nodiscard]] std::string pause_text(std::chrono::duration<double> pause);

@@ -158,8 +158,8 @@ CarmenIndex Indexer::build() {
 } // namespace
 
 Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
-                                     const std::function<void(const SkippedLine&)>& report) {
-    auto records = CarmenRecords::open(path, options.limits);
+                                     const std::function<void(const SkippedLine&)>& report, const OnRead& on_read) {
+    auto records = CarmenRecords::open(path, options.limits, on_read);
     if (!records) return records.error();
     Indexer indexer(options, report);
     if (auto ok = indexer.read(*records); !ok) return ok.error();

@@ -2,6 +2,7 @@
 
 #include "robot_client/source/carmen_observation.hpp"
 #include "robot_client/source/carmen_path.hpp"
+#include "robot_client/source/line_reader.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -42,9 +43,10 @@ struct CarmenIndex {
 };
 
 /// Reads a log once. `report` hears of every line that cannot be used: broken ones in the order of the file, then
-/// RAWLASER lines without a pose.
+/// RAWLASER lines without a pose. `on_read` hears how far the file has been read.
 /// Errors  those of LineReader; kNotFound when no line is usable; kTooLarge: more than 2^32 - 2 laser lines.
 [[nodiscard]] Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
-                                                   const std::function<void(const SkippedLine&)>& report);
+                                                   const std::function<void(const SkippedLine&)>& report,
+                                                   const OnRead& on_read = {});
 
 } // namespace scanloom::robot

@@ -5,8 +5,8 @@
 namespace scanloom::robot {
 
 Result<CarmenLog> CarmenLog::open(const std::filesystem::path& path, const CarmenOptions& options,
-                                  const std::function<void(const SkippedLine&)>& report) {
-    auto index = index_carmen_log(path, options, report);
+                                  const std::function<void(const SkippedLine&)>& report, const OnRead& on_read) {
+    auto index = index_carmen_log(path, options, report, on_read);
     if (!index) return index.error();
     auto records = CarmenRecords::open(path, options.limits);
     if (!records) return records.error();

@@ -29,7 +29,8 @@ class CarmenLog final : public Source {
 public:
     /// Errors  those of index_carmen_log().
     [[nodiscard]] static Result<CarmenLog> open(const std::filesystem::path& path, const CarmenOptions& options,
-                                                const std::function<void(const SkippedLine&)>& report);
+                                                const std::function<void(const SkippedLine&)>& report,
+                                                const OnRead& on_read = {});
 
     /// Errors  those of LineReader; kConflict: the file is not any more what open() has read.
     [[nodiscard]] Result<std::optional<Observation>> next() override;

@@ -2,8 +2,8 @@
 
 namespace scanloom::robot {
 
-Result<CarmenRecords> CarmenRecords::open(const std::filesystem::path& path, LineLimits limits) {
-    auto lines = LineReader::open(path, limits);
+Result<CarmenRecords> CarmenRecords::open(const std::filesystem::path& path, LineLimits limits, OnRead on_read) {
+    auto lines = LineReader::open(path, limits, std::move(on_read));
     if (!lines) return lines.error();
     return CarmenRecords(std::move(*lines));
 }

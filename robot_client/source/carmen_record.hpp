@@ -29,7 +29,8 @@ struct CarmenRecord {
 class CarmenRecords {
 public:
     /// Errors  those of LineReader.
-    [[nodiscard]] static Result<CarmenRecords> open(const std::filesystem::path& path, LineLimits limits);
+    [[nodiscard]] static Result<CarmenRecords> open(const std::filesystem::path& path, LineLimits limits,
+                                                    OnRead on_read = {});
 
     /// Errors  those of LineReader. Nothing after the last line.
     [[nodiscard]] Result<std::optional<CarmenRecord>> next();

@@ -11,10 +11,17 @@
 namespace scanloom::robot {
 
 struct LineReader::State {
-    State(const std::filesystem::path& name, LineLimits given) : path(name.string()), limits(given), file(name) {}
+    State(const std::filesystem::path& name, LineLimits given, OnRead listener)
+        : path(name.string()), limits(given), on_read(std::move(listener)), file(name) {
+        std::error_code failed; // then nothing is known of the total
+        const auto size = std::filesystem::file_size(name, failed);
+        if (!failed) bytes_total = size;
+    }
 
     std::string path;
     LineLimits limits;
+    OnRead on_read;
+    std::uint64_t bytes_total = 0;
     UnpackedFile file;
     std::array<char, 16384> chunk{};
     std::size_t chunk_begin = 0;
@@ -52,6 +59,7 @@ Result<> LineReader::State::refill() {
     chunk_begin = 0;
     chunk_end = *count;
     text_bytes += *count;
+    if (on_read) on_read({file.bytes_read(), bytes_total});
     if (text_bytes > limits.text_bytes_max) {
         return failure(Errc::kTooLarge,
                        fmt::format("more than {} bytes of text; split the log", limits.text_bytes_max));
@@ -64,7 +72,7 @@ LineReader::LineReader(LineReader&&) noexcept = default;
 LineReader& LineReader::operator=(LineReader&&) noexcept = default;
 LineReader::~LineReader() = default;
 
-Result<LineReader> LineReader::open(const std::filesystem::path& path, LineLimits limits) {
+Result<LineReader> LineReader::open(const std::filesystem::path& path, LineLimits limits, OnRead on_read) {
     std::error_code failed;
     if (!std::filesystem::exists(path, failed)) {
         return Error{Errc::kNotFound, fmt::format("{}: no such file; check the path", path.string())};
@@ -72,7 +80,7 @@ Result<LineReader> LineReader::open(const std::filesystem::path& path, LineLimit
     if (!std::filesystem::is_regular_file(path, failed)) {
         return Error{Errc::kNotFound, fmt::format("{}: not a regular file; name a log file", path.string())};
     }
-    auto state = std::make_unique<State>(path, limits);
+    auto state = std::make_unique<State>(path, limits, std::move(on_read));
     if (!state->file.is_open()) {
         return Error{Errc::kNotFound, fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno))};
     }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,13 @@ struct LineLimits {
     std::size_t line_bytes_max = std::size_t{1} << 20;
 };
 
+/// How far a file has been read; bytes of the file as it is, compressed or not.
+struct ReadProgress {
+    std::uint64_t bytes = 0;
+    std::uint64_t bytes_total = 0;
+};
+using OnRead = std::function<void(const ReadProgress&)>;
+
 /// The lines of a text file, plain or compressed with gzip or bzip2; its first bytes tell, not its name.
 /// Zero bytes behind compressed data are ignored.
 ///
@@ -26,7 +34,9 @@ struct LineLimits {
 /// Thread  one at a time.
 class LineReader {
 public:
-    [[nodiscard]] static Result<LineReader> open(const std::filesystem::path& path, LineLimits limits = {});
+    /// `on_read`, if there is one, hears after every piece of the file how far it has been read.
+    [[nodiscard]] static Result<LineReader> open(const std::filesystem::path& path, LineLimits limits = {},
+                                                 OnRead on_read = {});
 
     LineReader(LineReader&&) noexcept;
     LineReader& operator=(LineReader&&) noexcept;

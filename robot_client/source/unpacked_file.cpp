@@ -39,6 +39,7 @@ std::optional<std::size_t> UnpackedFile::read(std::span<char> text) {
 void UnpackedFile::refill() {
     file_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     packed_ = std::string_view(buffer_.data(), static_cast<std::size_t>(file_.gcount()));
+    bytes_read_ += packed_.size();
 }
 
 std::size_t UnpackedFile::read_plain(std::span<char> text) {

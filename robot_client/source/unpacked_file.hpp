@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -29,6 +30,9 @@ public:
     /// where the packed data are damaged or cut short. What stands before the damage comes first.
     [[nodiscard]] std::optional<std::size_t> read(std::span<char> text);
 
+    /// Bytes of the file, packed as it is.
+    [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
+
     /// True when the end came because the file could not be read on.
     [[nodiscard]] bool has_failed() const { return file_.bad(); }
 
@@ -42,6 +46,7 @@ private:
     std::string_view packed_; ///< what is left of the buffer
     Packing packing_ = Packing::kPlain;
     std::unique_ptr<MemberUnpacker> member_; ///< none between two members
+    std::uint64_t bytes_read_ = 0;
     bool is_first_member_ = true;
     bool is_damaged_ = false;
 };

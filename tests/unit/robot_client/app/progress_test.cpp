@@ -19,6 +19,10 @@ TEST(ProgressText, TellsThatTheServerIsAway) {
     EXPECT_EQ(progress_text(status, std::nullopt, 10s), "600 scans stored, 60 a second, not connected, 300 waiting");
 }
 
+TEST(ProgressText, TellsHowFarALogHasBeenRead) {
+    EXPECT_EQ(reading_text("intel.log", {1'250'000, 20'000'000}), "intel.log: 1.2 of 20.0 MB read");
+}
+
 TEST(ProgressText, InALongPauseItTellsWhenTheNextScanIsDueInsteadOfAWrongEnd) {
     const UplinkStatus status{.last = 3, .acknowledged = 3, .is_linked = true, .next_scan_in = 598.2s};
     EXPECT_EQ(progress_text(status, 5, 1s), "3 of 5 scans stored, 3 a second, next scan in 9:59");

@@ -311,6 +311,16 @@ TEST_F(CarmenLogFile, TellsHowManyScansThereWillBeBeforeTheFirst) {
     EXPECT_FALSE(*log->next()) << "the end is the end";
 }
 
+TEST_F(CarmenLogFile, OpeningItTellsHowFarTheFileHasBeenRead) {
+    const std::string text = text_of({flaser(1), flaser(2)});
+    const auto path = write(text);
+    ReadProgress last;
+    ASSERT_TRUE(CarmenLog::open(
+        path, {}, [](const SkippedLine&) {}, [&](const ReadProgress& progress) { last = progress; }));
+    EXPECT_EQ(last.bytes, text.size());
+    EXPECT_EQ(last.bytes_total, text.size());
+}
+
 TEST_F(CarmenLogFile, AFileThatIsChangedWhileItIsSentIsAnError) {
     const auto path = write(text_of({flaser(1), flaser(2), flaser(3)}));
     for (const std::string& changed : {flaser(1), text_of({flaser(1), robot_laser("0 0 0", "0 0 0", 0.0), flaser(3)}),

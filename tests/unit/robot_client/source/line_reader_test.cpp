@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -90,6 +91,25 @@ TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
         const auto [lines, error] = read(bytes);
         EXPECT_EQ(lines, 20'000U);
         EXPECT_EQ(error, "");
+    }
+}
+
+TEST_F(LineReaderTest, TellsHowMuchOfTheFileItHasRead) {
+    const std::string text = noise(60'000); // more than one of bzip2's blocks
+    for (const std::string& bytes : {text, packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+        std::ofstream(path_, std::ios::binary) << bytes;
+        std::vector<std::uint64_t> told;
+        auto reader = LineReader::open(path_, {}, [&](const ReadProgress& progress) {
+            told.push_back(progress.bytes);
+            EXPECT_EQ(progress.bytes_total, bytes.size());
+        });
+        ASSERT_TRUE(reader);
+        while (reader->next().value()) {
+        }
+        EXPECT_TRUE(std::ranges::is_sorted(told));
+        ASSERT_GT(told.size(), 5U);
+        EXPECT_LT(told.front(), bytes.size());
+        EXPECT_EQ(told.back(), bytes.size());
     }
 }
 
