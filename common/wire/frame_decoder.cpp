@@ -50,10 +50,10 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
         return *failed_;
     }
     if (length > frame_bytes_max_) {
-        failed_ = Error{Errc::kTooLarge,
-                        fmt::format("a frame announces {} bytes, at most {} are allowed {}", length, frame_bytes_max_,
-                                    frame_bytes_max_ < kFrameBytesMax ? "before the hello; send the hello first"
-                                                                      : "here; send fewer scans a batch")};
+        failed_ =
+            Error{Errc::kTooLarge,
+                  fmt::format("a frame announces {} bytes, at most {} are allowed {}", length, frame_bytes_max_,
+                              frame_bytes_max_ < kFrameBytesMax ? "before the hello; send the hello first" : "here")};
         return *failed_;
     }
     if (length == 0) {

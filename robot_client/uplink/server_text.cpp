@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
+#include <array>
 
 namespace scanloom::robot {
 namespace {
@@ -11,22 +11,28 @@ unsigned char byte_at(std::string_view text, std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
 }
 
+/// Characters that do not stand in the text but change how it is shown.
+/// Source  Unicode 15: general categories Cc, Zl and Zp, and the property Bidi_Control.
+bool is_control(char32_t c) {
+    return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
+           (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+}
+
 /// Bytes of the printable UTF-8 character at the front of `text`; 0 where there is none.
 std::size_t printable_size(std::string_view text) {
     const unsigned char first = byte_at(text, 0);
-    const unsigned char second = byte_at(text, 1);
-    if (first >= 0x20 && first < 0x7f) return 1;
-    // Two bytes from U+00A0 on: U+0080 to U+009F are the control characters C1.
-    if (first >= 0xc2 && first <= 0xdf) return (second & 0xc0) == 0x80 && (first != 0xc2 || second >= 0xa0) ? 2 : 0;
-    std::size_t size = 0;
-    if (first >= 0xe0 && first <= 0xef) size = 3;
-    if (first >= 0xf0 && first <= 0xf4) size = 4;
+    if (first < 0x80) return is_control(first) ? 0 : 1;
+    const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    char32_t character = first & (0x7fU >> size);
     for (std::size_t i = 1; i < size; ++i) {
         if ((byte_at(text, i) & 0xc0) != 0x80) return 0;
+        character = character << 6 | (byte_at(text, i) & 0x3fU);
     }
-    // Longer than needed would be another way to write the characters above.
-    if ((first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90)) return 0;
-    return size;
+    // Longer than needed would be another way to write smaller characters, controls among them.
+    constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
+    const bool is_text = first >= 0xc0 && first < 0xf8 && character >= kSmallest[size] && character <= 0x10ffff &&
+                         (character < 0xd800 || character > 0xdfff);
+    return is_text && !is_control(character) ? size : 0;
 }
 
 } // namespace

@@ -262,7 +262,7 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(Socket& socket) {
 
 /// Bytes that are no frames of a server. Before the welcome it is another program that listens there.
 wire::LinkError Uplink::unreadable(const Error& error) const {
-    if (conversation_.is_welcome()) return {prefixed("the server sent ", error), true};
+    if (conversation_.is_welcome()) return {prefixed("what the server sent cannot be read: ", error), true};
     return {
         {Errc::kMalformed, fmt::format("what listens at {}:{} does not speak Scanloom's robot link; give the server's "
                                        "robot port to --server",

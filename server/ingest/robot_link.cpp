@@ -146,7 +146,11 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
     for (;;) {
         if (ended_by_) co_return *ended_by_;
         const auto body = decoder_.next();
-        if (!body) co_return body.error();
+        if (!body) {
+            Error error = body.error();
+            if (session_ && error.code == Errc::kTooLarge) error.message += "; send fewer scans a batch";
+            co_return error;
+        }
         if (*body) {
             frame_bytes_ = wire::kLengthPrefixBytes + (*body)->size();
             co_return wire::decode(**body);

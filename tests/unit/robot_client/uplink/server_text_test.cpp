@@ -27,6 +27,18 @@ TEST(ServerText, ControlCharactersAreWrittenOut) {
         << "C1 as a byte";
 }
 
+TEST(ServerText, WhatTurnsTheTextOrEndsALineIsWrittenOut) {
+    EXPECT_EQ(shown("bad \u202etxt.exe"), R"(bad \xe2\x80\xaetxt.exe)");
+    for (const std::string_view text : {"\u061c", "\u200e", "\u200f", "\u2028", "\u2029", "\u202a", "\u202b", "\u202c",
+                                        "\u202d", "\u202e", "\u2066", "\u2067", "\u2068", "\u2069"}) {
+        EXPECT_TRUE(shown(text).starts_with(R"(\x)")) << text;
+    }
+    for (const std::string_view text :
+         {"\u061b", "\u200d", "\u2010", "\u2027", "\u202f", "\u2065", "\u206a", "\u05e9\u05dc\u05d5\u05dd"}) {
+        EXPECT_EQ(shown(text), text);
+    }
+}
+
 TEST(ServerText, BytesThatAreNoTextAreWrittenOut) {
     EXPECT_EQ(shown("\xff\xfe"), R"(\xff\xfe)");
     EXPECT_EQ(shown("\xc3"), R"(\xc3)") << "cut short";
@@ -35,6 +47,9 @@ TEST(ServerText, BytesThatAreNoTextAreWrittenOut) {
                     "\xf0\x80\x82\x9b"),
               R"(\xc0\x9b\xe0\x82\x9b\xf0\x80\x82\x9b)")
         << "a control character in more bytes than it needs";
+    EXPECT_EQ(shown("\xed\xa0\x80"), R"(\xed\xa0\x80)") << "half of a UTF-16 pair";
+    EXPECT_EQ(shown("\xf4\x90\x80\x80"), R"(\xf4\x90\x80\x80)") << "beyond Unicode";
+    EXPECT_EQ(shown("\xf9\x80\x80\x80"), R"(\xf9\x80\x80\x80)") << "no first byte";
 }
 
 TEST(ServerText, IsBoundedAndCutBetweenCharacters) {
