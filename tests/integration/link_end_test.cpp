@@ -111,9 +111,7 @@ TEST(Ingest, SessionsThatRobotsMakeLeaveRoomForOtherChanges) {
     for (int n = 0; n < 1000; ++n) { // meanwhile the other hellos arrive
         const auto changed = std::make_shared<std::promise<void>>();
         boost::asio::post(ingest.may_wait(), [changed] { changed->set_value(); });
-        const auto outcome = changed->get_future().wait_for(10s);
-        EXPECT_EQ(outcome, std::future_status::ready) << "robots hold every thread";
-        if (outcome != std::future_status::ready) break;
+        changed->get_future().wait(); // never, if robots held every thread
     }
     log.open();
     for (const auto& robot : robots) robot->receive_kind<wire::Welcome>();

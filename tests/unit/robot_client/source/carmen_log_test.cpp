@@ -382,7 +382,7 @@ class RealCarmenLog : public testing::TestWithParam<RealLog> {};
 
 TEST_P(RealCarmenLog, IsReadWhole) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / GetParam().file;
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
     const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->observations.size(), GetParam().scans);
@@ -398,7 +398,7 @@ TEST_P(RealCarmenLog, IsReadWhole) {
 /// Its stamps go back 631 times. Sorted by them, the robot would jump to and fro: 661 m, in steps of up to 0.87 m.
 TEST(RealCarmenLogs, TheIntelLogsPathIsThatOfARobot) {
     const auto path = std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs/intel.clf.bz2";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "the recorded log is not at " << path;
     const auto log = read_whole_log(path, {}, [](const SkippedLine&) {});
     ASSERT_TRUE(log) << log.error().message;
     EXPECT_EQ(log->stamps.steps_back, 631U);

@@ -1,0 +1,129 @@
+#pragma once
+
+#include "server/http/api.hpp"
+
+#include "server/session/session_registry.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/unit/server/http/described_answer.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+#include <boost/json/object.hpp>
+#include <boost/json/parse.hpp>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <numbers>
+
+namespace scanloom::http {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A link that says when a scan has become durable.
+class Link final : public session::RobotListener {
+public:
+    explicit Link(std::uint64_t awaited_seq) : awaited_(awaited_seq) {}
+
+    void on_durable(std::uint64_t durable_seq, std::size_t) override {
+        if (durable_seq == awaited_) done_.set_value();
+    }
+    void on_failed(const Error&) override { failed_.set_value(); }
+    void wait() { done_.get_future().wait(); }
+    void wait_for_failure() { failed_.get_future().wait(); }
+
+private:
+    std::uint64_t awaited_;
+    std::promise<void> done_;
+    std::promise<void> failed_;
+};
+
+inline Sensor laser() {
+    Sensor sensor;
+    sensor.id = 1;
+    sensor.name = "laser";
+    sensor.angles = UniformAngles{-std::numbers::pi / 2, std::numbers::pi / 180, 181};
+    sensor.range_max = 20.0;
+    return sensor;
+}
+
+/// A wall all around, two metres away.
+inline Scan scan(std::uint64_t seq) {
+    Scan taken;
+    taken.seq = seq;
+    taken.stamp = 100.0 + static_cast<double>(seq);
+    taken.sensor = 1;
+    taken.pose = {0.5 * static_cast<double>(seq), 1.25, 0.0};
+    taken.ranges.assign(181, 2'000);
+    return taken;
+}
+
+/// An API over sessions in memory.
+class ApiTest : public testing::Test {
+protected:
+    ApiTest() { api_.set_recovered(); }
+    ~ApiTest() override { registry_.drain(); }
+
+    Response ask(std::string method, std::string target, std::string body = "", std::string if_none_match = "") {
+        Request request;
+        request.method = std::move(method);
+        request.target = std::move(target);
+        request.content_type = "application/json";
+        request.if_none_match = std::move(if_none_match);
+        request.body = std::move(body);
+        return answer(api_, request);
+    }
+
+    /// Whatever is answered, openapi.json has to say so.
+    static Response answer(Api& api, const Request& request) {
+        auto response = api.answer(request);
+        EXPECT_THAT(undescribed(request, response), testing::IsEmpty());
+        return response;
+    }
+
+    Response get(std::string target, std::string if_none_match = "") {
+        return ask("GET", std::move(target), "", std::move(if_none_match));
+    }
+
+    boost::json::value get_json(std::string target) {
+        const auto response = get(std::move(target));
+        EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
+        return boost::json::parse(response.body.bytes());
+    }
+
+    /// What a refusal says, after checking its status.
+    std::string detail(const Response& response, Status status) {
+        EXPECT_EQ(response.status, status) << response.body.bytes();
+        EXPECT_EQ(response.get("Content-Type"), "application/problem+json");
+        return std::string(boost::json::parse(response.body.bytes()).at("detail").as_string());
+    }
+
+    void create(std::string name) {
+        ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":")" + name + R"("})").status, Status::created);
+    }
+
+    /// Scans 1 to `count` of robot r1, taken and woven; the link stays.
+    void stream(std::string_view name, std::uint64_t count) {
+        const auto session = registry_.find(name);
+        const auto link = std::make_shared<Link>(count);
+        std::promise<void> joined;
+        session->join("r1", "", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        joined.get_future().wait();
+        session->submit(link, laser(), 0);
+        std::vector<Scan> scans;
+        for (std::uint64_t seq = 1; seq <= count; ++seq) scans.push_back(scan(seq));
+        session->submit(link, std::move(scans), 1);
+        link->wait();
+        links_.push_back(link);
+    }
+
+    boost::asio::thread_pool pool_{2};
+    store::MemoryScanLog log_;
+    session::SessionRegistry registry_{log_, pool_.get_executor(), [] { return 1795251600.5; }};
+    metrics::Metrics metrics_{"1.2.3"};
+    Api api_{registry_, log_, metrics_, {}};
+    std::vector<std::shared_ptr<Link>> links_;
+};
+
+} // namespace scanloom::http

@@ -1,0 +1,90 @@
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include "server/mapping/digest.hpp"
+
+#include <boost/json/array.hpp>
+
+/// What is made from a whole map: files, digests, paths.
+namespace scanloom::http {
+namespace {
+
+TEST_F(ApiTest, MapFilesAreWhatTheySay) {
+    create("a");
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::not_found); // nothing was seen
+    stream("a", 1);
+    const auto image = get("/api/v1/sessions/a/map.png");
+    EXPECT_EQ(image.get("Content-Type"), "image/png");
+    EXPECT_THAT(std::string(image.body.bytes()), StartsWith("\x89PNG"));
+    const auto part = get("/api/v1/sessions/a/map.pgm?bbox=0,0,1,0.5");
+    EXPECT_THAT(std::string(part.body.bytes()), HasSubstr("20 10\n255\n"));
+    const auto yaml = get("/api/v1/sessions/a/map.yaml?layer=occupancy&bbox=-1,-2,1,1");
+    EXPECT_EQ(yaml.get("Content-Type"), "application/yaml");
+    EXPECT_THAT(std::string(yaml.body.bytes()), AllOf(HasSubstr("image: map.pgm"), HasSubstr("-2")));
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png", std::string(image.get("ETag"))).status, Status::not_modified);
+}
+
+TEST_F(ApiTest, BadBoxesAreRefused) {
+    create("a");
+    stream("a", 1);
+    for (const auto* box : {"", "1", "0,0,1", "0,0,1,1,1", "0,0,1,x", "0,0,nan,1", "0,0,1e999,1", "0,0,0,0", "1,1,0,0",
+                            "0,0,1,", "0,0,1e300,1"}) {
+        EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/a/map.png?bbox={}", box)), Status::bad_request),
+                    HasSubstr("bbox"))
+            << box;
+    }
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png?bbox=-90000,-90000,90000,90000").status, Status::payload_too_large);
+}
+
+TEST_F(ApiTest, HugeMapImagesAreBoundedUntilTheyAreSent) {
+    create("a");
+    stream("a", 1);
+    const std::string huge = "bbox=-75,-75,75,75"; // 9 million pixels
+    std::vector<Response> unsent;
+    for (const auto* file : {"map.png", "map.pgm"}) {
+        unsent.push_back(get(fmt::format("/api/v1/sessions/a/{}?{}", file, huge)));
+    }
+    for (const auto& response : unsent) EXPECT_EQ(response.status, Status::ok);
+    for (const auto* file : {"map.png", "map.pgm"}) {
+        const auto refused = get(fmt::format("/api/v1/sessions/a/{}?{}", file, huge));
+        EXPECT_EQ(refused.status, Status::service_unavailable);
+        EXPECT_EQ(refused.get("Retry-After"), "1");
+    }
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok) << "a small one is not held up by them";
+    EXPECT_EQ(get("/api/v1/sessions/a/map.yaml?" + huge).status, Status::ok);
+    const std::string etag(unsent[0].get("ETag"));
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png?" + huge, etag).status, Status::not_modified);
+    unsent.pop_back();
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png?" + huge).status, Status::ok);
+}
+
+TEST_F(ApiTest, DigestIsThatOfTheSnapshot) {
+    create("a");
+    stream("a", 2);
+    const auto snapshot = registry_.find("a")->snapshot();
+    EXPECT_EQ(
+        get_json("/api/v1/sessions/a/digest"),
+        (boost::json::object{{"revision", 4}, {"layers", {{"occupancy", mapping::digest_of(snapshot->occupancy)}}}}));
+}
+
+TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
+    create("a");
+    EXPECT_TRUE(get_json("/api/v1/sessions/a/trajectory.geojson").at("features").as_array().empty());
+    stream("a", 3);
+    const auto response = get("/api/v1/sessions/a/trajectory.geojson");
+    EXPECT_EQ(response.get("Content-Type"), "application/geo+json");
+    const auto whole = boost::json::parse(response.body.bytes());
+    EXPECT_EQ(whole.at("revision"), 5);
+    EXPECT_EQ(whole.at("features").at(0).at("properties"), (boost::json::object{{"robot", "r1"}, {"points", 3}}));
+    EXPECT_EQ(whole.at("features").at(0).at("geometry"),
+              (boost::json::value{{"type", "LineString"}, {"coordinates", {{0.5, 1.25}, {1, 1.25}, {1.5, 1.25}}}}));
+    const auto newest = get_json("/api/v1/sessions/a/trajectory.geojson?since=4");
+    EXPECT_EQ(newest.at("features").at(0).at("geometry"),
+              (boost::json::value{{"type", "MultiPoint"},
+                                  {"coordinates", boost::json::array{boost::json::array{1.5, 1.25}}}}));
+    const auto none = get_json("/api/v1/sessions/a/trajectory.geojson?since=5");
+    EXPECT_EQ(none.at("features").at(0).at("geometry").at("coordinates"), boost::json::array{});
+    EXPECT_EQ(get_json("/api/v1/sessions/a/trajectory.geojson?since=6"), whole); // of a session before
+}
+
+} // namespace
+} // namespace scanloom::http

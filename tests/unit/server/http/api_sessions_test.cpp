@@ -1,0 +1,205 @@
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include <boost/json/array.hpp>
+
+/// Sessions over HTTP: made, shown, listed, deleted; damaged and failed ones.
+namespace scanloom::http {
+namespace {
+
+TEST_F(ApiTest, ACreatedSessionIsShownWithItsDefaults) {
+    const auto response = ask("POST", "/api/v1/sessions", R"({"name":"intel","cell_size":0.1})");
+    EXPECT_EQ(response.status, Status::created);
+    EXPECT_EQ(response.get("Location"), "/api/v1/sessions/intel");
+    const auto shown = boost::json::parse(response.body.bytes());
+    EXPECT_EQ(shown, get_json("/api/v1/sessions/intel"));
+    EXPECT_EQ(shown.at("name"), "intel");
+    EXPECT_THAT(std::string(shown.at("id").as_string()), testing::MatchesRegex("[0-9a-f]{16}-[0-9]+[.][0-9]+"));
+    EXPECT_EQ(shown.at("created"), "2026-11-21T09:00:00Z");
+    EXPECT_EQ(shown.at("revision"), 0);
+    EXPECT_EQ(shown.at("config").at("cell_size"), 0.1);
+    EXPECT_EQ(shown.at("config").at("p_occupied"), 0.9);
+    EXPECT_EQ(shown.at("config").as_object().size(), 8U);
+    EXPECT_TRUE(shown.at("bounds").is_null());
+    EXPECT_EQ(shown.at("robots"), boost::json::array{});
+}
+
+TEST_F(ApiTest, BadSessionRequestsAreRefusedByField) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {R"({})", "name is missing"},
+        {R"({"name":7})", "name is not a string"},
+        {R"({"name":"a/b"})", "name"},
+        {R"({"name":""})", "name"},
+        {R"({"name":"a","cellsize":1})", "\"cellsize\""},
+        {R"({"name":"a","cell_size":"1"})", "cell_size is not a number"},
+        {R"({"name":"a","cell_size":0})", "cell_size"},
+        {R"({"name":"a","cell_size":0.1,"cell_size":0.2})", "\"cell_size\" is given twice"},
+        {R"({"name":"a","cell_size":-1e300})", "cell_size"},
+        {R"({"name":"a","p_free":0.7})", "p_free"},
+        {R"([])", "not an object"},
+        {R"({"name")", "not JSON"},
+    };
+    for (const auto& [body, message] : cases) {
+        EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", body), Status::bad_request), HasSubstr(message)) << body;
+    }
+    EXPECT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"a","cell_size":1e999})").status, Status::bad_request);
+    EXPECT_TRUE(registry_.list().empty());
+}
+
+TEST_F(ApiTest, ASessionIsMadeOnce) {
+    create("a");
+    EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::conflict), HasSubstr("exists"));
+}
+
+TEST_F(ApiTest, OnlyJsonIsTaken) {
+    Request request{
+        .method = "POST", .target = "/api/v1/sessions", .content_type = "text/plain", .body = R"({"name":"a"})"};
+    EXPECT_THAT(detail(answer(api_, request), Status::unsupported_media_type), HasSubstr("application/json"));
+    request.content_type = "application/json; charset=utf-8";
+    EXPECT_EQ(answer(api_, request).status, Status::created);
+}
+
+TEST_F(ApiTest, AFailedStoreIsUnavailable) {
+    log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
+    EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::service_unavailable),
+                HasSubstr("disk is full"));
+}
+
+TEST_F(ApiTest, SessionsAreListedInPages) {
+    for (const auto* name : {"c", "a", "b"}) create(name);
+    const auto first = get_json("/api/v1/sessions?limit=2");
+    ASSERT_EQ(first.at("sessions").as_array().size(), 2U);
+    EXPECT_EQ(first.at("sessions").at(0).at("name"), "a");
+    EXPECT_EQ(first.at("next"), "b");
+    const auto last = get_json("/api/v1/sessions?limit=2&after=b");
+    ASSERT_EQ(last.at("sessions").as_array().size(), 1U);
+    EXPECT_EQ(last.at("sessions").at(0).at("name"), "c");
+    EXPECT_TRUE(last.at("next").is_null());
+    EXPECT_TRUE(get_json("/api/v1/sessions?after=zz").at("sessions").as_array().empty());
+    EXPECT_TRUE(get_json("/api/v1/sessions").at("next").is_null());
+}
+
+TEST_F(ApiTest, BadPagesAreRefusedByParameter) {
+    for (const auto* query : {"limit=0", "limit=1001", "limit=x", "limit=", "limit=-1", "limit=18446744073709551616"}) {
+        EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions?{}", query)), Status::bad_request),
+                    StartsWith("limit is"));
+    }
+    EXPECT_THAT(detail(get("/api/v1/sessions?after=a%20b"), Status::bad_request), StartsWith("after is"));
+    EXPECT_THAT(detail(get("/api/v1/sessions?page=2"), Status::bad_request), HasSubstr("\"page\""));
+}
+
+TEST_F(ApiTest, DeletedSessionsAreGoneAndTheirNameIsFree) {
+    create("a");
+    const auto id = get_json("/api/v1/sessions/a").at("id");
+    const auto response = ask("DELETE", "/api/v1/sessions/a");
+    EXPECT_EQ(response.status, Status::no_content);
+    EXPECT_EQ(response.body.bytes(), "");
+    EXPECT_EQ(get("/api/v1/sessions/a").status, Status::not_found);
+    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::not_found);
+    create("a");
+    EXPECT_NE(get_json("/api/v1/sessions/a").at("id"), id);
+}
+
+TEST_F(ApiTest, AStreamingRobotIsShown) {
+    create("a");
+    stream("a", 3);
+    const auto shown = get_json("/api/v1/sessions/a");
+    EXPECT_EQ(shown.at("scans"), 3);
+    EXPECT_EQ(shown.at("revision"), 5); // and the robot's joining and its sensor
+    EXPECT_EQ(shown.at("robots"), (boost::json::array{{{"name", "r1"},
+                                                       {"connected", true},
+                                                       {"scans", 3},
+                                                       {"last_seq", 3},
+                                                       {"stamp", 103},
+                                                       {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}}}}));
+    EXPECT_NEAR(shown.at("bounds").at("max_x").to_number<double>(), 3.5, 0.2);
+    EXPECT_NEAR(shown.at("bounds").at("min_y").to_number<double>(), -0.75, 0.2);
+}
+
+TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {
+    for (const auto* path : {"", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/0/0/0.bin", "/tiles/occupancy.json",
+                             "/changes", "/map.png", "/map.pgm", "/map.yaml", "/digest", "/trajectory.geojson"}) {
+        EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/nobody{}", path)), Status::not_found),
+                    HasSubstr("there is no session 'nobody'"));
+    }
+    for (const auto* name : {"nobody",
+                             "%23"
+                             "12",
+                             "%FFno%22body"}) {
+        const auto target = fmt::format("/api/v1/sessions/{}", name);
+        EXPECT_EQ(detail(ask("DELETE", target), Status::not_found), detail(get(target), Status::not_found));
+    }
+}
+
+TEST_F(ApiTest, ADamagedSessionSaysSo) {
+    ASSERT_TRUE(log_.create_session("no record of a session"));
+    session::SessionRegistry registry(log_, pool_.get_executor(), [] { return 0.0; });
+    ASSERT_TRUE(registry.recover());
+    ASSERT_EQ(registry.damaged().size(), 1U);
+    const auto name = registry.damaged().begin()->first; // "#" and its id
+    Api api(registry, log_, metrics_, {});
+    api.set_recovered();
+    const auto path = "/api/v1/sessions/%23" + name.substr(1);
+    for (const auto* rest : {"", "/changes", "/map.png", "/tiles/occupancy/0/0/0.png"}) {
+        const auto response = answer(api, {.target = path + rest});
+        EXPECT_THAT(detail(response, Status::internal_server_error), HasSubstr("could not be recovered"));
+        EXPECT_EQ(response.get("Retry-After"), "") << "waiting does not help";
+    }
+    EXPECT_EQ(answer(api, {.method = "DELETE", .target = path}).status, Status::no_content);
+    EXPECT_EQ(answer(api, {.target = path}).status, Status::not_found);
+}
+
+TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
+    create("a");
+    ASSERT_TRUE(log_.create_session("no record of a session"));
+    session::SessionRegistry registry(log_, pool_.get_executor(), [] { return 0.0; });
+    ASSERT_TRUE(registry.recover());
+    Api api(registry, log_, metrics_, {});
+    api.set_recovered();
+    const auto json = [&](std::string target) {
+        const auto response = answer(api, {.target = std::move(target)});
+        EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
+        return boost::json::parse(response.body.bytes());
+    };
+    const auto all = json("/api/v1/sessions");
+    ASSERT_EQ(all.at("sessions").as_array().size(), 2U);
+    const auto damaged = all.at("sessions").at(0);
+    EXPECT_EQ(damaged.at("name"), "#2");
+    EXPECT_EQ(damaged.at("state"), "damaged");
+    EXPECT_FALSE(damaged.at("reason").as_string().empty());
+    EXPECT_EQ(all.at("sessions").at(1).at("name"), "a");
+    EXPECT_EQ(all.at("sessions").at(1).at("state"), "ok");
+
+    const auto first = json("/api/v1/sessions?limit=1");
+    EXPECT_EQ(first.at("next"), damaged.at("name"));
+    const auto rest =
+        json("/api/v1/sessions?after=%23" + std::string(std::string_view(damaged.at("name").as_string()).substr(1)));
+    EXPECT_EQ(rest.at("sessions").at(0).at("name"), "a");
+    EXPECT_EQ(json("/readyz").at("damaged"), boost::json::array{damaged});
+    registry.drain();
+}
+
+TEST_F(ApiTest, ASessionThatTakesNoScansSaysSoAndItsMapIsServed) {
+    create("a");
+    create("b");
+    stream("a", 1);
+    EXPECT_EQ(get_json("/readyz").at("failed"), boost::json::array{});
+    EXPECT_FALSE(get_json("/api/v1/sessions/a").as_object().contains("reason"));
+    log_.fail_from_next_change({Errc::kStoreFailed, "the disk is full"});
+    registry_.find("a")->submit(links_[0], {scan(2)}, 1);
+    links_[0]->wait_for_failure();
+    const auto shown = get_json("/api/v1/sessions/a");
+    EXPECT_EQ(shown.at("state"), "failed");
+    EXPECT_EQ(shown.at("reason"), "the disk is full");
+    EXPECT_EQ(shown.at("scans"), 1);
+    EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(0), shown);
+    EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(1).at("state"), "ok");
+    EXPECT_EQ(get("/api/v1/sessions/a/map.png").status, Status::ok);
+    EXPECT_THAT(std::string(get("/metrics").body.bytes()), HasSubstr("scanloom_sessions_failed 1\n"));
+
+    log_.reopen(); // as when it was not the store that failed
+    EXPECT_EQ(get_json("/readyz").at("failed"),
+              (boost::json::array{{{"name", "a"}, {"state", "failed"}, {"reason", "the disk is full"}}}));
+}
+
+} // namespace
+} // namespace scanloom::http
