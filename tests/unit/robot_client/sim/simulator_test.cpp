@@ -98,6 +98,10 @@ struct Setting {
     bool noisy;
 };
 
+void PrintTo(const Setting& setting, std::ostream* out) {
+    *out << setting.world << ' ' << setting.laser << (setting.noisy ? " noisy" : "");
+}
+
 class WallFollowerDrives : public testing::TestWithParam<Setting> {};
 
 TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandstill) {

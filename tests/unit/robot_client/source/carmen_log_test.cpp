@@ -378,6 +378,8 @@ struct RealLog {
     std::size_t beams;
 };
 
+void PrintTo(const RealLog& log, std::ostream* out) { *out << log.file; }
+
 class RealCarmenLog : public testing::TestWithParam<RealLog> {};
 
 TEST_P(RealCarmenLog, IsReadWhole) {
