@@ -29,19 +29,19 @@ void OccupancyLayer::apply(std::span<LogOdds> cells, const Step& step) noexcept 
     }
 }
 
-CellBox OccupancyLayer::integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges,
-                                  const Pose2& T_map_sensor, const ModelGeometry& geometry, Revision revision) {
+grid::CellBox OccupancyLayer::integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges,
+                                        const Pose2& T_map_sensor, const ModelGeometry& geometry, Revision revision) {
     if (revision > newest_restored_) restored_.clear();
-    CellBox changed;
-    ChunkKey current_key;
+    grid::CellBox changed;
+    grid::ChunkKey current_key;
     OccupancyChunk* current = nullptr; // neighbouring runs mostly fall into the same chunk
     inverse_sensor_model(sectors, ranges, T_map_sensor, geometry,
                          [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
                              changed.include_row(j, begin, end);
                              const Step& step = verdict == Verdict::kFree ? free_ : occupied_;
                              for (std::int32_t i = begin; i < end;) {
-                                 const ChunkKey key = chunk_of({i, j});
-                                 const std::int32_t piece_end = std::min(end, (key.ci + 1) * kChunkSide);
+                                 const grid::ChunkKey key = grid::chunk_of({i, j});
+                                 const std::int32_t piece_end = std::min(end, (key.ci + 1) * grid::kChunkSide);
                                  if (holds_already(key, revision)) {
                                      i = piece_end;
                                      continue;
@@ -57,13 +57,13 @@ CellBox OccupancyLayer::integrate(std::span<const Sector> sectors, std::span<con
     return changed;
 }
 
-bool OccupancyLayer::holds_already(ChunkKey key, Revision revision) const {
+bool OccupancyLayer::holds_already(grid::ChunkKey key, Revision revision) const {
     if (restored_.empty()) return false;
     const auto restored = restored_.find(key);
     return restored != restored_.end() && revision <= restored->second;
 }
 
-void OccupancyLayer::restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
+void OccupancyLayer::restore(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
     restored_[key] = revision;
     newest_restored_ = std::max(newest_restored_, revision);
     auto& chunk = tree_.write(key, revision);

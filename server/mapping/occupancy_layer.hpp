@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/chunk_tree.hpp"
+#include "server/grid/chunk_tree.hpp"
 #include "server/mapping/inverse_sensor_model.hpp"
 #include "server/mapping/log_odds.hpp"
 #include "server/mapping/map_config.hpp"
@@ -9,8 +9,8 @@
 
 namespace scanloom::mapping {
 
-using OccupancyChunk = Chunk<LogOdds>;
-using OccupancyView = ChunkView<OccupancyChunk>;
+using OccupancyChunk = grid::Chunk<LogOdds>;
+using OccupancyView = grid::ChunkView<OccupancyChunk>;
 
 /// The occupancy grid of a session: fixed-point log-odds, updated scan by scan.
 ///
@@ -24,13 +24,13 @@ public:
     /// Adds the evidence of one scan, or of some of its sectors; the cells changed carry `revision`.
     /// Pre     ranges has a reading for each beam of the fan; revision >= every earlier one.
     /// @return smallest box holding the changed cells.
-    CellBox integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
-                      const ModelGeometry& geometry, Revision revision);
+    grid::CellBox integrate(std::span<const Sector> sectors, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
+                            const ModelGeometry& geometry, Revision revision);
 
     /// Puts back a chunk of a checkpoint. It holds everything up to its revision already, so that scans
     /// up to that one leave it as it is when they are integrated again.
     /// Source  the page LSN of Mohan et al., ARIES (1992), section 6.
-    void restore(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+    void restore(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells);
 
     /// The newest revision of any chunk put back.
     [[nodiscard]] Revision newest_restored() const noexcept { return newest_restored_; }
@@ -48,12 +48,12 @@ private:
     };
 
     static void apply(std::span<LogOdds> cells, const Step& step) noexcept;
-    [[nodiscard]] bool holds_already(ChunkKey key, Revision revision) const;
+    [[nodiscard]] bool holds_already(grid::ChunkKey key, Revision revision) const;
 
     Step free_;
     Step occupied_;
-    ChunkTree<OccupancyChunk> tree_;
-    std::map<ChunkKey, Revision> restored_; // dropped once all of them are overtaken
+    grid::ChunkTree<OccupancyChunk> tree_;
+    std::map<grid::ChunkKey, Revision> restored_; // dropped once all of them are overtaken
     Revision newest_restored_ = 0;
 };
 

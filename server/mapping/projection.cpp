@@ -133,7 +133,7 @@ void Projection::restore(const ProjectionState& state) {
     }
 }
 
-void Projection::restore_chunk(ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
+void Projection::restore_chunk(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
     occupancy_.restore(key, revision, cells);
 }
 

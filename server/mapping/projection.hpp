@@ -31,7 +31,7 @@ struct ProjectionState {
     };
 
     Revision revision = 0;
-    CellBox bounds;
+    grid::CellBox bounds;
     std::vector<Robot> robots;
 };
 
@@ -68,7 +68,7 @@ public:
     /// every chunk and every trajectory point by rising revision. Chunks and points may be newer than the state
     /// (a checkpoint cut short): folding the log's entries after the state's revision then gives the same maps.
     void restore(const ProjectionState& state);
-    void restore_chunk(ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+    void restore_chunk(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells);
     /// Errors  kMalformed: no such robot.
     [[nodiscard]] Result<> restore_point(RobotIndex robot, const TrajectoryPoint& point);
 
@@ -98,7 +98,7 @@ private:
 
     MapConfig config_;
     Revision revision_ = 0;
-    CellBox bounds_;
+    grid::CellBox bounds_;
     OccupancyLayer occupancy_;
     std::vector<Robot> robots_;
     std::size_t sectors_in_ = 0; // of the scan that is being folded

@@ -63,8 +63,8 @@ std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::s
     return count;
 }
 
-std::int64_t chunk_count_of(const CellBox& box) noexcept {
-    const ChunkBox chunks = chunks_of(box);
+std::int64_t chunk_count_of(const grid::CellBox& box) noexcept {
+    const grid::ChunkBox chunks = grid::chunks_of(box);
     return (chunks.ci_end - chunks.ci_begin) * (chunks.cj_end - chunks.cj_begin);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "server/grid/cell.hpp"
 #include "server/mapping/beam_fan.hpp"
-#include "server/mapping/cell.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 #include "server/mapping/map_config.hpp"
 #include "server/mapping/occupancy_layer.hpp"
 #include "server/mapping/trajectory.hpp"
@@ -28,7 +28,7 @@ struct RobotState {
 struct Snapshot {
     Revision revision = 0;
     MapConfig config;
-    CellBox bounds; ///< cells that any scan changed
+    grid::CellBox bounds; ///< cells that any scan changed
     OccupancyView occupancy;
     std::vector<RobotState> robots;
 };

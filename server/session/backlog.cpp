@@ -7,7 +7,7 @@ namespace scanloom::session {
 Group Backlog::next_group(std::int64_t room) {
     Group group;
     double work = 0.0;
-    std::map<RobotIndex, mapping::CellBox> boxes; // a robot's scans mostly overlap: one box for all of them
+    std::map<RobotIndex, grid::CellBox> boxes; // a robot's scans mostly overlap: one box for all of them
     while (!waiting_.empty() && group.entries.size() < kGroupEntriesMax) {
         const Submitted& next = waiting_.front();
         if (!group.entries.empty() && work + next.reach.work > kGroupWorkMax) break;

@@ -101,7 +101,7 @@ std::string chunk_part(const mapping::OccupancyChunk& chunk) {
     return value;
 }
 
-std::string chunk_key(mapping::ChunkKey key) {
+std::string chunk_key(grid::ChunkKey key) {
     return fmt::format("weave/occupancy/{:08x}/{:08x}", static_cast<std::uint32_t>(key.cj),
                        static_cast<std::uint32_t>(key.ci));
 }
@@ -154,7 +154,7 @@ void write_tracks(PieceWriter& out, const mapping::Snapshot& snapshot, Revision 
 }
 
 void write_chunks(PieceWriter& out, const mapping::OccupancyView& view, Revision since) {
-    view.visit({}, since, [&](mapping::ChunkKey key, const mapping::OccupancyChunk& chunk) {
+    view.visit({}, since, [&](grid::ChunkKey key, const mapping::OccupancyChunk& chunk) {
         if (!out.written()) return;
         out.add(chunk_key(key), chunk_part(chunk));
         out.write_if_full();

@@ -20,9 +20,9 @@ void merge_equal_tiles(std::vector<ChangedTile>& tiles) {
 
 std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, Revision since) {
     std::vector<ChangedTile> level;
-    snapshot.occupancy.visit(mapping::chunks_of(kTiledCells), since,
-                             [&](mapping::ChunkKey at, const mapping::OccupancyChunk& chunk) {
-                                 const mapping::Cell corner{at.ci * mapping::kChunkSide, at.cj * mapping::kChunkSide};
+    snapshot.occupancy.visit(grid::chunks_of(kTiledCells), since,
+                             [&](grid::ChunkKey at, const mapping::OccupancyChunk& chunk) {
+                                 const grid::Cell corner{at.ci * grid::kChunkSide, at.cj * grid::kChunkSide};
                                  level.push_back({tile_of(corner, kZoomNative), chunk.revision});
                              });
     merge_equal_tiles(level);

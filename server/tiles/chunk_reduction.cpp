@@ -5,7 +5,7 @@
 namespace scanloom::tiles {
 namespace {
 
-using mapping::kChunkSide;
+using grid::kChunkSide;
 using mapping::LogOdds;
 
 // Salience falls with p up to even odds and rises beyond, so that of a block's cells only the highest and the

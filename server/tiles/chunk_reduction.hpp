@@ -10,7 +10,7 @@ namespace scanloom::tiles {
 
 /// A chunk at a coarser scale, bottom row first: side * side saliences are in use.
 struct ReducedChunk {
-    std::array<Salience, std::size_t{mapping::kChunkSide} * mapping::kChunkSide> pixels;
+    std::array<Salience, std::size_t{grid::kChunkSide} * grid::kChunkSide> pixels;
     std::int32_t side = 0; ///< pixels, 64 .. 1
 
     [[nodiscard]] Salience at(std::int32_t column, std::int32_t row) const noexcept {

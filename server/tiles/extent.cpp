@@ -14,14 +14,14 @@ constexpr double kCellIndexMax = 1 << 30; // leaves room for widths and chunk bo
 
 } // namespace
 
-Extent extent_of(const mapping::CellBox& cells, double cell_size_m) noexcept {
+Extent extent_of(const grid::CellBox& cells, double cell_size_m) noexcept {
     return {cells.i_begin * cell_size_m, cells.j_begin * cell_size_m, cells.i_end * cell_size_m,
             cells.j_end * cell_size_m};
 }
 
 Extent tiled_extent(double cell_size_m) noexcept { return extent_of(kTiledCells, cell_size_m); }
 
-Result<mapping::CellBox> cells_in(const Extent& extent, double cell_size_m) {
+Result<grid::CellBox> cells_in(const Extent& extent, double cell_size_m) {
     const double cells_per_metre = 1.0 / cell_size_m;
     for (const double edge : {extent.min_x, extent.min_y, extent.max_x, extent.max_y}) {
         if (!(std::abs(edge * cells_per_metre) <= kCellIndexMax)) { // also when it is NaN
@@ -41,7 +41,7 @@ Result<mapping::CellBox> cells_in(const Extent& extent, double cell_size_m) {
     };
     const std::int32_t i_begin = first(extent.min_x);
     const std::int32_t j_begin = first(extent.min_y);
-    return mapping::CellBox{i_begin, j_begin, end(extent.max_x, i_begin), end(extent.max_y, j_begin)};
+    return grid::CellBox{i_begin, j_begin, end(extent.max_x, i_begin), end(extent.max_y, j_begin)};
 }
 
 } // namespace scanloom::tiles

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 
 namespace scanloom::tiles {
 
@@ -16,7 +16,7 @@ struct Extent {
 };
 
 /// What a box of cells covers. Pre: the box is not empty.
-[[nodiscard]] Extent extent_of(const mapping::CellBox& cells, double cell_size_m) noexcept;
+[[nodiscard]] Extent extent_of(const grid::CellBox& cells, double cell_size_m) noexcept;
 
 /// What the tiles of a session cover: the square S of the tile pyramid.
 [[nodiscard]] Extent tiled_extent(double cell_size_m) noexcept;
@@ -24,6 +24,6 @@ struct Extent {
 /// The cells that a rectangle overlaps. An edge within a millionth of a cell of a cell border lies on it, so that
 /// decimal metres name the cells that they seem to.
 /// Errors  kInvalidField: not finite, empty, or beyond where cells can be numbered.
-[[nodiscard]] Result<mapping::CellBox> cells_in(const Extent& extent, double cell_size_m);
+[[nodiscard]] Result<grid::CellBox> cells_in(const Extent& extent, double cell_size_m);
 
 } // namespace scanloom::tiles

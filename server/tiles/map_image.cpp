@@ -10,13 +10,13 @@ namespace scanloom::tiles {
 namespace {
 
 /// Copies the cells that a chunk and the frame share.
-void draw(MapImage& image, mapping::ChunkKey at, const mapping::OccupancyChunk& chunk) {
+void draw(MapImage& image, grid::ChunkKey at, const mapping::OccupancyChunk& chunk) {
     const auto& cells = image.frame.cells;
     const auto& percent = percent_table();
-    const std::int32_t i_begin = std::max(cells.i_begin, at.ci * mapping::kChunkSide);
-    const std::int32_t i_end = std::min(cells.i_end, (at.ci + 1) * mapping::kChunkSide);
-    const std::int32_t j_begin = std::max(cells.j_begin, at.cj * mapping::kChunkSide);
-    const std::int32_t j_end = std::min(cells.j_end, (at.cj + 1) * mapping::kChunkSide);
+    const std::int32_t i_begin = std::max(cells.i_begin, at.ci * grid::kChunkSide);
+    const std::int32_t i_end = std::min(cells.i_end, (at.ci + 1) * grid::kChunkSide);
+    const std::int32_t j_begin = std::max(cells.j_begin, at.cj * grid::kChunkSide);
+    const std::int32_t j_end = std::min(cells.j_end, (at.cj + 1) * grid::kChunkSide);
     for (std::int32_t j = j_begin; j < j_end; ++j) {
         const auto row = static_cast<std::size_t>(cells.j_end - 1 - j);
         auto* pixel = &image.percent[row * static_cast<std::size_t>(image.frame.width()) +
@@ -53,9 +53,8 @@ Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, const std::optiona
 MapImage render_map(const mapping::Snapshot& snapshot, const MapFrame& frame) {
     const auto pixels = static_cast<std::size_t>(frame.cells.width() * frame.cells.height());
     MapImage image{frame, Bytes(pixels, kUnknownPercent)};
-    snapshot.occupancy.visit(
-        mapping::chunks_of(frame.cells), 0,
-        [&](mapping::ChunkKey at, const mapping::OccupancyChunk& chunk) { draw(image, at, chunk); });
+    snapshot.occupancy.visit(grid::chunks_of(frame.cells), 0,
+                             [&](grid::ChunkKey at, const mapping::OccupancyChunk& chunk) { draw(image, at, chunk); });
     return image;
 }
 

@@ -14,7 +14,7 @@ inline constexpr std::int64_t kMapSideMax = 1'000'000; ///< pixels; what libpng 
 
 /// Which cells a map image shows, one for each pixel.
 struct MapFrame {
-    mapping::CellBox cells;
+    grid::CellBox cells;
     double cell_size = 0.05; ///< metres
 
     [[nodiscard]] std::int32_t width() const noexcept { return static_cast<std::int32_t>(cells.width()); }

@@ -24,11 +24,11 @@ const SharedBytes& untouched_tile_png() {
 }
 
 /// Merges a chunk into the saliences of a tile that contains it.
-void draw(Bytes& tile, const mapping::CellBox& cells, std::int32_t scale, mapping::ChunkKey at,
+void draw(Bytes& tile, const grid::CellBox& cells, std::int32_t scale, grid::ChunkKey at,
           const mapping::OccupancyChunk& chunk) {
-    const auto reduced = reduce(chunk, std::min(scale, mapping::kChunkSide));
-    const std::int32_t left = (at.ci * mapping::kChunkSide - cells.i_begin) / scale;
-    const std::int32_t bottom = (cells.j_end - 1 - at.cj * mapping::kChunkSide) / scale;
+    const auto reduced = reduce(chunk, std::min(scale, grid::kChunkSide));
+    const std::int32_t left = (at.ci * grid::kChunkSide - cells.i_begin) / scale;
+    const std::int32_t bottom = (cells.j_end - 1 - at.cj * grid::kChunkSide) / scale;
     for (std::int32_t row = 0; row < reduced.side; ++row) {
         auto* pixel = &tile[static_cast<std::size_t>((bottom - row) * kTileSide + left)];
         for (std::int32_t column = 0; column < reduced.side; ++column, ++pixel) {
@@ -43,10 +43,9 @@ SharedBytes occupancy_tile(const mapping::Snapshot& snapshot, TileKey key) {
     if (tile_revision(snapshot, key) == 0) return untouched_tile();
     const auto cells = cells_of(key);
     Bytes tile(kTilePixels, kUnknownSalience);
-    snapshot.occupancy.visit(mapping::chunks_of(cells), 0,
-                             [&](mapping::ChunkKey at, const mapping::OccupancyChunk& chunk) {
-                                 draw(tile, cells, cells_per_pixel(key.zoom), at, chunk);
-                             });
+    snapshot.occupancy.visit(grid::chunks_of(cells), 0, [&](grid::ChunkKey at, const mapping::OccupancyChunk& chunk) {
+        draw(tile, cells, cells_per_pixel(key.zoom), at, chunk);
+    });
     std::transform(tile.begin(), tile.end(), tile.begin(), percent_of_salience);
     return std::make_shared<const Bytes>(std::move(tile));
 }

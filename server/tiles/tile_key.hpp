@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -14,7 +14,7 @@ inline constexpr std::int32_t kTiledCellsHalf = kTileSide << (kZoomNative - 1);
 
 /// The cells that tiles can show: the square at zoom 0, centred on the world origin. Cells beyond it are
 /// mapped, and in map images, but in no tile.
-inline constexpr mapping::CellBox kTiledCells{-kTiledCellsHalf, -kTiledCellsHalf, kTiledCellsHalf, kTiledCellsHalf};
+inline constexpr grid::CellBox kTiledCells{-kTiledCellsHalf, -kTiledCellsHalf, kTiledCellsHalf, kTiledCellsHalf};
 
 /// One tile of the XYZ pyramid: tile (0, 0) is the top-left one, x grows to the right, y DOWN (the world's
 /// y grows up). Zoom z has 2^z by 2^z tiles; zoom 0 is one tile of all kTiledCells; at zoom 9 pixel (px, py)
@@ -33,7 +33,7 @@ struct TileKey {
 }
 
 /// The cells a tile shows. Pre: the tile exists.
-[[nodiscard]] constexpr mapping::CellBox cells_of(TileKey key) noexcept {
+[[nodiscard]] constexpr grid::CellBox cells_of(TileKey key) noexcept {
     const std::int32_t side = kTileSide * cells_per_pixel(key.zoom);
     const std::int32_t left = -kTiledCellsHalf + static_cast<std::int32_t>(key.x) * side;
     const std::int32_t top = kTiledCellsHalf - static_cast<std::int32_t>(key.y) * side;
@@ -41,7 +41,7 @@ struct TileKey {
 }
 
 /// The tile of a zoom that shows a cell. Pre: the cell is in kTiledCells.
-[[nodiscard]] constexpr TileKey tile_of(mapping::Cell cell, std::uint32_t zoom) noexcept {
+[[nodiscard]] constexpr TileKey tile_of(grid::Cell cell, std::uint32_t zoom) noexcept {
     const std::int32_t side = kTileSide * cells_per_pixel(zoom);
     return {zoom, static_cast<std::uint32_t>((cell.i + kTiledCellsHalf) / side),
             static_cast<std::uint32_t>((kTiledCellsHalf - 1 - cell.j) / side)};

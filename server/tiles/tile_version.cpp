@@ -5,7 +5,7 @@
 namespace scanloom::tiles {
 
 Revision tile_revision(const mapping::Snapshot& snapshot, TileKey key) {
-    return snapshot.occupancy.newest(mapping::chunks_of(cells_of(key)));
+    return snapshot.occupancy.newest(grid::chunks_of(cells_of(key)));
 }
 
 std::string etag_of(std::string_view session_tag, std::string_view layer, TileKey key, Revision tile_revision) {

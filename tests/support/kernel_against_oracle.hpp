@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scan/scan.hpp"
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 #include "server/mapping/inverse_sensor_model.hpp"
 #include "tests/support/inverse_sensor_oracle.hpp"
 
@@ -79,7 +79,7 @@ inline void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
     const auto kernel = run_kernel(c);
     const auto scene = scene_of(c);
     const auto index_of = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / c.cell_size)); };
-    const Cell centre{index_of(c.T_map_sensor.x), index_of(c.T_map_sensor.y)};
+    const grid::Cell centre{index_of(c.T_map_sensor.x), index_of(c.T_map_sensor.y)};
     const int reach = static_cast<int>(std::ceil(reach_of(c) / c.cell_size)) + 2;
     for (const auto& [cell, verdict] : kernel) {
         EXPECT_LE(std::max(std::abs(cell.first - centre.i), std::abs(cell.second - centre.j)), reach) << c.shape;

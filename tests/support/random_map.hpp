@@ -9,13 +9,13 @@
 
 namespace scanloom::testing_support {
 
-using Cells = std::array<mapping::LogOdds, std::size_t{mapping::kChunkSide} * mapping::kChunkSide>;
+using Cells = std::array<mapping::LogOdds, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
 
 /// A map put together by hand: set cells, then take a snapshot.
 class HandMadeMap {
 public:
-    void set(mapping::Cell cell, mapping::LogOdds value) {
-        const auto key = mapping::chunk_of(cell);
+    void set(grid::Cell cell, mapping::LogOdds value) {
+        const auto key = grid::chunk_of(cell);
         auto [at, made] = chunks_.try_emplace(key);
         if (made) at->second.fill(mapping::kUnknownLogOdds);
         at->second[mapping::OccupancyChunk::index_of(cell)] = value;
@@ -29,11 +29,11 @@ public:
         return {revision, config, bounds_, layer.snapshot(), {}};
     }
 
-    [[nodiscard]] const std::map<mapping::ChunkKey, Cells>& chunks() const { return chunks_; }
+    [[nodiscard]] const std::map<grid::ChunkKey, Cells>& chunks() const { return chunks_; }
 
 private:
-    std::map<mapping::ChunkKey, Cells> chunks_;
-    mapping::CellBox bounds_;
+    std::map<grid::ChunkKey, Cells> chunks_;
+    grid::CellBox bounds_;
 };
 
 /// Unknown, free, occupied and nearly even cells mixed: sparse, so that coarse pixels differ.
@@ -46,8 +46,8 @@ inline mapping::LogOdds random_cell(std::mt19937& random) {
 }
 
 /// Around the origin, at the corners and edges of the tiled square, beyond it, and scattered.
-inline std::vector<mapping::ChunkKey> scattered_chunks(std::mt19937& random) {
-    std::vector<mapping::ChunkKey> keys;
+inline std::vector<grid::ChunkKey> scattered_chunks(std::mt19937& random) {
+    std::vector<grid::ChunkKey> keys;
     for (std::int32_t cj = -5; cj < 5; ++cj) {
         for (std::int32_t ci = -5; ci < 5; ++ci) keys.push_back({cj, ci});
     }
@@ -66,11 +66,11 @@ inline HandMadeMap random_map(unsigned seed) {
     HandMadeMap map;
     for (const auto& key : scattered_chunks(random)) {
         const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks differ, too
-        for (std::int32_t j = 0; j < mapping::kChunkSide; ++j) {
-            for (std::int32_t i = 0; i < mapping::kChunkSide; ++i) {
+        for (std::int32_t j = 0; j < grid::kChunkSide; ++j) {
+            for (std::int32_t i = 0; i < grid::kChunkSide; ++i) {
                 const auto value = random_cell(random);
                 if (value == mapping::kUnknownLogOdds || random() % keep_one_in != 0) continue;
-                map.set({key.ci * mapping::kChunkSide + i, key.cj * mapping::kChunkSide + j}, value);
+                map.set({key.ci * grid::kChunkSide + i, key.cj * grid::kChunkSide + j}, value);
             }
         }
     }

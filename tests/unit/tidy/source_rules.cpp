@@ -26,19 +26,21 @@ const std::vector<Folder> kFolders = {
     {.path = "common/app", .may_include = {"common/error"}},
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
 
+    {.path = "server/grid", .may_include = {"common/scan"}, .pure = true},
     {.path = "server/mapping",
-     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"},
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "server/grid"},
      .pure = true},
     {.path = "server/store", .may_include = {"common", "server/mapping"}},
-    {.path = "server/session", .may_include = {"common", "server/mapping", "server/store"}},
-    {.path = "server/tiles", .may_include = {"common/error", "common/geometry", "common/scan", "server/mapping"}},
+    {.path = "server/session", .may_include = {"common", "server/grid", "server/mapping", "server/store"}},
+    {.path = "server/tiles",
+     .may_include = {"common/error", "common/geometry", "common/scan", "server/grid", "server/mapping"}},
     {.path = "server/metrics", .may_include = {"common/error"}},
     {.path = "server/sockets", .may_include = {}},
     {.path = "server/ingest",
      .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/sockets", "server/store"}},
     {.path = "server/http",
-     .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/sockets", "server/store",
-                     "server/tiles"}},
+     .may_include = {"common", "server/grid", "server/mapping", "server/metrics", "server/session", "server/sockets",
+                     "server/store", "server/tiles"}},
     {.path = "server/app", .may_include = {"common", "server"}},
 
     {.path = "robot_client/drive", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
@@ -86,7 +88,7 @@ const Names kOutsideWorld = {
     "time.h",     "unistd.h",
 };
 
-/// "server" and "server/mapping" both hold "server/mapping/cell.hpp"; "server/map" does not.
+/// "server" and "server/mapping" both hold "server/grid/cell.hpp"; "server/map" does not.
 bool holds(std::string_view folder, std::string_view path) {
     return path.starts_with(folder) && (path.size() == folder.size() || path[folder.size()] == '/');
 }

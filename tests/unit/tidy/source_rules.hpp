@@ -9,7 +9,7 @@
 namespace scanloom::tidy {
 
 /// What is wrong with one file, a sentence each; empty: nothing.
-/// @param path  relative to the root, with slashes: "server/mapping/cell.hpp"
+/// @param path  relative to the root, with slashes: "server/grid/cell.hpp"
 [[nodiscard]] std::vector<std::string> complaints_about(std::string_view path, std::string_view text);
 
 } // namespace scanloom::tidy

@@ -24,12 +24,12 @@ std::vector<std::string> including(std::string_view path, std::string_view heade
 TEST(SourceRules, ServerAndRobotMayNotIncludeOneAnother) {
     EXPECT_THAT(including("server/app/main.cpp", "\"robot_client/sim/world.hpp\""),
                 ElementsAre("server/app/main.cpp:2: server/app may not include robot_client/sim/world.hpp"));
-    EXPECT_THAT(including("robot_client/app/main.cpp", "\"server/mapping/cell.hpp\""),
-                ElementsAre(HasSubstr("may not include server/mapping/cell.hpp")));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"server/grid/cell.hpp\""),
+                ElementsAre(HasSubstr("may not include server/grid/cell.hpp")));
 }
 
 TEST(SourceRules, CommonMayIncludeNeitherServerNorRobot) {
-    EXPECT_THAT(including("common/wire/messages.cpp", "\"server/mapping/cell.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("common/wire/messages.cpp", "\"server/grid/cell.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("common/scan/scan.cpp", "\"robot_client/sim/world.hpp\""), testing::SizeIs(1));
     EXPECT_THAT(including("common/scan/scan.cpp", "\"common/wire/messages.hpp\""), testing::SizeIs(1));
 }

@@ -8,7 +8,7 @@
 namespace scanloom::mapping {
 namespace {
 
-using Cells = std::array<LogOdds, std::size_t{kChunkSide} * kChunkSide>;
+using Cells = std::array<LogOdds, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
 
 Cells unknown_cells() {
     Cells cells;
@@ -40,7 +40,7 @@ TEST(Digest, OfNothingIsTheHashOfNoBytes) {
 
 TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
     std::mt19937 random(7);
-    std::vector<std::pair<ChunkKey, Cells>> chunks;
+    std::vector<std::pair<grid::ChunkKey, Cells>> chunks;
     for (std::int32_t n = 0; n < 40; ++n) chunks.push_back({{n % 9 - 4, n * 37 % 101 - 50}, random_cells(random)});
 
     OccupancyLayer first{MapConfig{}};
@@ -60,7 +60,7 @@ TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
 TEST(Digest, ChangesWithAnyCellAndWithThePlaceOfAChunk) {
     std::mt19937 random(8);
     auto cells = random_cells(random);
-    const auto digest_at = [&](ChunkKey key) {
+    const auto digest_at = [&](grid::ChunkKey key) {
         OccupancyLayer layer{MapConfig{}};
         layer.restore(key, 1, cells);
         return digest_of(layer.snapshot());

@@ -33,9 +33,9 @@ std::vector<LogEntry> random_log(unsigned seed, std::size_t scans) {
     return log;
 }
 
-std::map<ChunkKey, std::vector<LogOdds>> cells_of(const OccupancyView& view) {
-    std::map<ChunkKey, std::vector<LogOdds>> cells;
-    view.visit({}, 0, [&](ChunkKey key, const OccupancyChunk& chunk) {
+std::map<grid::ChunkKey, std::vector<LogOdds>> cells_of(const OccupancyView& view) {
+    std::map<grid::ChunkKey, std::vector<LogOdds>> cells;
+    view.visit({}, 0, [&](grid::ChunkKey key, const OccupancyChunk& chunk) {
         cells[key].assign(chunk.cells.begin(), chunk.cells.end());
     });
     return cells;
@@ -150,7 +150,7 @@ TEST(Projection, ContinuesFromACheckpointToTheSameMap) {
     Projection second{MapConfig{}};
     second.restore(first.state());
     const auto saved = first.snapshot();
-    saved.occupancy.visit({}, 0, [&](ChunkKey key, const OccupancyChunk& chunk) {
+    saved.occupancy.visit({}, 0, [&](grid::ChunkKey key, const OccupancyChunk& chunk) {
         second.restore_chunk(key, chunk.revision, chunk.cells);
     });
     const auto& trajectory = saved.robots.front().trajectory;

@@ -38,7 +38,7 @@ Scan scan_of(const Sensor& sensor, std::mt19937& random) {
 
 std::int64_t cells_seen(const Snapshot& snapshot) {
     std::int64_t seen = 0;
-    snapshot.occupancy.visit({}, 0, [&](ChunkKey, const OccupancyChunk& chunk) {
+    snapshot.occupancy.visit({}, 0, [&](grid::ChunkKey, const OccupancyChunk& chunk) {
         seen += std::ranges::count_if(chunk.cells, [](LogOdds cell) { return cell != kUnknownLogOdds; });
     });
     return seen;
@@ -58,7 +58,7 @@ TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
 
         const Reach reach = reach_of(config, sensor, scan);
         const auto snapshot = projection.snapshot();
-        CellBox both = reach.cells;
+        grid::CellBox both = reach.cells;
         both.include(snapshot.bounds);
         EXPECT_EQ(both, reach.cells) << "round " << round;
         EXPECT_GE(chunk_count_of(reach.cells), static_cast<std::int64_t>(projection.chunk_count()));

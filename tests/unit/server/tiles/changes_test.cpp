@@ -11,7 +11,7 @@
 namespace scanloom::tiles {
 namespace {
 
-using ChunkRevisions = std::map<mapping::ChunkKey, Revision>;
+using ChunkRevisions = std::map<grid::ChunkKey, Revision>;
 
 /// In the order promised: falling zoom, then y, then x.
 using Touched = std::map<std::tuple<int, int, int>, Revision>; // (-zoom, y, x)

@@ -8,7 +8,7 @@
 namespace scanloom::tiles {
 namespace {
 
-using mapping::CellBox;
+using grid::CellBox;
 
 TEST(Extent, OfTheTilesIsTheSquareOf131072Cells) {
     EXPECT_EQ(tiled_extent(0.05), (Extent{-3276.8, -3276.8, 3276.8, 3276.8}));

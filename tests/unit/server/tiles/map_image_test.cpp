@@ -10,7 +10,7 @@
 namespace scanloom::tiles {
 namespace {
 
-using mapping::CellBox;
+using grid::CellBox;
 using testing_support::HandMadeMap;
 
 HandMadeMap small_random_map() {
@@ -22,8 +22,8 @@ HandMadeMap small_random_map() {
     return map;
 }
 
-std::uint8_t percent_at(const mapping::Snapshot& snapshot, mapping::Cell cell) {
-    const auto* chunk = snapshot.occupancy.find(mapping::chunk_of(cell));
+std::uint8_t percent_at(const mapping::Snapshot& snapshot, grid::Cell cell) {
+    const auto* chunk = snapshot.occupancy.find(grid::chunk_of(cell));
     return chunk == nullptr ? kUnknownPercent : percent_table()[static_cast<std::uint16_t>(chunk->at(cell))];
 }
 

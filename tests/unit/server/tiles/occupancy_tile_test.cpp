@@ -93,7 +93,7 @@ Bytes composed_of_children(const mapping::Snapshot& snapshot, TileKey key) {
 TEST(OccupancyTile, IsTheSameMadeFromItsFourChildren) {
     const auto snapshot = random_map(12).snapshot();
     for (std::uint32_t zoom = 0; zoom < 9; ++zoom) {
-        for (const auto cell : {mapping::Cell{0, 0}, {-1, -1}, {-1, 0}, {65535, 65535}, {-65536, -65536}}) {
+        for (const auto cell : {grid::Cell{0, 0}, {-1, -1}, {-1, 0}, {65535, 65535}, {-65536, -65536}}) {
             const auto key = tile_of(cell, zoom);
             ASSERT_TRUE(*occupancy_tile(snapshot, key) == composed_of_children(snapshot, key))
                 << zoom << "/" << key.x << "/" << key.y;

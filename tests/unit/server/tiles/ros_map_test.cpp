@@ -101,8 +101,8 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
         ASSERT_EQ(grid.height, 113);
         std::size_t counts[3] = {};
         for (std::int32_t n = 0; n < 137 * 113; ++n) {
-            const mapping::Cell cell{-120 + n % 137, -33 + n / 137};
-            const auto l = snapshot.occupancy.find(mapping::chunk_of(cell))->at(cell);
+            const grid::Cell cell{-120 + n % 137, -33 + n / 137};
+            const auto l = snapshot.occupancy.find(grid::chunk_of(cell))->at(cell);
             const double percent = std::round(100.0 * mapping::probability_of(l));
             const bool unknown = l == mapping::kUnknownLogOdds;
             const int expected = unknown ? -1 : percent >= 65 ? 100 : percent <= 25 ? 0 : -1;

@@ -8,8 +8,8 @@
 namespace scanloom::tiles {
 namespace {
 
-using mapping::Cell;
-using mapping::CellBox;
+using grid::Cell;
+using grid::CellBox;
 
 TEST(TileKey, ANativePixelIsTheCellThatTheContractNames) {
     for (const TileKey key : {TileKey{9, 0, 0}, TileKey{9, 256, 255}, TileKey{9, 255, 256}, TileKey{9, 511, 511}}) {

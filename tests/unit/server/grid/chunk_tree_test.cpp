@@ -1,4 +1,4 @@
-#include "server/mapping/chunk_tree.hpp"
+#include "server/grid/chunk_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-namespace scanloom::mapping {
+namespace scanloom::grid {
 namespace {
 
 using TestChunk = Chunk<std::int16_t>;
@@ -114,4 +114,4 @@ TEST(ChunkTree, RestoringOlderChunksKeepsTheNewestRevisionAbove) {
 }
 
 } // namespace
-} // namespace scanloom::mapping
+} // namespace scanloom::grid

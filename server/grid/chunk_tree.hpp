@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/mapping/chunk.hpp"
+#include "server/grid/chunk.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace scanloom::mapping {
+namespace scanloom::grid {
 
 namespace tree {
 
@@ -232,4 +232,4 @@ private:
     std::shared_ptr<const ChunkType> blank_;
 };
 
-} // namespace scanloom::mapping
+} // namespace scanloom::grid

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 
 #include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 
-namespace scanloom::mapping {
+namespace scanloom::grid {
 
 inline constexpr std::int32_t kChunkBits = 6;
 inline constexpr std::int32_t kChunkSide = 1 << kChunkBits; ///< cells
@@ -68,4 +68,4 @@ struct ChunkBox {
     return {begin.ci, begin.cj, std::int64_t{last.ci} + 1, std::int64_t{last.cj} + 1};
 }
 
-} // namespace scanloom::mapping
+} // namespace scanloom::grid

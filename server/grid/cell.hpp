@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace scanloom::mapping {
+namespace scanloom::grid {
 
 /// A cell of the unbounded, signed grid. Cell (0, 0) has its lower-left corner at the world origin;
 /// i grows with x, j with y.
@@ -44,4 +44,4 @@ struct CellBox {
     friend bool operator==(const CellBox&, const CellBox&) = default;
 };
 
-} // namespace scanloom::mapping
+} // namespace scanloom::grid

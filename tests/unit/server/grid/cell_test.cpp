@@ -1,8 +1,8 @@
-#include "server/mapping/cell.hpp"
+#include "server/grid/cell.hpp"
 
 #include <gtest/gtest.h>
 
-namespace scanloom::mapping {
+namespace scanloom::grid {
 namespace {
 
 TEST(CellBox, GrowsToHoldWhatItIsGiven) {
@@ -19,4 +19,4 @@ TEST(CellBox, GrowsToHoldWhatItIsGiven) {
 }
 
 } // namespace
-} // namespace scanloom::mapping
+} // namespace scanloom::grid
