@@ -27,6 +27,12 @@ const std::vector<Folder> kFolders = {
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
 
     {.path = "server/grid", .may_include = {"common/scan"}, .pure = true},
+    {.path = "server/classify",
+     .may_include = {"common/error", "common/geometry", "common/scan", "server/grid"},
+     .pure = true},
+    {.path = "server/planning",
+     .may_include = {"common/error", "common/geometry", "common/scan", "server/classify", "server/grid"},
+     .pure = true},
     {.path = "server/mapping",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "server/grid"},
      .pure = true},
