@@ -1,0 +1,307 @@
+#include "server/classify/class_layer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+namespace scanloom::classify {
+namespace {
+
+using grid::Cell;
+using grid::ChunkKey;
+
+/// OccTypes of cells anywhere, and the chunks of them changed since the last update.
+class Types {
+public:
+    void set(Cell cell, OccType type) {
+        const ChunkKey key = grid::chunk_of(cell);
+        auto& plane = planes_[key];
+        if (!plane) {
+            plane = std::make_unique<OccPlane>();
+            plane->fill(OccType::kUnexplored);
+        }
+        (*plane)[ClassChunk::index_of(cell)] = type;
+        if (std::ranges::find(changed_, key) == changed_.end()) changed_.push_back(key);
+    }
+
+    [[nodiscard]] OccType at(Cell cell) const {
+        const OccPlane* plane = find(grid::chunk_of(cell));
+        return plane == nullptr ? OccType::kUnexplored : (*plane)[ClassChunk::index_of(cell)];
+    }
+
+    [[nodiscard]] const OccPlane* find(ChunkKey key) const {
+        const auto found = planes_.find(key);
+        return found == planes_.end() ? nullptr : found->second.get();
+    }
+
+    /// Updates the layer with what was set since the last time.
+    void show(ClassLayer& layer, Revision revision) {
+        layer.update(
+            changed_, [this](ChunkKey key) { return find(key); }, revision);
+        changed_.clear();
+    }
+
+    [[nodiscard]] std::vector<ChunkKey> keys() const {
+        std::vector<ChunkKey> keys;
+        for (const auto& [key, plane] : planes_) keys.push_back(key);
+        return keys;
+    }
+
+private:
+    std::map<ChunkKey, std::unique_ptr<OccPlane>> planes_;
+    std::vector<ChunkKey> changed_;
+};
+
+CellClass class_at(const ClassView& view, Cell cell) {
+    const ClassChunk* chunk = view.find(grid::chunk_of(cell));
+    return chunk == nullptr ? CellClass::kUnexplored : chunk->at(cell);
+}
+
+/// The definition, word by word.
+CellClass defined_class(const Types& types, Cell cell, int danger_cells) {
+    const auto any_near = [&](OccType type, int reach) {
+        for (int dj = -reach; dj <= reach; ++dj) {
+            for (int di = -reach; di <= reach; ++di) {
+                if ((di != 0 || dj != 0) && types.at({cell.i + di, cell.j + dj}) == type) return true;
+            }
+        }
+        return false;
+    };
+    switch (types.at(cell)) {
+    case OccType::kUnexplored: return any_near(OccType::kFree, 1) ? CellClass::kFrontier : CellClass::kUnexplored;
+    case OccType::kFree: return any_near(OccType::kOccupied, danger_cells) ? CellClass::kDanger : CellClass::kFree;
+    case OccType::kOccupied: return CellClass::kOccupied;
+    }
+    return CellClass::kUnexplored;
+}
+
+/// Compares the cells in [begin, end) x [begin, end), every `stride`th along each axis.
+void expect_defined_classes(const Types& types, const ClassView& view, int danger_cells, int begin, int end,
+                            int stride = 1) {
+    for (int j = begin; j < end; j += stride) {
+        for (int i = begin; i < end; i += stride) {
+            ASSERT_EQ(class_at(view, {i, j}), defined_class(types, {i, j}, danger_cells))
+                << "cell " << i << ", " << j << ", danger_cells " << danger_cells;
+        }
+    }
+}
+
+/// Patches of free ground with obstacles in them, on both sides of the origin.
+void scatter(Types& types, std::mt19937& random, int patches, int reach, int obstacles_in_1000) {
+    for (int patch = 0; patch < patches; ++patch) {
+        const auto coordinate = [&] { return static_cast<int>(random() % static_cast<unsigned>(2 * reach)) - reach; };
+        const Cell corner{coordinate(), coordinate()};
+        const int width = 1 + static_cast<int>(random() % 40);
+        const int height = 1 + static_cast<int>(random() % 40);
+        const bool forgotten = random() % 8 == 0;
+        for (int j = corner.j; j < std::min(corner.j + height, reach); ++j) {
+            for (int i = corner.i; i < std::min(corner.i + width, reach); ++i) {
+                const bool obstacle = static_cast<int>(random() % 1000) < obstacles_in_1000;
+                types.set({i, j}, forgotten ? OccType::kUnexplored : obstacle ? OccType::kOccupied : OccType::kFree);
+            }
+        }
+    }
+}
+
+class ClassLayerOf : public testing::TestWithParam<int> {};
+
+TEST_P(ClassLayerOf, EveryCellHasTheClassOfItsDefinition) {
+    const int danger_cells = GetParam();
+    std::mt19937 random(static_cast<unsigned>(danger_cells));
+    ClassLayer layer(danger_cells);
+    Types types;
+    scatter(types, random, 60, 130, danger_cells > 8 ? 1 : 20);
+    types.show(layer, 1);
+    expect_defined_classes(types, layer.snapshot(), danger_cells, -195, 195, danger_cells > 8 ? 7 : 1);
+}
+
+TEST_P(ClassLayerOf, DangerEndsExactlyAtItsRadiusOnEverySide) {
+    const int danger_cells = GetParam();
+    for (const Cell obstacle : {Cell{0, 0}, Cell{-1, -1}, Cell{63, 63}, Cell{31, -40}, Cell{-64, 0}}) {
+        ClassLayer layer(danger_cells);
+        Types types;
+        for (int j = -140; j < 140; ++j) {
+            for (int i = -140; i < 140; ++i) types.set({i, j}, OccType::kFree);
+        }
+        types.set(obstacle, OccType::kOccupied);
+        types.show(layer, 1);
+        const auto view = layer.snapshot();
+        for (int j = -140; j < 140; ++j) {
+            for (int i = -140; i < 140; ++i) {
+                const int distance = std::max(std::abs(i - obstacle.i), std::abs(j - obstacle.j));
+                const auto expected = distance == 0              ? CellClass::kOccupied
+                                      : distance <= danger_cells ? CellClass::kDanger
+                                                                 : CellClass::kFree;
+                ASSERT_EQ(class_at(view, {i, j}), expected) << "cell " << i << ", " << j;
+            }
+        }
+    }
+}
+
+TEST_P(ClassLayerOf, AnySequenceOfChangesEndsAsFromScratch) {
+    const int danger_cells = GetParam();
+    std::mt19937 random(100 + static_cast<unsigned>(danger_cells));
+    ClassLayer layer(danger_cells);
+    Types types;
+    for (Revision revision = 1; revision <= 60; ++revision) {
+        scatter(types, random, static_cast<int>(random() % 4), 130, 3);
+        types.show(layer, revision);
+        if (revision % 3 == 0) (void)layer.snapshot(); // so that some writes copy their chunks
+        if (revision % 10 != 0) continue;
+        ClassLayer fresh(danger_cells);
+        fresh.update(
+            types.keys(), [&](ChunkKey key) { return types.find(key); }, revision);
+        const auto grown = layer.snapshot();
+        const auto expected = fresh.snapshot();
+        for (int cj = -4; cj < 4; ++cj) {
+            for (int ci = -4; ci < 4; ++ci) {
+                for (int cell = 0; cell < 64 * 64; ++cell) {
+                    const Cell at{64 * ci + cell % 64, 64 * cj + cell / 64};
+                    ASSERT_EQ(class_at(grown, at), class_at(expected, at)) << "cell " << at.i << ", " << at.j;
+                }
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(DangerCells, ClassLayerOf, testing::Values(1, 2, 3, 4, 7, 8, 31, 32, 33, 62, 63, 64));
+
+TEST(ClassLayer, AFrontierBesideAChunkWithoutTypesMakesItsClassChunk) {
+    for (const Cell corner : {Cell{0, 0}, Cell{63, 63}, Cell{-1, 0}, Cell{-64, -64}}) {
+        ClassLayer layer(3);
+        Types types;
+        types.set(corner, OccType::kFree);
+        types.show(layer, 1);
+        const auto view = layer.snapshot();
+        for (int dj = -1; dj <= 1; ++dj) {
+            for (int di = -1; di <= 1; ++di) {
+                EXPECT_EQ(class_at(view, {corner.i + di, corner.j + dj}),
+                          di == 0 && dj == 0 ? CellClass::kFree : CellClass::kFrontier);
+            }
+        }
+        EXPECT_EQ(layer.chunk_count(), 4U) << "its own and the three around its corner";
+    }
+}
+
+TEST(ClassLayer, ALoneObstacleMakesNoOtherChunk) {
+    ClassLayer layer(64);
+    Types types;
+    types.set({0, 0}, OccType::kOccupied);
+    types.show(layer, 1);
+    EXPECT_EQ(layer.chunk_count(), 1U);
+    EXPECT_EQ(class_at(layer.snapshot(), {0, 0}), CellClass::kOccupied);
+}
+
+TEST(ClassLayer, AChunkOfNothingButUnexploredCellsIsNotMade) {
+    ClassLayer layer(3);
+    Types types;
+    types.set({5, 5}, OccType::kUnexplored);
+    types.show(layer, 1);
+    EXPECT_EQ(layer.chunk_count(), 0U);
+    layer.update(
+        std::vector<ChunkKey>{{7, 7}}, [](ChunkKey) { return nullptr; }, 2);
+    EXPECT_EQ(layer.chunk_count(), 0U);
+}
+
+TEST(ClassLayer, AChunksRevisionIsThatOfItsLastChangeOfClass) {
+    std::mt19937 random(9);
+    ClassLayer layer(5);
+    Types types;
+    ClassView before = layer.snapshot();
+    for (Revision revision = 1; revision <= 150; ++revision) {
+        scatter(types, random, static_cast<int>(random() % 2), 130, 10);
+        if (random() % 3 == 0) types.set({static_cast<int>(random() % 100), 3}, OccType::kOccupied);
+        types.show(layer, revision);
+        const auto after = layer.snapshot();
+        for (int cj = -4; cj < 4; ++cj) {
+            for (int ci = -4; ci < 4; ++ci) {
+                const auto* old_chunk = before.find({cj, ci});
+                const auto* new_chunk = after.find({cj, ci});
+                if (new_chunk == nullptr) continue;
+                const bool changed = old_chunk == nullptr || old_chunk->cells != new_chunk->cells;
+                const Revision expected = changed ? revision : old_chunk->revision;
+                ASSERT_EQ(new_chunk->revision, expected) << "chunk " << ci << ", " << cj;
+            }
+        }
+        before = after;
+    }
+}
+
+TEST(ClassLayer, WhatKeepsItsClassesIsNotWrittenAgain) {
+    ClassLayer layer(3);
+    Types types;
+    types.set({10, 10}, OccType::kFree);
+    types.show(layer, 1);
+    const auto before = layer.snapshot();
+    types.set({10, 10}, OccType::kFree);
+    types.set({40, 40}, OccType::kUnexplored);
+    types.show(layer, 2);
+    EXPECT_EQ(layer.snapshot().find({0, 0}), before.find({0, 0})) << "the chunk is shared with the older snapshot";
+}
+
+TEST(ClassLayer, AnObstacleOverTheBorderPutsOnlyTheNeighbourInDangerThatItReaches) {
+    ClassLayer layer(3);
+    Types types;
+    for (const int i : {-70, -2, -1, 0, 1, 2, 3}) types.set({i, 10}, OccType::kFree);
+    types.show(layer, 1);
+    types.set({0, 10}, OccType::kOccupied);
+    types.show(layer, 2);
+    const auto view = layer.snapshot();
+    EXPECT_EQ(class_at(view, {-2, 10}), CellClass::kDanger);
+    EXPECT_EQ(view.find({0, -1})->revision, 2U);
+    EXPECT_EQ(view.find({0, -2})->revision, 1U);
+}
+
+TEST(ClassLayer, OnlyTheNamedChunksAreAskedFor) {
+    ClassLayer layer(64);
+    Types types;
+    for (int i = -200; i < 200; ++i) types.set({i, i}, OccType::kFree);
+    types.show(layer, 1);
+    types.set({1, 0}, OccType::kOccupied);
+    std::vector<ChunkKey> asked;
+    const auto find = [&](ChunkKey key) {
+        asked.push_back(key);
+        return types.find(key);
+    };
+    layer.update(std::vector<ChunkKey>{{0, 0}}, find, 2);
+    EXPECT_EQ(asked, (std::vector<ChunkKey>{{0, 0}}));
+    expect_defined_classes(types, layer.snapshot(), 64, -80, 80, 3);
+}
+
+TEST(ClassLayer, ChunksAtTheEndsOfTheNumbersAreChunksLikeOthers) {
+    const auto low = std::numeric_limits<std::int32_t>::min();
+    const auto high = std::numeric_limits<std::int32_t>::max();
+    OccPlane all_free;
+    all_free.fill(OccType::kFree);
+    const std::vector<ChunkKey> corners = {{low, low}, {low, high}, {high, low}, {high, high}};
+    ClassLayer layer(64);
+    layer.update(
+        corners, [&](ChunkKey) { return &all_free; }, 1);
+    const auto view = layer.snapshot();
+    for (const auto& key : corners) EXPECT_EQ(view.find(key)->cells[0], CellClass::kFree);
+    EXPECT_EQ(layer.chunk_count(), 16U) << "each with three neighbours whose border is a frontier";
+    EXPECT_EQ(view.find({low + 1, low})->cells[17], CellClass::kFrontier);
+    EXPECT_EQ(view.find({high, high - 1})->cells[63], CellClass::kFrontier);
+}
+
+TEST(ClassLayer, ForgettingTheTypesOfAChunkForgetsItsClasses) {
+    ClassLayer layer(3);
+    Types types;
+    types.set({0, 0}, OccType::kFree);
+    types.show(layer, 1);
+    layer.update(
+        std::vector<ChunkKey>{{0, 0}}, [](ChunkKey) { return nullptr; }, 2);
+    const auto view = layer.snapshot();
+    for (int j = -2; j < 2; ++j) {
+        for (int i = -2; i < 2; ++i) EXPECT_EQ(class_at(view, {i, j}), CellClass::kUnexplored);
+    }
+    EXPECT_EQ(view.find({-1, -1})->revision, 2U);
+}
+
+} // namespace
+} // namespace scanloom::classify
