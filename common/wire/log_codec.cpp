@@ -1,6 +1,7 @@
 #include "common/wire/log_codec.hpp"
 
 #include "common/wire/proto_convert.hpp"
+#include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/log.pb.h"
 

@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/proto_convert.hpp"
+#include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/frame.pb.h"
 

@@ -178,19 +178,6 @@ Result<Scan> from_proto(const v1::Scan& proto) {
     return scan;
 }
 
-Result<SessionOptions> from_proto(const v1::SessionConfig& proto) {
-    SessionOptions options;
-    if (proto.has_cell_size()) options.cell_size = proto.cell_size();
-    if (proto.has_p_occupied()) options.p_occupied = proto.p_occupied();
-    if (proto.has_p_free()) options.p_free = proto.p_free();
-    if (proto.has_p_prior()) options.p_prior = proto.p_prior();
-    if (proto.has_p_min()) options.p_min = proto.p_min();
-    if (proto.has_p_max()) options.p_max = proto.p_max();
-    if (proto.has_obstacle_thickness()) options.obstacle_thickness = proto.obstacle_thickness();
-    if (proto.has_beam_aperture()) options.beam_aperture = proto.beam_aperture();
-    return options;
-}
-
 void to_proto(const Pose2& pose, v1::Pose2& out) {
     out.set_x(pose.x);
     out.set_y(pose.y);
@@ -217,17 +204,6 @@ void to_proto(const Scan& scan, v1::Scan& out) {
     out.mutable_ranges()->Add(scan.ranges.begin(), scan.ranges.end());
     out.mutable_intensities()->Add(scan.intensities.begin(), scan.intensities.end());
     if (scan.angles) write_angles(*scan.angles, *out.mutable_angles());
-}
-
-void to_proto(const SessionOptions& options, v1::SessionConfig& out) {
-    if (options.cell_size) out.set_cell_size(*options.cell_size);
-    if (options.p_occupied) out.set_p_occupied(*options.p_occupied);
-    if (options.p_free) out.set_p_free(*options.p_free);
-    if (options.p_prior) out.set_p_prior(*options.p_prior);
-    if (options.p_min) out.set_p_min(*options.p_min);
-    if (options.p_max) out.set_p_max(*options.p_max);
-    if (options.obstacle_thickness) out.set_obstacle_thickness(*options.obstacle_thickness);
-    if (options.beam_aperture) out.set_beam_aperture(*options.beam_aperture);
 }
 
 } // namespace scanloom::wire

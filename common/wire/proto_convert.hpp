@@ -3,10 +3,8 @@
 #include "common/error/error.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
-#include "common/scan/session_options.hpp"
 
 #include "scanloom/v1/scan.pb.h"
-#include "scanloom/v1/session.pb.h"
 
 /// Between protobuf messages and values, shared by messages.cpp and log_codec.cpp.
 /// `from_proto` checks every value; the error names the field relative to the message.
@@ -14,12 +12,10 @@ namespace scanloom::wire {
 
 [[nodiscard]] Result<Sensor> from_proto(const v1::SensorDescription& description);
 [[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan);
-[[nodiscard]] Result<SessionOptions> from_proto(const v1::SessionConfig& config);
 [[nodiscard]] Result<Pose2> from_proto(const v1::Pose2& pose);
 
 void to_proto(const Sensor& sensor, v1::SensorDescription& out);
 void to_proto(const Scan& scan, v1::Scan& out);
-void to_proto(const SessionOptions& options, v1::SessionConfig& out);
 void to_proto(const Pose2& pose, v1::Pose2& out);
 
 [[nodiscard]] Error invalid_field(std::string message);

@@ -26,6 +26,11 @@ struct ChunkKey {
     return {.cj = cell.j >> kChunkBits, .ci = cell.i >> kChunkBits};
 }
 
+/// Where a cell lies among the 4096 of its chunk: row by row, the bottom one first.
+[[nodiscard]] constexpr std::size_t index_in_chunk(Cell cell) noexcept {
+    return static_cast<std::size_t>((cell.j & (kChunkSide - 1)) << kChunkBits | (cell.i & (kChunkSide - 1)));
+}
+
 /// A node or a leaf of a ChunkTree.
 struct TreeItem {
     Revision revision = 0;   ///< the newest change in it or below it
@@ -37,11 +42,8 @@ template <class CellValue>
 struct Chunk : TreeItem {
     std::array<CellValue, std::size_t{kChunkSide} * kChunkSide> cells;
 
-    [[nodiscard]] static constexpr std::size_t index_of(Cell cell) noexcept {
-        return static_cast<std::size_t>((cell.j & (kChunkSide - 1)) << kChunkBits | (cell.i & (kChunkSide - 1)));
-    }
-    [[nodiscard]] CellValue& at(Cell cell) noexcept { return cells[index_of(cell)]; }
-    [[nodiscard]] const CellValue& at(Cell cell) const noexcept { return cells[index_of(cell)]; }
+    [[nodiscard]] CellValue& at(Cell cell) noexcept { return cells[index_in_chunk(cell)]; }
+    [[nodiscard]] const CellValue& at(Cell cell) const noexcept { return cells[index_in_chunk(cell)]; }
 };
 
 /// Chunks with ci_begin <= ci < ci_end and cj_begin <= cj < cj_end.

@@ -179,6 +179,9 @@ public:
     /// How many chunks it holds.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// What the tree holds now, for the writer to look at until its next write.
+    [[nodiscard]] ChunkView<ChunkType> peek() const { return ChunkView<ChunkType>(quadrants_); }
+
     /// What the tree holds now. Later writes do not show in it.
     [[nodiscard]] ChunkView<ChunkType> snapshot() {
         ++epoch_;

@@ -87,6 +87,8 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kMapPng: return get_map_png(sessions_, slots_, call);
     case Operation::kMapPgm: return get_map_pgm(sessions_, slots_, call);
     case Operation::kMapYaml: return get_map_yaml(sessions_, call);
+    case Operation::kMapCsv: return get_map_csv(sessions_, slots_, call);
+    case Operation::kMapNpy: return get_map_npy(sessions_, slots_, call);
     case Operation::kDigest: return get_digest(sessions_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
     }

@@ -30,7 +30,9 @@ Lane lane_of(const Match& match) {
     case Operation::kTileBin: return lane_of_tile(match.arguments["z"]);
     case Operation::kDigest:
     case Operation::kMapPng:
-    case Operation::kMapPgm: return Lane::kSurvey;
+    case Operation::kMapPgm:
+    case Operation::kMapCsv:
+    case Operation::kMapNpy: return Lane::kSurvey;
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;

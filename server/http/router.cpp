@@ -26,6 +26,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/sessions/{session}/map.png", Operation::kMapPng},
     Route{"GET", "/api/v1/sessions/{session}/map.pgm", Operation::kMapPgm},
     Route{"GET", "/api/v1/sessions/{session}/map.yaml", Operation::kMapYaml},
+    Route{"GET", "/api/v1/sessions/{session}/map.csv", Operation::kMapCsv},
+    Route{"GET", "/api/v1/sessions/{session}/map.npy", Operation::kMapNpy},
     Route{"GET", "/api/v1/sessions/{session}/digest", Operation::kDigest},
     Route{"GET", "/api/v1/sessions/{session}/trajectory.geojson", Operation::kTrajectory},
 };

@@ -28,6 +28,8 @@ enum class Operation {
     kMapPng,
     kMapPgm,
     kMapYaml,
+    kMapCsv,
+    kMapNpy,
     kDigest,
     kTrajectory,
 };

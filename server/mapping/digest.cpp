@@ -1,43 +1,45 @@
 #include "server/mapping/digest.hpp"
 
 #include "common/hash/sha256.hpp"
+#include "server/mapping/layer_cells.hpp"
 
 #include <boost/endian/buffers.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace scanloom::mapping {
 namespace {
 
-struct CanonicalChunk {
-    boost::endian::little_int32_buf_t ci;
-    boost::endian::little_int32_buf_t cj;
-    std::array<boost::endian::little_int16_buf_t, std::size_t{grid::kChunkSide} * grid::kChunkSide> cells;
-};
-static_assert(sizeof(CanonicalChunk) == 8 + 2 * 4096, "hashed as it lies in memory");
+static_assert(std::endian::native == std::endian::little, "cells are hashed as they lie in memory");
 
 } // namespace
 
-std::string digest_of(const OccupancyView& view) {
-    std::vector<std::pair<grid::ChunkKey, const OccupancyChunk*>> chunks;
-    view.visit({}, 0, [&](grid::ChunkKey key, const OccupancyChunk& chunk) {
-        const auto is_known = [](LogOdds cell) { return cell != kUnknownLogOdds; };
-        if (std::any_of(chunk.cells.begin(), chunk.cells.end(), is_known)) chunks.emplace_back(key, &chunk);
-    });
-    std::sort(chunks.begin(), chunks.end());
+std::string digest_of(const Snapshot& snapshot, Layer layer) {
+    return with_layer(snapshot, layer, [](const auto& view, auto&& cells_of) {
+        std::vector<std::pair<grid::ChunkKey, std::span<const std::byte>>> chunks;
+        view.visit({}, 0, [&](grid::ChunkKey key, const auto& chunk) {
+            const auto& cells = cells_of(chunk);
+            if (std::ranges::any_of(cells, [](auto cell) { return is_known(cell); })) {
+                chunks.emplace_back(key, std::as_bytes(std::span(cells)));
+            }
+        });
+        std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 
-    Sha256 hash;
-    CanonicalChunk canonical;
-    for (const auto& [key, chunk] : chunks) {
-        canonical.ci = key.ci;
-        canonical.cj = key.cj;
-        std::copy(chunk->cells.begin(), chunk->cells.end(), canonical.cells.begin());
-        hash.update(std::as_bytes(std::span(&canonical, 1)));
-    }
-    return hash.hex();
+        Sha256 hash;
+        for (const auto& [key, cells] : chunks) {
+            const std::array<boost::endian::little_int32_buf_t, 2> at{boost::endian::little_int32_buf_t(key.ci),
+                                                                      boost::endian::little_int32_buf_t(key.cj)};
+            hash.update(std::as_bytes(std::span(at)));
+            hash.update(cells);
+        }
+        return hash.hex();
+    });
 }
 
 } // namespace scanloom::mapping

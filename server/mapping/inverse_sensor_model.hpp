@@ -1,9 +1,9 @@
 #pragma once
 
+#include "common/geometry/pose2.hpp"
 #include "common/scan/scan.hpp"
-#include "common/scan/sensor.hpp"
 #include "server/mapping/beam_fan.hpp"
-#include "server/mapping/map_config.hpp"
+#include "server/mapping/reading.hpp"
 #include "server/mapping/scan_conversion.hpp"
 
 #include <algorithm>
@@ -17,15 +17,12 @@ enum class Verdict : std::uint8_t { kFree, kOccupied };
 
 /// What the model must know of a sensor and a map. Metres.
 struct ModelGeometry {
-    double range_min = 0.0;
-    double range_max = 0.0;
+    ReadingRules readings;
     double thickness = 0.1; ///< alpha; at least one cell is used
     double cell_size = 0.05;
-};
 
-[[nodiscard]] inline ModelGeometry geometry_of(const MapConfig& config, const Sensor& sensor) noexcept {
-    return {sensor.range_min, sensor.range_max, config.obstacle_thickness, config.cell_size};
-}
+    [[nodiscard]] double half_band() const noexcept { return std::max(thickness, cell_size) / 2.0; }
+};
 
 /// Tells which cells one scan shows to be free or occupied: the inverse sensor model, cell by cell
 /// exact. Calls emit(Verdict, j, i_begin, i_end) for runs of cells of row j; no cell comes twice.
@@ -34,7 +31,7 @@ struct ModelGeometry {
 /// aperture), with reading z:
 ///   occupied  z < range_max and |r - z| < alpha / 2
 ///   free      r <= z, r <= range_max, and not occupied
-///   (nothing) otherwise, and for readings below range_min or invalid.
+///   (nothing) otherwise, and where reading_of() says that the beam shows nothing.
 ///
 /// Shapes  sectors are those of a BeamFan, or some of them: what they show is theirs alone; ranges holds one
 ///         reading for each beam that the fan was made from.
@@ -50,25 +47,22 @@ void inverse_sensor_model(std::span<const Sector> sectors, std::span<const Range
     const double y0 = T_map_sensor.y * cells_per_metre;
     const double c = std::cos(T_map_sensor.yaw);
     const double s = std::sin(T_map_sensor.yaw);
-    const double half_band = std::max(geometry.thickness, geometry.cell_size) / 2.0;
+    const double half_band = geometry.half_band();
     const auto to_map = [&](Direction d) { return Direction{c * d.x - s * d.y, s * d.x + c * d.y}; };
 
     for (const Sector& sensor_sector : sectors) {
-        const RangeMm reading = ranges[sensor_sector.beam];
-        if (reading == kInvalidRange) continue;
-        const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;
-        if (z < geometry.range_min) continue;
-
+        const auto reading = reading_of(ranges[sensor_sector.beam], geometry.readings);
+        if (!reading) continue;
         const Sector sector{sensor_sector.beam, to_map(sensor_sector.low), to_map(sensor_sector.high)};
-        if (z >= geometry.range_max) {
-            scan_convert(sector, x0, y0, geometry.range_max * cells_per_metre,
+        if (!reading->is_hit) {
+            scan_convert(sector, x0, y0, reading->metres * cells_per_metre,
                          [&](std::int32_t j, double, std::int32_t begin, std::int32_t end) {
                              emit(Verdict::kFree, j, begin, end);
                          });
             continue;
         }
-        const double outer = std::min(geometry.range_max, z + half_band) * cells_per_metre;
-        const double inner = std::max(0.0, z - half_band) * cells_per_metre;
+        const double outer = std::min(geometry.readings.range_max, reading->metres + half_band) * cells_per_metre;
+        const double inner = std::max(0.0, reading->metres - half_band) * cells_per_metre;
         scan_convert(sector, x0, y0, outer, [&](std::int32_t j, double dy, std::int32_t begin, std::int32_t end) {
             // The row runs through the free disc from -half to +half, if at all.
             const double square = inner * inner - dy * dy;

@@ -1,7 +1,5 @@
 #include "server/mapping/projection.hpp"
 
-#include "server/mapping/reach.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,15 +7,14 @@
 namespace scanloom::mapping {
 namespace {
 
-constexpr double kReachCellsMax = 8192.0;
-
 Error misplaced(Revision revision, std::string what) {
     return {Errc::kMalformed, fmt::format("log entry {}: {}; the log is damaged", revision, what)};
 }
 
 } // namespace
 
-Projection::Projection(const MapConfig& config) : config_(config), occupancy_(config) {}
+Projection::Projection(const MapConfig& config)
+    : config_(config), laser_(config), sonar_(config), classes_(danger_reach(config)) {}
 
 Result<> Projection::fold(const LogEntry& entry) {
     double unbounded = HUGE_VAL;
@@ -68,7 +65,7 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
                                                robot.state.last_seq));
     }
     const Sensor& sensor = *known->second.sensor;
-    if (sensor.kind == SensorKind::kLaser && !integrate(robot, sensor, scan, work)) return false;
+    if (!integrate(robot, sensor, scan, work)) return false;
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
     robot.state.stamp = scan.stamp;
@@ -77,31 +74,42 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
     return true;
 }
 
-/// @return whether all sectors of the scan are in.
+/// @return whether all of the scan is in.
 bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
-    const ModelGeometry geometry = geometry_of(config_, sensor);
-    const auto missing = std::span(fan_of(robot, sensor, scan)).subspan(sectors_in_);
-    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
-    bounds_.include(
-        occupancy_.integrate(sectors, scan.ranges, compose(scan.pose, sensor.mount), geometry, revision_ + 1));
-    const bool complete = sectors.size() == missing.size();
-    sectors_in_ = complete ? 0 : sectors_in_ + sectors.size();
+    const auto& fan = fan_of(robot, sensor, scan).fan;
+    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    const ReadingRules readings{sensor.range_min, sensor.range_max, config_.drop_no_return};
+    const bool complete =
+        sensor.kind == SensorKind::kLaser
+            ? laser_.integrate({std::get<LaserFan>(fan), scan.ranges, T_map_sensor, readings}, revision_ + 1, work)
+            : sonar_.integrate({std::get<SonarFan>(fan), scan.ranges, T_map_sensor, readings}, revision_ + 1, work);
+    is_folding_ = !complete;
     return complete;
 }
 
-const BeamFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
+const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& sensor, const Scan& scan) {
     auto& known = robot.fans[sensor.id];
-    if (sectors_in_ > 0) return known.fan;
+    if (is_folding_) return known;
     if (scan.angles || known.beams != scan.ranges.size()) {
-        const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config_.beam_aperture;
-        known.fan = make_beam_fan(angles_of(scan, sensor), aperture);
+        const BeamAngles angles = angles_of(scan, sensor);
+        if (sensor.kind == SensorKind::kLaser) {
+            known.fan = make_laser_fan(config_, angles, sensor.aperture);
+        } else {
+            known.fan = make_sonar_fan(config_, angles, sensor.aperture);
+        }
         known.beams = scan.angles ? 0 : scan.ranges.size();
     }
-    return known.fan;
+    return known;
 }
 
 Snapshot Projection::snapshot() {
-    Snapshot snapshot{revision_, config_, bounds_, occupancy_.snapshot(), {}};
+    Snapshot snapshot{.revision = revision_,
+                      .config = config_,
+                      .bounds = {laser_.bounds(), sonar_.bounds()},
+                      .laser = laser_.snapshot(),
+                      .sonar = sonar_.snapshot()};
+    bring_classes_up_to(snapshot.laser);
+    snapshot.classes = classes_.snapshot();
     snapshot.robots.reserve(robots_.size());
     for (const auto& robot : robots_) {
         snapshot.robots.push_back(robot.state);
@@ -110,8 +118,21 @@ Snapshot Projection::snapshot() {
     return snapshot;
 }
 
+/// Cost  the chunks that changed since the last time, and their neighbours.
+void Projection::bring_classes_up_to(const LaserView& laser) {
+    std::vector<grid::ChunkKey> changed;
+    const Revision newest = std::max(revision_, laser.newest({})); // chunks of a checkpoint may be newer than its state
+    laser.visit({}, classes_at_, [&](grid::ChunkKey key, const LaserChunk&) { changed.push_back(key); });
+    const auto types_of = [&](grid::ChunkKey key) {
+        const LaserChunk* chunk = laser.find(key);
+        return chunk == nullptr ? nullptr : &chunk->occ_types;
+    };
+    classes_.update(changed, types_of, newest);
+    classes_at_ = revision_;
+}
+
 ProjectionState Projection::state() const {
-    ProjectionState state{revision_, bounds_, {}};
+    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, {}};
     for (const auto& robot : robots_) {
         auto& out = state.robots.emplace_back(
             ProjectionState::Robot{robot.state.name, robot.source, robot.state.last_seq, robot.state.scan_count, {}});
@@ -122,7 +143,8 @@ ProjectionState Projection::state() const {
 
 void Projection::restore(const ProjectionState& state) {
     revision_ = state.revision;
-    bounds_ = state.bounds;
+    laser_.restore(state.bounds.laser);
+    sonar_.restore(state.bounds.sonar);
     for (const auto& saved : state.robots) {
         auto& robot = robots_.emplace_back();
         robot.state.name = saved.name;
@@ -133,8 +155,12 @@ void Projection::restore(const ProjectionState& state) {
     }
 }
 
-void Projection::restore_chunk(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells) {
-    occupancy_.restore(key, revision, cells);
+LaserChunk& Projection::restore_laser_chunk(grid::ChunkKey key, Revision revision) {
+    return laser_.restore(key, revision);
+}
+
+SonarChunk& Projection::restore_sonar_chunk(grid::ChunkKey key, Revision revision) {
+    return sonar_.restore(key, revision);
 }
 
 Result<> Projection::restore_point(RobotIndex robot, const TrajectoryPoint& point) {
@@ -145,14 +171,6 @@ Result<> Projection::restore_point(RobotIndex robot, const TrajectoryPoint& poin
     robots_[robot].state.stamp = point.stamp;
     robots_[robot].state.pose = point.pose;
     return {};
-}
-
-Result<> check_reach(const MapConfig& config, const Sensor& sensor) {
-    if (sensor.range_max <= kReachCellsMax * config.cell_size) return {};
-    return Error{Errc::kInvalidField,
-                 fmt::format("range_max is {} metres, more than {} cells of {} metres; use larger cells, or state the "
-                             "range that is wanted in the map",
-                             sensor.range_max, kReachCellsMax, config.cell_size)};
 }
 
 } // namespace scanloom::mapping

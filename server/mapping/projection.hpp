@@ -2,17 +2,20 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/log_entry.hpp"
+#include "server/classify/class_layer.hpp"
 #include "server/mapping/snapshot.hpp"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace scanloom::mapping {
 
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
-inline constexpr std::uint32_t kWeavingVersion = 2;
+inline constexpr std::uint32_t kWeavingVersion = 3;
 
 /// A sensor as a log entry described it. The description is shared, never changed.
 struct KnownSensor {
@@ -31,7 +34,7 @@ struct ProjectionState {
     };
 
     Revision revision = 0;
-    grid::CellBox bounds;
+    LayerBounds bounds;
     std::vector<Robot> robots;
 };
 
@@ -47,7 +50,8 @@ public:
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
-    [[nodiscard]] std::size_t chunk_count() const noexcept { return occupancy_.chunk_count(); }
+    /// Of lasers and sonars.
+    [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
 
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
@@ -65,21 +69,25 @@ public:
     [[nodiscard]] ProjectionState state() const;
 
     /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then
-    /// every chunk and every trajectory point by rising revision. Chunks and points may be newer than the state
-    /// (a checkpoint cut short): folding the log's entries after the state's revision then gives the same maps.
+    /// every chunk (whose cells the caller fills in) and every trajectory point by rising revision. Chunks and points
+    /// may be newer than the state (a checkpoint cut short): folding the log's entries after the state's revision then
+    /// gives the same maps.
     void restore(const ProjectionState& state);
-    void restore_chunk(grid::ChunkKey key, Revision revision, std::span<const LogOdds> cells);
+    [[nodiscard]] LaserChunk& restore_laser_chunk(grid::ChunkKey key, Revision revision);
+    [[nodiscard]] SonarChunk& restore_sonar_chunk(grid::ChunkKey key, Revision revision);
     /// Errors  kMalformed: no such robot.
     [[nodiscard]] Result<> restore_point(RobotIndex robot, const TrajectoryPoint& point);
 
     /// The log has at least this many entries, or the chunks put back were of another log.
-    [[nodiscard]] Revision newest_restored() const noexcept { return occupancy_.newest_restored(); }
+    [[nodiscard]] Revision newest_restored() const noexcept {
+        return std::max(laser_.newest_restored(), sonar_.newest_restored());
+    }
 
 private:
     /// The fan of a sensor's own angles, kept from scan to scan of the same beam count.
     struct KnownFan {
         std::size_t beams = 0;
-        BeamFan fan;
+        std::variant<LaserFan, SonarFan> fan;
     };
 
     struct Robot {
@@ -94,18 +102,18 @@ private:
     Result<bool> fold_entry(const SensorDescribed& described, double& work);
     Result<bool> fold_entry(const ScanTaken& taken, double& work);
     [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
-    [[nodiscard]] const BeamFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
+    [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
+
+    void bring_classes_up_to(const LaserView& laser);
 
     MapConfig config_;
     Revision revision_ = 0;
-    grid::CellBox bounds_;
-    OccupancyLayer occupancy_;
+    LaserLayers laser_;
+    SonarLayer sonar_;
+    classify::ClassLayer classes_;
+    Revision classes_at_ = 0; // the classes are those of the laser chunks at this revision
     std::vector<Robot> robots_;
-    std::size_t sectors_in_ = 0; // of the scan that is being folded
+    bool is_folding_ = false; // a scan, of which a part is in
 };
-
-/// Whether a sensor's reach is possible at this cell size.
-/// Errors  kInvalidField: range_max spans more than 8192 cells.
-[[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
 
 } // namespace scanloom::mapping

@@ -1,5 +1,9 @@
 #include "server/mapping/reach.hpp"
 
+#include "server/mapping/work.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,65 +11,118 @@
 namespace scanloom::mapping {
 namespace {
 
+constexpr double kReachCellsMax = 8192.0;
+
+ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) {
+    return {sensor.range_min, sensor.range_max, config.drop_no_return};
+}
+
 /// An upper bound of a sector's width, which for explicit angles would cost a sort to know better.
-double sector_width(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
-    const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config.beam_aperture;
+double sector_width(double aperture, const Sensor& sensor, const Scan& scan) {
     const auto& angles = scan.angles ? *scan.angles : sensor.angles;
     const auto* uniform = std::get_if<UniformAngles>(&angles);
     return uniform != nullptr ? std::max(aperture, std::abs(uniform->increment)) : 2.0 * std::numbers::pi;
 }
 
-/// How far a reading shows anything; metres, 0 when it shows nothing.
-double reached(RangeMm reading, const ModelGeometry& geometry) {
-    const double z = reading == kNoReturn ? HUGE_VAL : reading * 0.001;
-    if (reading == kInvalidRange || z < geometry.range_min) return 0.0;
-    return std::min(geometry.range_max, z + std::max(geometry.thickness, geometry.cell_size) / 2.0);
+/// How far the readings show something, metres.
+struct Extent {
+    double longest = 0.0;
+    double sum = 0.0;
+    double sum_of_squares = 0.0;
+};
+
+Extent extent_of(const Scan& scan, const ModelGeometry& geometry) {
+    Extent extent;
+    for (const RangeMm range : scan.ranges) {
+        const double metres = reached(range, geometry);
+        extent.longest = std::max(extent.longest, metres);
+        extent.sum += metres;
+        extent.sum_of_squares += metres * metres;
+    }
+    return extent;
 }
 
-std::int32_t floor_cell(double cells) { return static_cast<std::int32_t>(std::floor(cells)); }
+/// Of sectors that overlap nowhere.
+double work_of_sectors(const Extent& extent, double width, double per_metre) {
+    const double disc = std::numbers::pi * extent.longest * extent.longest;
+    return std::min(disc, 0.5 * width * extent.sum_of_squares) * per_metre * per_metre + 2.0 * extent.sum * per_metre;
+}
+
+double work_of_rays(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
+    const RayGeometry geometry{rules_of(config, sensor), config.ray_model, config.hit_radius, config.cell_size};
+    double work = 0.0;
+    for (const RangeMm range : scan.ranges) {
+        if (const auto reading = reading_of(range, geometry.readings)) work += work_of_beam(*reading, geometry);
+    }
+    return work;
+}
+
+grid::CellBox square_around(const Pose2& T_map_sensor, double metres, double per_metre) {
+    const auto floor_cell = [](double cells) { return static_cast<std::int32_t>(std::floor(cells)); };
+    const double x = T_map_sensor.x * per_metre;
+    const double y = T_map_sensor.y * per_metre;
+    const double radius = metres * per_metre + 1.0;
+    return {floor_cell(x - radius), floor_cell(y - radius), floor_cell(x + radius) + 1, floor_cell(y + radius) + 1};
+}
+
+Reach reach_of_laser(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
+    const ReadingRules rules = rules_of(config, sensor);
+    const auto counted = extent_of(scan, {rules, config.himm_obstacle_thickness, config.cell_size});
+    const auto seen = extent_of(scan, {rules, config.obstacle_thickness, config.cell_size});
+    const double longest = std::max(seen.longest, counted.longest);
+    if (longest == 0.0) return {};
+
+    const double per_metre = 1.0 / config.cell_size;
+    const auto aperture_or = [&](double aperture) { return sensor.aperture > 0.0 ? sensor.aperture : aperture; };
+    const bool by_sectors = config.ray_model == RayModel::kInverseSensorModel;
+    Reach reach;
+    reach.cells =
+        square_around(compose(scan.pose, sensor.mount), longest + (by_sectors ? 0.0 : config.hit_radius), per_metre);
+    reach.work =
+        work_of_sectors(counted, sector_width(aperture_or(config.himm_beam_aperture), sensor, scan), per_metre);
+    reach.work += by_sectors
+                      ? work_of_sectors(seen, sector_width(aperture_or(config.beam_aperture), sensor, scan), per_metre)
+                      : work_of_rays(config, sensor, scan);
+    reach.work += 2.0 * kWorkPerChunk * static_cast<double>(chunk_count_of(reach.cells)); // marks, classes
+    return reach;
+}
+
+Reach reach_of_sonar(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
+    const ModelGeometry geometry{rules_of(config, sensor), config.sonar_obstacle_thickness, config.cell_size};
+    const auto extent = extent_of(scan, geometry);
+    if (extent.longest == 0.0) return {};
+    const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config.sonar_beam_aperture;
+    Reach reach{SensorKind::kSonar,
+                square_around(compose(scan.pose, sensor.mount), extent.longest, 1.0 / config.cell_size), 0.0};
+    for (const RangeMm range : scan.ranges) reach.work += work_of_cone(aperture, range, geometry);
+    return reach;
+}
 
 } // namespace
 
 Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
-    if (sensor.kind != SensorKind::kLaser) return {};
-    const ModelGeometry geometry = geometry_of(config, sensor);
-    double longest = 0.0; // metres
-    double sum = 0.0;
-    double sum_of_squares = 0.0;
-    for (const RangeMm reading : scan.ranges) {
-        const double metres = reached(reading, geometry);
-        longest = std::max(longest, metres);
-        sum += metres;
-        sum_of_squares += metres * metres;
-    }
-    if (longest == 0.0) return {};
-
-    const double per_metre = 1.0 / config.cell_size;
-    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
-    const double x = T_map_sensor.x * per_metre;
-    const double y = T_map_sensor.y * per_metre;
-    const double radius = longest * per_metre + 1.0;
-    const double disc = std::numbers::pi * longest * longest;
-    const double area = std::min(disc, 0.5 * sector_width(config, sensor, scan) * sum_of_squares);
-    return {{floor_cell(x - radius), floor_cell(y - radius), floor_cell(x + radius) + 1, floor_cell(y + radius) + 1},
-            area * per_metre * per_metre + 2.0 * sum * per_metre};
-}
-
-std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
-                           const ModelGeometry& geometry) {
-    std::size_t count = 0;
-    while (count < sectors.size() && (count == 0 || work > 0.0)) {
-        const Sector& sector = sectors[count++];
-        const double cells = reached(ranges[sector.beam], geometry) / geometry.cell_size;
-        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x; // nearly the angle
-        work -= 0.5 * sine * cells * cells + 2.0 * cells + 1.0;
-    }
-    return count;
+    return sensor.kind == SensorKind::kLaser ? reach_of_laser(config, sensor, scan)
+                                             : reach_of_sonar(config, sensor, scan);
 }
 
 std::int64_t chunk_count_of(const grid::CellBox& box) noexcept {
     const grid::ChunkBox chunks = grid::chunks_of(box);
     return (chunks.ci_end - chunks.ci_begin) * (chunks.cj_end - chunks.cj_begin);
+}
+
+Result<> check_reach(const MapConfig& config, const Sensor& sensor) {
+    if (sensor.range_max <= kReachCellsMax * config.cell_size) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("range_max is {} metres, more than {} cells of {} metres; use larger cells, or state the "
+                             "range that is wanted in the map",
+                             sensor.range_max, kReachCellsMax, config.cell_size)};
+}
+
+Result<> check_work(const Reach& reach) {
+    if (reach.work <= kScanWorkMax) return {};
+    return Error{Errc::kInvalidField,
+                 "ranges of so many cones, so wide and so long, cover too many cells to be woven at once; use larger "
+                 "cells, fewer beams in a scan, or a smaller range_max"};
 }
 
 } // namespace scanloom::mapping

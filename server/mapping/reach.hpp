@@ -1,31 +1,35 @@
 #pragma once
 
 #include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
 #include "server/grid/chunk.hpp"
-#include "server/mapping/inverse_sensor_model.hpp"
 #include "server/mapping/map_config.hpp"
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace scanloom::mapping {
 
 /// What weaving a scan may touch, told beforehand, so that memory and work can be bounded.
 struct Reach {
-    grid::CellBox cells; ///< whatever the scan can change lies in here; empty when it shows nothing
-    double work = 0.0;   ///< about how many cells and rows of cells will be visited; never far too few
+    SensorKind kind = SensorKind::kLaser; ///< the layers of lasers and those of sonars have chunks of their own
+    grid::CellBox cells;                  ///< whatever the scan can change lies in here; empty when it shows nothing
+    double work = 0.0;                    ///< as work.hpp counts it; never far too little
 };
 
 /// Cost  the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
 
-/// How many of the sectors, from the first, can be woven with this much work; at least one of them.
-/// @param work  what there is, as Reach::work; what the sectors take is taken from it.
-[[nodiscard]] std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
-                                         const ModelGeometry& geometry);
-
 /// How many chunks hold any cell of the box.
 [[nodiscard]] std::int64_t chunk_count_of(const grid::CellBox& box) noexcept;
+
+/// The most work that one scan may make: more than any laser's.
+inline constexpr double kScanWorkMax = 1e9;
+
+/// Whether a sensor's reach is possible at this cell size.
+/// Errors  kInvalidField: range_max spans more than 8192 cells.
+[[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
+
+/// Errors  kInvalidField: so many cones, so wide, so far, at such small cells, that weaving would take seconds.
+[[nodiscard]] Result<> check_work(const Reach& reach);
 
 } // namespace scanloom::mapping

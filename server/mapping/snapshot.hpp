@@ -1,9 +1,12 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
+#include "server/classify/cell_class.hpp"
 #include "server/grid/cell.hpp"
+#include "server/mapping/laser_layers.hpp"
+#include "server/mapping/layer.hpp"
 #include "server/mapping/map_config.hpp"
-#include "server/mapping/occupancy_layer.hpp"
+#include "server/mapping/sonar_layer.hpp"
 #include "server/mapping/trajectory.hpp"
 
 #include <cstdint>
@@ -23,14 +26,30 @@ struct RobotState {
     TrajectoryView trajectory;
 };
 
+/// The cells of each layer that any scan changed.
+struct LayerBounds {
+    LaserLayers::Bounds laser;
+    grid::CellBox sonar;
+
+    friend bool operator==(const LayerBounds&, const LayerBounds&) = default;
+};
+
 /// Everything a session has woven from its log up to one revision: what all readers read.
 /// Immutable; hold it by shared_ptr<const Snapshot> as long as needed.
 struct Snapshot {
     Revision revision = 0;
     MapConfig config;
-    grid::CellBox bounds; ///< cells that any scan changed
-    OccupancyView occupancy;
+    LayerBounds bounds;
+    LaserView laser;
+    SonarView sonar;
+    classify::ClassView classes;
     std::vector<RobotState> robots;
 };
+
+/// The cells in which a layer shows anything.
+[[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
+
+/// The cells in which any layer shows what a sensor saw.
+[[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot) noexcept;
 
 } // namespace scanloom::mapping

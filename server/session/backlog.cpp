@@ -1,17 +1,19 @@
 #include "server/session/backlog.hpp"
 
 #include <map>
+#include <utility>
 
 namespace scanloom::session {
 
 Group Backlog::next_group(std::int64_t room) {
     Group group;
     double work = 0.0;
-    std::map<RobotIndex, grid::CellBox> boxes; // a robot's scans mostly overlap: one box for all of them
+    // A robot's scans of a kind mostly overlap: one box for all of them.
+    std::map<std::pair<RobotIndex, SensorKind>, grid::CellBox> boxes;
     while (!waiting_.empty() && group.entries.size() < kGroupEntriesMax) {
         const Submitted& next = waiting_.front();
         if (!group.entries.empty() && work + next.reach.work > kGroupWorkMax) break;
-        auto& box = boxes[next.robot];
+        auto& box = boxes[{next.robot, next.reach.kind}];
         auto grown = box;
         grown.include(next.reach.cells);
         const auto chunks = group.chunks - mapping::chunk_count_of(box) + mapping::chunk_count_of(grown);

@@ -27,7 +27,7 @@ struct Group {
 
 /// Bounds of a group: of the wait for its ack, and of what a restart has to weave again.
 inline constexpr std::size_t kGroupEntriesMax = 256;
-inline constexpr double kGroupWorkMax = 3e8; ///< as Reach::work: more than the largest scan alone takes
+inline constexpr double kGroupWorkMax = mapping::kScanWorkMax;
 
 /// Entries that wait for the log. Bounded by the links' credits.
 class Backlog {

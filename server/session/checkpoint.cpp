@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstring>
@@ -14,6 +15,9 @@ namespace scanloom::session {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");
+
+constexpr std::string_view kLaserChunk = "weave/laser/";
+constexpr std::string_view kSonarChunk = "weave/sonar/";
 
 template <class Value>
 void put(std::string& out, const Value& value) {
@@ -73,10 +77,9 @@ std::string format_part() {
 std::string head_part(const mapping::ProjectionState& state) {
     std::string value;
     put(value, state.revision);
-    put(value, state.bounds.i_begin);
-    put(value, state.bounds.j_begin);
-    put(value, state.bounds.i_end);
-    put(value, state.bounds.j_end);
+    put(value, state.bounds.laser.occupancy);
+    put(value, state.bounds.laser.himm);
+    put(value, state.bounds.sonar);
     return value;
 }
 
@@ -94,16 +97,29 @@ std::string track_part(const mapping::TrajectoryView& track, std::size_t begin) 
     return value;
 }
 
-std::string chunk_part(const mapping::OccupancyChunk& chunk) {
+std::string chunk_part(const mapping::LaserChunk& chunk) {
+    std::string value;
+    put(value, chunk.revision);
+    put(value, chunk.occupancy);
+    put(value, chunk.himm);
+    put(value, chunk.occ_types);
+    return value;
+}
+
+std::string chunk_part(const mapping::SonarChunk& chunk) {
     std::string value;
     put(value, chunk.revision);
     put(value, chunk.cells);
     return value;
 }
 
-std::string chunk_key(grid::ChunkKey key) {
-    return fmt::format("weave/occupancy/{:08x}/{:08x}", static_cast<std::uint32_t>(key.cj),
+std::string chunk_key(std::string_view prefix, grid::ChunkKey key) {
+    return fmt::format("{}{:08x}/{:08x}", prefix, static_cast<std::uint32_t>(key.cj),
                        static_cast<std::uint32_t>(key.ci));
+}
+
+grid::ChunkKey chunk_key_of(const std::vector<std::uint32_t>& numbers) {
+    return {static_cast<std::int32_t>(numbers[0]), static_cast<std::int32_t>(numbers[1])};
 }
 
 /// Gathers parts and hands them to the store whenever a piece is full. After a failure nothing more is written.
@@ -153,10 +169,11 @@ void write_tracks(PieceWriter& out, const mapping::Snapshot& snapshot, Revision 
     }
 }
 
-void write_chunks(PieceWriter& out, const mapping::OccupancyView& view, Revision since) {
-    view.visit({}, since, [&](grid::ChunkKey key, const mapping::OccupancyChunk& chunk) {
+template <class View>
+void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, Revision since) {
+    view.visit({}, since, [&](grid::ChunkKey key, const auto& chunk) {
         if (!out.written()) return;
-        out.add(chunk_key(key), chunk_part(chunk));
+        out.add(chunk_key(prefix, key), chunk_part(chunk));
         out.write_if_full();
     });
 }
@@ -188,7 +205,8 @@ Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const m
         PieceWriter out(log, session, stop);
         out.add("format", format_part());
         write_tracks(out, snapshot, stored);
-        write_chunks(out, snapshot.occupancy, stored);
+        write_chunks(out, kLaserChunk, snapshot.laser, stored);
+        write_chunks(out, kSonarChunk, snapshot.sonar, stored);
         write_state(out, state, stored);
         return out.written();
     } catch (const std::bad_alloc&) {
@@ -196,11 +214,10 @@ Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const m
     }
 }
 
-const CheckpointReader::Kind CheckpointReader::kKinds[4] = {
-    {"robot/", 1, &CheckpointReader::add_robot},
-    {"sensor/", 2, &CheckpointReader::add_sensor},
-    {"track/", 2, &CheckpointReader::add_points},
-    {"weave/occupancy/", 2, &CheckpointReader::add_chunk},
+const CheckpointReader::Kind CheckpointReader::kKinds[5] = {
+    {"robot/", 1, &CheckpointReader::add_robot},          {"sensor/", 2, &CheckpointReader::add_sensor},
+    {"track/", 2, &CheckpointReader::add_points},         {kLaserChunk, 2, &CheckpointReader::add_laser_chunk},
+    {kSonarChunk, 2, &CheckpointReader::add_sonar_chunk},
 };
 
 Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
@@ -229,10 +246,9 @@ Result<> CheckpointReader::add_format(std::string_view value) {
 Result<> CheckpointReader::add_head(std::string_view value) {
     PartReader part(value);
     state_.revision = part.take<Revision>();
-    state_.bounds.i_begin = part.take<std::int32_t>();
-    state_.bounds.j_begin = part.take<std::int32_t>();
-    state_.bounds.i_end = part.take<std::int32_t>();
-    state_.bounds.j_end = part.take<std::int32_t>();
+    state_.bounds.laser.occupancy = part.take<grid::CellBox>();
+    state_.bounds.laser.himm = part.take<grid::CellBox>();
+    state_.bounds.sonar = part.take<grid::CellBox>();
     if (!part.complete()) return damaged("head");
     return {};
 }
@@ -269,14 +285,32 @@ bool CheckpointReader::add_points(const Numbers& numbers, std::string_view value
     return true;
 }
 
-bool CheckpointReader::add_chunk(const Numbers& numbers, std::string_view value) {
+bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
     begin_weaving();
     PartReader part(value);
     const auto revision = part.take<Revision>();
-    const auto cells = part.take<decltype(mapping::OccupancyChunk::cells)>();
+    const auto occupancy = part.take<decltype(mapping::LaserChunk::occupancy)>();
+    const auto himm = part.take<decltype(mapping::LaserChunk::himm)>();
+    const auto occ_types = part.take<classify::OccPlane>();
+    const bool are_types =
+        std::ranges::all_of(occ_types, [](auto type) { return type <= classify::OccType::kOccupied; });
+    const bool are_counts = std::ranges::all_of(
+        himm, [](auto count) { return count <= mapping::kHimmMax || count == mapping::kUnseenHimm; });
+    if (!part.complete() || !are_types || !are_counts) return false;
+    mapping::LaserChunk& chunk = projection_.restore_laser_chunk(chunk_key_of(numbers), revision);
+    chunk.occupancy = occupancy;
+    chunk.himm = himm;
+    chunk.occ_types = occ_types;
+    return true;
+}
+
+bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view value) {
+    begin_weaving();
+    PartReader part(value);
+    const auto revision = part.take<Revision>();
+    const auto cells = part.take<decltype(mapping::SonarChunk::cells)>();
     if (!part.complete()) return false;
-    projection_.restore_chunk({static_cast<std::int32_t>(numbers[0]), static_cast<std::int32_t>(numbers[1])}, revision,
-                              cells);
+    projection_.restore_sonar_chunk(chunk_key_of(numbers), revision).cells = cells;
     return true;
 }
 

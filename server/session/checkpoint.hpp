@@ -18,7 +18,8 @@
 ///   robot/<index>            last seq, scan count, name, a zero byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
 ///   track/<index>/<block>    512 points of a trajectory
-///   weave/occupancy/<chunk>  revision and cells of one chunk
+///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer
+///   weave/sonar/<chunk>      revision and cells of one chunk
 /// <index>, <block> and the like are fixed-width hexadecimal.
 ///
 /// Written in pieces of 4 MiB: the format first, then tracks and chunks. What depends on the revision comes last
@@ -57,14 +58,15 @@ private:
         std::size_t numbers;
         bool (CheckpointReader::*add)(const Numbers& numbers, std::string_view value);
     };
-    static const Kind kKinds[4];
+    static const Kind kKinds[5];
 
     [[nodiscard]] Result<> add_format(std::string_view value);
     [[nodiscard]] Result<> add_head(std::string_view value);
     [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_points(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_chunk(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_laser_chunk(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_sonar_chunk(const Numbers& numbers, std::string_view value);
     void begin_weaving();
 
     mapping::Projection projection_;

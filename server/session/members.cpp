@@ -162,8 +162,12 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        member->received_seq = scan.seq;
         const auto reach = mapping::reach_of(info_.config, member->sensors.at(scan.sensor), scan);
+        if (auto ok = mapping::check_work(reach); !ok) {
+            fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
+            continue;
+        }
+        member->received_seq = scan.seq;
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
     }

@@ -1,5 +1,7 @@
 #include "server/tiles/changes.hpp"
 
+#include "server/mapping/layer_cells.hpp"
+
 #include <algorithm>
 #include <iterator>
 #include <tuple>
@@ -18,13 +20,14 @@ void merge_equal_tiles(std::vector<ChangedTile>& tiles) {
 
 } // namespace
 
-std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, Revision since) {
+std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer, Revision since) {
     std::vector<ChangedTile> level;
-    snapshot.occupancy.visit(grid::chunks_of(kTiledCells), since,
-                             [&](grid::ChunkKey at, const mapping::OccupancyChunk& chunk) {
-                                 const grid::Cell corner{at.ci * grid::kChunkSide, at.cj * grid::kChunkSide};
-                                 level.push_back({tile_of(corner, kZoomNative), chunk.revision});
-                             });
+    mapping::with_layer(snapshot, layer, [&](const auto& view, auto&&) {
+        view.visit(grid::chunks_of(kTiledCells), since, [&](grid::ChunkKey at, const auto& chunk) {
+            const grid::Cell corner{at.ci * grid::kChunkSide, at.cj * grid::kChunkSide};
+            level.push_back({tile_of(corner, kZoomNative), chunk.revision});
+        });
+    });
     merge_equal_tiles(level);
 
     std::vector<ChangedTile> all = level;

@@ -14,9 +14,10 @@ struct ChangedTile {
     friend bool operator==(const ChangedTile&, const ChangedTile&) = default;
 };
 
-/// Every tile of every zoom that was touched after a revision; after 0: every tile ever touched.
+/// Every tile of a layer, of every zoom, that was touched after a revision; after 0: every tile ever touched.
 /// Ordered by falling zoom, then y, then x.
 /// Cost    follows the chunks that changed, not the map.
-[[nodiscard]] std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, Revision since);
+[[nodiscard]] std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer,
+                                                     Revision since);
 
 } // namespace scanloom::tiles

@@ -36,15 +36,42 @@ ColumnRange fold_rows(const LogOdds* cells, std::int32_t rows) noexcept {
     return range;
 }
 
+/// Of cells that are their own codes.
+template <class Value>
+ReducedChunk reduce_codes(const mapping::ChunkCells<Value>& cells, std::int32_t block, const LayerStyle& style) {
+    ReducedChunk reduced;
+    reduced.side = kChunkSide / block;
+    auto* pixel = reduced.pixels.data();
+    for (std::int32_t j = 0; j < kChunkSide; j += block) {
+        std::array<Salience, kChunkSide> column{};
+        for (std::int32_t row = j; row < j + block; ++row) {
+            const Value* cell = &cells[static_cast<std::size_t>(row) * kChunkSide];
+            for (Salience& highest : column) highest = std::max(highest, style.salience[static_cast<Code>(*cell++)]);
+        }
+        for (std::int32_t i = 0; i < kChunkSide; i += block) {
+            *pixel++ = *std::max_element(column.begin() + i, column.begin() + i + block);
+        }
+    }
+    return reduced;
+}
+
 } // namespace
 
-ReducedChunk reduce(const mapping::OccupancyChunk& chunk, std::int32_t block) {
+ReducedChunk reduce(const mapping::ChunkCells<mapping::HimmCount>& cells, std::int32_t block) {
+    return reduce_codes(cells, block, style_of(mapping::Layer::kHimm));
+}
+
+ReducedChunk reduce(const mapping::ChunkCells<classify::CellClass>& cells, std::int32_t block) {
+    return reduce_codes(cells, block, style_of(mapping::Layer::kClassification));
+}
+
+ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int32_t block) {
     const auto& salience = salience_table();
     ReducedChunk reduced;
     reduced.side = kChunkSide / block;
     auto* pixel = reduced.pixels.data();
     for (std::int32_t j = 0; j < kChunkSide; j += block) {
-        const auto range = fold_rows(&chunk.at({0, j}), block);
+        const auto range = fold_rows(&cells[static_cast<std::size_t>(j) * kChunkSide], block);
         for (std::int32_t i = 0; i < kChunkSide; i += block) {
             const auto high = *std::max_element(range.high.begin() + i, range.high.begin() + i + block);
             const auto low = *std::min_element(range.low.begin() + i, range.low.begin() + i + block);

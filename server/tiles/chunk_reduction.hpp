@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/mapping/occupancy_layer.hpp"
-#include "server/tiles/occupancy_percent.hpp"
+#include "server/mapping/layer_cells.hpp"
+#include "server/tiles/layer_style.hpp"
 
 #include <array>
 #include <cstddef>
@@ -20,6 +20,8 @@ struct ReducedChunk {
 
 /// The greatest salience of each block of cells.
 /// Pre: block, the cells along its side, is a power of two from 1 to 64.
-[[nodiscard]] ReducedChunk reduce(const mapping::OccupancyChunk& chunk, std::int32_t block);
+[[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int32_t block);
+[[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<mapping::HimmCount>& cells, std::int32_t block);
+[[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<classify::CellClass>& cells, std::int32_t block);
 
 } // namespace scanloom::tiles

@@ -19,28 +19,34 @@ struct MapFrame {
 
     [[nodiscard]] std::int32_t width() const noexcept { return static_cast<std::int32_t>(cells.width()); }
     [[nodiscard]] std::int32_t height() const noexcept { return static_cast<std::int32_t>(cells.height()); }
+    [[nodiscard]] std::size_t pixels() const noexcept {
+        return static_cast<std::size_t>(cells.width() * cells.height());
+    }
 
     /// The lower-left corner of the lower-left pixel, metres.
     [[nodiscard]] Point2 origin() const noexcept { return {cells.i_begin * cell_size, cells.j_begin * cell_size}; }
 };
 
-/// A map or a part of it, at any distance from the origin.
+/// A layer of a map or of a part of it, at any distance from the origin.
 struct MapImage {
     MapFrame frame;
-    Bytes percent; ///< width * height, top row first: occupation 0..100, 255 unknown
+    mapping::Layer layer = mapping::Layer::kOccupancy;
+    Bytes codes; ///< width * height (see Code), top row first
 };
 
-/// The frame of what was asked for: all cells that any scan changed, or the cells a bbox overlaps, whether seen or not.
-/// A bbox is not clipped to what was seen: its image and its description, fetched one after the other while the map
-/// grows, have to fit each other.
+/// The frame of what was asked for: all cells in which the layer shows anything, or the cells a bbox overlaps, whether
+/// seen or not. A bbox is not clipped to what was seen: its image and its description, fetched one after the other
+/// while the map grows, have to fit each other.
+/// @param bytes_per_pixel  of the file to be made: what takes more may have fewer pixels
 /// Errors  kNotFound: no bbox, and nothing was seen yet; kTooLarge: more pixels than the limits;
 ///         kInvalidField: a bad bbox.
-[[nodiscard]] Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, const std::optional<Extent>& bbox);
+[[nodiscard]] Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer layer,
+                                         const std::optional<Extent>& bbox, std::int64_t bytes_per_pixel = 1);
 
 /// Cost: the pixels.
-[[nodiscard]] MapImage render_map(const mapping::Snapshot& snapshot, const MapFrame& frame);
+[[nodiscard]] MapImage render_map(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame);
 
-/// An 8-bit grey PNG in the greys of the tiles.
+/// A PNG in the colours of the tiles.
 [[nodiscard]] Bytes map_png(const MapImage& image);
 
 } // namespace scanloom::tiles

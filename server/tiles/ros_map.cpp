@@ -1,31 +1,69 @@
 #include "server/tiles/ros_map.hpp"
 
-#include "server/tiles/occupancy_percent.hpp"
+#include "server/classify/cell_class.hpp"
+#include "server/tiles/layer_style.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 namespace scanloom::tiles {
 namespace {
 
-std::uint8_t trinary_grey(Percent percent) noexcept {
-    if (percent <= 25) return 254;
-    if (percent >= 65 && percent <= 100) return 0;
-    return 205;
+constexpr std::uint8_t kFree = 254;
+constexpr std::uint8_t kOccupied = 0;
+constexpr std::uint8_t kNeither = 205;
+
+std::uint8_t grey_of_percent(Percent percent) noexcept {
+    if (percent <= 25) return kFree;
+    return percent >= 65 && percent <= 100 ? kOccupied : kNeither;
+}
+
+std::uint8_t grey_of_count(mapping::HimmCount count, const mapping::MapConfig& config) noexcept {
+    if (count <= config.class_himm_free) return kFree;
+    return count >= config.class_himm_occupied && count <= mapping::kHimmMax ? kOccupied : kNeither;
+}
+
+std::uint8_t grey_of_class(classify::CellClass cell) noexcept {
+    switch (cell) {
+    case classify::CellClass::kFree:
+    case classify::CellClass::kDanger: return kFree;
+    case classify::CellClass::kOccupied: return kOccupied;
+    case classify::CellClass::kUnexplored:
+    case classify::CellClass::kFrontier: break;
+    }
+    return kNeither;
+}
+
+std::array<std::uint8_t, 256> greys_of(mapping::Layer layer, const mapping::MapConfig& config) {
+    std::array<std::uint8_t, 256> greys{};
+    for (std::size_t code = 0; code < greys.size(); ++code) {
+        const auto value = static_cast<Code>(code);
+        switch (layer) {
+        case mapping::Layer::kHimm: greys[code] = grey_of_count(value, config); break;
+        case mapping::Layer::kClassification:
+            greys[code] = grey_of_class(static_cast<classify::CellClass>(value));
+            break;
+        case mapping::Layer::kOccupancy:
+        case mapping::Layer::kSonar: greys[code] = grey_of_percent(value); break;
+        }
+    }
+    return greys;
 }
 
 } // namespace
 
-Bytes map_pgm(const MapImage& image) {
+Bytes map_pgm(const MapImage& image, const mapping::MapConfig& config) {
+    const auto greys = greys_of(image.layer, config);
     const auto& frame = image.frame;
     const auto header = fmt::format("P5\n# CREATOR: Scanloom {:.3f} m/pix\n{} {}\n255\n", frame.cell_size,
                                     frame.width(), frame.height());
     Bytes pgm;
-    pgm.reserve(header.size() + image.percent.size());
+    pgm.reserve(header.size() + image.codes.size());
     pgm.assign(header.begin(), header.end());
-    std::transform(image.percent.begin(), image.percent.end(), std::back_inserter(pgm), trinary_grey);
+    std::ranges::transform(image.codes, std::back_inserter(pgm), [&](Code code) { return greys[code]; });
     return pgm;
 }
 

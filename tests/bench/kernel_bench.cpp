@@ -2,7 +2,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/tiles/changes.hpp"
 #include "server/tiles/map_image.hpp"
-#include "server/tiles/occupancy_tile.hpp"
+#include "server/tiles/tile.hpp"
 #include "tests/bench/float_grid.hpp"
 #include "tests/support/room_scans.hpp"
 
@@ -23,16 +23,20 @@ const std::vector<Scan>& scans() {
     return scans;
 }
 
-/// A layer and what it needs to take scans of the reference laser.
+/// The layers and what they need to take scans of the reference laser.
 class Weaver {
 public:
-    explicit Weaver(double cell_size_m) : layer_(config_of(cell_size_m)), geometry_{0.0, 5.0, 0.1, cell_size_m} {}
+    explicit Weaver(double cell_size_m)
+        : fan_(mapping::make_laser_fan(config_of(cell_size_m), testing_support::reference_laser().angles, 0.0)),
+          layers_(config_of(cell_size_m)) {}
 
     void integrate() {
         const Scan& scan = scans()[revision_ % scans().size()];
-        benchmark::DoNotOptimize(layer_.integrate(fan_, scan.ranges, scan.pose, geometry_, ++revision_));
+        double unbounded = HUGE_VAL;
+        benchmark::DoNotOptimize(
+            layers_.integrate({fan_, scan.ranges, scan.pose, {0.0, 5.0, false}}, ++revision_, unbounded));
     }
-    void take_snapshot() { benchmark::DoNotOptimize(layer_.snapshot()); }
+    void take_snapshot() { benchmark::DoNotOptimize(layers_.snapshot()); }
 
 private:
     static mapping::MapConfig config_of(double cell_size_m) {
@@ -41,9 +45,8 @@ private:
         return config;
     }
 
-    mapping::BeamFan fan_ = mapping::make_beam_fan(testing_support::reference_laser().angles, 0.0174533);
-    mapping::OccupancyLayer layer_;
-    mapping::ModelGeometry geometry_;
+    mapping::LaserFan fan_;
+    mapping::LaserLayers layers_;
     Revision revision_ = 0;
 };
 
@@ -99,29 +102,32 @@ tiles::TileKey tile_at_origin(const benchmark::State& state) {
 
 void Tile(benchmark::State& state) {
     const Snapshot& map = shown_map();
-    for (auto _ : state) benchmark::DoNotOptimize(tiles::occupancy_tile(map, tile_at_origin(state)));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(tiles::tile_codes(map, mapping::Layer::kOccupancy, tile_at_origin(state)));
 }
 
 void TilePng(benchmark::State& state) {
     const Snapshot& map = shown_map();
-    for (auto _ : state) benchmark::DoNotOptimize(tiles::occupancy_tile_png(map, tile_at_origin(state)));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(tiles::tile_png(map, mapping::Layer::kOccupancy, tile_at_origin(state)));
 }
 
 void ChangedTiles(benchmark::State& state) {
     const Snapshot& map = shown_map();
     const auto since = map.revision - static_cast<Revision>(state.range(0));
-    for (auto _ : state) benchmark::DoNotOptimize(tiles::changed_tiles(map, since));
+    for (auto _ : state) benchmark::DoNotOptimize(tiles::changed_tiles(map, mapping::Layer::kOccupancy, since));
 }
 
 void MapPng(benchmark::State& state) {
     const Snapshot& map = shown_map();
-    const auto frame = tiles::map_frame(map, {}).value();
-    for (auto _ : state) benchmark::DoNotOptimize(tiles::map_png(tiles::render_map(map, frame)));
+    const auto frame = tiles::map_frame(map, mapping::Layer::kOccupancy, {}).value();
+    for (auto _ : state)
+        benchmark::DoNotOptimize(tiles::map_png(tiles::render_map(map, mapping::Layer::kOccupancy, frame)));
 }
 
 void Digest(benchmark::State& state) {
     const Snapshot& map = shown_map();
-    for (auto _ : state) benchmark::DoNotOptimize(mapping::digest_of(map.occupancy));
+    for (auto _ : state) benchmark::DoNotOptimize(mapping::digest_of(map, mapping::Layer::kOccupancy));
 }
 
 BENCHMARK(Integrate)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);

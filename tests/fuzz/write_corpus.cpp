@@ -67,7 +67,9 @@ Scan full_scan() {
     return scan;
 }
 
-SessionOptions options() { return {0.05, 0.9, 0.1, 0.5, 0.001, 0.999, 0.1, 0.0175}; }
+SessionOptions options() {
+    return {.cell_size = 0.05, .ray_model = RayModel::kTraversal, .p_occupied = 0.9, .himm_increment = 3};
+}
 
 std::vector<wire::Message> messages() {
     return {

@@ -1,5 +1,6 @@
 #include "server/store/scan_log.hpp"
 #include "tests/integration/ingest_fixture.hpp"
+#include "tests/support/digests.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 /// Robots that speak as they should.
@@ -167,7 +168,7 @@ TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
         ASSERT_TRUE(alone.fold(RobotJoined{0, "r"}));
         ASSERT_TRUE(alone.fold(SensorDescribed{0, small_laser()}));
         for (const auto& scan : random_scans(n, 1, 60)) ASSERT_TRUE(alone.fold(ScanTaken{0, scan}));
-        EXPECT_EQ(ingest.digest("s" + std::to_string(n)), mapping::digest_of(alone.snapshot().occupancy));
+        EXPECT_EQ(ingest.digest("s" + std::to_string(n)), testing_support::digests_of(alone.snapshot()));
     }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/ingest/ingest_server.hpp"
-#include "server/mapping/digest.hpp"
+#include "tests/support/digests.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/random_scans.hpp"
 #include "tests/support/robot_socket.hpp"
@@ -58,7 +58,7 @@ public:
         return sessions_.find(session)->snapshot();
     }
     [[nodiscard]] std::string digest(const std::string& session) {
-        return mapping::digest_of(snapshot(session)->occupancy);
+        return testing_support::digests_of(*snapshot(session));
     }
 
 private:

@@ -25,6 +25,7 @@ struct Case {
     double aperture = std::numbers::pi / 180.0;
     double range_min = 0.0;
     double range_max = 3.0;
+    bool drop_no_return = false;
     double thickness = 0.1;
     double cell_size = 0.05;
     Pose2 T_map_sensor;
@@ -37,7 +38,7 @@ using Verdicts = std::map<std::pair<int, int>, oracle::Verdict>;
 inline Verdicts run_kernel(const Case& c) {
     Verdicts verdicts;
     const auto fan = make_beam_fan(c.angles, c.aperture);
-    const ModelGeometry geometry{c.range_min, c.range_max, c.thickness, c.cell_size};
+    const ModelGeometry geometry{{c.range_min, c.range_max, c.drop_no_return}, c.thickness, c.cell_size};
     inverse_sensor_model(fan, c.ranges, c.T_map_sensor, geometry, [&](Verdict verdict, int j, int begin, int end) {
         for (int i = begin; i < end; ++i) {
             const auto value = verdict == Verdict::kFree ? oracle::Verdict::kFree : oracle::Verdict::kOccupied;
@@ -59,7 +60,8 @@ inline oracle::Scene scene_of(const Case& c) {
     for (std::size_t b = 0; b < beam_count(c.angles); ++b) {
         scene.beam_angles.push_back(beam_angle(c.angles, b));
         const RangeMm mm = c.ranges[b];
-        scene.readings.push_back(mm == kInvalidRange ? NAN : mm == kNoReturn ? HUGE_VAL : mm / 1000.0);
+        const bool is_dropped = c.drop_no_return && mm / 1000.0 >= c.range_max;
+        scene.readings.push_back(mm == kInvalidRange || is_dropped ? NAN : mm == kNoReturn ? HUGE_VAL : mm / 1000.0);
     }
     scene.sight = oracle::sight_of(scene);
     return scene;

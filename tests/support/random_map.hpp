@@ -18,15 +18,18 @@ public:
         const auto key = grid::chunk_of(cell);
         auto [at, made] = chunks_.try_emplace(key);
         if (made) at->second.fill(mapping::kUnknownLogOdds);
-        at->second[mapping::OccupancyChunk::index_of(cell)] = value;
+        at->second[grid::index_in_chunk(cell)] = value;
         bounds_.include_row(cell.j, cell.i, cell.i + 1);
     }
 
     /// Every chunk carries the revision.
     [[nodiscard]] mapping::Snapshot snapshot(Revision revision = 1, mapping::MapConfig config = {}) const {
-        mapping::OccupancyLayer layer{config};
-        for (const auto& [key, cells] : chunks_) layer.restore(key, revision, cells);
-        return {revision, config, bounds_, layer.snapshot(), {}};
+        mapping::LaserLayers layers{config};
+        for (const auto& [key, cells] : chunks_) layers.restore(key, revision).occupancy = cells;
+        return {.revision = revision,
+                .config = config,
+                .bounds = {.laser = {.occupancy = bounds_}},
+                .laser = layers.snapshot()};
     }
 
     [[nodiscard]] const std::map<grid::ChunkKey, Cells>& chunks() const { return chunks_; }

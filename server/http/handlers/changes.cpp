@@ -14,14 +14,15 @@ Result<Response> get_changes(const session::SessionRegistry& sessions, const Cal
     if (!since) return since.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    if (auto known = check_layer_parameter(call.query); !known) return known.error();
+    const auto layer = layer_parameter(call.query);
+    if (!layer) return layer.error();
 
     const auto snapshot = (*session)->snapshot();
     boost::json::array changed;
-    for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, since_in(*snapshot, *since))) {
+    for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, *layer, since_in(*snapshot, *since))) {
         changed.push_back(boost::json::object{{"z", key.zoom}, {"x", key.x}, {"y", key.y}, {"revision", revision}});
     }
-    return ok(boost::json::object{{"layer", kOccupancy},
+    return ok(boost::json::object{{"layer", mapping::name_of(*layer)},
                                   {"since", *since},
                                   {"reset", since_in(*snapshot, *since) != *since},
                                   {"revision", snapshot->revision},

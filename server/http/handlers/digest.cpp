@@ -11,12 +11,16 @@ Result<Response> get_digest(const session::SessionRegistry& sessions, const Call
     if (auto known = call.query.check_only({"layer"}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    if (auto known = check_layer_parameter(call.query); !known) return known.error();
+    const auto layer = layer_parameter(call.query);
+    if (!layer) return layer.error();
 
     const auto snapshot = (*session)->snapshot();
-    return ok(
-        boost::json::object{{"revision", snapshot->revision},
-                            {"layers", boost::json::object{{kOccupancy, mapping::digest_of(snapshot->occupancy)}}}});
+    boost::json::object layers;
+    for (const mapping::Layer each : mapping::kLayers) {
+        const bool is_asked = !call.query.find("layer") || each == *layer;
+        if (is_asked) layers[mapping::name_of(each)] = mapping::digest_of(*snapshot, each);
+    }
+    return ok(boost::json::object{{"revision", snapshot->revision}, {"layers", std::move(layers)}});
 }
 
 } // namespace scanloom::http

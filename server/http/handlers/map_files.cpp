@@ -6,6 +6,7 @@
 #include "server/http/number.hpp"
 #include "server/http/problem.hpp"
 #include "server/tiles/map_image.hpp"
+#include "server/tiles/map_table.hpp"
 #include "server/tiles/ros_map.hpp"
 
 #include <fmt/format.h>
@@ -44,60 +45,84 @@ Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query) {
 /// What a request for a map comes to before anything is drawn.
 struct Wanted {
     std::shared_ptr<const mapping::Snapshot> snapshot;
+    mapping::Layer layer;
     tiles::MapFrame frame;
     std::string etag;
 };
 
-Result<Wanted> wanted_map(const session::SessionRegistry& sessions, const Call& call) {
+/// How much a file takes for each cell of a layer, at most and before compression.
+using BytesPerCell = std::int64_t (*)(mapping::Layer);
+
+std::int64_t one_byte(mapping::Layer) { return 1; }
+
+Result<Wanted> wanted_map(const session::SessionRegistry& sessions, const Call& call, BytesPerCell bytes_per_cell) {
     if (auto known = call.query.check_only({"layer", "bbox"}); !known) return known.error();
     const auto bbox = bbox_parameter(call.query);
     if (!bbox) return bbox.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    if (auto known = check_layer_parameter(call.query); !known) return known.error();
+    const auto layer = layer_parameter(call.query);
+    if (!layer) return layer.error();
 
     auto snapshot = (*session)->snapshot();
-    const auto frame = tiles::map_frame(*snapshot, *bbox);
+    const auto frame = tiles::map_frame(*snapshot, *layer, *bbox, bytes_per_cell(*layer));
     if (!frame) return frame.error();
     auto etag = fmt::format("\"{}-map-{}\"", session_tag((*session)->info()), snapshot->revision);
-    return Wanted{std::move(snapshot), *frame, std::move(etag)};
+    return Wanted{std::move(snapshot), *layer, *frame, std::move(etag)};
 }
 
 Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
     return ok(content_type, std::move(body)).set("ETag", etag).set("Cache-Control", kRevalidate);
 }
 
-using Write = tiles::Bytes (*)(const tiles::MapImage&);
-
-Result<Response> get_image(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call,
-                           std::string_view content_type, Write write) {
-    const auto wanted = wanted_map(sessions, call);
+/// Makes the file of what was asked for: bytes or text.
+template <class Write>
+Result<Response> get_file(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call,
+                          std::string_view content_type, BytesPerCell bytes_per_cell, Write&& write) {
+    const auto wanted = wanted_map(sessions, call, bytes_per_cell);
     if (!wanted) return wanted.error();
     if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
-    struct Image {
+    using Bytes = decltype(write(*wanted));
+    struct File {
         std::shared_ptr<const void> slot;
-        tiles::Bytes bytes;
+        Bytes bytes;
     };
-    const auto pixels = static_cast<std::size_t>(wanted->frame.cells.width() * wanted->frame.cells.height());
-    auto slot = slots.take(pixels); // a byte each, before compression
+    auto slot = slots.take(wanted->frame.pixels() * static_cast<std::size_t>(bytes_per_cell(wanted->layer)));
     if (!slot) return slot.error();
-    auto image = std::make_shared<Image>(Image{std::move(*slot), {}});
-    image->bytes = write(tiles::render_map(*wanted->snapshot, wanted->frame));
-    return map_answer(content_type, Body(std::shared_ptr<const tiles::Bytes>(image, &image->bytes)), wanted->etag);
+    auto file = std::make_shared<File>(File{std::move(*slot), {}});
+    file->bytes = write(*wanted);
+    return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), wanted->etag);
+}
+
+tiles::MapImage rendered(const Wanted& wanted) {
+    return tiles::render_map(*wanted.snapshot, wanted.layer, wanted.frame);
 }
 
 } // namespace
 
 Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
-    return get_image(sessions, slots, call, "image/png", tiles::map_png);
+    return get_file(sessions, slots, call, "image/png", one_byte,
+                    [](const Wanted& wanted) { return tiles::map_png(rendered(wanted)); });
 }
 
 Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
-    return get_image(sessions, slots, call, "image/x-portable-graymap", tiles::map_pgm);
+    return get_file(sessions, slots, call, "image/x-portable-graymap", one_byte,
+                    [](const Wanted& wanted) { return tiles::map_pgm(rendered(wanted), wanted.snapshot->config); });
+}
+
+Result<Response> get_map_csv(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+    const auto text_per_cell = [](mapping::Layer) -> std::int64_t { return 4; }; // "100,"
+    return get_file(sessions, slots, call, "text/csv", text_per_cell,
+                    [](const Wanted& wanted) { return tiles::map_csv(rendered(wanted)); });
+}
+
+Result<Response> get_map_npy(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+    return get_file(sessions, slots, call, "application/octet-stream", tiles::npy_bytes_per_cell,
+                    [](const Wanted& wanted) { return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame); });
 }
 
 Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call) {
-    const auto wanted = wanted_map(sessions, call);
+    const auto wanted = wanted_map(sessions, call, one_byte);
     if (!wanted) return wanted.error();
     if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
     return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), wanted->etag);

@@ -7,13 +7,18 @@
 
 namespace scanloom::http {
 
-/// GET .../map.png, .../map.pgm, .../map.yaml: the whole map, or with `bbox=min_x,min_y,max_x,max_y`
-/// (metres) the cells which that rectangle overlaps. The PGM and the YAML are what ROS loads.
+/// GET .../map.png, .../map.pgm, .../map.yaml, .../map.csv, .../map.npy: the whole map of a layer, or with
+/// `bbox=min_x,min_y,max_x,max_y` (metres) the cells which that rectangle overlaps. The PGM and the YAML are what ROS
+/// loads.
 ///
-/// A large image takes a slot until its last byte was sent; when there is none, the answer is 503.
+/// A large file takes a slot until its last byte was sent; when there is none, the answer is 503.
 [[nodiscard]] Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots,
                                            const Call& call);
 [[nodiscard]] Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots,
+                                           const Call& call);
+[[nodiscard]] Result<Response> get_map_csv(const session::SessionRegistry& sessions, const AnswerSlots& slots,
+                                           const Call& call);
+[[nodiscard]] Result<Response> get_map_npy(const session::SessionRegistry& sessions, const AnswerSlots& slots,
                                            const Call& call);
 [[nodiscard]] Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call);
 

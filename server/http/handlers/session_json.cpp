@@ -21,19 +21,41 @@ std::string rfc3339(double seconds) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(std::floor(seconds))));
 }
 
+boost::json::value to_json(const mapping::ConfigValue& value) {
+    return std::visit([](const auto& held) { return boost::json::value(held); }, value);
+}
+
 boost::json::object config_json(const mapping::MapConfig& config) {
     boost::json::object json;
-    for (const auto& field : mapping::config_fields()) json[field.name] = config.*field.value;
+    for (const auto& field : mapping::config_fields()) json[field.name] = to_json(mapping::value_of(field, config));
     return json;
 }
 
+/// As a field of the configuration takes it; what no field takes becomes an empty text.
+mapping::ConfigValue config_value(const boost::json::value& json) {
+    if (json.is_bool()) return json.get_bool();
+    if (json.is_string()) return std::string_view(json.get_string());
+    boost::system::error_code not_whole;
+    if (const auto whole = json.to_number<std::int32_t>(not_whole); !not_whole) return whole;
+    boost::system::error_code no_number;
+    if (const auto number = json.to_number<double>(no_number); !no_number) return number;
+    return std::string_view();
+}
+
 boost::json::value bounds_json(const mapping::Snapshot& snapshot) {
-    if (snapshot.bounds.empty()) return nullptr;
-    const auto extent = tiles::extent_of(snapshot.bounds, snapshot.config.cell_size);
+    const auto bounds = mapping::bounds_of(snapshot);
+    if (bounds.empty()) return nullptr;
+    const auto extent = tiles::extent_of(bounds, snapshot.config.cell_size);
     return boost::json::object{{"min_x", rounded_metres(extent.min_x)},
                                {"min_y", rounded_metres(extent.min_y)},
                                {"max_x", rounded_metres(extent.max_x)},
                                {"max_y", rounded_metres(extent.max_y)}};
+}
+
+boost::json::array layer_names() {
+    boost::json::array names;
+    for (const mapping::Layer layer : mapping::kLayers) names.emplace_back(mapping::name_of(layer));
+    return names;
 }
 
 boost::json::value pose_json(const std::optional<Pose2>& pose) {
@@ -66,7 +88,7 @@ boost::json::object to_json(const session::Session& session) {
                              {"revision", snapshot->revision},
                              {"scans", scans},
                              {"config", config_json(info.config)},
-                             {"layers", boost::json::array{kOccupancy}},
+                             {"layers", layer_names()},
                              {"bounds", bounds_json(*snapshot)},
                              {"robots", std::move(robots)}};
     if (failure) json["reason"] = failure->message;
@@ -95,9 +117,9 @@ Result<SessionRequest> parse_session_request(std::string_view body) {
     if (!name) return name.error();
     wanted.name = std::move(*name);
     for (const auto& field : mapping::config_fields()) {
-        const auto number = read_number(*object, field.name);
-        if (!number) return number.error();
-        wanted.options.*field.option = *number;
+        const auto* given = object->if_contains(field.name);
+        if (given == nullptr) continue;
+        if (auto set = mapping::set_option(wanted.options, field, config_value(*given)); !set) return set.error();
     }
     return wanted;
 }

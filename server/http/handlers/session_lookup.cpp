@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace scanloom::http {
@@ -30,12 +32,17 @@ std::string session_tag(const session::SessionInfo& info, const MakingVersions& 
     return fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
 }
 
-Result<> check_layer(std::string_view layer) {
-    if (layer == kOccupancy) return {};
-    return Error{Errc::kNotFound, fmt::format("there is no layer {}; possible is {}", in_quotes(layer), kOccupancy)};
+Result<mapping::Layer> find_layer(std::string_view name) {
+    if (const auto layer = mapping::layer_of(name)) return *layer;
+    std::array<std::string_view, mapping::kLayers.size()> names;
+    std::ranges::transform(mapping::kLayers, names.begin(), mapping::name_of);
+    return Error{Errc::kNotFound,
+                 fmt::format("there is no layer {}; possible are {}", in_quotes(name), fmt::join(names, ", "))};
 }
 
-Result<> check_layer_parameter(const Query& query) { return check_layer(query.find("layer").value_or(kOccupancy)); }
+Result<mapping::Layer> layer_parameter(const Query& query) {
+    return find_layer(query.find("layer").value_or(mapping::name_of(mapping::Layer::kOccupancy)));
+}
 
 Result<Revision> since_parameter(const Query& query) {
     const auto text = query.find("since").value_or("0");

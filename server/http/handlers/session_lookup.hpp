@@ -12,8 +12,6 @@
 
 namespace scanloom::http {
 
-inline constexpr std::string_view kOccupancy = "occupancy";
-
 /// The session of the call's path.
 /// Errors  kNotFound; kInternal: its log is damaged, and so it could not be recovered;
 ///         kOverloaded: it could not be loaded for want of memory.
@@ -32,11 +30,11 @@ struct MakingVersions {
 [[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
 
 /// Errors  kNotFound: no such layer.
-[[nodiscard]] Result<> check_layer(std::string_view layer);
+[[nodiscard]] Result<mapping::Layer> find_layer(std::string_view name);
 
-/// The layer parameter, if it is given.
+/// The layer parameter; occupancy when it is not given.
 /// Errors  kNotFound: no such layer.
-[[nodiscard]] Result<> check_layer_parameter(const Query& query);
+[[nodiscard]] Result<mapping::Layer> layer_parameter(const Query& query);
 
 /// The since parameter, 0 when it is not given.
 /// Errors  kInvalidField: not a revision.

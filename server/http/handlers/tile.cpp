@@ -4,7 +4,7 @@
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
-#include "server/tiles/occupancy_tile.hpp"
+#include "server/tiles/tile.hpp"
 #include "server/tiles/tile_version.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ bool is_final(const Version& version, std::string_view tag, Revision tile, Revis
     return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
-using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, tiles::TileKey);
+using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, mapping::Layer, tiles::TileKey);
 
 Result<Response> get_tile(const session::SessionRegistry& sessions, const Call& call, std::string_view content_type,
                           Render render) {
@@ -48,26 +48,26 @@ Result<Response> get_tile(const session::SessionRegistry& sessions, const Call& 
     if (!key) return key.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    const auto& layer = call.arguments["layer"];
-    if (auto ok = check_layer(layer); !ok) return ok.error();
+    const auto layer = find_layer(call.arguments["layer"]);
+    if (!layer) return layer.error();
 
     const auto snapshot = (*session)->snapshot();
     const auto tag = session_tag((*session)->info());
-    const Revision revision = tiles::tile_revision(*snapshot, *key);
-    const auto etag = tiles::etag_of(tag, layer, *key, revision);
+    const Revision revision = tiles::tile_revision(*snapshot, *layer, *key);
+    const auto etag = tiles::etag_of(tag, mapping::name_of(*layer), *key, revision);
     const auto kept = is_final(*version, tag, revision, snapshot->revision) ? kImmutable : kRevalidate;
     if (if_none_match_has(call.request.if_none_match, etag)) return not_modified(etag, kept);
-    return ok(content_type, Body(render(*snapshot, *key))).set("ETag", etag).set("Cache-Control", kept);
+    return ok(content_type, Body(render(*snapshot, *layer, *key))).set("ETag", etag).set("Cache-Control", kept);
 }
 
 } // namespace
 
 Result<Response> get_tile_png(const session::SessionRegistry& sessions, const Call& call) {
-    return get_tile(sessions, call, "image/png", tiles::occupancy_tile_png);
+    return get_tile(sessions, call, "image/png", tiles::tile_png);
 }
 
 Result<Response> get_tile_bin(const session::SessionRegistry& sessions, const Call& call) {
-    return get_tile(sessions, call, "application/octet-stream", tiles::occupancy_tile);
+    return get_tile(sessions, call, "application/octet-stream", tiles::tile_codes);
 }
 
 } // namespace scanloom::http

@@ -23,13 +23,14 @@ Result<Response> get_tilejson(const session::SessionRegistry& sessions, const Ca
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    const auto& layer = call.arguments["layer"];
-    if (auto known = check_layer(layer); !known) return known.error();
+    const auto layer = find_layer(call.arguments["layer"]);
+    if (!layer) return layer.error();
 
     const auto& info = (*session)->info();
     const double cell_size = info.config.cell_size;
-    const auto seen = (*session)->snapshot()->bounds;
-    const auto address = fmt::format("/api/v1/sessions/{}/tiles/{}/{{z}}/{{x}}/{{y}}.png", info.name, layer);
+    const auto seen = mapping::bounds_of(*(*session)->snapshot(), *layer);
+    const auto address =
+        fmt::format("/api/v1/sessions/{}/tiles/{}/{{z}}/{{x}}/{{y}}.png", info.name, mapping::name_of(*layer));
     return ok(boost::json::object{
         {"tilejson", "3.0.0"},
         {"name", info.name},

@@ -36,12 +36,44 @@ inline Scan example_scan(std::uint64_t seq = 1) {
 
 inline ScanBatch example_batch() { return {{example_scan(7), example_scan(8), example_scan(9), example_scan(10)}}; }
 
+/// Each option set, and to a value of its own.
+inline SessionOptions every_option() {
+    return {.cell_size = 0.1,
+            .ray_model = RayModel::kBresenham,
+            .accumulate = true,
+            .hit_radius = 0.21,
+            .drop_no_return = true,
+            .p_occupied = 0.8,
+            .p_free = 0.2,
+            .p_prior = 0.5,
+            .p_min = 0.01,
+            .p_max = 0.99,
+            .obstacle_thickness = 0.25,
+            .beam_aperture = 0.125,
+            .himm_increment = 5,
+            .himm_decrement = 2,
+            .himm_obstacle_thickness = 0.3,
+            .himm_beam_aperture = 0.0625,
+            .sonar_obstacle_thickness = 0.6,
+            .sonar_beam_aperture = 0.4,
+            .sonar_p_occupied_max = 0.97,
+            .sonar_p_min = 0.02,
+            .sonar_p_max = 0.98,
+            .class_source = ClassSource::kHimm,
+            .class_p_occupied = 0.7,
+            .class_p_free = 0.3,
+            .class_himm_occupied = 9,
+            .class_himm_free = 3,
+            .danger_cells = 4,
+            .danger_radius = 0.35};
+}
+
 inline Hello example_hello() {
     Hello hello;
     hello.robot = "robot-1";
     hello.session = "Intel_Lab";
     hello.token = "secret";
-    hello.create = SessionOptions{0.1, 0.8, 0.2, 0.5, 0.01, 0.99, 0.25, 0.125};
+    hello.create = every_option();
     hello.client = "a robot 1.0";
     hello.source = "carmen:" + std::string(57, '9'); // as long as it may be
     return hello;

@@ -25,13 +25,13 @@ public:
             plane = std::make_unique<OccPlane>();
             plane->fill(OccType::kUnexplored);
         }
-        (*plane)[ClassChunk::index_of(cell)] = type;
+        (*plane)[grid::index_in_chunk(cell)] = type;
         if (std::ranges::find(changed_, key) == changed_.end()) changed_.push_back(key);
     }
 
     [[nodiscard]] OccType at(Cell cell) const {
         const OccPlane* plane = find(grid::chunk_of(cell));
-        return plane == nullptr ? OccType::kUnexplored : (*plane)[ClassChunk::index_of(cell)];
+        return plane == nullptr ? OccType::kUnexplored : (*plane)[grid::index_in_chunk(cell)];
     }
 
     [[nodiscard]] const OccPlane* find(ChunkKey key) const {

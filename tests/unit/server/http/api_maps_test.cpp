@@ -61,9 +61,11 @@ TEST_F(ApiTest, DigestIsThatOfTheSnapshot) {
     create("a");
     stream("a", 2);
     const auto snapshot = registry_.find("a")->snapshot();
-    EXPECT_EQ(
-        get_json("/api/v1/sessions/a/digest"),
-        (boost::json::object{{"revision", 4}, {"layers", {{"occupancy", mapping::digest_of(snapshot->occupancy)}}}}));
+    boost::json::object layers;
+    for (const auto layer : mapping::kLayers) layers[mapping::name_of(layer)] = mapping::digest_of(*snapshot, layer);
+    EXPECT_EQ(get_json("/api/v1/sessions/a/digest"), (boost::json::object{{"revision", 4}, {"layers", layers}}));
+    EXPECT_EQ(get_json("/api/v1/sessions/a/digest?layer=himm"),
+              (boost::json::object{{"revision", 4}, {"layers", {{"himm", layers.at("himm")}}}}));
 }
 
 TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {

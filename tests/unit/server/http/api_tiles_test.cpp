@@ -1,7 +1,7 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
 #include "server/http/handlers/session_lookup.hpp"
-#include "server/tiles/occupancy_tile.hpp"
+#include "server/tiles/tile.hpp"
 
 #include <boost/json/array.hpp>
 
@@ -16,7 +16,7 @@ TEST_F(ApiTest, TilesShowTheMap) {
     const auto bytes = get("/api/v1/sessions/a/tiles/occupancy/9/256/255.bin");
     EXPECT_EQ(bytes.get("Content-Type"), "application/octet-stream");
     ASSERT_EQ(bytes.body.bytes().size(), 65'536U);
-    const auto expected = tiles::occupancy_tile(*snapshot, {9, 256, 255});
+    const auto expected = tiles::tile_codes(*snapshot, mapping::Layer::kOccupancy, {9, 256, 255});
     EXPECT_TRUE(std::equal(expected->begin(), expected->end(), bytes.body.bytes().begin(),
                            [](std::uint8_t a, char b) { return a == static_cast<std::uint8_t>(b); }));
     const auto image = get("/api/v1/sessions/a/tiles/occupancy/0/0/0.png");

@@ -22,20 +22,24 @@ Cells random_cells(std::mt19937& random) {
     return cells;
 }
 
+std::string digest_of_occupancy(LaserLayers& layers) {
+    return digest_of(Snapshot{.laser = layers.snapshot()}, Layer::kOccupancy);
+}
+
 TEST(Digest, OfTwoChunksIsTheHashOfTheirDocumentedBytes) {
-    OccupancyLayer layer{MapConfig{}};
+    LaserLayers layers{MapConfig{}};
     auto cells = unknown_cells();
     cells[0] = 0x0102;
     cells[4095] = -2;
-    layer.restore({.cj = -1, .ci = 3}, 1, cells);
-    layer.restore({.cj = -1, .ci = -258}, 2, cells);
+    layers.restore({.cj = -1, .ci = 3}, 1).occupancy = cells;
+    layers.restore({.cj = -1, .ci = -258}, 2).occupancy = cells;
     // Computed by Python's hashlib from struct.pack('<ii4096h', ci, cj, *cells), (-258, -1) first.
-    EXPECT_EQ(digest_of(layer.snapshot()), "a965e4481f9038685fc253d238380f7ce51e4bdcaaed45a95c1553de7ee282ff");
+    EXPECT_EQ(digest_of_occupancy(layers), "a965e4481f9038685fc253d238380f7ce51e4bdcaaed45a95c1553de7ee282ff");
 }
 
 TEST(Digest, OfNothingIsTheHashOfNoBytes) {
-    OccupancyLayer layer{MapConfig{}};
-    EXPECT_EQ(digest_of(layer.snapshot()), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    LaserLayers layers{MapConfig{}};
+    EXPECT_EQ(digest_of_occupancy(layers), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
@@ -43,27 +47,27 @@ TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
     std::vector<std::pair<grid::ChunkKey, Cells>> chunks;
     for (std::int32_t n = 0; n < 40; ++n) chunks.push_back({{n % 9 - 4, n * 37 % 101 - 50}, random_cells(random)});
 
-    OccupancyLayer first{MapConfig{}};
+    LaserLayers first{MapConfig{}};
     Revision revision = 0;
-    for (const auto& [key, cells] : chunks) first.restore(key, ++revision, cells);
+    for (const auto& [key, cells] : chunks) first.restore(key, ++revision).occupancy = cells;
 
-    OccupancyLayer second{MapConfig{}};
-    second.restore({.cj = 1000, .ci = -1000}, 1, unknown_cells());
+    LaserLayers second{MapConfig{}};
+    second.restore({.cj = 1000, .ci = -1000}, 1).occupancy = unknown_cells();
     std::shuffle(chunks.begin(), chunks.end(), random);
     for (const auto& [key, cells] : chunks) {
-        second.restore(key, 500, cells);
+        second.restore(key, 500).occupancy = cells;
         static_cast<void>(second.snapshot());
     }
-    EXPECT_EQ(digest_of(first.snapshot()), digest_of(second.snapshot()));
+    EXPECT_EQ(digest_of_occupancy(first), digest_of_occupancy(second));
 }
 
 TEST(Digest, ChangesWithAnyCellAndWithThePlaceOfAChunk) {
     std::mt19937 random(8);
     auto cells = random_cells(random);
     const auto digest_at = [&](grid::ChunkKey key) {
-        OccupancyLayer layer{MapConfig{}};
-        layer.restore(key, 1, cells);
-        return digest_of(layer.snapshot());
+        LaserLayers layers{MapConfig{}};
+        layers.restore(key, 1).occupancy = cells;
+        return digest_of_occupancy(layers);
     };
     const auto before = digest_at({2, 3});
     EXPECT_NE(before, digest_at({3, 2}));

@@ -52,6 +52,7 @@ public:
         c.cell_size = std::array{0.01, 0.05, 0.1, 0.5}[below(4)];
         c.range_max = c.cell_size * uniform(4.0, 32.0);
         c.range_min = below(2) == 0 ? 0.0 : c.range_max * uniform(0.0, 0.3);
+        c.drop_no_return = below(4) == 0;
         c.thickness = below(2) == 0 ? 0.1 : c.cell_size * uniform(0.2, 6.0);
         c.aperture = below(3) == 0 ? uniform(0.001, 1.5) : kDegree;
         c.T_map_sensor = {uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-kPi, kPi)};

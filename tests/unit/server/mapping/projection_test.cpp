@@ -1,13 +1,21 @@
 #include "server/mapping/projection.hpp"
 
+#include "server/mapping/reach.hpp"
+#include "tests/support/digests.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace scanloom::mapping {
 namespace {
+
+using testing_support::digests_of;
 
 Sensor laser() {
     Sensor sensor;
@@ -17,29 +25,67 @@ Sensor laser() {
     return sensor;
 }
 
+Sensor sonar_ring() {
+    Sensor sensor;
+    sensor.id = 3;
+    sensor.kind = SensorKind::kSonar;
+    sensor.angles = UniformAngles{-std::numbers::pi, 2 * std::numbers::pi / 8, 8};
+    sensor.aperture = 0.5;
+    sensor.range_max = 3.0;
+    return sensor;
+}
+
+/// Mostly of a laser, now and then of a ring of sonars.
 std::vector<LogEntry> random_log(unsigned seed, std::size_t scans) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> metres(-8.0, 8.0);
-    std::vector<LogEntry> log{RobotJoined{0, "r0"}, SensorDescribed{0, laser()}};
+    std::vector<LogEntry> log{RobotJoined{0, "r0"}, SensorDescribed{0, laser()}, SensorDescribed{0, sonar_ring()}};
     for (std::uint64_t seq = 1; seq <= scans; ++seq) {
+        const bool by_sonar = seq % 4 == 0;
         Scan scan;
         scan.seq = seq;
         scan.stamp = static_cast<double>(seq) * 0.1;
-        scan.sensor = 2;
+        scan.sensor = by_sonar ? 3 : 2;
         scan.pose = {metres(random), metres(random), metres(random)};
-        for (int beam = 0; beam < 90; ++beam) scan.ranges.push_back(static_cast<RangeMm>(random() % 4500));
+        for (int beam = 0; beam < (by_sonar ? 8 : 90); ++beam) {
+            scan.ranges.push_back(static_cast<RangeMm>(random() % 4500));
+        }
         log.push_back(ScanTaken{0, std::move(scan)});
     }
     return log;
 }
 
-std::map<grid::ChunkKey, std::vector<LogOdds>> cells_of(const OccupancyView& view) {
-    std::map<grid::ChunkKey, std::vector<LogOdds>> cells;
-    view.visit({}, 0, [&](grid::ChunkKey key, const OccupancyChunk& chunk) {
-        cells[key].assign(chunk.cells.begin(), chunk.cells.end());
-    });
-    return cells;
-}
+constexpr std::size_t kBeforeScans = 3; // entries of random_log()
+
+/// The cells of the occupancy layer, as they were at some time.
+class Occupancy {
+public:
+    explicit Occupancy(const Snapshot& snapshot) : view_(snapshot.laser) {}
+    [[nodiscard]] LogOdds at(grid::Cell cell) const {
+        const auto* chunk = view_.find(grid::chunk_of(cell));
+        return chunk == nullptr ? kUnknownLogOdds : chunk->occupancy[grid::index_in_chunk(cell)];
+    }
+
+private:
+    LaserView view_;
+};
+
+/// Every way of weaving that takes its own path.
+class WeavingBy : public testing::TestWithParam<std::pair<const std::string, SessionOptions>> {
+protected:
+    [[nodiscard]] static MapConfig config() { return resolve(GetParam().second).value(); }
+};
+
+const std::map<std::string, SessionOptions> kWaysOfWeaving = {
+    {"Sectors", {}},
+    {"Bresenham", {.ray_model = RayModel::kBresenham, .hit_radius = 0.2}},
+    {"TraversalAndHimmClasses", {.ray_model = RayModel::kTraversal, .class_source = ClassSource::kHimm}},
+    {"Accumulation", {.ray_model = RayModel::kBresenham, .accumulate = true}},
+    {"OtherApertures", {.drop_no_return = true, .himm_beam_aperture = 0.2, .danger_radius = 0.4}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Projection, WeavingBy, testing::ValuesIn(kWaysOfWeaving),
+                         [](const auto& tried) { return tried.param.first; });
 
 TEST(Projection, FollowsTheUpdateRuleCellByCell) {
     Projection projection(*resolve({.cell_size = 0.1, .p_prior = 0.4}));
@@ -54,17 +100,16 @@ TEST(Projection, FollowsTheUpdateRuleCellByCell) {
         Scan scan{.seq = seq, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}};
         ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
         const auto snapshot = projection.snapshot();
-        const auto* chunk = snapshot.occupancy.find({0, 0});
-        ASSERT_NE(chunk, nullptr);
+        const Occupancy occupancy(snapshot);
         const double expected =
             seq <= 2 ? free_cell_steps[seq - 1]
                      : std::max(log_odds_of(0.001), l0 + static_cast<double>(seq) * (log_odds_of(0.1) - l0));
-        EXPECT_NEAR(chunk->at({5, 0}) / kLogOddsScale, expected, 0.006);
-        EXPECT_EQ(chunk->at({5, 1}), kUnknownLogOdds);
+        EXPECT_NEAR(occupancy.at({5, 0}) / kLogOddsScale, expected, 0.006);
+        EXPECT_EQ(occupancy.at({5, 1}), kUnknownLogOdds);
     }
     const auto snapshot = projection.snapshot();
-    EXPECT_NEAR(probability_of(snapshot.occupancy.find({0, 0})->at({5, 0})), 0.001, 1e-6) << "clamped";
-    EXPECT_NEAR(probability_of(snapshot.occupancy.find({0, 0})->at({10, 0})), 0.999, 1e-6) << "clamped";
+    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({5, 0})), 0.001, 1e-6) << "clamped";
+    EXPECT_NEAR(probability_of(Occupancy(snapshot).at({10, 0})), 0.999, 1e-6) << "clamped";
 }
 
 TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
@@ -76,7 +121,7 @@ TEST(Projection, ACellBackAtEvenOddsIsKnownNotUnseen) {
     ASSERT_TRUE(projection.fold(SensorDescribed{0, beam}));
     ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
     ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 2, .pose = {0.05, 0.05, 0.0}, .ranges = {2000}}}));
-    EXPECT_EQ(projection.snapshot().occupancy.find({0, 0})->at({10, 0}), 0);
+    EXPECT_EQ(Occupancy(projection.snapshot()).at({10, 0}), 0);
 }
 
 TEST(Projection, EvidenceFromOneEndOfTheClampToTheOtherKeepsItsSign) {
@@ -88,31 +133,31 @@ TEST(Projection, EvidenceFromOneEndOfTheClampToTheOtherKeepsItsSign) {
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
     ASSERT_TRUE(projection.fold(SensorDescribed{0, beam}));
     ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 1, .pose = {0.05, 0.05, 0.0}, .ranges = {1000}}}));
-    EXPECT_LT(probability_of(projection.snapshot().occupancy.find({0, 0})->at({5, 0})), 0.01);
+    EXPECT_LT(probability_of(Occupancy(projection.snapshot()).at({5, 0})), 0.01);
 }
 
-TEST(Projection, SnapshotsTakenBetweenScansChangeNothing) {
+TEST_P(WeavingBy, SnapshotsTakenBetweenScansChangeNothing) {
     const auto log = random_log(1, 60);
-    Projection plain{MapConfig{}};
-    Projection watched{MapConfig{}};
+    Projection plain{config()};
+    Projection watched{config()};
     std::vector<Snapshot> kept;
     for (const auto& entry : log) {
         ASSERT_TRUE(plain.fold(entry));
         ASSERT_TRUE(watched.fold(entry));
         kept.push_back(watched.snapshot());
     }
-    EXPECT_EQ(cells_of(plain.snapshot().occupancy), cells_of(watched.snapshot().occupancy));
-    Projection again{MapConfig{}};
+    EXPECT_EQ(digests_of(plain.snapshot()), digests_of(watched.snapshot()));
+    Projection again{config()};
     for (std::size_t n = 0; n < log.size(); ++n) {
         ASSERT_TRUE(again.fold(log[n]));
         if (n % 13 == 0) {
-            EXPECT_EQ(cells_of(kept[n].occupancy), cells_of(again.snapshot().occupancy)) << "after entry " << n;
-            EXPECT_EQ(kept[n].robots.front().trajectory.size(), n < 2 ? 0 : n - 1);
+            EXPECT_EQ(digests_of(kept[n]), digests_of(again.snapshot())) << "after entry " << n;
+            EXPECT_EQ(kept[n].robots.front().trajectory.size(), n < kBeforeScans ? 0 : n + 1 - kBeforeScans);
         }
     }
 }
 
-TEST(Projection, ScansFoldedALittleAtATimeGiveTheSameMap) {
+TEST_P(WeavingBy, ScansFoldedALittleAtATimeGiveTheSameMap) {
     auto log = random_log(3, 40);
     for (auto& entry : log) { // angles of its own, in any order: a fan that is made for one scan
         auto* taken = std::get_if<ScanTaken>(&entry);
@@ -121,13 +166,13 @@ TEST(Projection, ScansFoldedALittleAtATimeGiveTheSameMap) {
         for (std::size_t n = 0; n < angles.size(); ++n) angles[n] = 0.7 * static_cast<double>(n * 5 % angles.size());
         taken->scan.angles = angles;
     }
-    Projection whole{MapConfig{}};
-    Projection sliced{MapConfig{}};
+    Projection whole{config()};
+    Projection sliced{config()};
     std::size_t slices = 0;
     for (const auto& entry : log) {
         ASSERT_TRUE(whole.fold(entry));
         for (bool in = false; !in; ++slices) {
-            double work = 100.0;
+            double work = 1000.0;
             in = sliced.fold(entry, work).value();
             EXPECT_EQ(sliced.revision(), in ? whole.revision() : whole.revision() - 1);
         }
@@ -136,39 +181,45 @@ TEST(Projection, ScansFoldedALittleAtATimeGiveTheSameMap) {
     const auto a = whole.snapshot();
     const auto b = sliced.snapshot();
     EXPECT_EQ(a.bounds, b.bounds);
-    EXPECT_EQ(cells_of(a.occupancy), cells_of(b.occupancy));
+    EXPECT_EQ(digests_of(a), digests_of(b));
     EXPECT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
 }
 
-TEST(Projection, ContinuesFromACheckpointToTheSameMap) {
-    const auto log = random_log(2, 900);
-    Projection whole{MapConfig{}};
+TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
+    const auto log = random_log(2, 300);
+    Projection whole{config()};
     for (const auto& entry : log) ASSERT_TRUE(whole.fold(entry));
 
-    Projection first{MapConfig{}};
-    for (std::size_t n = 0; n < 601; ++n) ASSERT_TRUE(first.fold(log[n]));
-    Projection second{MapConfig{}};
+    Projection first{config()};
+    for (std::size_t n = 0; n < 201; ++n) ASSERT_TRUE(first.fold(log[n]));
+    Projection second{config()};
     second.restore(first.state());
     const auto saved = first.snapshot();
-    saved.occupancy.visit({}, 0, [&](grid::ChunkKey key, const OccupancyChunk& chunk) {
-        second.restore_chunk(key, chunk.revision, chunk.cells);
+    saved.laser.visit({}, 0, [&](grid::ChunkKey key, const LaserChunk& chunk) {
+        auto& restored = second.restore_laser_chunk(key, chunk.revision);
+        restored.occupancy = chunk.occupancy;
+        restored.himm = chunk.himm;
+        restored.occ_types = chunk.occ_types;
+    });
+    saved.sonar.visit({}, 0, [&](grid::ChunkKey key, const SonarChunk& chunk) {
+        second.restore_sonar_chunk(key, chunk.revision).cells = chunk.cells;
     });
     const auto& trajectory = saved.robots.front().trajectory;
     for (std::size_t n = 0; n < trajectory.size(); ++n) ASSERT_TRUE(second.restore_point(0, trajectory[n]));
-    for (std::size_t n = 601; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
+    for (std::size_t n = 201; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
 
     const auto a = whole.snapshot();
     const auto b = second.snapshot();
     EXPECT_EQ(a.revision, b.revision);
     EXPECT_EQ(a.bounds, b.bounds);
-    EXPECT_EQ(cells_of(a.occupancy), cells_of(b.occupancy));
+    EXPECT_EQ(digests_of(a), digests_of(b));
     EXPECT_EQ(a.robots.front().scan_count, b.robots.front().scan_count);
     EXPECT_EQ(a.robots.front().pose, b.robots.front().pose);
     ASSERT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
-    EXPECT_EQ(a.robots.front().trajectory[899], b.robots.front().trajectory[899]);
+    EXPECT_EQ(a.robots.front().trajectory[299], b.robots.front().trajectory[299]);
     EXPECT_EQ(b.robots.front().trajectory.first_after(0), 0U);
-    EXPECT_EQ(b.robots.front().trajectory.first_after(452), 450U);
-    EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 900U);
+    EXPECT_EQ(b.robots.front().trajectory.first_after(150 + kBeforeScans), 150U);
+    EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 300U);
 }
 
 TEST(Projection, EntriesThatCannotFollowAreRefusedAndLeaveItUnchanged) {

@@ -1,6 +1,8 @@
 #include "server/mapping/reach.hpp"
 
+#include "server/mapping/layer_cells.hpp"
 #include "server/mapping/projection.hpp"
+#include "server/mapping/work.hpp"
 #include "tests/support/random_scans.hpp"
 
 #include <gtest/gtest.h>
@@ -38,18 +40,26 @@ Scan scan_of(const Sensor& sensor, std::mt19937& random) {
 
 std::int64_t cells_seen(const Snapshot& snapshot) {
     std::int64_t seen = 0;
-    snapshot.occupancy.visit({}, 0, [&](grid::ChunkKey, const OccupancyChunk& chunk) {
-        seen += std::ranges::count_if(chunk.cells, [](LogOdds cell) { return cell != kUnknownLogOdds; });
-    });
+    for (const Layer layer : {Layer::kOccupancy, Layer::kHimm, Layer::kSonar}) {
+        with_layer(snapshot, layer, [&](const auto& view, auto&& cells_of) {
+            view.visit({}, 0, [&](grid::ChunkKey, const auto& chunk) {
+                seen += std::ranges::count_if(cells_of(chunk), [](auto cell) { return is_known(cell); });
+            });
+        });
+    }
     return seen;
 }
 
 TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
     std::mt19937 random(7);
-    for (int round = 0; round < 400; ++round) {
+    for (int round = 0; round < 600; ++round) {
         MapConfig config;
         config.cell_size = 0.02 + 0.001 * static_cast<double>(random() % 300);
-        const Sensor sensor = sensor_of(random);
+        config.ray_model = static_cast<RayModel>(random() % 3);
+        if (config.ray_model == RayModel::kBresenham) config.hit_radius = 0.1 * static_cast<double>(random() % 4);
+        config.accumulate = config.ray_model != RayModel::kInverseSensorModel && random() % 2 == 0;
+        Sensor sensor = sensor_of(random);
+        if (random() % 3 == 0) sensor.kind = SensorKind::kSonar;
         const Scan scan = scan_of(sensor, random);
         Projection projection(config);
         ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
@@ -59,7 +69,7 @@ TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
         const Reach reach = reach_of(config, sensor, scan);
         const auto snapshot = projection.snapshot();
         grid::CellBox both = reach.cells;
-        both.include(snapshot.bounds);
+        both.include(bounds_of(snapshot));
         EXPECT_EQ(both, reach.cells) << "round " << round;
         EXPECT_GE(chunk_count_of(reach.cells), static_cast<std::int64_t>(projection.chunk_count()));
         EXPECT_GE(reach.work, 0.95 * static_cast<double>(cells_seen(snapshot))) << "round " << round;
@@ -72,7 +82,7 @@ TEST(SectorsWithin, GiveWayAfterTheWorkThereIsOrOneSector) {
         const MapConfig config;
         const Sensor sensor = sensor_of(random);
         const Scan scan = scan_of(sensor, random);
-        const auto geometry = geometry_of(config, sensor);
+        const ModelGeometry geometry{{sensor.range_min, sensor.range_max}, config.obstacle_thickness, config.cell_size};
         const auto fan = make_beam_fan(sensor.angles, config.beam_aperture);
         const double there_is = static_cast<double>(1 + random() % 20'000);
         std::span<const Sector> missing = fan;
@@ -112,7 +122,7 @@ TEST(Reach, FollowsTheLongestReadingNotTheSensor) {
     Scan scan = testing_support::random_scan(1, 1);
     scan.ranges.assign(18, 2000);
     const Reach reach = reach_of({}, sensor, scan);
-    EXPECT_LE(reach.cells.width(), 2 * 41 + 4);
+    EXPECT_LE(reach.cells.width(), 2 * (40 + 2) + 4) << "2 m, and half the band of himm";
     EXPECT_LE(chunk_count_of(reach.cells), 9);
 }
 

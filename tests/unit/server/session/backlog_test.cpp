@@ -13,7 +13,7 @@ constexpr std::int64_t kMuchRoom = 1'000'000;
 /// A scan that may change one chunk, of this column.
 Submitted scan_in(std::int32_t column, RobotIndex robot = 0, double work = 1.0) {
     Submitted submitted{robot, ScanTaken{robot, testing_support::random_scan(1, 1)}, {}, 10};
-    submitted.reach = {{64 * column, 0, 64 * column + 1, 1}, work};
+    submitted.reach = {SensorKind::kLaser, {64 * column, 0, 64 * column + 1, 1}, work};
     return submitted;
 }
 
@@ -31,7 +31,8 @@ TEST(Backlog, GroupsFollowTheOrderAndAreBoundedInEntries) {
 
 TEST(Backlog, GroupsAreBoundedInWorkButNeverEmptyForIt) {
     Backlog backlog;
-    for (const double work : {1.4e8, 1.4e8, 1.4e8, 9e9, 1.0}) backlog.add(scan_in(0, 0, work));
+    for (const double work : {0.4 * kGroupWorkMax, 0.4 * kGroupWorkMax, 0.4 * kGroupWorkMax, 30.0 * kGroupWorkMax, 1.0})
+        backlog.add(scan_in(0, 0, work));
     for (const std::size_t expected : {2U, 1U, 1U, 1U}) {
         EXPECT_EQ(backlog.next_group(kMuchRoom).entries.size(), expected);
     }

@@ -1,6 +1,6 @@
 #include "server/session/checkpoint.hpp"
 
-#include "server/mapping/digest.hpp"
+#include "tests/support/digests.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ void expect_same(mapping::Projection& a, mapping::Projection& b) {
     const auto right = b.snapshot();
     EXPECT_EQ(left.revision, right.revision);
     EXPECT_EQ(left.bounds, right.bounds);
-    EXPECT_EQ(mapping::digest_of(left.occupancy), mapping::digest_of(right.occupancy));
+    EXPECT_EQ(testing_support::digests_of(left), testing_support::digests_of(right));
     ASSERT_EQ(left.robots.size(), right.robots.size());
     for (RobotIndex n = 0; n < left.robots.size(); ++n) {
         const auto& l = left.robots[n];
@@ -125,7 +125,7 @@ TEST(Checkpoint, IncrementalOnesHoldOnlyTheChunksThatChanged) {
     ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
     const auto parts = parts_of(projection, since);
     const auto chunks = std::count_if(parts.begin(), parts.end(),
-                                      [](const auto& part) { return part.first.starts_with("weave/occupancy/"); });
+                                      [](const auto& part) { return part.first.starts_with("weave/laser/"); });
     EXPECT_GE(chunks, 1);
     EXPECT_LE(chunks, 4);
     EXPECT_TRUE(

@@ -1,6 +1,7 @@
 #include "server/session/recovery.hpp"
 
 #include "server/session/checkpoint.hpp"
+#include "tests/support/digests.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
 /// Sessions woven again, from their checkpoints where these can be used.
@@ -45,7 +46,7 @@ TEST_F(RecoveryTest, CheckpointAndRestGiveTheMapOfTheWholeLog) {
     EXPECT_EQ(recovered->checkpointed, 602U);
     EXPECT_EQ(recovered->projection.revision(), 652U);
     const auto snapshot = recovered->projection.snapshot();
-    EXPECT_EQ(mapping::digest_of(snapshot.occupancy), digest_of_log());
+    EXPECT_EQ(testing_support::digests_of(snapshot), digest_of_log());
     EXPECT_EQ(snapshot.robots[0].scan_count, 650U);
     EXPECT_EQ(snapshot.robots[0].trajectory.size(), 650U);
 }
@@ -69,7 +70,7 @@ TEST_F(RecoveryTest, ACheckpointThatCannotBeUsedIsReplacedByTheLog) {
         ASSERT_TRUE(recovered) << key;
         EXPECT_EQ(recovered->checkpointed, std::nullopt) << key;
         EXPECT_EQ(recovered->projection.revision(), 652U) << key;
-        EXPECT_EQ(mapping::digest_of(recovered->projection.snapshot().occupancy), digest_of_log()) << key;
+        EXPECT_EQ(testing_support::digests_of(recovered->projection.snapshot()), digest_of_log()) << key;
         if (const auto whole = parts.find(key); whole != parts.end()) damage(key, whole->second);
     }
 }
@@ -136,7 +137,7 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     submit(1000);
     auto recovered = recover(log_, id_, config_, false).value();
     EXPECT_EQ(recovered.checkpointed, 8514U);
-    EXPECT_EQ(mapping::digest_of(recovered.projection.snapshot().occupancy), digest());
+    EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digest());
 }
 
 TEST_F(SessionTest, ClosingWithNothingNewWritesNoCheckpoint) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/wire/log_codec.hpp"
-#include "server/mapping/digest.hpp"
 #include "server/session/recovery.hpp"
 #include "server/session/session.hpp"
+#include "tests/support/digests.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/random_scans.hpp"
@@ -98,10 +98,10 @@ protected:
     [[nodiscard]] std::string digest_of_log() {
         mapping::Projection projection(config_);
         for (const auto& entry : logged()) EXPECT_TRUE(projection.fold(entry));
-        return mapping::digest_of(projection.snapshot().occupancy);
+        return testing_support::digests_of(projection.snapshot());
     }
 
-    [[nodiscard]] std::string digest() const { return mapping::digest_of(session_->snapshot()->occupancy); }
+    [[nodiscard]] std::string digest() const { return testing_support::digests_of(*session_->snapshot()); }
 
     boost::asio::io_context compute_;
     store::MemoryScanLog log_;

@@ -1,5 +1,6 @@
 #include "server/session/session_registry.hpp"
 
+#include "tests/support/digests.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
 #include <boost/asio/thread_pool.hpp>
@@ -133,13 +134,13 @@ TEST_F(SessionRegistryTest, EverySessionComesBackAfterARestart) {
         const auto name = "s" + std::to_string(n);
         const auto session = registry_->create(name, {.cell_size = 0.05 + 0.01 * n}).value();
         stream(*session, "r", static_cast<std::size_t>(5 * n));
-        digests[name] = mapping::digest_of(session->snapshot()->occupancy);
+        digests[name] = testing_support::digests_of(*session->snapshot());
     }
     registry_->drain();
     restart();
     ASSERT_THAT(registry_->list(), SizeIs(12));
     for (const auto& session : registry_->list()) {
-        EXPECT_EQ(mapping::digest_of(session->snapshot()->occupancy), digests.at(session->info().name));
+        EXPECT_EQ(testing_support::digests_of(*session->snapshot()), digests.at(session->info().name));
         EXPECT_EQ(session->info().created, 1000.5);
     }
     EXPECT_DOUBLE_EQ(registry_->find("s3")->info().config.cell_size, 0.05 + 0.01 * 3);
@@ -259,7 +260,7 @@ protected:
         const auto session = first.create("lab", {}).value();
         stream(*session, "r", 60);
         id_ = session->info().id;
-        digest_ = mapping::digest_of(session->snapshot()->occupancy);
+        digest_ = testing_support::digests_of(*session->snapshot());
     }
 
     void stop_in_the_middle(bool in_a_hurry) {
@@ -289,7 +290,7 @@ protected:
         SessionRegistry next(gated_, compute_.get_executor(), [] { return 0.0; });
         ASSERT_TRUE(next.recover());
         ASSERT_TRUE(next.find("lab"));
-        EXPECT_EQ(mapping::digest_of(next.find("lab")->snapshot()->occupancy), digest_);
+        EXPECT_EQ(testing_support::digests_of(*next.find("lab")->snapshot()), digest_);
     }
 
     GatedLog gated_;

@@ -11,6 +11,7 @@
 namespace scanloom::tiles {
 namespace {
 
+using mapping::Layer;
 using ChunkRevisions = std::map<grid::ChunkKey, Revision>;
 
 /// In the order promised: falling zoom, then y, then x.
@@ -35,21 +36,20 @@ TEST(Changes, EqualBruteForceAfterAnyRevision) {
     std::mt19937 random(5);
     auto keys = testing_support::scattered_chunks(random);
     std::shuffle(keys.begin(), keys.end(), random);
-    mapping::OccupancyLayer layer{mapping::MapConfig{}};
-    testing_support::Cells cells;
-    cells.fill(0);
+    mapping::LaserLayers layers{mapping::MapConfig{}};
+    const auto change = [&](grid::ChunkKey key, Revision at) { layers.restore(key, at).occupancy.fill(0); };
     ChunkRevisions revisions;
     Revision revision = 0;
-    for (const auto& key : keys) layer.restore(key, revisions[key] = ++revision, cells);
+    for (const auto& key : keys) change(key, revisions[key] = ++revision);
     for (int n = 0; n < 50; ++n) {
         const auto& key = keys[random() % keys.size()];
-        layer.restore(key, revisions[key] = ++revision, cells);
+        change(key, revisions[key] = ++revision);
     }
-    const mapping::Snapshot snapshot{revision, {}, {}, layer.snapshot(), {}};
+    const mapping::Snapshot snapshot{.revision = revision, .laser = layers.snapshot()};
 
     for (const Revision since : {Revision{0}, Revision{1}, revision / 2, revision - 3, revision - 1}) {
         const auto expected = brute_force(revisions, since);
-        const auto changed = changed_tiles(snapshot, since);
+        const auto changed = changed_tiles(snapshot, Layer::kOccupancy, since);
         ASSERT_EQ(changed.size(), expected.size()) << "since " << since;
         std::size_t n = 0;
         for (const auto& [at, newest] : expected) {
@@ -57,13 +57,13 @@ TEST(Changes, EqualBruteForceAfterAnyRevision) {
             const TileKey key{static_cast<std::uint32_t>(-minus_zoom), static_cast<std::uint32_t>(x),
                               static_cast<std::uint32_t>(y)};
             EXPECT_EQ(changed[n], (ChangedTile{key, newest})) << "entry " << n << " since " << since;
-            EXPECT_EQ(newest, tile_revision(snapshot, key));
+            EXPECT_EQ(newest, tile_revision(snapshot, Layer::kOccupancy, key));
             ++n;
         }
     }
-    EXPECT_THAT(changed_tiles(snapshot, revision), testing::IsEmpty());
-    EXPECT_THAT(changed_tiles(snapshot, revision + 1), testing::IsEmpty());
-    EXPECT_THAT(changed_tiles(mapping::Snapshot{}, 0), testing::IsEmpty());
+    EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision), testing::IsEmpty());
+    EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision + 1), testing::IsEmpty());
+    EXPECT_THAT(changed_tiles(mapping::Snapshot{}, Layer::kOccupancy, 0), testing::IsEmpty());
 }
 
 } // namespace

@@ -10,6 +10,8 @@
 namespace scanloom::tiles {
 namespace {
 
+using mapping::Layer;
+
 using grid::CellBox;
 using testing_support::HandMadeMap;
 
@@ -23,39 +25,40 @@ HandMadeMap small_random_map() {
 }
 
 std::uint8_t percent_at(const mapping::Snapshot& snapshot, grid::Cell cell) {
-    const auto* chunk = snapshot.occupancy.find(grid::chunk_of(cell));
-    return chunk == nullptr ? kUnknownPercent : percent_table()[static_cast<std::uint16_t>(chunk->at(cell))];
+    const auto* chunk = snapshot.laser.find(grid::chunk_of(cell));
+    if (chunk == nullptr) return kUnknownPercent;
+    return percent_table()[static_cast<std::uint16_t>(chunk->occupancy[grid::index_in_chunk(cell)])];
 }
 
 void expect_equals_brute_force(const mapping::Snapshot& snapshot, const MapImage& image) {
     const auto& box = image.frame.cells;
-    ASSERT_EQ(image.percent.size(), static_cast<std::size_t>(box.width() * box.height()));
+    ASSERT_EQ(image.codes.size(), static_cast<std::size_t>(box.width() * box.height()));
     std::size_t n = 0;
     for (std::int32_t j = box.j_end - 1; j >= box.j_begin; --j) {
         for (std::int32_t i = box.i_begin; i < box.i_end; ++i, ++n) {
-            ASSERT_EQ(image.percent[n], percent_at(snapshot, {i, j})) << i << ", " << j;
+            ASSERT_EQ(image.codes[n], percent_at(snapshot, {i, j})) << i << ", " << j;
         }
     }
 }
 
 TEST(MapImage, OfTheWholeMapIsEveryCellOfItsBounds) {
     const auto snapshot = small_random_map().snapshot(1, {.cell_size = 0.1});
-    const auto frame = map_frame(snapshot, {}).value();
+    const auto frame = map_frame(snapshot, Layer::kOccupancy, {}).value();
     EXPECT_EQ(frame.cells, (CellBox{-70, -150, 201, 90}));
     EXPECT_EQ(frame.width(), 271);
     EXPECT_EQ(frame.height(), 240);
     EXPECT_DOUBLE_EQ(frame.origin().x(), -7.0);
     EXPECT_DOUBLE_EQ(frame.origin().y(), -15.0);
-    expect_equals_brute_force(snapshot, render_map(snapshot, frame));
+    expect_equals_brute_force(snapshot, render_map(snapshot, Layer::kOccupancy, frame));
 }
 
 TEST(MapImage, OfAnyBoxIsThatBoxWithTheUnseenUnknown) {
     const auto snapshot = small_random_map().snapshot(1, {.cell_size = 0.1});
     for (const Extent& bbox : {Extent{-1, -2, 3, 4}, Extent{-0.1, -0.1, 0, 0}, Extent{-9, -20, 25, 15},
                                Extent{6.4, 0, 12.8, 6.4}, Extent{500, 500, 501, 502}}) {
-        const auto frame = map_frame(snapshot, bbox).value();
+        const auto frame = map_frame(snapshot, Layer::kOccupancy, bbox).value();
         EXPECT_EQ(frame.cells, cells_in(bbox, 0.1).value());
-        expect_equals_brute_force(snapshot, render_map(snapshot, frame));
+        expect_equals_brute_force(snapshot, render_map(snapshot, Layer::kOccupancy, frame));
     }
 }
 
@@ -64,20 +67,20 @@ TEST(MapImage, FarFromTheOriginIsDrawnBeyondWhereTilesReach) {
     map.set({-99'999'999, 99'999'990}, -14000);
     map.set({-99'999'990, 99'999'999}, 14000);
     const auto snapshot = map.snapshot();
-    const auto image = render_map(snapshot, map_frame(snapshot, {}).value());
+    const auto image = render_map(snapshot, Layer::kOccupancy, map_frame(snapshot, Layer::kOccupancy, {}).value());
     EXPECT_EQ(image.frame.width(), 10);
-    EXPECT_EQ(image.percent[9], 100) << "top right";
-    EXPECT_EQ(image.percent[90], 0) << "bottom left";
+    EXPECT_EQ(image.codes[9], 100) << "top right";
+    EXPECT_EQ(image.codes[90], 0) << "bottom left";
     expect_equals_brute_force(snapshot, image);
 }
 
 TEST(MapImage, OfASessionThatSawNothingIsNotFoundUnlessAPlaceIsNamed) {
-    const auto none = map_frame(mapping::Snapshot{}, {});
+    const auto none = map_frame(mapping::Snapshot{}, Layer::kOccupancy, {});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, Errc::kNotFound);
     EXPECT_THAT(none.error().message, testing::HasSubstr("no map yet"));
-    const auto place = map_frame(mapping::Snapshot{}, Extent{0, 0, 1, 1}).value();
-    EXPECT_THAT(render_map(mapping::Snapshot{}, place).percent,
+    const auto place = map_frame(mapping::Snapshot{}, Layer::kOccupancy, Extent{0, 0, 1, 1}).value();
+    EXPECT_THAT(render_map(mapping::Snapshot{}, Layer::kOccupancy, place).codes,
                 testing::AllOf(testing::SizeIs(400), testing::Each(kUnknownPercent)));
 }
 
@@ -85,33 +88,33 @@ TEST(MapImage, TooManyPixelsAreRefusedWithAWayOut) {
     HandMadeMap map;
     map.set({0, 0}, 1);
     map.set({7'999, 7'999}, 1);
-    EXPECT_TRUE(map_frame(map.snapshot(), {})) << "64 million";
+    EXPECT_TRUE(map_frame(map.snapshot(), Layer::kOccupancy, {})) << "64 million";
     map.set({8'000, 0}, 1);
-    const auto refused = map_frame(map.snapshot(), {});
+    const auto refused = map_frame(map.snapshot(), Layer::kOccupancy, {});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kTooLarge);
     EXPECT_THAT(refused.error().message,
                 testing::AllOf(testing::HasSubstr("8001 x 8000 pixels"), testing::HasSubstr("bbox=")));
-    EXPECT_TRUE(map_frame(map.snapshot(), Extent{0, 0, 5, 5}));
-    EXPECT_EQ(map_frame(map.snapshot(), Extent{-5e7, -5e7, 5e7, 5e7}).error().code, Errc::kTooLarge);
-    EXPECT_EQ(map_frame(map.snapshot(), Extent{0, 0, -1, 5}).error().code, Errc::kInvalidField);
+    EXPECT_TRUE(map_frame(map.snapshot(), Layer::kOccupancy, Extent{0, 0, 5, 5}));
+    EXPECT_EQ(map_frame(map.snapshot(), Layer::kOccupancy, Extent{-5e7, -5e7, 5e7, 5e7}).error().code, Errc::kTooLarge);
+    EXPECT_EQ(map_frame(map.snapshot(), Layer::kOccupancy, Extent{0, 0, -1, 5}).error().code, Errc::kInvalidField);
 }
 
 TEST(MapImage, TheLongestAllowedSideStillMakesAPng) {
-    const auto longest = map_frame(mapping::Snapshot{}, Extent{0, 0, 50'000, 0.05});
+    const auto longest = map_frame(mapping::Snapshot{}, Layer::kOccupancy, Extent{0, 0, 50'000, 0.05});
     ASSERT_TRUE(longest);
     EXPECT_EQ(longest->width(), kMapSideMax);
-    EXPECT_GT(map_png(render_map(mapping::Snapshot{}, *longest)).size(), 100U);
-    EXPECT_FALSE(map_frame(mapping::Snapshot{}, Extent{0, 0, 0.05, 50'000.05}));
+    EXPECT_GT(map_png(render_map(mapping::Snapshot{}, Layer::kOccupancy, *longest)).size(), 100U);
+    EXPECT_FALSE(map_frame(mapping::Snapshot{}, Layer::kOccupancy, Extent{0, 0, 0.05, 50'000.05}));
 }
 
 TEST(MapImage, ThePngHasTheGreysOfTheTiles) {
     const auto snapshot = small_random_map().snapshot();
-    const auto image = render_map(snapshot, map_frame(snapshot, {}).value());
+    const auto image = render_map(snapshot, Layer::kOccupancy, map_frame(snapshot, Layer::kOccupancy, {}).value());
     const cv::Mat png = cv::imdecode(map_png(image), cv::IMREAD_UNCHANGED);
     ASSERT_EQ(png.type(), CV_8UC1);
     ASSERT_EQ(png.size(), cv::Size(image.frame.width(), image.frame.height()));
-    for (std::size_t n = 0; n < image.percent.size(); ++n) ASSERT_EQ(png.data[n], grey_of(image.percent[n]));
+    for (std::size_t n = 0; n < image.codes.size(); ++n) ASSERT_EQ(png.data[n], grey_of(image.codes[n]));
 }
 
 } // namespace

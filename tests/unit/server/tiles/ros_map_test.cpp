@@ -11,6 +11,8 @@
 namespace scanloom::tiles {
 namespace {
 
+using mapping::Layer;
+
 /// nav_msgs/OccupancyGrid as far as map servers fill it.
 struct Grid {
     double resolution = 0.0;
@@ -89,8 +91,8 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
         for (std::int32_t i = -120; i < 17; ++i) map.set({i, j}, testing_support::random_cell(random));
     }
     const auto snapshot = map.snapshot(1, {.cell_size = 0.05});
-    const auto image = render_map(snapshot, map_frame(snapshot, {}).value());
-    const MapServer files(map_pgm(image), map_yaml(image.frame));
+    const auto image = render_map(snapshot, Layer::kOccupancy, map_frame(snapshot, Layer::kOccupancy, {}).value());
+    const MapServer files(map_pgm(image, snapshot.config), map_yaml(image.frame));
 
     for (const auto server : {Server::kRos1, Server::kNav2}) {
         const auto grid = files.load(server);
@@ -102,7 +104,7 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
         std::size_t counts[3] = {};
         for (std::int32_t n = 0; n < 137 * 113; ++n) {
             const grid::Cell cell{-120 + n % 137, -33 + n / 137};
-            const auto l = snapshot.occupancy.find(grid::chunk_of(cell))->at(cell);
+            const auto l = snapshot.laser.find(grid::chunk_of(cell))->occupancy[grid::index_in_chunk(cell)];
             const double percent = std::round(100.0 * mapping::probability_of(l));
             const bool unknown = l == mapping::kUnknownLogOdds;
             const int expected = unknown ? -1 : percent >= 65 ? 100 : percent <= 25 ? 0 : -1;
@@ -114,8 +116,8 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
 }
 
 TEST(RosMap, TheGreysAreThoseOfMapSaver) {
-    const MapImage image{{{0, 0, 6, 1}, 0.05}, {0, 25, 26, 64, 65, 255}};
-    const auto pgm = map_pgm(image);
+    const MapImage image{{{0, 0, 6, 1}, 0.05}, Layer::kOccupancy, {0, 25, 26, 64, 65, 255}};
+    const auto pgm = map_pgm(image, {});
     const std::string header = "P5\n# CREATOR: Scanloom 0.050 m/pix\n6 1\n255\n";
     ASSERT_EQ(std::string(pgm.begin(), pgm.end() - 6), header);
     EXPECT_EQ(Bytes(pgm.end() - 6, pgm.end()), (Bytes{254, 254, 205, 205, 0, 205}));

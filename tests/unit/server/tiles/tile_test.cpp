@@ -1,4 +1,4 @@
-#include "server/tiles/occupancy_tile.hpp"
+#include "server/tiles/tile.hpp"
 
 #include "server/tiles/occupancy_percent.hpp"
 #include "server/tiles/tile_version.hpp"
@@ -15,6 +15,7 @@
 namespace scanloom::tiles {
 namespace {
 
+using mapping::Layer;
 using mapping::LogOdds;
 using testing_support::HandMadeMap;
 using testing_support::random_map;
@@ -58,7 +59,7 @@ Pyramid oracle_of(const HandMadeMap& map) {
     return pyramid;
 }
 
-TEST(OccupancyTile, EqualsBruteForceAtEveryZoom) {
+TEST(Tile, EqualsBruteForceAtEveryZoom) {
     const auto map = random_map(11);
     const auto snapshot = map.snapshot();
     const auto pyramid = oracle_of(map);
@@ -69,7 +70,7 @@ TEST(OccupancyTile, EqualsBruteForceAtEveryZoom) {
         for (const auto& [pixel, oracle] : pixels) {
             expected[static_cast<std::size_t>(pixel)] = static_cast<std::uint8_t>(oracle.percent());
         }
-        ASSERT_TRUE(*occupancy_tile(snapshot, {zoom, x, y}) == expected) << zoom << "/" << x << "/" << y;
+        ASSERT_TRUE(*tile_codes(snapshot, Layer::kOccupancy, {zoom, x, y}) == expected) << zoom << "/" << x << "/" << y;
     }
 }
 
@@ -78,7 +79,8 @@ Bytes composed_of_children(const mapping::Snapshot& snapshot, TileKey key) {
     for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
         const std::uint32_t right = quarter % 2;
         const std::uint32_t below = quarter / 2;
-        const auto child = occupancy_tile(snapshot, {key.zoom + 1, 2 * key.x + right, 2 * key.y + below});
+        const auto child =
+            tile_codes(snapshot, Layer::kOccupancy, {key.zoom + 1, 2 * key.x + right, 2 * key.y + below});
         for (std::uint32_t n = 0; n < 128 * 128; ++n) {
             const std::uint32_t column = n % 128;
             const std::uint32_t row = n / 128;
@@ -90,18 +92,18 @@ Bytes composed_of_children(const mapping::Snapshot& snapshot, TileKey key) {
     return composed;
 }
 
-TEST(OccupancyTile, IsTheSameMadeFromItsFourChildren) {
+TEST(Tile, IsTheSameMadeFromItsFourChildren) {
     const auto snapshot = random_map(12).snapshot();
     for (std::uint32_t zoom = 0; zoom < 9; ++zoom) {
         for (const auto cell : {grid::Cell{0, 0}, {-1, -1}, {-1, 0}, {65535, 65535}, {-65536, -65536}}) {
             const auto key = tile_of(cell, zoom);
-            ASSERT_TRUE(*occupancy_tile(snapshot, key) == composed_of_children(snapshot, key))
+            ASSERT_TRUE(*tile_codes(snapshot, Layer::kOccupancy, key) == composed_of_children(snapshot, key))
                 << zoom << "/" << key.x << "/" << key.y;
         }
     }
 }
 
-TEST(OccupancyTile, AOneCellWallSurvivesEveryZoom) {
+TEST(Tile, AOneCellWallSurvivesEveryZoom) {
     HandMadeMap map;
     for (std::int32_t j = -700; j < 700; ++j) {
         for (std::int32_t i = -100; i < 100; ++i) map.set({i, j}, i == 37 ? LogOdds{3000} : LogOdds{-14000});
@@ -113,7 +115,7 @@ TEST(OccupancyTile, AOneCellWallSurvivesEveryZoom) {
         for (std::int32_t j = -700; j < 700; ++j) {
             const auto key = tile_of({37, j}, zoom);
             auto& tile = column_of_tiles[key.y];
-            if (!tile) tile = occupancy_tile(snapshot, key);
+            if (!tile) tile = tile_codes(snapshot, Layer::kOccupancy, key);
             const auto cells = cells_of(key);
             const auto px = (37 - cells.i_begin) >> (9 - zoom);
             const auto py = (cells.j_end - 1 - j) >> (9 - zoom);
@@ -122,33 +124,34 @@ TEST(OccupancyTile, AOneCellWallSurvivesEveryZoom) {
     }
 }
 
-TEST(OccupancyTile, RowZeroIsTheTop) {
+TEST(Tile, RowZeroIsTheTop) {
     HandMadeMap map;
     map.set({0, 255}, 14000);
     map.set({255, 0}, -14000);
-    const auto tile = occupancy_tile(map.snapshot(), {9, 256, 255});
+    const auto tile = tile_codes(map.snapshot(), Layer::kOccupancy, {9, 256, 255});
     EXPECT_EQ(tile->at(0), 100);
     EXPECT_EQ(tile->at(65535), 0);
     EXPECT_EQ(tile->at(255), 255);
     EXPECT_EQ(tile->at(65280), 255);
 }
 
-TEST(OccupancyTile, NeverTouchedTilesAreOneSharedUniformTile) {
+TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
     HandMadeMap map;
     map.set({65536, 0}, 14000); // just outside
     map.set({0, -65537}, 14000);
     const auto snapshot = map.snapshot();
-    const auto tile = occupancy_tile(snapshot, {0, 0, 0});
+    const auto tile = tile_codes(snapshot, Layer::kOccupancy, {0, 0, 0});
     EXPECT_THAT(*tile, testing::AllOf(testing::SizeIs(65536), testing::Each(255)));
-    EXPECT_EQ(tile, occupancy_tile(snapshot, {9, 511, 255}));
-    EXPECT_EQ(occupancy_tile_png(snapshot, {0, 0, 0}), occupancy_tile_png(mapping::Snapshot{}, {9, 1, 2}));
+    EXPECT_EQ(tile, tile_codes(snapshot, Layer::kOccupancy, {9, 511, 255}));
+    EXPECT_EQ(tile_png(snapshot, Layer::kOccupancy, {0, 0, 0}),
+              tile_png(mapping::Snapshot{}, Layer::kOccupancy, {9, 1, 2}));
 }
 
-TEST(OccupancyTile, ThePngIsEightBitGreyOfTheSamePixels) {
+TEST(Tile, ThePngIsEightBitGreyOfTheSamePixels) {
     const auto snapshot = random_map(13).snapshot();
     for (const TileKey key : {TileKey{9, 256, 255}, TileKey{7, 63, 64}, TileKey{0, 0, 0}, TileKey{9, 0, 5}}) {
-        const auto tile = occupancy_tile(snapshot, key);
-        const auto png = occupancy_tile_png(snapshot, key);
+        const auto tile = tile_codes(snapshot, Layer::kOccupancy, key);
+        const auto png = tile_png(snapshot, Layer::kOccupancy, key);
         ASSERT_GT(png->size(), 26U);
         EXPECT_EQ(png->at(24), 8) << "bits a pixel";
         EXPECT_EQ(png->at(25), 0) << "grey, no alpha";
@@ -160,30 +163,33 @@ TEST(OccupancyTile, ThePngIsEightBitGreyOfTheSamePixels) {
 }
 
 TEST(TileVersion, ChangesWithTheTileAndNotWithOtherPlaces) {
-    mapping::OccupancyLayer layer{mapping::MapConfig{}};
-    testing_support::Cells cells;
-    cells.fill(-3000);
+    mapping::LaserLayers layers{mapping::MapConfig{}};
     const auto snapshot_at = [&](Revision revision) {
-        return mapping::Snapshot{revision, {}, {}, layer.snapshot(), {}};
+        return mapping::Snapshot{.revision = revision, .laser = layers.snapshot()};
     };
-    layer.restore({0, 0}, 1, cells);
+    const auto change = [&](grid::ChunkKey key, Revision revision) {
+        layers.restore(key, revision).occupancy.fill(-3000);
+    };
+    change({0, 0}, 1);
     const auto first = snapshot_at(1);
-    layer.restore({0, 4}, 2, cells); // the next tile to the right
+    change({0, 4}, 2); // the next tile to the right
     const auto second = snapshot_at(2);
-    layer.restore({3, 3}, 3, cells); // the same tile's other corner
+    change({3, 3}, 3); // the same tile's other corner
     const auto third = snapshot_at(3);
 
     const TileKey here{9, 256, 255};
     const TileKey right{9, 257, 255};
     const TileKey both{8, 128, 127};
     const auto revisions = [&](const mapping::Snapshot& snapshot) {
-        return std::tuple{tile_revision(snapshot, here), tile_revision(snapshot, right), tile_revision(snapshot, both)};
+        return std::tuple{tile_revision(snapshot, Layer::kOccupancy, here),
+                          tile_revision(snapshot, Layer::kOccupancy, right),
+                          tile_revision(snapshot, Layer::kOccupancy, both)};
     };
     EXPECT_EQ(revisions(mapping::Snapshot{}), (std::tuple{0U, 0U, 0U}));
     EXPECT_EQ(revisions(first), (std::tuple{1U, 0U, 1U}));
     EXPECT_EQ(revisions(second), (std::tuple{1U, 2U, 2U}));
     EXPECT_EQ(revisions(third), (std::tuple{3U, 2U, 3U}));
-    EXPECT_EQ(tile_revision(third, {0, 0, 0}), 3U);
+    EXPECT_EQ(tile_revision(third, Layer::kOccupancy, {0, 0, 0}), 3U);
 }
 
 TEST(TileVersion, EntityTagsAreStrongAndTellEverythingApart) {

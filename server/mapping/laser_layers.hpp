@@ -1,0 +1,107 @@
+#pragma once
+
+#include "server/classify/cell_class.hpp"
+#include "server/classify/hysteresis.hpp"
+#include "server/mapping/chunk_grid.hpp"
+#include "server/mapping/himm.hpp"
+#include "server/mapping/map_config.hpp"
+#include "server/mapping/occupancy.hpp"
+#include "server/mapping/ray_models.hpp"
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace scanloom::mapping {
+
+/// 64 x 64 cells of all layers that lasers make. They change together, so that one revision tells what all of them
+/// hold, and a class never stands beside evidence that is older or newer than what it was decided on.
+struct LaserChunk : grid::TreeItem {
+    static constexpr std::size_t kCells = std::size_t{grid::kChunkSide} * grid::kChunkSide;
+
+    std::array<LogOdds, kCells> occupancy; ///< bottom row first, as everywhere
+    std::array<HimmCount, kCells> himm;
+    classify::OccPlane occ_types;
+};
+
+using LaserView = grid::ChunkView<LaserChunk>;
+
+/// The directions of a sensor's beams, as each model wants them. Made once, used by many scans.
+struct LaserFan {
+    std::shared_ptr<const BeamFan> occupancy; ///< for the inverse sensor model
+    std::shared_ptr<const BeamFan> himm;      ///< the same one where the apertures are alike
+    std::vector<Direction> beams;             ///< for the models that trace rays; empty for the inverse sensor model
+};
+
+/// `aperture` is the sensor's own, 0 where it states none.
+[[nodiscard]] LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, double aperture);
+
+/// One sweep of a laser.
+struct LaserScan {
+    const LaserFan& fan;
+    std::span<const RangeMm> ranges; ///< one for each beam that the fan was made from
+    Pose2 T_map_sensor;
+    ReadingRules readings;
+};
+
+/// The layers that lasers make, updated scan by scan: occupancy, HIMM, and the hysteresis of the classes.
+/// Thread  one writer; views may be read by anyone.
+/// Source  each layer's: occupancy.hpp, himm.hpp, classify/hysteresis.hpp.
+class LaserLayers {
+public:
+    explicit LaserLayers(const MapConfig& config);
+
+    /// Adds the evidence of one scan, the log's entry `revision`, as far as `work` (as Reach::work) allows; what was
+    /// used is taken from it.
+    /// @return whether all of the scan is in; until then nothing but the same call may follow.
+    [[nodiscard]] bool integrate(const LaserScan& scan, Revision revision, double& work);
+
+    /// The cells that any scan changed.
+    struct Bounds {
+        grid::CellBox occupancy;
+        grid::CellBox himm;
+
+        friend bool operator==(const Bounds&, const Bounds&) = default;
+    };
+    [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+
+    /// Puts back what a checkpoint holds.
+    void restore(const Bounds& bounds) { bounds_ = bounds; }
+    [[nodiscard]] LaserChunk& restore(grid::ChunkKey key, Revision revision) { return grid_.restore(key, revision); }
+    [[nodiscard]] Revision newest_restored() const noexcept { return grid_.newest_restored(); }
+
+    [[nodiscard]] std::size_t chunk_count() const noexcept { return grid_.chunk_count(); }
+
+    [[nodiscard]] LaserView snapshot() { return grid_.snapshot(); }
+
+private:
+    /// What comes after what within a scan.
+    enum class Stage { kOccupancy, kMarks, kHimm, kClasses };
+
+    [[nodiscard]] bool add_sectors(const LaserScan& scan, double& work);
+    [[nodiscard]] bool trace_beams(const LaserScan& scan, double& work);
+    [[nodiscard]] bool add_marks(double& work);
+    [[nodiscard]] bool count(const LaserScan& scan, double& work);
+    [[nodiscard]] bool fold_classes(double& work);
+    void add_first_marks();
+
+    const MapConfig config_;
+    const OccupancyRule occupancy_;
+    const HimmRule himm_;
+    const classify::Hysteresis<LogOdds> by_occupancy_;
+    const classify::Hysteresis<HimmCount> by_himm_;
+
+    ChunkGrid<LaserChunk> grid_;
+    Bounds bounds_;
+
+    // Of the scan that is being integrated.
+    Stage stage_ = Stage::kOccupancy;
+    std::size_t done_ = 0; // of the stage: sectors, beams, chunks
+    grid::CellBox touched_;
+    ScanMarks marks_;
+    std::vector<grid::ChunkKey> changed_;
+};
+
+} // namespace scanloom::mapping

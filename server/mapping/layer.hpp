@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace scanloom::mapping {
+
+/// What can be looked at of a session's maps.
+enum class Layer : std::uint8_t {
+    kOccupancy,      ///< probability of occupation, from lasers
+    kHimm,           ///< counters 0..15, from lasers
+    kSonar,          ///< probability of occupation, from sonars
+    kClassification, ///< free, occupied, unexplored, frontier, danger
+};
+
+inline constexpr std::array kLayers = {Layer::kOccupancy, Layer::kHimm, Layer::kSonar, Layer::kClassification};
+
+/// As it stands in addresses: "occupancy".
+[[nodiscard]] constexpr std::string_view name_of(Layer layer) noexcept {
+    constexpr std::array<std::string_view, 4> kNames = {"occupancy", "himm", "sonar", "classification"};
+    return kNames[static_cast<std::size_t>(layer)];
+}
+
+[[nodiscard]] constexpr std::optional<Layer> layer_of(std::string_view name) noexcept {
+    for (const Layer layer : kLayers) {
+        if (name_of(layer) == name) return layer;
+    }
+    return std::nullopt;
+}
+
+} // namespace scanloom::mapping

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/geometry/pose2.hpp"
+#include "common/scan/ray_model.hpp"
+#include "server/mapping/beam_fan.hpp"
+#include "server/mapping/ray_tracing.hpp"
+#include "server/mapping/reading.hpp"
+#include "server/mapping/scan_marks.hpp"
+
+#include <cmath>
+
+namespace scanloom::mapping {
+
+/// What tracing the beams of a sensor must know of it and of the map. Metres.
+struct RayGeometry {
+    ReadingRules readings;
+    RayModel model = RayModel::kBresenham; ///< or kTraversal
+    double hit_radius = 0.0;               ///< cells whose centres are as near as this to a hit count as hit
+    double cell_size = 0.05;
+};
+
+/// Where a sensor stands on the grid, and how it is turned.
+struct SensorOnGrid {
+    SensorOnGrid(const Pose2& T_map_sensor, double cell_size) noexcept
+        : at{T_map_sensor.x * (1.0 / cell_size), T_map_sensor.y * (1.0 / cell_size)},
+          cosine(std::cos(T_map_sensor.yaw)), sine(std::sin(T_map_sensor.yaw)) {}
+
+    [[nodiscard]] Direction to_map(const Direction& d) const noexcept {
+        return {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y};
+    }
+
+    GridPoint at;
+    double cosine;
+    double sine;
+};
+
+/// Marks the cells that one beam passes, and those that it hits. Without a return it passes all up to range_max, the
+/// cell there included. `beam` is a direction in the sensor frame.
+/// Source  the cells: ray_tracing.hpp; the radius: section 3 of the design models.
+void trace_beam(ScanMarks& marks, const Direction& beam, const Reading& reading, const SensorOnGrid& sensor,
+                const RayGeometry& geometry);
+
+} // namespace scanloom::mapping

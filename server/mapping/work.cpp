@@ -1,0 +1,43 @@
+#include "server/mapping/work.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace scanloom::mapping {
+namespace {
+
+constexpr double kWorkPerSonarCell = 32.0; // two roots and an arc tangent
+
+} // namespace
+
+double reached(RangeMm range, const ModelGeometry& geometry) noexcept {
+    const auto reading = reading_of(range, geometry.readings);
+    if (!reading) return 0.0;
+    return reading->is_hit ? std::min(geometry.readings.range_max, reading->metres + geometry.half_band())
+                           : reading->metres;
+}
+
+std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
+                           const ModelGeometry& geometry) {
+    std::size_t count = 0;
+    while (count < sectors.size() && (count == 0 || work > 0.0)) {
+        const Sector& sector = sectors[count++];
+        const double cells = reached(ranges[sector.beam], geometry) / geometry.cell_size;
+        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x; // nearly the angle
+        work -= 0.5 * sine * cells * cells + 2.0 * cells + 1.0;
+    }
+    return count;
+}
+
+double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept {
+    const double cells = reading.metres / geometry.cell_size;
+    const double disc = geometry.hit_radius / geometry.cell_size;
+    return 2.0 * cells + std::numbers::pi * disc * disc + 2.0;
+}
+
+double work_of_cone(double aperture, RangeMm range, const ModelGeometry& geometry) noexcept {
+    const double cells = reached(range, geometry) / geometry.cell_size;
+    return kWorkPerSonarCell * 0.5 * aperture * cells * cells + 2.0 * cells + 1.0;
+}
+
+} // namespace scanloom::mapping

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "server/mapping/digest.hpp"
+
+#include <string>
+
+namespace scanloom::testing_support {
+
+/// Of every layer: equal only when all maps are.
+inline std::string digests_of(const mapping::Snapshot& snapshot) {
+    std::string digests;
+    for (const auto layer : mapping::kLayers) {
+        digests.append(mapping::name_of(layer)).append(" ").append(mapping::digest_of(snapshot, layer)).append("\n");
+    }
+    return digests;
+}
+
+} // namespace scanloom::testing_support
