@@ -42,7 +42,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
-      api_(sessions_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
+      weaves_(*log_, reweaving_.get_executor()), api_(sessions_, weaves_, *log_, metrics_, std::move(web)),
+      patience_(io_), weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -51,7 +52,10 @@ Server::~Server() {
 }
 
 void Server::join_pools() {
+    weaves_.stop(); // nobody waits for them any more
     telling_.join();
+    awaiting_.join();
+    reweaving_.join();
     changing_.join();
     checkpointing_.join();
     survey_.join();
@@ -94,7 +98,9 @@ Result<> Server::listen() {
     config.host_names = options_.http_hosts;
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
-        io_, {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), changing_.get_executor()},
+        io_,
+        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
+         changing_.get_executor()},
         config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
@@ -146,6 +152,7 @@ void Server::wait_for_signal() {
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
     ingest_->stop();
+    weaves_.stop();
     patience_.expires_after(kPatience);
     patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();

@@ -8,6 +8,7 @@
 #include "server/ingest/ingest_server.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -26,6 +27,8 @@ namespace scanloom::app {
 ///   weaving        the sessions' strands: everything that changes a map
 ///   serving        answers made from a part of a snapshot
 ///   survey         answers made from a whole snapshot: one at a time, as they may take a second
+///   reweaving      maps woven once more, with other settings: with a lower priority than all else
+///   awaiting       answers that wait for such maps
 ///   changing       creating and deleting sessions: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   telling        metrics
@@ -61,11 +64,14 @@ private:
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
     boost::asio::thread_pool survey_{1};
+    boost::asio::thread_pool reweaving_{2};
+    boost::asio::thread_pool awaiting_{4};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool telling_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
+    session::Weaves weaves_;
     http::Api api_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;

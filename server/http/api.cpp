@@ -12,6 +12,7 @@
 #include "server/http/handlers/tilejson.hpp"
 #include "server/http/handlers/trajectory.hpp"
 #include "server/http/handlers/viewer.hpp"
+#include "server/http/handlers/weaves.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/problem.hpp"
@@ -79,18 +80,22 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kListSessions: return list_sessions(sessions_, call);
     case Operation::kCreateSession: return create_session(sessions_, call);
     case Operation::kGetSession: return get_session(sessions_, call);
-    case Operation::kDeleteSession: return delete_session(sessions_, call);
-    case Operation::kTilePng: return get_tile_png(sessions_, call);
-    case Operation::kTileBin: return get_tile_bin(sessions_, call);
-    case Operation::kTileJson: return get_tilejson(sessions_, call);
-    case Operation::kChanges: return get_changes(sessions_, call);
-    case Operation::kMapPng: return get_map_png(sessions_, slots_, call);
-    case Operation::kMapPgm: return get_map_pgm(sessions_, slots_, call);
-    case Operation::kMapYaml: return get_map_yaml(sessions_, call);
-    case Operation::kMapCsv: return get_map_csv(sessions_, slots_, call);
-    case Operation::kMapNpy: return get_map_npy(sessions_, slots_, call);
-    case Operation::kDigest: return get_digest(sessions_, call);
+    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, call);
+    case Operation::kTilePng: return get_tile_png(maps_, call);
+    case Operation::kTileBin: return get_tile_bin(maps_, call);
+    case Operation::kTileJson: return get_tilejson(maps_, call);
+    case Operation::kChanges: return get_changes(maps_, call);
+    case Operation::kMapPng: return get_map_png(maps_, slots_, call);
+    case Operation::kMapPgm: return get_map_pgm(maps_, slots_, call);
+    case Operation::kMapYaml: return get_map_yaml(maps_, call);
+    case Operation::kMapCsv: return get_map_csv(maps_, slots_, call);
+    case Operation::kMapNpy: return get_map_npy(maps_, slots_, call);
+    case Operation::kDigest: return get_digest(maps_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
+    case Operation::kStartWeave: return start_weave(maps_, call);
+    case Operation::kListWeaves: return list_weaves(maps_, call);
+    case Operation::kGetWeave: return get_weave(maps_, call);
+    case Operation::kDeleteWeave: return delete_weave(maps_, call);
     }
     return Error{Errc::kNotFound, "this operation has no handler"};
 }

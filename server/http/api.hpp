@@ -2,11 +2,13 @@
 
 #include "server/http/answer_slots.hpp"
 #include "server/http/handlers/health.hpp"
+#include "server/http/handlers/maps_lookup.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
@@ -22,8 +24,10 @@ struct Target;
 /// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
 class Api {
 public:
-    Api(session::SessionRegistry& sessions, const store::ScanLog& log, const metrics::Metrics& metrics, WebFiles web)
-        : sessions_(sessions), log_(log), metrics_(metrics), web_(std::move(web)) {}
+    Api(session::SessionRegistry& sessions, session::Weaves& weaves, const store::ScanLog& log,
+        const metrics::Metrics& metrics, WebFiles web)
+        : sessions_(sessions), weaves_(weaves), maps_(sessions, weaves), log_(log), metrics_(metrics),
+          web_(std::move(web)) {}
 
     /// From now on the sessions are served; before, whoever asks for them is told to wait.
     void set_recovered() noexcept { recovered_ = true; }
@@ -38,6 +42,8 @@ private:
     [[nodiscard]] Result<Response> call(const Match& match, const Target& target, const Request& request);
 
     session::SessionRegistry& sessions_;
+    session::Weaves& weaves_;
+    const MapsLookup maps_;
     const store::ScanLog& log_;
     const metrics::Metrics& metrics_;
     const WebFiles web_;

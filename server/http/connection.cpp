@@ -180,19 +180,29 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
 net::awaitable<Response> Connection::compute(Request request) {
     const Lane lane = lane_of(request);
     if (lane == Lane::kAtOnce) co_return answer_guarded(service_->answer, request);
-    std::shared_ptr<const void> change;
-    if (lane == Lane::kChanging) {
-        change = service_->changes.try_take();
-        if (!change) {
-            co_return problem(Error{Errc::kOverloaded, "too many sessions are being created or deleted at this moment; "
-                                                       "try again soon"},
-                              instance_of(request.target));
-        }
-    }
+    const auto slot = take_slot(lane);
+    if (!slot) co_return problem(slot.error(), instance_of(request.target));
     auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
         co_return answer_guarded(service->answer, request);
     };
     co_return co_await net::co_spawn(executor_of(lane), std::move(work), net::use_awaitable);
+}
+
+/// For what must not pile up. Errors  kOverloaded.
+Result<std::shared_ptr<const void>> Connection::take_slot(Lane lane) const {
+    std::shared_ptr<const void> slot;
+    if (lane == Lane::kChanging) {
+        slot = service_->changes.try_take();
+        if (!slot) {
+            return Error{Errc::kOverloaded,
+                         "too many sessions are being created or deleted at this moment; try again soon"};
+        }
+    }
+    if (lane == Lane::kWeaving) {
+        slot = service_->weaves.try_take();
+        if (!slot) return Error{Errc::kOverloaded, "too many maps are being waited for at this moment; try again soon"};
+    }
+    return slot;
 }
 
 /// Pre: not Lane::kAtOnce.
@@ -200,6 +210,7 @@ const net::any_io_executor& Connection::executor_of(Lane lane) const {
     switch (lane) {
     case Lane::kTelling: return service_->executors.telling;
     case Lane::kSurvey: return service_->executors.survey;
+    case Lane::kWeaving: return service_->executors.weaving;
     case Lane::kChanging: return service_->executors.changing;
     default: return service_->executors.serving;
     }

@@ -30,6 +30,7 @@ struct Executors {
     boost::asio::any_io_executor telling;
     boost::asio::any_io_executor serving;
     boost::asio::any_io_executor survey;
+    boost::asio::any_io_executor weaving;
     boost::asio::any_io_executor changing;
 };
 
@@ -41,6 +42,7 @@ struct Service {
     Answer answer;
     metrics::HttpCounters& counters;
     Slots changes; ///< requests in Lane::kChanging
+    Slots weaves;  ///< requests in Lane::kWeaving
 };
 
 /// One connection: reads a request, has it answered, writes the answer, and again, in order.
@@ -69,6 +71,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
     [[nodiscard]] boost::asio::awaitable<Response> compute(Request request);
+    [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(Lane lane) const;
     [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, bool with_body, bool keep_alive);

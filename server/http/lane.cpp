@@ -1,5 +1,6 @@
 #include "server/http/lane.hpp"
 
+#include "server/http/handlers/weave_request.hpp"
 #include "server/http/number.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
@@ -18,7 +19,7 @@ Lane lane_of_tile(const std::string& zoom) {
     return level && *level < kServedZoomMin ? Lane::kSurvey : Lane::kServing;
 }
 
-Lane lane_of(const Match& match) {
+Lane lane_of(const Match& match, const Query& query) {
     switch (match.operation) {
     case Operation::kViewer:
     case Operation::kViewerAsset:
@@ -28,11 +29,12 @@ Lane lane_of(const Match& match) {
     case Operation::kMetrics: return Lane::kTelling;
     case Operation::kTilePng:
     case Operation::kTileBin: return lane_of_tile(match.arguments["z"]);
+    case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
     case Operation::kDigest:
     case Operation::kMapPng:
     case Operation::kMapPgm:
     case Operation::kMapCsv:
-    case Operation::kMapNpy: return Lane::kSurvey;
+    case Operation::kMapNpy: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kSurvey;
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;
@@ -46,7 +48,7 @@ Lane lane_of(const Request& request) {
     if (!target) return Lane::kAtOnce;
     const auto routing = find_route(request.method, target->segments);
     const auto* match = std::get_if<Match>(&routing);
-    return match == nullptr ? Lane::kAtOnce : lane_of(*match);
+    return match == nullptr ? Lane::kAtOnce : lane_of(*match, target->query);
 }
 
 } // namespace scanloom::http

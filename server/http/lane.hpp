@@ -10,6 +10,7 @@ enum class Lane {
     kTelling,  ///< a look at the system: metrics
     kServing,  ///< its own work on a part of a snapshot: tiles, facts
     kSurvey,   ///< its own work on a whole map, which may take a second: digests, images, tiles that show much
+    kWeaving,  ///< maps that are to be woven first
     kChanging, ///< the disk, or a session's strand: creating and deleting sessions
 };
 

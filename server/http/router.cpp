@@ -30,6 +30,10 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/sessions/{session}/map.npy", Operation::kMapNpy},
     Route{"GET", "/api/v1/sessions/{session}/digest", Operation::kDigest},
     Route{"GET", "/api/v1/sessions/{session}/trajectory.geojson", Operation::kTrajectory},
+    Route{"GET", "/api/v1/sessions/{session}/weave", Operation::kListWeaves},
+    Route{"POST", "/api/v1/sessions/{session}/weave", Operation::kStartWeave},
+    Route{"GET", "/api/v1/sessions/{session}/weave/{weave}", Operation::kGetWeave},
+    Route{"DELETE", "/api/v1/sessions/{session}/weave/{weave}", Operation::kDeleteWeave},
 };
 
 /// Takes the first segment off a pattern that begins with '/'.

@@ -32,6 +32,10 @@ enum class Operation {
     kMapNpy,
     kDigest,
     kTrajectory,
+    kStartWeave,
+    kListWeaves,
+    kGetWeave,
+    kDeleteWeave,
 };
 
 /// A method and a path that one operation answers. A segment of the pattern is literal, or "{name}"

@@ -54,7 +54,7 @@ std::optional<std::string_view> Query::find(std::string_view name) const {
     return found->second;
 }
 
-Result<> Query::check_only(std::initializer_list<std::string_view> known) const {
+Result<> Query::check_only(std::span<const std::string_view> known) const {
     for (const auto& [name, value] : parameters_) {
         if (std::ranges::find(known, name) != known.end()) continue;
         return Error{Errc::kInvalidField,

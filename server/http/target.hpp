@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,7 +22,10 @@ public:
     [[nodiscard]] std::optional<std::string_view> find(std::string_view name) const;
 
     /// Errors  kInvalidField, naming the first parameter that is none of these.
-    [[nodiscard]] Result<> check_only(std::initializer_list<std::string_view> known) const;
+    [[nodiscard]] Result<> check_only(std::initializer_list<std::string_view> known) const {
+        return check_only(std::span(known.begin(), known.size()));
+    }
+    [[nodiscard]] Result<> check_only(std::span<const std::string_view> known) const;
 
 private:
     std::vector<std::pair<std::string, std::string>> parameters_;

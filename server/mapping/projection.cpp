@@ -106,6 +106,7 @@ Snapshot Projection::snapshot() {
     Snapshot snapshot{.revision = revision_,
                       .config = config_,
                       .bounds = {laser_.bounds(), sonar_.bounds()},
+                      .chunk_count = chunk_count(),
                       .laser = laser_.snapshot(),
                       .sonar = sonar_.snapshot()};
     bring_classes_up_to(snapshot.laser);

@@ -40,6 +40,7 @@ struct Snapshot {
     Revision revision = 0;
     MapConfig config;
     LayerBounds bounds;
+    std::size_t chunk_count = 0; ///< of lasers and sonars
     LaserView laser;
     SonarView sonar;
     classify::ClassView classes;

@@ -8,16 +8,15 @@
 
 namespace scanloom::http {
 
-Result<Response> get_changes(const session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({"layer", "since"}); !known) return known.error();
+Result<Response> get_changes(const MapsLookup& maps, const Call& call) {
     const auto since = since_parameter(call.query);
     if (!since) return since.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
+    const auto found = maps.find(call, {"layer", "since"});
+    if (!found) return found.error();
     const auto layer = layer_parameter(call.query);
     if (!layer) return layer.error();
 
-    const auto snapshot = (*session)->snapshot();
+    const auto& snapshot = found->snapshot;
     boost::json::array changed;
     for (const auto& [key, revision] : tiles::changed_tiles(*snapshot, *layer, since_in(*snapshot, *since))) {
         changed.push_back(boost::json::object{{"z", key.zoom}, {"x", key.x}, {"y", key.y}, {"revision", revision}});

@@ -7,14 +7,13 @@
 
 namespace scanloom::http {
 
-Result<Response> get_digest(const session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({"layer"}); !known) return known.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
+Result<Response> get_digest(const MapsLookup& maps, const Call& call) {
+    const auto found = maps.find_or_weave(call, {"layer"});
+    if (!found) return found.error();
     const auto layer = layer_parameter(call.query);
     if (!layer) return layer.error();
 
-    const auto snapshot = (*session)->snapshot();
+    const auto& snapshot = found->snapshot;
     boost::json::object layers;
     for (const mapping::Layer each : mapping::kLayers) {
         const bool is_asked = !call.query.find("layer") || each == *layer;

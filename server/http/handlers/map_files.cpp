@@ -55,20 +55,18 @@ using BytesPerCell = std::int64_t (*)(mapping::Layer);
 
 std::int64_t one_byte(mapping::Layer) { return 1; }
 
-Result<Wanted> wanted_map(const session::SessionRegistry& sessions, const Call& call, BytesPerCell bytes_per_cell) {
-    if (auto known = call.query.check_only({"layer", "bbox"}); !known) return known.error();
+Result<Wanted> wanted_map(const MapsLookup& maps, const Call& call, BytesPerCell bytes_per_cell) {
     const auto bbox = bbox_parameter(call.query);
     if (!bbox) return bbox.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
+    auto found = maps.find_or_weave(call, {"layer", "bbox"});
+    if (!found) return found.error();
     const auto layer = layer_parameter(call.query);
     if (!layer) return layer.error();
 
-    auto snapshot = (*session)->snapshot();
-    const auto frame = tiles::map_frame(*snapshot, *layer, *bbox, bytes_per_cell(*layer));
+    const auto frame = tiles::map_frame(*found->snapshot, *layer, *bbox, bytes_per_cell(*layer));
     if (!frame) return frame.error();
-    auto etag = fmt::format("\"{}-map-{}\"", session_tag((*session)->info()), snapshot->revision);
-    return Wanted{std::move(snapshot), *layer, *frame, std::move(etag)};
+    auto etag = fmt::format("\"{}-map-{}\"", found->tag, found->snapshot->revision);
+    return Wanted{std::move(found->snapshot), *layer, *frame, std::move(etag)};
 }
 
 Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
@@ -77,9 +75,9 @@ Response map_answer(std::string_view content_type, Body body, std::string_view e
 
 /// Makes the file of what was asked for: bytes or text.
 template <class Write>
-Result<Response> get_file(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call,
+Result<Response> get_file(const MapsLookup& maps, const AnswerSlots& slots, const Call& call,
                           std::string_view content_type, BytesPerCell bytes_per_cell, Write&& write) {
-    const auto wanted = wanted_map(sessions, call, bytes_per_cell);
+    const auto wanted = wanted_map(maps, call, bytes_per_cell);
     if (!wanted) return wanted.error();
     if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
     using Bytes = decltype(write(*wanted));
@@ -100,29 +98,29 @@ tiles::MapImage rendered(const Wanted& wanted) {
 
 } // namespace
 
-Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
-    return get_file(sessions, slots, call, "image/png", one_byte,
+Result<Response> get_map_png(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
+    return get_file(maps, slots, call, "image/png", one_byte,
                     [](const Wanted& wanted) { return tiles::map_png(rendered(wanted)); });
 }
 
-Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
-    return get_file(sessions, slots, call, "image/x-portable-graymap", one_byte,
+Result<Response> get_map_pgm(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
+    return get_file(maps, slots, call, "image/x-portable-graymap", one_byte,
                     [](const Wanted& wanted) { return tiles::map_pgm(rendered(wanted), wanted.snapshot->config); });
 }
 
-Result<Response> get_map_csv(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+Result<Response> get_map_csv(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
     const auto text_per_cell = [](mapping::Layer) -> std::int64_t { return 4; }; // "100,"
-    return get_file(sessions, slots, call, "text/csv", text_per_cell,
+    return get_file(maps, slots, call, "text/csv", text_per_cell,
                     [](const Wanted& wanted) { return tiles::map_csv(rendered(wanted)); });
 }
 
-Result<Response> get_map_npy(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
-    return get_file(sessions, slots, call, "application/octet-stream", tiles::npy_bytes_per_cell,
+Result<Response> get_map_npy(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
+    return get_file(maps, slots, call, "application/octet-stream", tiles::npy_bytes_per_cell,
                     [](const Wanted& wanted) { return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame); });
 }
 
-Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call) {
-    const auto wanted = wanted_map(sessions, call, one_byte);
+Result<Response> get_map_yaml(const MapsLookup& maps, const Call& call) {
+    const auto wanted = wanted_map(maps, call, one_byte);
     if (!wanted) return wanted.error();
     if (if_none_match_has(call.request.if_none_match, wanted->etag)) return not_modified(wanted->etag, kRevalidate);
     return map_answer("application/yaml", Body(tiles::map_yaml(wanted->frame)), wanted->etag);

@@ -2,8 +2,8 @@
 
 #include "server/http/answer_slots.hpp"
 #include "server/http/handlers/call.hpp"
+#include "server/http/handlers/maps_lookup.hpp"
 #include "server/http/response.hpp"
-#include "server/session/session_registry.hpp"
 
 namespace scanloom::http {
 
@@ -12,14 +12,10 @@ namespace scanloom::http {
 /// loads.
 ///
 /// A large file takes a slot until its last byte was sent; when there is none, the answer is 503.
-[[nodiscard]] Result<Response> get_map_png(const session::SessionRegistry& sessions, const AnswerSlots& slots,
-                                           const Call& call);
-[[nodiscard]] Result<Response> get_map_pgm(const session::SessionRegistry& sessions, const AnswerSlots& slots,
-                                           const Call& call);
-[[nodiscard]] Result<Response> get_map_csv(const session::SessionRegistry& sessions, const AnswerSlots& slots,
-                                           const Call& call);
-[[nodiscard]] Result<Response> get_map_npy(const session::SessionRegistry& sessions, const AnswerSlots& slots,
-                                           const Call& call);
-[[nodiscard]] Result<Response> get_map_yaml(const session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> get_map_png(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
+[[nodiscard]] Result<Response> get_map_pgm(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
+[[nodiscard]] Result<Response> get_map_csv(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
+[[nodiscard]] Result<Response> get_map_npy(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
+[[nodiscard]] Result<Response> get_map_yaml(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http

@@ -1,5 +1,6 @@
 #include "server/http/handlers/session_json.hpp"
 
+#include "server/http/handlers/config_json.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
@@ -19,27 +20,6 @@ namespace {
 
 std::string rfc3339(double seconds) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(std::floor(seconds))));
-}
-
-boost::json::value to_json(const mapping::ConfigValue& value) {
-    return std::visit([](const auto& held) { return boost::json::value(held); }, value);
-}
-
-boost::json::object config_json(const mapping::MapConfig& config) {
-    boost::json::object json;
-    for (const auto& field : mapping::config_fields()) json[field.name] = to_json(mapping::value_of(field, config));
-    return json;
-}
-
-/// As a field of the configuration takes it; what no field takes becomes an empty text.
-mapping::ConfigValue config_value(const boost::json::value& json) {
-    if (json.is_bool()) return json.get_bool();
-    if (json.is_string()) return std::string_view(json.get_string());
-    boost::system::error_code not_whole;
-    if (const auto whole = json.to_number<std::int32_t>(not_whole); !not_whole) return whole;
-    boost::system::error_code no_number;
-    if (const auto number = json.to_number<double>(no_number); !no_number) return number;
-    return std::string_view();
 }
 
 boost::json::value bounds_json(const mapping::Snapshot& snapshot) {
@@ -87,7 +67,7 @@ boost::json::object to_json(const session::Session& session) {
                              {"created", rfc3339(info.created)},
                              {"revision", snapshot->revision},
                              {"scans", scans},
-                             {"config", config_json(info.config)},
+                             {"config", to_json(info.config)},
                              {"layers", layer_names()},
                              {"bounds", bounds_json(*snapshot)},
                              {"robots", std::move(robots)}};
@@ -116,11 +96,7 @@ Result<SessionRequest> parse_session_request(std::string_view body) {
     auto name = read_text(*object, "name");
     if (!name) return name.error();
     wanted.name = std::move(*name);
-    for (const auto& field : mapping::config_fields()) {
-        const auto* given = object->if_contains(field.name);
-        if (given == nullptr) continue;
-        if (auto set = mapping::set_option(wanted.options, field, config_value(*given)); !set) return set.error();
-    }
+    if (auto read = read_options(*object, wanted.options); !read) return read.error();
     return wanted;
 }
 

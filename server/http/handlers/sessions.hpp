@@ -3,6 +3,7 @@
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
 
 namespace scanloom::http {
 
@@ -17,6 +18,7 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> get_session(const session::SessionRegistry& sessions, const Call& call);
 
 /// DELETE /api/v1/sessions/{session}
-[[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves,
+                                              const Call& call);
 
 } // namespace scanloom::http

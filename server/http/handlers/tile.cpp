@@ -21,7 +21,6 @@ struct Version {
 };
 
 Result<Version> parse_version(const Query& query) {
-    if (auto ok = query.check_only({"v", "id"}); !ok) return ok.error();
     Version version{.revision = std::nullopt, .session_tag = query.find("id")};
     if (const auto text = query.find("v")) {
         version.revision = parse_integer<Revision>(*text);
@@ -40,19 +39,17 @@ bool is_final(const Version& version, std::string_view tag, Revision tile, Revis
 
 using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, mapping::Layer, tiles::TileKey);
 
-Result<Response> get_tile(const session::SessionRegistry& sessions, const Call& call, std::string_view content_type,
-                          Render render) {
+Result<Response> get_tile(const MapsLookup& maps, const Call& call, std::string_view content_type, Render render) {
     const auto version = parse_version(call.query);
     if (!version) return version.error();
     const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
     if (!key) return key.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
+    const auto found = maps.find(call, {"v", "id"});
+    if (!found) return found.error();
     const auto layer = find_layer(call.arguments["layer"]);
     if (!layer) return layer.error();
 
-    const auto snapshot = (*session)->snapshot();
-    const auto tag = session_tag((*session)->info());
+    const auto& [session, snapshot, tag] = *found;
     const Revision revision = tiles::tile_revision(*snapshot, *layer, *key);
     const auto etag = tiles::etag_of(tag, mapping::name_of(*layer), *key, revision);
     const auto kept = is_final(*version, tag, revision, snapshot->revision) ? kImmutable : kRevalidate;
@@ -62,12 +59,12 @@ Result<Response> get_tile(const session::SessionRegistry& sessions, const Call& 
 
 } // namespace
 
-Result<Response> get_tile_png(const session::SessionRegistry& sessions, const Call& call) {
-    return get_tile(sessions, call, "image/png", tiles::tile_png);
+Result<Response> get_tile_png(const MapsLookup& maps, const Call& call) {
+    return get_tile(maps, call, "image/png", tiles::tile_png);
 }
 
-Result<Response> get_tile_bin(const session::SessionRegistry& sessions, const Call& call) {
-    return get_tile(sessions, call, "application/octet-stream", tiles::tile_codes);
+Result<Response> get_tile_bin(const MapsLookup& maps, const Call& call) {
+    return get_tile(maps, call, "application/octet-stream", tiles::tile_codes);
 }
 
 } // namespace scanloom::http

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "server/http/handlers/call.hpp"
+#include "server/http/handlers/maps_lookup.hpp"
 #include "server/http/response.hpp"
-#include "server/session/session_registry.hpp"
 
 namespace scanloom::http {
 
@@ -10,9 +10,9 @@ namespace scanloom::http {
 ///
 /// `v` is a revision and `id` the session's: an answer that will never change under such an address
 /// may be kept for good. Without them it must be asked for again, with its entity tag.
-[[nodiscard]] Result<Response> get_tile_png(const session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> get_tile_png(const MapsLookup& maps, const Call& call);
 
 /// GET .../tiles/{layer}/{z}/{x}/{y}.bin: 65,536 bytes, row 0 on top; percent, 255 unknown.
-[[nodiscard]] Result<Response> get_tile_bin(const session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> get_tile_bin(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http

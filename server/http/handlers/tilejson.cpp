@@ -19,18 +19,18 @@ boost::json::array corners(const tiles::Extent& extent) {
 
 } // namespace
 
-Result<Response> get_tilejson(const session::SessionRegistry& sessions, const Call& call) {
-    if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
+Result<Response> get_tilejson(const MapsLookup& maps, const Call& call) {
+    const auto found = maps.find(call, {});
+    if (!found) return found.error();
     const auto layer = find_layer(call.arguments["layer"]);
     if (!layer) return layer.error();
 
-    const auto& info = (*session)->info();
-    const double cell_size = info.config.cell_size;
-    const auto seen = mapping::bounds_of(*(*session)->snapshot(), *layer);
-    const auto address =
+    const auto& info = found->session->info();
+    const double cell_size = found->snapshot->config.cell_size;
+    const auto seen = mapping::bounds_of(*found->snapshot, *layer);
+    auto address =
         fmt::format("/api/v1/sessions/{}/tiles/{}/{{z}}/{{x}}/{{y}}.png", info.name, mapping::name_of(*layer));
+    if (const auto weave = call.query.find("weave")) address += fmt::format("?weave={}", *weave);
     return ok(boost::json::object{
         {"tilejson", "3.0.0"},
         {"name", info.name},

@@ -63,7 +63,11 @@ inline Scan scan(std::uint64_t seq) {
 class ApiTest : public testing::Test {
 protected:
     ApiTest() { api_.set_recovered(); }
-    ~ApiTest() override { registry_.drain(); }
+    ~ApiTest() override {
+        registry_.drain();
+        weaves_.stop();
+        pool_.join();
+    }
 
     Response ask(std::string method, std::string target, std::string body = "", std::string if_none_match = "") {
         Request request;
@@ -122,7 +126,8 @@ protected:
     store::MemoryScanLog log_;
     session::SessionRegistry registry_{log_, pool_.get_executor(), [] { return 1795251600.5; }};
     metrics::Metrics metrics_{"1.2.3"};
-    Api api_{registry_, log_, metrics_, {}};
+    session::Weaves weaves_{log_, pool_.get_executor()};
+    Api api_{registry_, weaves_, log_, metrics_, {}};
     std::vector<std::shared_ptr<Link>> links_;
 };
 

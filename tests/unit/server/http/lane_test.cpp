@@ -28,6 +28,16 @@ TEST(Lane, WholeMapsDoNotHoldUpParts) {
     }
 }
 
+TEST(Lane, WhatIsToBeWovenFirstHoldsUpNothing) {
+    const std::string session = "/api/v1/sessions/s";
+    for (const char* anew : {"/digest?cell_size=0.1", "/map.png?until=12", "/map.yaml?ray_model=traversal",
+                             "/map.npy?layer=himm&himm_increment=4", "/map.csv?class_source=himm"}) {
+        EXPECT_EQ(lane("GET", session + anew), Lane::kWeaving) << anew;
+    }
+    EXPECT_EQ(lane("POST", session + "/weave"), Lane::kServing) << "which only begins";
+    EXPECT_EQ(lane("GET", session + "/map.png?weave=0123456789abcdef"), Lane::kSurvey) << "which is done or is not";
+}
+
 TEST(Lane, WhatWaitsForTheDiskOrTheSystemHasItsOwn) {
     EXPECT_EQ(lane("POST", "/api/v1/sessions"), Lane::kChanging);
     EXPECT_EQ(lane("DELETE", "/api/v1/sessions/s"), Lane::kChanging);

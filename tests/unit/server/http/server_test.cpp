@@ -57,7 +57,8 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), changing_.get_executor()};
+        return {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), weaving_.get_executor(),
+                changing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
@@ -67,6 +68,7 @@ private:
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool serving_{1};
     boost::asio::thread_pool survey_{1};
+    boost::asio::thread_pool weaving_{1};
     boost::asio::thread_pool changing_{1};
     boost::asio::io_context io_;
     std::shared_ptr<Server> server_;

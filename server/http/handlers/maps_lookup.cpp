@@ -1,0 +1,86 @@
+#include "server/http/handlers/maps_lookup.hpp"
+
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/weave_request.hpp"
+#include "server/http/in_quotes.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+constexpr std::string_view kWeave = "weave";
+
+/// What a weave has come to.
+Result<Maps> maps_of(std::shared_ptr<session::Session> session, const session::Weave& weave) {
+    if (auto maps = weave.maps()) {
+        auto tag = fmt::format("{}-{}", session_tag(session->info()), weave.id());
+        return Maps{std::move(session), std::move(maps), std::move(tag)};
+    }
+    const auto progress = weave.progress();
+    if (progress.error) return *progress.error;
+    if (progress.state == session::Weave::State::kCancelled) {
+        return Error{Errc::kNotFound, fmt::format("weave {} was cancelled; start it again", weave.id())};
+    }
+    return Error{Errc::kOverloaded,
+                 fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, or see weave/{} for "
+                             "how far it is",
+                             progress.woven, weave.request().end.revision, weave.id())};
+}
+
+} // namespace
+
+Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves, const session::Session& session,
+                                                   std::string_view id) {
+    if (auto weave = weaves.find(session.info().id, id)) return weave;
+    return Error{
+        Errc::kNotFound,
+        fmt::format("there is no weave {} of this session, or no longer; start it with POST .../weave", in_quotes(id))};
+}
+
+Result<Maps> MapsLookup::find(const Call& call, std::initializer_list<std::string_view> known) const {
+    std::vector<std::string_view> all(known);
+    all.push_back(kWeave);
+    if (auto ok = call.query.check_only(all); !ok) return ok.error();
+    return chosen(call);
+}
+
+Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const {
+    std::vector<std::string_view> all(known);
+    all.push_back(kWeave);
+    const auto settings = weave_parameters();
+    all.insert(all.end(), settings.begin(), settings.end());
+    if (auto ok = call.query.check_only(all); !ok) return ok.error();
+    if (!asks_for_weaving(call.query)) return chosen(call);
+    if (!call.query.find(kWeave)) return woven(call);
+    return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
+}
+
+Result<Maps> MapsLookup::chosen(const Call& call) const {
+    auto session = find_session(sessions_, call);
+    if (!session) return session.error();
+    const auto id = call.query.find(kWeave);
+    if (!id) {
+        auto snapshot = (*session)->snapshot();
+        auto tag = session_tag((*session)->info());
+        return Maps{std::move(*session), std::move(snapshot), std::move(tag)};
+    }
+    const auto weave = find_weave(weaves_, **session, *id);
+    if (!weave) return weave.error();
+    return maps_of(std::move(*session), **weave);
+}
+
+Result<Maps> MapsLookup::woven(const Call& call) const {
+    auto session = find_session(sessions_, call);
+    if (!session) return session.error();
+    const auto request = weave_request(**session, call.query);
+    if (!request) return request.error();
+    const auto weave = weaves_.start((*session)->info(), *request);
+    if (!weave) return weave.error();
+    static_cast<void>((*weave)->wait(patience_));
+    return maps_of(std::move(*session), **weave);
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/http/handlers/call.hpp"
+#include "server/mapping/snapshot.hpp"
+#include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
+
+#include <chrono>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace scanloom::http {
+
+/// The maps that a request is about.
+struct Maps {
+    std::shared_ptr<session::Session> session;
+    std::shared_ptr<const mapping::Snapshot> snapshot;
+    std::string tag; ///< tells them from those of every other session and weave: for entity tags
+};
+
+/// Finds the maps of a session: its own, those of the weave that `weave` names, or those that settings and `until` ask
+/// for (see weave_request()).
+/// Thread  any.
+class MapsLookup {
+public:
+    /// Whoever asks for settings waits for so long at most until they are woven.
+    static constexpr std::chrono::milliseconds kPatience{20'000};
+
+    MapsLookup(const session::SessionRegistry& sessions, session::Weaves& weaves,
+               std::chrono::milliseconds patience = kPatience)
+        : sessions_(sessions), weaves_(weaves), patience_(patience) {}
+
+    /// Those that exist: the session's, or a weave's that is done. `known` are the other parameters that the caller
+    /// reads.
+    /// Errors  those of find_session(); kInvalidField: an unknown parameter; kNotFound: no such weave; kOverloaded: it
+    ///         is not done yet; its own, where it failed.
+    [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
+
+    /// The same, and weaves them if settings are given; waits for that.
+    /// Errors  also those of weave_request().
+    [[nodiscard]] Result<Maps> find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const;
+
+    [[nodiscard]] const session::SessionRegistry& sessions() const noexcept { return sessions_; }
+    [[nodiscard]] session::Weaves& weaves() const noexcept { return weaves_; }
+
+private:
+    [[nodiscard]] Result<Maps> chosen(const Call& call) const;
+    [[nodiscard]] Result<Maps> woven(const Call& call) const;
+
+    const session::SessionRegistry& sessions_;
+    session::Weaves& weaves_;
+    std::chrono::milliseconds patience_;
+};
+
+/// Errors  kNotFound.
+[[nodiscard]] Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves,
+                                                                 const session::Session& session, std::string_view id);
+
+} // namespace scanloom::http

@@ -1,0 +1,107 @@
+#include "server/http/handlers/weave_request.hpp"
+
+#include "server/http/handlers/config_json.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/number.hpp"
+#include "server/mapping/map_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+constexpr std::string_view kUntil = "until";
+
+/// "2000-12-05T22:27:37.5Z" in seconds since 1970.
+std::optional<double> parse_rfc3339(std::string_view text) {
+    constexpr std::string_view kPattern = "0000-00-00T00:00:00";
+    if (text.size() < kPattern.size() + 1 || text.back() != 'Z') return std::nullopt;
+    for (std::size_t n = 0; n < kPattern.size(); ++n) {
+        const bool is_digit = text[n] >= '0' && text[n] <= '9';
+        if (kPattern[n] == '0' ? !is_digit : text[n] != kPattern[n]) return std::nullopt;
+    }
+    const auto number = [&](std::size_t begin, std::size_t count) {
+        return *parse_integer<int>(text.substr(begin, count));
+    };
+    const std::chrono::year_month_day day(std::chrono::year(number(0, 4)),
+                                          std::chrono::month(static_cast<unsigned>(number(5, 2))),
+                                          std::chrono::day(static_cast<unsigned>(number(8, 2))));
+    const int hours = number(11, 2);
+    const int minutes = number(14, 2);
+    if (!day.ok() || hours > 23 || minutes > 59 || number(17, 2) > 60) return std::nullopt;
+    const auto seconds = parse_real(text.substr(17, text.size() - 18));
+    if (!seconds) return std::nullopt;
+    const double days = static_cast<double>(std::chrono::sys_days(day).time_since_epoch().count());
+    return days * 86400.0 + hours * 3600.0 + minutes * 60.0 + *seconds;
+}
+
+/// Pre: `newest` is the session's revision.
+Result<session::WeaveEnd> parse_until(std::string_view text, Revision newest) {
+    if (const auto revision = parse_integer<Revision>(text)) {
+        if (*revision <= newest) return session::WeaveEnd{*revision, std::nullopt};
+        return Error{Errc::kConflict,
+                     fmt::format("until is {}, but the session is at revision {}; ask again when it is there",
+                                 *revision, newest)};
+    }
+    const auto stamp = text.ends_with('s') ? parse_real(text.substr(0, text.size() - 1)) : parse_rfc3339(text);
+    if (stamp) return session::WeaveEnd{newest, *stamp};
+    return Error{Errc::kInvalidField,
+                 fmt::format("until is {}; a revision (912), a stamp in seconds (976052857.5s) or a "
+                             "time (2000-12-05T22:27:37Z) is needed",
+                             in_quotes(text))};
+}
+
+Result<session::WeaveRequest> request_of(const session::Session& session, const SessionOptions& options,
+                                         std::optional<std::string_view> until) {
+    const auto config = mapping::resolve(options);
+    if (!config) return config.error();
+    const Revision newest = session.snapshot()->revision;
+    if (!until) return session::WeaveRequest{*config, {newest, std::nullopt}};
+    const auto end = parse_until(*until, newest);
+    if (!end) return end.error();
+    return session::WeaveRequest{*config, *end};
+}
+
+} // namespace
+
+std::span<const std::string_view> weave_parameters() noexcept {
+    static const auto names = [] {
+        std::vector<std::string_view> all = {kUntil};
+        for (const auto& field : mapping::config_fields()) all.emplace_back(field.name);
+        return all;
+    }();
+    return names;
+}
+
+bool asks_for_weaving(const Query& query) {
+    return std::ranges::any_of(weave_parameters(), [&](std::string_view name) { return query.find(name).has_value(); });
+}
+
+Result<session::WeaveRequest> weave_request(const session::Session& session, const Query& query) {
+    auto options = mapping::options_of(session.info().config);
+    for (const auto& field : mapping::config_fields()) {
+        const auto text = query.find(field.name);
+        if (!text) continue;
+        if (auto set = mapping::set_option(options, field, *text); !set) return set.error();
+    }
+    return request_of(session, options, query.find(kUntil));
+}
+
+Result<session::WeaveRequest> weave_request(const session::Session& session, const boost::json::object& body) {
+    auto options = mapping::options_of(session.info().config);
+    if (auto read = read_options(body, options); !read) return read.error();
+    const auto* until = body.if_contains(kUntil);
+    if (until == nullptr) return request_of(session, options, std::nullopt);
+    if (until->is_string()) return request_of(session, options, std::string_view(until->get_string()));
+    boost::system::error_code not_whole;
+    const auto revision = until->to_number<Revision>(not_whole);
+    return request_of(session, options, not_whole ? "?" : std::to_string(revision));
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,91 @@
+#include "server/http/handlers/weaves.hpp"
+
+#include "server/http/handlers/config_json.hpp"
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/handlers/weave_request.hpp"
+#include "server/http/json_read.hpp"
+
+#include <boost/json/array.hpp>
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace scanloom::http {
+namespace {
+
+using State = session::Weave::State;
+
+std::string_view name_of(State state) {
+    switch (state) {
+    case State::kWaiting: return "waiting";
+    case State::kWeaving: return "weaving";
+    case State::kDone: return "done";
+    case State::kFailed: return "failed";
+    case State::kCancelled: return "cancelled";
+    }
+    return "";
+}
+
+boost::json::object shown(const session::Weave& weave) {
+    const auto progress = weave.progress();
+    const auto& end = weave.request().end;
+    boost::json::object until{{"revision", end.revision}, {"stamp", nullptr}};
+    if (end.stamp) until["stamp"] = *end.stamp;
+    boost::json::object json{{"id", weave.id()},
+                             {"state", name_of(progress.state)},
+                             {"woven", progress.woven},
+                             {"until", std::move(until)},
+                             {"config", to_json(weave.request().config)}};
+    if (progress.error) json["reason"] = progress.error->message;
+    return json;
+}
+
+} // namespace
+
+Result<Response> start_weave(const MapsLookup& maps, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(maps.sessions(), call);
+    if (!session) return session.error();
+    const auto body = parse_json_object(call.request.body);
+    if (!body) return body.error();
+    if (auto known = check_members(*body, weave_parameters()); !known) return known.error();
+    const auto request = weave_request(**session, *body);
+    if (!request) return request.error();
+    const auto weave = maps.weaves().start((*session)->info(), *request);
+    if (!weave) return weave.error();
+    auto response =
+        ok(shown(**weave))
+            .set("Location", fmt::format("/api/v1/sessions/{}/weave/{}", (*session)->info().name, (*weave)->id()));
+    if (!(*weave)->maps()) response.status = Status::accepted;
+    return response;
+}
+
+Result<Response> list_weaves(const MapsLookup& maps, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(maps.sessions(), call);
+    if (!session) return session.error();
+    boost::json::array weaves;
+    for (const auto& weave : maps.weaves().list((*session)->info().id)) weaves.push_back(shown(*weave));
+    return ok(boost::json::object{{"weaves", std::move(weaves)}});
+}
+
+Result<Response> get_weave(const MapsLookup& maps, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(maps.sessions(), call);
+    if (!session) return session.error();
+    const auto weave = find_weave(maps.weaves(), **session, call.arguments["weave"]);
+    if (!weave) return weave.error();
+    return ok(shown(**weave));
+}
+
+Result<Response> delete_weave(const MapsLookup& maps, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(maps.sessions(), call);
+    if (!session) return session.error();
+    const auto weave = find_weave(maps.weaves(), **session, call.arguments["weave"]);
+    if (!weave) return weave.error();
+    maps.weaves().remove((*session)->info().id, (*weave)->id());
+    return Response{.status = Status::no_content, .fields = {}, .body = {}};
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/session/session.hpp"
+#include "server/session/weave.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <boost/asio/any_io_executor.hpp>
+
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::session {
+
+struct WeavesLimits {
+    std::size_t waiting_max = 16;         ///< weaves that have not ended
+    std::size_t kept_max = 32;            ///< ended ones
+    std::size_t chunks_max = 65'536;      ///< of all that are under way: 1.3 GiB
+    std::size_t chunks_kept_max = 65'536; ///< of all that are done: 1.3 GiB; as much as one of them can have
+};
+
+/// The weaves of all sessions: those that wait, those under way, and the newest of those that ended.
+///
+/// Queue   "weaves": at most waiting_max that have not ended; one more is refused with kOverloaded. The least recently
+///         used of those that are done go when others need their place.
+/// Thread  any; nothing here waits.
+class Weaves {
+public:
+    /// Weaving happens on `executor`, as many at a time as it has threads. The log and this must outlive what runs
+    /// there.
+    Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits = {});
+
+    /// Starts the weave, or finds the one that is asked for again; one that failed or was cancelled is tried again.
+    /// Errors  kOverloaded, kShuttingDown.
+    [[nodiscard]] Result<std::shared_ptr<Weave>> start(const SessionInfo& session, const WeaveRequest& request);
+
+    /// Null when there is none, or no longer.
+    [[nodiscard]] std::shared_ptr<Weave> find(store::SessionId session, std::string_view id);
+
+    /// The last used first.
+    [[nodiscard]] std::vector<std::shared_ptr<Weave>> list(store::SessionId session) const;
+
+    /// Cancels and forgets it. @return whether there was such a weave.
+    bool remove(store::SessionId session, std::string_view id);
+
+    /// The session is gone: cancels and forgets all of its weaves.
+    void remove_all(store::SessionId session);
+
+    /// Starts nothing more, cancels all.
+    void stop();
+
+private:
+    void evict();
+
+    store::ScanLog& log_;
+    boost::asio::any_io_executor executor_;
+    const WeavesLimits limits_;
+    ChunkBudget budget_;
+
+    mutable std::mutex mutex_;
+    bool stopped_ = false;
+    std::list<std::shared_ptr<Weave>> weaves_; // the last used first
+};
+
+} // namespace scanloom::session
