@@ -22,6 +22,7 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kUnreachable: return "unreachable";
     case Errc::kOverloaded: return "overloaded";
     case Errc::kFull: return "full";
+    case Errc::kNoPath: return "no_path";
     case Errc::kInternal: return "internal";
     }
     return "unknown";

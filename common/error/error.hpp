@@ -30,6 +30,7 @@ enum class Errc {
     kUnreachable,        ///< the peer cannot be reached, or hung up
     kOverloaded,         ///< no room or no time for this now; later there may be
     kFull,               ///< a session or its map holds the most it can; waiting makes no room
+    kNoPath,             ///< no way leads there; the message says what is in it
     kInternal,           ///< a fault of this program
 };
 

@@ -29,6 +29,7 @@ std::string_view title_of(Errc code) {
     case Errc::kUnreachable: return "Unreachable";
     case Errc::kOverloaded: return "Too busy now";
     case Errc::kFull: return "Full";
+    case Errc::kNoPath: return "No way there";
     case Errc::kInternal: return "The server failed";
     }
     return "Failed";
@@ -70,6 +71,7 @@ Status status_of(Errc code) noexcept {
     case Errc::kUnreachable: return Status::bad_gateway;
     case Errc::kOverloaded: return Status::service_unavailable;
     case Errc::kFull: return Status::insufficient_storage;
+    case Errc::kNoPath: return Status::conflict;
     case Errc::kInternal: return Status::internal_server_error;
     }
     return Status::internal_server_error;

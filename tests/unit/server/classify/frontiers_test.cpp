@@ -106,6 +106,7 @@ TEST(Frontiers, ChunksWhoseCellsHaveNoNumbersAreLeftOut) {
     grid::ChunkTree<ClassChunk> tree(frontier);
     (void)tree.write({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, 1);
     (void)tree.write({1 << 25, 0}, 1);
+    (void)tree.write({0, (1 << 25) - 1}, 1);
     EXPECT_TRUE(find_frontiers(tree.snapshot()).empty());
     (void)tree.write({(1 << 25) - 2, 2 - (1 << 25)}, 1);
     EXPECT_EQ(find_frontiers(tree.snapshot()).size(), 1U);

@@ -35,6 +35,7 @@ TEST(Problem, StatusOfEachErrorIsInOneTable) {
     EXPECT_EQ(status_of(Errc::kShuttingDown), Status::service_unavailable);
     EXPECT_EQ(status_of(Errc::kOverloaded), Status::service_unavailable);
     EXPECT_EQ(status_of(Errc::kFull), Status::insufficient_storage);
+    EXPECT_EQ(status_of(Errc::kNoPath), Status::conflict);
     EXPECT_EQ(status_of(Errc::kInternal), Status::internal_server_error);
 }
 

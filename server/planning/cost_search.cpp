@@ -1,0 +1,190 @@
+#include "server/planning/cost_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+namespace scanloom::planning {
+namespace {
+
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
+constexpr double kDiagonal = std::numbers::sqrt2;
+constexpr int kHere = 4; // of the 3 x 3 cells around a cell, by rows from the bottom
+
+constexpr Spot step_of(int direction) { return {direction % 3 - 1, direction / 3 - 1}; }
+
+constexpr bool is_diagonal(int direction) { return direction != kHere && direction % 2 == 0; }
+
+/// Which steps are possible, as bits, by which of the 3 x 3 cells may be entered.
+constexpr std::array<std::uint16_t, 512> possible_steps() {
+    std::array<std::uint16_t, 512> table{};
+    for (std::uint32_t enterable = 0; enterable < table.size(); ++enterable) {
+        for (int direction = 0; direction < 9; ++direction) {
+            const Spot step = step_of(direction);
+            std::uint32_t needed = 1U << direction;
+            if (is_diagonal(direction)) needed |= 1U << (kHere + step.x) | 1U << (kHere + 3 * step.y);
+            if (direction != kHere && (enterable & needed) == needed) {
+                table[enterable] = static_cast<std::uint16_t>(table[enterable] | 1U << direction);
+            }
+        }
+    }
+    return table;
+}
+
+constexpr auto kPossibleSteps = possible_steps();
+
+/// Calls visit(direction) for each step possible from a cell.
+template <class Visit>
+void for_each_step(const BitGrid& enterable, Spot from, Visit&& visit) {
+    for (std::uint32_t steps = kPossibleSteps[enterable.around(from)]; steps != 0; steps &= steps - 1) {
+        visit(std::countr_zero(steps));
+    }
+}
+
+Spot moved(Spot from, int direction) {
+    const Spot step = step_of(direction);
+    return {from.x + step.x, from.y + step.y};
+}
+
+/// The cost between two cells when nothing is in the way: never more than the true one, and never less by more than
+/// a step costs when a step is taken, so that A* settles no cell wrongly.
+double without_obstacles(Spot from, Spot to) {
+    const int dx = std::abs(from.x - to.x);
+    const int dy = std::abs(from.y - to.y);
+    return std::max(dx, dy) + (kDiagonal - 1.0) * std::min(dx, dy);
+}
+
+} // namespace
+
+CostSearch::CostSearch(const Passability& passability)
+    : passability_(&passability), width_(static_cast<std::uint32_t>(passability.enterable.width())),
+      cost_(static_cast<std::size_t>(passability.window.width() * passability.window.height()), kUnreached) {
+    for (int direction = 0; direction < 9; ++direction) {
+        const auto place = static_cast<std::size_t>(direction);
+        const Spot step = step_of(direction);
+        steps_[place] = step.y * passability.enterable.width() + step.x;
+        for (int dangers = 0; dangers <= 2; ++dangers) {
+            step_costs_[static_cast<std::size_t>(dangers)][place] =
+                (is_diagonal(direction) ? kDiagonal : 1.0) * (1.0 + 0.5 * dangers * passability.options.danger_cost);
+        }
+    }
+    const double farthest = 2.0 * kDiagonal + kDiagonal * passability.options.danger_cost; // one step and its estimate
+    buckets_.resize(std::bit_ceil(static_cast<std::size_t>(farthest / kBucketWidth) + 3));
+}
+
+void CostSearch::begin(Spot start) {
+    if (touched_.size() > cost_.size() / 8) {
+        std::ranges::fill(cost_, kUnreached);
+    } else {
+        for (const std::uint32_t cell : touched_) cost_[cell] = kUnreached;
+    }
+    for (auto& bucket : buckets_) bucket.clear();
+    touched_.assign(1, index_of(start));
+    cost_[index_of(start)] = 0.0;
+}
+
+/// Takes the open cells bucket by bucket. A cell that turns out to be cheaper is opened again, so that the order
+/// within a bucket does not matter; `aim` estimates what is left, sees every cell taken, and says when to stop: once
+/// nothing still open can cost less than a bound.
+template <class Aim>
+void CostSearch::search(Spot start, Aim& aim) {
+    begin(start);
+    const BitGrid& enterable = passability_->enterable;
+    const std::size_t mask = buckets_.size() - 1;
+    auto current = static_cast<std::size_t>(aim.estimate(start) / kBucketWidth);
+    buckets_[current & mask].push_back({0.0, index_of(start)});
+    for (std::size_t open = 1; open > 0; ++current) {
+        auto& bucket = buckets_[current & mask];
+        for (std::size_t next = 0; next < bucket.size(); ++next) {
+            const Open taken = bucket[next];
+            if (taken.cost > cost_[taken.cell]) continue; // it was cheaper another way
+            const Spot at = spot_of(taken.cell);
+            aim.take(at, taken.cost);
+            const std::uint32_t danger = passability_->danger.around(at);
+            const auto& costs = step_costs_.data() + (danger >> kHere & 1);
+            for_each_step(enterable, at, [&](int direction) {
+                const auto place = static_cast<std::size_t>(direction);
+                const std::uint32_t cell = taken.cell + static_cast<std::uint32_t>(steps_[place]);
+                const double cost = taken.cost + costs[danger >> direction & 1][place];
+                if (cost >= cost_[cell]) return;
+                if (cost_[cell] == kUnreached) touched_.push_back(cell);
+                cost_[cell] = cost;
+                const auto estimated =
+                    static_cast<std::size_t>((cost + aim.estimate(moved(at, direction))) / kBucketWidth);
+                buckets_[std::max(estimated, current) & mask].push_back({cost, cell}); // max: for rounding
+                ++open;
+            });
+        }
+        open -= bucket.size();
+        bucket.clear();
+        if (aim.done(static_cast<double>(current + 1) * kBucketWidth)) return;
+    }
+}
+
+void CostSearch::from(Spot start) {
+    struct Everything {
+        [[nodiscard]] double estimate(Spot) const { return 0.0; }
+        void take(Spot, double) const {}
+        [[nodiscard]] bool done(double) const { return false; }
+    } everything;
+    search(start, everything);
+}
+
+void CostSearch::between(Spot start, Spot goal) {
+    struct Towards {
+        Spot goal;
+        const double* cost;
+        [[nodiscard]] double estimate(Spot spot) const { return without_obstacles(spot, goal); }
+        void take(Spot, double) const {}
+        [[nodiscard]] bool done(double bound) const { return *cost <= bound; }
+    } towards{goal, &cost_[index_of(goal)]};
+    search(start, towards);
+    assert(cost(goal) < kUnreached);
+}
+
+std::optional<Spot> CostSearch::nearest(Spot start, const BitGrid& wanted) {
+    struct Nearest {
+        const BitGrid& wanted;
+        std::optional<Spot> found = std::nullopt;
+        double cost = kUnreached;
+        [[nodiscard]] double estimate(Spot) const { return 0.0; }
+        void take(Spot spot, double spot_cost) {
+            if (!wanted.test(spot) || spot_cost > cost) return;
+            const bool before = !found || spot.y < found->y || (spot.y == found->y && spot.x < found->x);
+            if (spot_cost == cost && !before) return;
+            found = spot;
+            cost = spot_cost;
+        }
+        [[nodiscard]] bool done(double) const { return found.has_value(); }
+    } nearest{wanted};
+    search(start, nearest);
+    return nearest.found;
+}
+
+std::vector<Spot> CostSearch::path_to(Spot goal) const {
+    assert(cost(goal) < kUnreached);
+    std::vector<Spot> path = {goal};
+    while (cost(path.back()) > 0.0) {
+        const Spot at = path.back();
+        const std::uint32_t danger = passability_->danger.around(at);
+        Spot best = at;
+        double least = kUnreached;
+        for_each_step(passability_->enterable, at, [&](int direction) {
+            const std::uint32_t dangers = (danger >> kHere & 1) + (danger >> direction & 1);
+            const double through =
+                cost(moved(at, direction)) + step_costs_[dangers][static_cast<std::size_t>(direction)];
+            if (through >= least) return;
+            best = moved(at, direction);
+            least = through;
+        });
+        path.push_back(best);
+    }
+    std::ranges::reverse(path);
+    return path;
+}
+
+} // namespace scanloom::planning

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "server/planning/passability.hpp"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace scanloom::planning {
+
+/// What it costs to get from one cell to others, from centre to centre, in cells: times the cell size it is metres.
+///
+/// Steps lead to the 8 cells around; a diagonal one only where both cells beside it may be entered, too, so that no
+/// corner is cut. A step costs its length times the mean of what a metre costs in its two cells: half of it lies in
+/// either. All costs are exact (up to rounding): the least of any sequence of steps.
+/// The same question gets the same answer, to the last bit. Memory: 8 bytes for each cell of the window.
+/// Source  Dijkstra (1959); Hart, Nilsson, Raphael (1968); buckets for a queue: Dial, CACM 12 (1969), which may be
+///         as wide as the shortest step (Denardo, Fox, Operations Research 27 (1979)).
+class CostSearch {
+public:
+    /// The passability must outlive the search.
+    explicit CostSearch(const Passability& passability);
+
+    /// Costs of every cell that can be reached.
+    void from(Spot start);
+
+    /// Searches towards the goal only.
+    /// Pre  the goal can be reached: connected().
+    void between(Spot start, Spot goal);
+
+    /// Searches until the cheapest of some cells is found; of equally cheap ones the first by rows.
+    [[nodiscard]] std::optional<Spot> nearest(Spot start, const BitGrid& wanted);
+
+    /// Of the last search; infinite where it did not come.
+    [[nodiscard]] double cost(Spot spot) const noexcept { return cost_[index_of(spot)]; }
+
+    /// The cells from the last search's start to a cell that it reached.
+    [[nodiscard]] std::vector<Spot> path_to(Spot goal) const;
+
+private:
+    static constexpr double kBucketWidth = 1.0; // cells: no step is shorter
+
+    struct Open {
+        double cost;
+        std::uint32_t cell;
+    };
+
+    [[nodiscard]] std::uint32_t index_of(Spot spot) const noexcept {
+        return static_cast<std::uint32_t>(spot.y) * width_ + static_cast<std::uint32_t>(spot.x);
+    }
+    [[nodiscard]] Spot spot_of(std::uint32_t cell) const noexcept {
+        return {static_cast<std::int32_t>(cell % width_), static_cast<std::int32_t>(cell / width_)};
+    }
+
+    void begin(Spot start);
+    template <class Aim>
+    void search(Spot start, Aim& aim);
+
+    const Passability* passability_;
+    std::uint32_t width_;
+    std::array<std::array<double, 9>, 3> step_costs_; // by how many of its two cells are in danger, and its direction
+    std::array<std::int32_t, 9> steps_;               // differences of indices
+    std::vector<double> cost_;
+    std::vector<std::uint32_t> touched_; // cells whose cost is not infinite
+    std::vector<std::vector<Open>> buckets_;
+};
+
+} // namespace scanloom::planning

@@ -1,0 +1,114 @@
+#include "server/planning/grid_path.hpp"
+
+#include "server/planning/line_of_sight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace scanloom::planning {
+namespace {
+
+/// Relative: sums in another order are no reason to keep a corner.
+constexpr double kRounding = 1e-12;
+
+/// Metres of the map frame to cells of the window; within the point's cell, however the difference was rounded.
+Point2 to_cells(const Passability& passability, const Point2& point, Spot cell) {
+    const auto within = [](double x, std::int32_t lowest) {
+        return std::clamp(x, static_cast<double>(lowest), std::nextafter(lowest + 1.0, 0.0));
+    };
+    const Point2 scaled = point * (1.0 / passability.cell_size_m);
+    return {within(scaled.x() - passability.window.i_begin, cell.x),
+            within(scaled.y() - passability.window.j_begin, cell.y)};
+}
+
+Point2 centre_of(Spot spot) { return {spot.x + 0.5, spot.y + 0.5}; }
+
+bool straight_on(const Point2& a, const Point2& b, const Point2& c) {
+    const Point2 ab = b - a;
+    const Point2 bc = c - b;
+    return ab.x() * bc.y() - ab.y() * bc.x() == 0.0 && ab.dot(bc) >= 0.0;
+}
+
+/// The cells' centres between the two points, without those that lie on a straight line between others.
+std::vector<Point2> corners(const std::vector<Spot>& cells, const Point2& start, const Point2& goal) {
+    std::vector<Point2> points = {start};
+    const auto append = [&](const Point2& point) {
+        if (point == points.back()) return;
+        if (points.size() > 1 && straight_on(points[points.size() - 2], points.back(), point)) points.pop_back();
+        points.push_back(point);
+    };
+    for (const Spot cell : cells) append(centre_of(cell));
+    append(goal);
+    return points;
+}
+
+/// Leaves out what corners it can, going on from each as far as the straight way is no worse.
+std::vector<Point2> straightened(const Passability& passability, const std::vector<Point2>& points) {
+    std::vector<Point2> kept = {points.front()};
+    for (std::size_t at = 0; at + 1 < points.size();) {
+        std::size_t furthest = at + 1;
+        double cost = *cost_of_line(passability, points[at], points[furthest]);
+        for (std::size_t next = furthest + 1; next < points.size(); ++next) {
+            const double around = cost + *cost_of_line(passability, points[next - 1], points[next]);
+            const auto straight = cost_of_line(passability, points[at], points[next]);
+            if (!straight || *straight > around * (1.0 + kRounding)) break;
+            furthest = next;
+            cost = *straight;
+        }
+        at = furthest;
+        kept.push_back(points[at]);
+    }
+    return kept;
+}
+
+Path within_a_cell(const Passability& passability, Spot cell, const Point2& start, const Point2& goal) {
+    const double length = (goal - start).norm();
+    const double factor = passability.danger.test(cell) ? 1.0 + passability.options.danger_cost : 1.0;
+    return {{start, goal}, length, length * factor};
+}
+
+} // namespace
+
+Path to_path(const Passability& passability, const std::vector<Spot>& cells, const Point2& start, const Point2& goal,
+             Shape shape) {
+    if (cells.size() == 1) return within_a_cell(passability, cells.front(), start, goal);
+    auto points =
+        corners(cells, to_cells(passability, start, cells.front()), to_cells(passability, goal, cells.back()));
+    if (shape == Shape::kStraightened) points = straightened(passability, points);
+    Path path;
+    for (std::size_t at = 0; at + 1 < points.size(); ++at) {
+        path.length_m += (points[at + 1] - points[at]).norm() * passability.cell_size_m;
+        path.cost += *cost_of_line(passability, points[at], points[at + 1]) * passability.cell_size_m;
+    }
+    for (const Point2& point : points) {
+        path.points.push_back((point + Point2(passability.window.i_begin, passability.window.j_begin)) *
+                              passability.cell_size_m);
+    }
+    path.points.front() = start; // to the last bit
+    path.points.back() = goal;
+    return path;
+}
+
+Result<Path> plan_path(const classify::ClassView& classes, double cell_size_m, const Point2& start, const Point2& goal,
+                       const PassabilityOptions& options, Shape shape) {
+    const std::array held = {start, goal};
+    auto passability = make_passability(classes, cell_size_m, options, held);
+    if (!passability) return passability.error();
+    const auto first = open_start(*passability, start);
+    if (!first) return first.error();
+    const auto last = check_goal(*passability, goal);
+    if (!last) return last.error();
+    if (!connected(passability->enterable, *first).test(*last)) {
+        return Error{Errc::kNoPath,
+                     fmt::format("there is no way from ({:g}, {:g}) to ({:g}, {:g}) for a body of radius {} m",
+                                 start.x(), start.y(), goal.x(), goal.y(), options.body_radius_m)};
+    }
+    CostSearch search(*passability);
+    search.between(*first, *last);
+    return to_path(*passability, search.path_to(*last), start, goal, shape);
+}
+
+} // namespace scanloom::planning

@@ -1,0 +1,70 @@
+#include "server/planning/line_of_sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace scanloom::planning {
+namespace {
+
+/// Cells: a line that misses a corner by less goes through it.
+constexpr double kCorner = 1e-9;
+
+/// A line's way across the cells along one axis. Parts of the line's length, 0 .. 1.
+struct Axis {
+    std::int32_t step;   // -1, 0, 1
+    double to_next_cell; // where the line leaves the current cell
+    double across_cell;  // between two such places
+
+    Axis(double from, double to) {
+        const double delta = to - from;
+        step = delta > 0.0 ? 1 : delta < 0.0 ? -1 : 0;
+        across_cell = step == 0 ? std::numeric_limits<double>::infinity() : 1.0 / std::abs(delta);
+        const double left = step > 0 ? std::floor(from) + 1.0 - from : from - std::floor(from);
+        to_next_cell = step == 0 ? std::numeric_limits<double>::infinity() : left * across_cell;
+    }
+
+    void advance(std::int32_t& cell) {
+        cell += step;
+        to_next_cell += across_cell;
+    }
+};
+
+/// Along the border of two rows or columns of cells, a line touches both.
+bool follows_a_border(const Point2& from, const Point2& to) {
+    const auto constant_integer = [](double a, double b) { return a == b && a == std::floor(a); };
+    return constant_integer(from.x(), to.x()) || constant_integer(from.y(), to.y());
+}
+
+} // namespace
+
+std::optional<double> cost_of_line(const Passability& passability, const Point2& from, const Point2& to) {
+    if (follows_a_border(from, to)) return std::nullopt;
+    const double length = (to - from).norm();
+    if (length == 0.0) return 0.0;
+    const BitGrid& enterable = passability.enterable;
+    Axis x(from.x(), to.x());
+    Axis y(from.y(), to.y());
+    Spot at{static_cast<std::int32_t>(std::floor(from.x())), static_cast<std::int32_t>(std::floor(from.y()))};
+    double in_danger = 0.0;
+    for (double entered = 0.0;;) {
+        if (!enterable.test(at)) return std::nullopt;
+        const double left = std::min({x.to_next_cell, y.to_next_cell, 1.0});
+        if (passability.danger.test(at)) in_danger += left - entered;
+        if (left == 1.0) break;
+        entered = left;
+        const double corner = (x.to_next_cell - y.to_next_cell) * length;
+        if (std::abs(corner) < kCorner) {
+            if (!enterable.test({at.x + x.step, at.y}) || !enterable.test({at.x, at.y + y.step})) return std::nullopt;
+            x.advance(at.x);
+            y.advance(at.y);
+        } else if (corner < 0.0) {
+            x.advance(at.x);
+        } else {
+            y.advance(at.y);
+        }
+    }
+    return length * (1.0 + in_danger * passability.options.danger_cost);
+}
+
+} // namespace scanloom::planning

@@ -1,0 +1,183 @@
+#include "server/planning/passability.hpp"
+
+#include "server/classify/bit_plane.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace scanloom::planning {
+namespace {
+
+using classify::CellClass;
+using classify::ClassChunk;
+using classify::ClassView;
+
+constexpr std::int32_t kSide = grid::kChunkSide;
+
+/// Chunks whose cells, and those of a chunk beside them, have int32 numbers.
+constexpr std::int64_t kChunkEnd = std::int64_t{std::numeric_limits<std::int32_t>::max()} / kSide - 1;
+constexpr grid::ChunkBox kNumberedChunks{-kChunkEnd, -kChunkEnd, kChunkEnd, kChunkEnd};
+
+/// A radius of three cells shall reach the third cell, however the quotient of two decimal fractions was rounded.
+constexpr double kRoundingCells = 1e-9;
+
+Error invalid(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
+
+Result<> check(const PassabilityOptions& options) {
+    if (!(options.body_radius_m >= 0.0 && options.body_radius_m <= kBodyRadiusMax)) {
+        return invalid(fmt::format("body_radius is {} m; it must be 0 .. {}", options.body_radius_m, kBodyRadiusMax));
+    }
+    if (!(options.danger_cost >= 0.0 && options.danger_cost <= kDangerCostMax)) {
+        return invalid(fmt::format("danger_cost is {}; it must be 0 .. {}", options.danger_cost, kDangerCostMax));
+    }
+    return {};
+}
+
+/// Errors  kInvalidField: not finite, or beyond where cells are numbered.
+Result<grid::Cell> cell_of(const Point2& point, double cell_size_m) {
+    const double cells_per_metre = 1.0 / cell_size_m;
+    const double i = std::floor(point.x() * cells_per_metre);
+    const double j = std::floor(point.y() * cells_per_metre);
+    const auto end = static_cast<double>(kChunkEnd * kSide);
+    if (!(std::abs(i) < end && std::abs(j) < end)) { // also when it is NaN
+        return invalid(fmt::format("the point ({}, {}) has no cell in any map", point.x(), point.y()));
+    }
+    return grid::Cell{static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
+}
+
+void include_chunk(grid::CellBox& box, grid::ChunkKey key) {
+    const std::int32_t i = key.ci * kSide;
+    const std::int32_t j = key.cj * kSide;
+    box.include({i, j, i + kSide, j + kSide});
+}
+
+Result<grid::CellBox> window_of(const ClassView& classes, double cell_size_m, bool allow_unknown,
+                                std::span<const Point2> held) {
+    grid::CellBox window;
+    classes.visit(kNumberedChunks, 0, [&](grid::ChunkKey key, const ClassChunk&) { include_chunk(window, key); });
+    if (allow_unknown) {
+        for (const Point2& point : held) {
+            const auto cell = cell_of(point, cell_size_m);
+            if (!cell) return cell.error();
+            include_chunk(window, grid::chunk_of(*cell));
+        }
+        if (!window.empty()) { // room to walk around the edge of the known
+            window = {window.i_begin - kSide, window.j_begin - kSide, window.i_end + kSide, window.j_end + kSide};
+        }
+    }
+    if (window.empty()) return grid::CellBox{0, 0, 0, 0};
+    if (window.width() > kWindowCellsMax / window.height()) {
+        return Error{
+            Errc::kTooLarge,
+            fmt::format("planning needs a window of {} x {} cells, more than {}: plan on a map of larger cells",
+                        window.width(), window.height(), kWindowCellsMax)};
+    }
+    return window;
+}
+
+void read_chunk(Passability& passability, grid::ChunkKey key, const ClassChunk& chunk) {
+    const auto word = static_cast<std::size_t>((key.ci * kSide - passability.window.i_begin) / kSide);
+    const std::int32_t y0 = key.cj * kSide - passability.window.j_begin;
+    for (std::int32_t j = 0; j < kSide; ++j) {
+        const CellClass* cells = chunk.cells.data() + j * kSide;
+        const std::uint64_t danger = classify::row_bits(cells, CellClass::kDanger);
+        passability.occupied.row(y0 + j)[word] = classify::row_bits(cells, CellClass::kOccupied);
+        passability.danger.row(y0 + j)[word] = danger;
+        passability.ground.row(y0 + j)[word] = classify::row_bits(cells, CellClass::kFree) | danger;
+    }
+}
+
+void set_all(BitGrid& grid) {
+    for (std::int32_t y = 0; y < grid.height(); ++y) std::ranges::fill(grid.row(y), ~std::uint64_t{0});
+}
+
+/// The ground under a point where a path begins or ends.
+Result<Spot> ground_at(const Passability& passability, const Point2& point, std::string_view which) {
+    const auto cell = cell_of(point, passability.cell_size_m);
+    if (!cell) return prefixed(fmt::format("{}: ", which), cell.error());
+    const auto refusal = [&](std::string_view why) {
+        return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x(), point.y(), why)};
+    };
+    const auto spot = passability.spot_of(*cell);
+    if (!spot) return refusal("outside the map: give a point in explored free space");
+    if (passability.occupied.test(*spot)) return refusal("inside an obstacle: give a point in free space");
+    if (!passability.ground.test(*spot)) {
+        return refusal("in unknown space: give a point in free space, or allow unknown cells");
+    }
+    return *spot;
+}
+
+} // namespace
+
+std::optional<Spot> Passability::spot_of(grid::Cell cell) const noexcept {
+    if (cell.i < window.i_begin || cell.i >= window.i_end || cell.j < window.j_begin || cell.j >= window.j_end) {
+        return std::nullopt;
+    }
+    return Spot{cell.i - window.i_begin, cell.j - window.j_begin};
+}
+
+std::optional<Spot> Passability::spot_at(const Point2& point) const noexcept {
+    const double cells_per_metre = 1.0 / cell_size_m;
+    const double x = std::floor(point.x() * cells_per_metre) - window.i_begin;
+    const double y = std::floor(point.y() * cells_per_metre) - window.j_begin;
+    if (!(x >= 0.0 && x < ground.width() && y >= 0.0 && y < ground.height())) return std::nullopt;
+    return Spot{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+}
+
+Result<Passability> make_passability(const ClassView& classes, double cell_size_m, const PassabilityOptions& options,
+                                     std::span<const Point2> held) {
+    assert(cell_size_m > 0.0);
+    if (auto valid = check(options); !valid) return valid.error();
+    const auto window = window_of(classes, cell_size_m, options.allow_unknown, held);
+    if (!window) return window.error();
+    const BitGrid blank(static_cast<std::int32_t>(window->width()), static_cast<std::int32_t>(window->height()));
+    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank};
+    classes.visit(grid::chunks_of(*window), 0,
+                  [&](grid::ChunkKey key, const ClassChunk& chunk) { read_chunk(passability, key, chunk); });
+    if (options.allow_unknown) {
+        set_all(passability.ground);
+        passability.ground.subtract(passability.occupied);
+    }
+    passability.enterable = passability.ground;
+    passability.enterable.subtract(
+        dilated(passability.occupied, disc_half_widths(options.body_radius_m / cell_size_m, true)));
+    return passability;
+}
+
+Result<Spot> open_start(Passability& passability, const Point2& start) {
+    const auto spot = ground_at(passability, start, "start");
+    if (!spot || passability.enterable.test(*spot)) return spot;
+    const auto widths = disc_half_widths(passability.options.body_radius_m / passability.cell_size_m + 1.0, false);
+    BitGrid near(passability.ground.width(), passability.ground.height());
+    near.set(*spot);
+    near = dilated(near, widths);
+    near &= passability.ground;
+    passability.enterable |= connected(near, *spot);
+    return spot;
+}
+
+Result<Spot> check_goal(const Passability& passability, const Point2& goal) {
+    const auto spot = ground_at(passability, goal, "goal");
+    if (!spot || passability.enterable.test(*spot)) return spot;
+    return Error{Errc::kNoPath, fmt::format("the goal ({:g}, {:g}) is nearer to an obstacle than the body radius of {} "
+                                            "m: give a point further away from it",
+                                            goal.x(), goal.y(), passability.options.body_radius_m)};
+}
+
+std::vector<std::int32_t> disc_half_widths(double radius, bool to_square) {
+    const double reach = radius + kRoundingCells;
+    const double half_cell = to_square ? 0.5 : 0.0;
+    std::vector<std::int32_t> widths;
+    for (double dy = 0.0;; dy += 1.0) {
+        const double above = std::max(dy - half_cell, 0.0);
+        if (above > reach) return widths;
+        widths.push_back(static_cast<std::int32_t>(std::sqrt(reach * reach - above * above) + half_cell));
+    }
+}
+
+} // namespace scanloom::planning

@@ -1,0 +1,96 @@
+#include "server/planning/grid_path.hpp"
+#include "tests/support/plan_worlds.hpp"
+
+#include <benchmark/benchmark.h>
+
+// Planning from end to end on 60 x 40 m at 0.05 m, body radius 0.15 m: from the classes to the finished polyline.
+
+namespace scanloom::bench {
+namespace {
+
+using classify::ClassView;
+using testing_support::centre;
+
+constexpr double kCellSize = 0.05;
+constexpr std::int32_t kWidth = 1200;
+constexpr std::int32_t kHeight = 800;
+
+const ClassView& office() {
+    static const ClassView view = testing_support::office(kWidth, kHeight, 5).view();
+    return view;
+}
+
+const ClassView& maze() {
+    static const ClassView view = testing_support::maze(kWidth, kHeight, 25, 6).view();
+    return view;
+}
+
+const ClassView& open_hall() {
+    static const ClassView view = [] {
+        testing_support::PlanWorld world(kWidth, kHeight, classify::OccType::kFree);
+        world.frame(1);
+        return world.view();
+    }();
+    return view;
+}
+
+/// The maze with its last square walled in.
+const ClassView& closed_maze() {
+    static const ClassView view = [] {
+        auto world = testing_support::maze(kWidth, kHeight, 25, 6);
+        world.fill(1175, 775, 1, 25, classify::OccType::kOccupied);
+        world.fill(1175, 775, 25, 1, classify::OccType::kOccupied);
+        return world.view();
+    }();
+    return view;
+}
+
+/// From the lower left corner to the upper right one.
+void plan_across(benchmark::State& state, const ClassView& view, bool possible) {
+    const Point2 start = centre({12, 12}, kCellSize);
+    const Point2 goal = centre({1187, 787}, kCellSize);
+    double length = 0.0;
+    for (auto _ : state) {
+        const auto path = planning::plan_path(view, kCellSize, start, goal);
+        if (path.has_value() != possible) return state.SkipWithError("the path is not what it should be");
+        if (path) length = path->length_m;
+    }
+    state.counters["length_m"] = length;
+}
+
+void PathAcrossOffice(benchmark::State& state) {
+    const auto view = office();
+    const Point2 start = centre({20, 100}, kCellSize);
+    const Point2 goal = centre({1180, 700}, kCellSize);
+    for (auto _ : state) {
+        const auto path = planning::plan_path(view, kCellSize, start, goal);
+        if (!path) return state.SkipWithError(path.error().message.c_str());
+        state.counters["length_m"] = path->length_m;
+    }
+}
+void PathAcrossMaze(benchmark::State& state) { plan_across(state, maze(), true); }
+void PathAcrossOpenHall(benchmark::State& state) { plan_across(state, open_hall(), true); }
+void PathToUnreachableGoal(benchmark::State& state) { plan_across(state, closed_maze(), false); }
+
+void PassabilityOfOffice(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(planning::make_passability(office(), kCellSize, {}));
+}
+
+void CostsFromOnePlaceInOffice(benchmark::State& state) {
+    const auto passability = planning::make_passability(office(), kCellSize, {}).value();
+    for (auto _ : state) {
+        planning::CostSearch search(passability);
+        search.from({20, 100});
+        benchmark::DoNotOptimize(search);
+    }
+}
+
+BENCHMARK(PathAcrossOffice)->Unit(benchmark::kMillisecond);
+BENCHMARK(PathAcrossMaze)->Unit(benchmark::kMillisecond);
+BENCHMARK(PathAcrossOpenHall)->Unit(benchmark::kMillisecond);
+BENCHMARK(PathToUnreachableGoal)->Unit(benchmark::kMillisecond);
+BENCHMARK(PassabilityOfOffice)->Unit(benchmark::kMillisecond);
+BENCHMARK(CostsFromOnePlaceInOffice)->Unit(benchmark::kMillisecond);
+
+} // namespace
+} // namespace scanloom::bench

@@ -1,0 +1,244 @@
+#include "server/planning/grid_path.hpp"
+#include "server/planning/line_of_sight.hpp"
+#include "tests/unit/server/planning/path_oracle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::planning {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+
+constexpr grid::CellBox kBox{-30, -25, 45, 40};
+constexpr double kCellSize = 0.05;
+
+Cell random_cell(std::mt19937& random) {
+    return {kBox.i_begin + random_below(random, 75), kBox.j_begin + random_below(random, 65)};
+}
+
+PassabilityOptions random_options(std::mt19937& random) {
+    const std::array radii = {0.0, 0.0, 0.04, 0.1};
+    const std::array costs = {0.0, 1.0, 0.3, 25.0};
+    return {radii[random() % 4], costs[random() % 4], random() % 4 == 0};
+}
+
+/// The cost of a path by the oracle, in metres; nothing when it touches what may not be entered.
+std::optional<double> cost_of(const Oracle& oracle, const Path& path) {
+    double cost = 0.0;
+    for (std::size_t at = 0; at + 1 < path.points.size(); ++at) {
+        const auto piece = oracle.cost_of_line(path.points[at] / kCellSize, path.points[at + 1] / kCellSize);
+        if (!piece) return std::nullopt;
+        cost += *piece * kCellSize;
+    }
+    return cost;
+}
+
+TEST(GridPath, CostsTheLeastOfAllWays) {
+    std::mt19937 random(31);
+    int found = 0;
+    int none = 0;
+    for (int round = 0; round < 60; ++round) {
+        const auto options = random_options(random);
+        const auto view = scattered(random, kBox, options.body_radius_m > 0.0 ? 4 : 28);
+        const Oracle oracle(view, kBox, kCellSize, options);
+        const Cell start = random_cell(random);
+        if (!oracle.enterable(start)) continue;
+        const auto costs = oracle.costs(start);
+        for (int n = 0; n < 20; ++n) {
+            const Cell goal = random_cell(random);
+            const auto path =
+                plan_path(view, kCellSize, centre(start, kCellSize), centre(goal, kCellSize), options, Shape::kSteps);
+            const auto expected = costs.find({goal.j, goal.i});
+            // Beyond the box everything is unknown: where that may be entered, there is more than the oracle sees.
+            if (options.allow_unknown && expected == costs.end()) continue;
+            ASSERT_EQ(path.has_value(), expected != costs.end()) << "from " << start.i << ", " << start.j;
+            (path ? found : none) += 1;
+            if (!path) continue;
+            if (!options.allow_unknown) {
+                ASSERT_NEAR(path->cost, expected->second * kCellSize, 1e-9 * expected->second);
+                ASSERT_NEAR(cost_of(oracle, *path).value(), path->cost, 1e-7);
+            }
+            ASSERT_LE(path->cost, expected->second * kCellSize * (1.0 + 1e-9));
+        }
+    }
+    EXPECT_GT(found, 200);
+    EXPECT_GT(none, 200);
+}
+
+TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
+    std::mt19937 random(32);
+    int shortened = 0;
+    for (int round = 0; round < 120; ++round) {
+        auto options = random_options(random);
+        options.allow_unknown = false;
+        const auto view = scattered(random, kBox, round % 12 == 0 ? 0 : options.body_radius_m > 0.0 ? 2 : 8);
+        const Oracle oracle(view, kBox, kCellSize, options);
+        const auto start = centre(random_cell(random), kCellSize);
+        const auto goal = centre(random_cell(random), kCellSize);
+        const auto steps = plan_path(view, kCellSize, start, goal, options, Shape::kSteps);
+        const auto path = plan_path(view, kCellSize, start, goal, options, Shape::kStraightened);
+        ASSERT_EQ(steps.has_value(), path.has_value());
+        if (!path) continue;
+        ASSERT_LE(path->cost, steps->cost * (1.0 + 1e-9));
+        shortened += path->cost < steps->cost * 0.99 ? 1 : 0;
+        if (!oracle.enterable({static_cast<int>(std::floor(start.x() / kCellSize)),
+                               static_cast<int>(std::floor(start.y() / kCellSize))})) {
+            continue; // it leaves an obstacle's surroundings, through cells that the oracle keeps closed
+        }
+        ASSERT_NEAR(cost_of(oracle, *path).value_or(-1.0), path->cost, 1e-7);
+    }
+    EXPECT_GT(shortened, 10);
+}
+
+TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
+    std::mt19937 random(33);
+    const auto view = scattered(random, kBox, 10);
+    std::uniform_real_distribution<double> x(-1.4, 2.2);
+    std::uniform_real_distribution<double> y(-1.2, 1.9);
+    const PassabilityOptions options{.body_radius_m = 0.0};
+    const Oracle oracle(view, kBox, kCellSize, options);
+    int found = 0;
+    for (int round = 0; round < 120; ++round) {
+        const Point2 start(x(random), y(random));
+        const Point2 goal(x(random), y(random));
+        const auto path = plan_path(view, kCellSize, start, goal, options);
+        if (!path) continue;
+        ++found;
+        ASSERT_EQ(path->points.front(), start);
+        ASSERT_EQ(path->points.back(), goal);
+        double length = 0.0;
+        for (std::size_t at = 0; at + 1 < path->points.size(); ++at) {
+            length += (path->points[at + 1] - path->points[at]).norm();
+        }
+        ASSERT_NEAR(path->length_m, length, 1e-9);
+        ASSERT_NEAR(cost_of(oracle, *path).value_or(-1.0), path->cost, 1e-7);
+    }
+    EXPECT_GT(found, 50);
+}
+
+TEST(GridPath, PointsOnTheBordersOfCellsAreLikeOthers) {
+    std::mt19937 random(34);
+    const auto view = scattered(random, kBox, 10);
+    const PassabilityOptions options{.body_radius_m = 0.0};
+    int found = 0;
+    for (int round = 0; round < 500; ++round) {
+        const Cell a = random_cell(random);
+        const Cell b = random_cell(random);
+        const auto path = plan_path(view, 0.25, {a.i * 0.25, a.j * 0.25}, {b.i * 0.25, b.j * 0.25 - 1e-17}, options);
+        found += path ? 1 : 0;
+    }
+    EXPECT_GT(found, 50);
+}
+
+TEST(GridPath, IsTheSameEveryTime) {
+    std::mt19937 random(35);
+    const auto view = scattered(random, kBox, 15);
+    const PassabilityOptions options{.body_radius_m = 0.0};
+    for (int round = 0; round < 20; ++round) {
+        const auto start = centre(random_cell(random), kCellSize);
+        const auto goal = centre(random_cell(random), kCellSize);
+        const auto once = plan_path(view, kCellSize, start, goal, options);
+        const auto again = plan_path(view, kCellSize, start, goal, options);
+        ASSERT_EQ(once.has_value(), again.has_value());
+        if (!once) continue;
+        EXPECT_EQ(once->points, again->points);
+        EXPECT_EQ(once->cost, again->cost);
+    }
+}
+
+TEST(GridPath, CutsNoCorner) {
+    const auto view = drawn({"..#", "...", "#.."});
+    const auto path = plan_path(view, 1.0, {0.5, 2.5}, {2.5, 0.5}, {.body_radius_m = 0.0}, Shape::kSteps).value();
+    EXPECT_NEAR(path.length_m, 2.0 * std::numbers::sqrt2, 1e-12) << "free cells on both sides of each corner";
+    const auto blocked = drawn({".#", ".."});
+    const auto around = plan_path(blocked, 1.0, {0.5, 1.5}, {1.5, 0.5}, {.body_radius_m = 0.0}).value();
+    EXPECT_NEAR(around.length_m, 2.0, 1e-12);
+    const auto between = drawn({".#", "#."});
+    EXPECT_EQ(plan_path(between, 1.0, {0.5, 1.5}, {1.5, 0.5}, {.body_radius_m = 0.0}).error().code, Errc::kNoPath);
+}
+
+TEST(GridPath, GoesAroundDangerWhenThatIsCheaper) {
+    const auto view = drawn({".......", ".!!!!!.", ".......", "......."});
+    const PassabilityOptions cheap{.body_radius_m = 0.0, .danger_cost = 0.0};
+    const PassabilityOptions dear{.body_radius_m = 0.0, .danger_cost = 5.0};
+    const auto through = plan_path(view, 1.0, {0.5, 2.5}, {6.5, 2.5}, cheap).value();
+    EXPECT_NEAR(through.length_m, 6.0, 1e-12);
+    EXPECT_NEAR(through.cost, 6.0, 1e-12);
+    const auto around = plan_path(view, 1.0, {0.5, 2.5}, {6.5, 2.5}, dear).value();
+    EXPECT_GT(around.length_m, 6.0);
+    EXPECT_LT(around.cost, 6.0 + 5.0);
+}
+
+TEST(GridPath, EntersUnknownGroundOnlyWhenAsked) {
+    const auto view = drawn({".f?f.", "#####"});
+    const PassabilityOptions asked{.body_radius_m = 0.0, .allow_unknown = true};
+    const auto refused = plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, {.body_radius_m = 0.0});
+    EXPECT_EQ(refused.error().code, Errc::kNoPath);
+    EXPECT_THAT(refused.error().message, HasSubstr("no way from (0.5, 1.5) to (4.5, 1.5)"));
+    EXPECT_NEAR(plan_path(view, 1.0, {0.5, 1.5}, {4.5, 1.5}, asked)->length_m, 4.0, 1e-12);
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {-90.0, 300.0}, asked)) << "beyond the map everything is unknown";
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 1.5}, {2.5, -5.5}, asked)) << "around the end of the wall";
+}
+
+TEST(GridPath, RefusesWhatItsEndsRefuse) {
+    const auto view = drawn({"#..#"});
+    const PassabilityOptions point{.body_radius_m = 0.0};
+    EXPECT_THAT(plan_path(view, 1.0, {0.5, 0.5}, {1.5, 0.5}, point).error().message, HasSubstr("the start"));
+    EXPECT_THAT(plan_path(view, 1.0, {1.5, 0.5}, {3.5, 0.5}, point).error().message, HasSubstr("the goal"));
+    EXPECT_EQ(plan_path(view, 1.0, {1.5, 0.5}, {1.5, 0.5}, {.body_radius_m = -1.0}).error().code, Errc::kInvalidField);
+}
+
+TEST(GridPath, WithinOneCellIsAStraightLine) {
+    const auto view = drawn({"#!#"});
+    const auto path = plan_path(view, 1.0, {1.0, 0.2}, {1.0, 0.9}, {.body_radius_m = 0.0, .danger_cost = 2.0}).value();
+    EXPECT_EQ(path.points, (std::vector<Point2>{{1.0, 0.2}, {1.0, 0.9}}));
+    EXPECT_NEAR(path.length_m, 0.7, 1e-12);
+    EXPECT_NEAR(path.cost, 2.1, 1e-12);
+}
+
+TEST(GridPath, ARobotTooNearToAWallFindsItsWayOut) {
+    const auto view = drawn({"##########", "..........", "..........", "..........", "..........", ".........."});
+    const auto path = plan_path(view, 1.0, {2.5, 4.5}, {8.5, 0.5}, {.body_radius_m = 1.6}).value();
+    EXPECT_EQ(path.points.front(), Point2(2.5, 4.5));
+    EXPECT_EQ(plan_path(view, 1.0, {8.5, 0.5}, {2.5, 4.5}, {.body_radius_m = 1.6}).error().code, Errc::kNoPath);
+}
+
+TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
+    std::mt19937 random(36);
+    int clear = 0;
+    int blocked = 0;
+    for (int round = 0; round < 3000; ++round) {
+        const PassabilityOptions options{.body_radius_m = 0.0, .danger_cost = 3.0};
+        static const auto view = scattered(random, {0, 0, 60, 50}, 2);
+        static const Oracle oracle(view, {0, 0, 60, 50}, 1.0, options);
+        static const auto passability = make_passability(view, 1.0, options).value();
+        std::uniform_real_distribution<double> coordinate(5.0, 45.0);
+        Point2 from(coordinate(random), coordinate(random));
+        Point2 to = from + Point2(coordinate(random) - 25.0, coordinate(random) - 25.0) * 0.4;
+        if (round % 2 == 0) { // centres: these lines meet corners of cells
+            from = Point2(std::floor(from.x()) + 0.5, std::floor(from.y()) + 0.5);
+            to = Point2(std::floor(to.x()) + 0.5, std::floor(to.y()) + 0.5);
+        }
+        if (!oracle.enterable({static_cast<int>(std::floor(from.x())), static_cast<int>(std::floor(from.y()))}))
+            continue;
+        if (!oracle.enterable({static_cast<int>(std::floor(to.x())), static_cast<int>(std::floor(to.y()))})) continue;
+        const auto cost = cost_of_line(passability, from, to);
+        const auto expected = oracle.cost_of_line(from, to);
+        ASSERT_EQ(cost.has_value(), expected.has_value()) << from.transpose() << " to " << to.transpose();
+        (cost ? clear : blocked) += 1;
+        ASSERT_NEAR(cost.value_or(0.0), expected.value_or(0.0), 1e-8);
+    }
+    EXPECT_GT(clear, 300);
+    EXPECT_GT(blocked, 300);
+}
+
+TEST(LineOfSight, AlongABorderTouchesBothSides) {
+    const auto passability = make_passability(drawn({"...", "..."}), 1.0, {.body_radius_m = 0.0}).value();
+    EXPECT_FALSE(cost_of_line(passability, {0.2, 1.0}, {2.8, 1.0})) << "told apart only by a hair: not worth the risk";
+    EXPECT_TRUE(cost_of_line(passability, {0.2, 1.0}, {2.8, 1.1}));
+}
+
+} // namespace
+} // namespace scanloom::planning

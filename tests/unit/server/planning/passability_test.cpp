@@ -1,0 +1,142 @@
+#include "server/planning/passability.hpp"
+#include "tests/unit/server/planning/path_oracle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::planning {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+
+Errc code_of(const Result<Spot>& result) { return result ? Errc::kInternal : result.error().code; }
+std::string message_of(const Result<Spot>& result) { return result ? "no error" : result.error().message; }
+
+TEST(Passability, ABodyMayEnterTheCellsFarEnoughFromEveryOccupiedSquare) {
+    std::mt19937 random(21);
+    const grid::CellBox box{-40, -30, 50, 40};
+    for (const double radius : {0.0, 0.02, 0.05, 0.1, 0.15, 0.26, 0.5}) {
+        for (const bool allow_unknown : {false, true}) {
+            const auto view = scattered(random, box, radius > 0.2 ? 1 : 4);
+            const PassabilityOptions options{radius, 1.0, allow_unknown};
+            const auto passability = make_passability(view, 0.05, options).value();
+            const Oracle oracle(view, box, 0.05, options);
+            for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
+                for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
+                    const Spot spot = passability.spot_of({i, j}).value();
+                    ASSERT_EQ(passability.enterable.test(spot), oracle.enterable({i, j}))
+                        << "cell " << i << ", " << j << ", radius " << radius;
+                    ASSERT_EQ(passability.danger.test(spot), class_at(view, {i, j}) == CellClass::kDanger);
+                    ASSERT_EQ(passability.occupied.test(spot), class_at(view, {i, j}) == CellClass::kOccupied);
+                }
+            }
+        }
+    }
+}
+
+TEST(Passability, ARadiusOfWholeCellsReachesThem) {
+    const auto view = drawn({"#........."});
+    const auto passability = make_passability(view, 0.05, {.body_radius_m = 0.175}).value();
+    EXPECT_FALSE(passability.enterable.test({4, 0})) << "its centre is 3.5 cells from the square, which is the radius";
+    EXPECT_TRUE(passability.enterable.test({5, 0}));
+}
+
+TEST(Passability, TheWindowIsTheChunksOfTheMap) {
+    ClassMap map;
+    map.set({-1, 5}, CellClass::kFree);
+    map.set({200, -70}, CellClass::kFree);
+    const auto passability = make_passability(map.view(), 0.05, {}).value();
+    EXPECT_EQ(passability.window, (grid::CellBox{-64, -128, 256, 64}));
+    EXPECT_EQ(passability.cell_at({1, 2}), (Cell{-63, -126}));
+    EXPECT_EQ(passability.spot_at({-0.01, 0.26}), (Spot{63, 133}));
+    EXPECT_EQ(passability.spot_at({-3.3, 0.0}), std::nullopt);
+    EXPECT_EQ(passability.centre_of({64, 128}), Point2(0.025, 0.025));
+}
+
+TEST(Passability, UnknownGroundReachesAroundThePointsToBeHeld) {
+    const auto view = drawn({"."});
+    const std::vector<Point2> held = {{10.0, 0.0}, {0.0, -10.0}};
+    const PassabilityOptions options{.allow_unknown = true};
+    EXPECT_EQ(make_passability(view, 0.05, options, held)->window, (grid::CellBox{-64, -320, 320, 128}));
+    EXPECT_EQ(make_passability(view, 0.05, {}, held)->window, (grid::CellBox{0, 0, 64, 64}));
+}
+
+TEST(Passability, AWindowThatIsTooLargeIsRefused) {
+    ClassMap map;
+    map.set({0, 0}, CellClass::kFree);
+    map.set({100'000, 100'000}, CellClass::kFree);
+    const auto passability = make_passability(map.view(), 0.05, {});
+    ASSERT_FALSE(passability);
+    EXPECT_EQ(passability.error().code, Errc::kTooLarge);
+    EXPECT_THAT(passability.error().message, HasSubstr("100032 x 100032 cells"));
+    EXPECT_TRUE(make_passability(drawn({"."}), 0.05, {}));
+}
+
+TEST(Passability, ChunksAtTheEndsOfTheNumbersDoNoHarm) {
+    ClassMap map;
+    map.set({0, 0}, CellClass::kFree);
+    map.set({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, CellClass::kFree);
+    EXPECT_EQ(make_passability(map.view(), 1.0, {})->window, (grid::CellBox{0, 0, 64, 64}));
+    const std::vector<Point2> held = {{2147483000.0, 0.0}};
+    EXPECT_EQ(make_passability(map.view(), 1.0, {.allow_unknown = true}, held).error().code, Errc::kTooLarge);
+}
+
+TEST(Passability, OptionsOutOfRangeAreRefusedByName) {
+    const auto refusal = [](const PassabilityOptions& options) {
+        return make_passability(drawn({"."}), 0.05, options).error();
+    };
+    for (const double bad : {-0.1, 6.0, std::nan(""), kInfinite}) {
+        EXPECT_EQ(refusal({.body_radius_m = bad}).code, Errc::kInvalidField);
+        EXPECT_THAT(refusal({.body_radius_m = bad}).message, HasSubstr("body_radius"));
+    }
+    for (const double bad : {-1.0, 1001.0, std::nan("")}) {
+        EXPECT_THAT(refusal({.danger_cost = bad}).message, HasSubstr("danger_cost"));
+    }
+}
+
+TEST(Passability, AStartThatCannotBeIsRefusedWithTheReason) {
+    const auto view = drawn({"#.?f!"});
+    auto passability = make_passability(view, 1.0, {.body_radius_m = 0.0}).value();
+    EXPECT_EQ(code_of(open_start(passability, {0.5, 0.5})), Errc::kNoPath);
+    EXPECT_THAT(message_of(open_start(passability, {0.5, 0.5})), HasSubstr("start (0.5, 0.5) is inside an obstacle"));
+    EXPECT_THAT(message_of(open_start(passability, {2.5, 0.5})), HasSubstr("unknown space"));
+    EXPECT_THAT(message_of(open_start(passability, {3.5, 0.5})), HasSubstr("unknown space"));
+    EXPECT_THAT(message_of(open_start(passability, {-0.5, 0.5})), HasSubstr("outside the map"));
+    EXPECT_EQ(code_of(open_start(passability, {std::nan(""), 0.5})), Errc::kInvalidField);
+    EXPECT_EQ(code_of(open_start(passability, {1e300, 0.5})), Errc::kInvalidField);
+    EXPECT_EQ(open_start(passability, {1.5, 0.5}).value(), (Spot{1, 0}));
+    EXPECT_EQ(open_start(passability, {4.5, 0.5}).value(), (Spot{4, 0}));
+}
+
+TEST(Passability, AGoalThatCannotBeIsRefusedWithTheReason) {
+    const auto view = drawn({"#..?."});
+    const auto passability = make_passability(view, 1.0, {.body_radius_m = 1.0}).value();
+    EXPECT_THAT(message_of(check_goal(passability, {0.5, 0.5})), HasSubstr("goal (0.5, 0.5) is inside an obstacle"));
+    EXPECT_THAT(message_of(check_goal(passability, {1.5, 0.5})), HasSubstr("nearer to an obstacle than the body"));
+    EXPECT_THAT(message_of(check_goal(passability, {3.5, 0.5})), HasSubstr("unknown space"));
+    EXPECT_THAT(message_of(check_goal(passability, {70.0, 0.5})), HasSubstr("outside the map"));
+    EXPECT_EQ(code_of(check_goal(passability, {0.5, kInfinite})), Errc::kInvalidField);
+    EXPECT_EQ(check_goal(passability, {2.5, 0.5}).value(), (Spot{2, 0}));
+}
+
+TEST(Passability, AStartBesideAnObstacleMayBeLeftButNotWalkedAlong) {
+    const auto view = drawn({"..........", "..........", "..........", "..........", "##########"});
+    auto passability = make_passability(view, 1.0, {.body_radius_m = 1.6}).value();
+    ASSERT_FALSE(passability.enterable.test({2, 1}));
+    ASSERT_TRUE(passability.enterable.test({2, 3}));
+    ASSERT_TRUE(open_start(passability, {2.5, 1.5}));
+    EXPECT_TRUE(passability.enterable.test({2, 1}));
+    EXPECT_TRUE(passability.enterable.test({2, 2}));
+    EXPECT_TRUE(passability.enterable.test({4, 1})) << "2 cells away, within 1.6 + 1";
+    EXPECT_FALSE(passability.enterable.test({5, 1}));
+    EXPECT_FALSE(passability.enterable.test({2, 0})) << "an obstacle stays one";
+}
+
+TEST(Passability, AnEmptyMapHasNoInside) {
+    auto passability = make_passability(ClassView{}, 0.05, {}).value();
+    EXPECT_THAT(message_of(open_start(passability, {0.0, 0.0})), HasSubstr("outside the map"));
+}
+
+} // namespace
+} // namespace scanloom::planning

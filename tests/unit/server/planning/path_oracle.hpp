@@ -1,0 +1,122 @@
+#pragma once
+
+#include "server/planning/passability.hpp"
+#include "tests/support/class_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+/// Slow, plain versions of what planning promises, straight from its headers.
+namespace scanloom::testing_support {
+
+using planning::PassabilityOptions;
+
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// The cells of a box, and which of them a body may enter.
+class Oracle {
+public:
+    Oracle(const ClassView& view, const grid::CellBox& box, double cell_size_m, const PassabilityOptions& options)
+        : view_(view), box_(box), options_(options), radius_(options.body_radius_m / cell_size_m + 1e-9) {
+        for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
+            for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
+                if (class_at(view, {i, j}) == CellClass::kOccupied) occupied_.push_back({i, j});
+            }
+        }
+        for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
+            for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
+                if (may_be_entered({i, j})) enterable_.insert({j, i});
+            }
+        }
+    }
+
+    [[nodiscard]] bool enterable(Cell cell) const { return enterable_.contains({cell.j, cell.i}); }
+    [[nodiscard]] double factor(Cell cell) const {
+        return class_at(view_, cell) == CellClass::kDanger ? 1.0 + options_.danger_cost : 1.0;
+    }
+
+    /// The cost from a cell to every other one, in cells, by (j, i).
+    [[nodiscard]] std::map<std::pair<int, int>, double> costs(Cell start) const {
+        std::map<std::pair<int, int>, double> settled;
+        std::set<std::tuple<double, int, int>> open = {{0.0, start.j, start.i}};
+        while (!open.empty()) {
+            const auto [cost, j, i] = *open.begin();
+            open.erase(open.begin());
+            if (!settled.try_emplace({j, i}, cost).second) continue;
+            for (int dj = -1; dj <= 1; ++dj) {
+                for (int di = -1; di <= 1; ++di) {
+                    const Cell next{i + di, j + dj};
+                    const bool cuts_a_corner = !enterable({next.i, j}) || !enterable({i, next.j});
+                    if (!enterable(next) || cuts_a_corner) continue;
+                    open.insert({cost + std::hypot(di, dj) * (factor({i, j}) + factor(next)) / 2.0, next.j, next.i});
+                }
+            }
+        }
+        return settled;
+    }
+
+    /// The cost of a straight line in cells, or nothing when it touches the square of a cell that may not be entered.
+    [[nodiscard]] std::optional<double> cost_of_line(const Point2& from, const Point2& to) const {
+        double cost = 0.0;
+        const auto low = from.cwiseMin(to);
+        const auto high = from.cwiseMax(to);
+        for (auto j = static_cast<int>(std::floor(low.y())) - 1; j <= high.y(); ++j) {
+            for (auto i = static_cast<int>(std::floor(low.x())) - 1; i <= high.x(); ++i) {
+                const double part = part_inside(from, to, {i, j});
+                if (part < 0.0) continue;
+                if (!enterable({i, j})) return std::nullopt;
+                cost += part * (to - from).norm() * factor({i, j});
+            }
+        }
+        return cost;
+    }
+
+private:
+    [[nodiscard]] bool may_be_entered(Cell cell) const {
+        const auto value = class_at(view_, cell);
+        if (value == CellClass::kOccupied) return false;
+        const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
+        if (unknown && !options_.allow_unknown) return false;
+        return std::ranges::none_of(occupied_, [&](Cell other) {
+            const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
+            const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
+            return std::hypot(dx, dy) <= radius_;
+        });
+    }
+
+    /// How much of the line is in a cell's square, 0 .. 1; negative when it does not touch it.
+    /// Source  Liang, Barsky, A New Concept and Method for Line Clipping (1984).
+    [[nodiscard]] static double part_inside(const Point2& from, const Point2& to, Cell cell) {
+        constexpr double kTouch = 1e-10;
+        double begin = 0.0;
+        double end = 1.0;
+        const Point2 low(cell.i, cell.j);
+        for (int axis = 0; axis < 2; ++axis) {
+            const double delta = to[axis] - from[axis];
+            if (delta == 0.0) {
+                if (from[axis] < low[axis] || from[axis] > low[axis] + 1.0) return -1.0;
+                continue;
+            }
+            const double a = (low[axis] - from[axis]) / delta;
+            const double b = (low[axis] + 1.0 - from[axis]) / delta;
+            begin = std::max(begin, std::min(a, b));
+            end = std::min(end, std::max(a, b));
+        }
+        return end >= begin ? end - begin : end >= begin - kTouch ? 0.0 : -1.0;
+    }
+
+    const ClassView& view_;
+    grid::CellBox box_;
+    PassabilityOptions options_;
+    double radius_;
+    std::vector<Cell> occupied_;
+    std::set<std::pair<int, int>> enterable_;
+};
+
+} // namespace scanloom::testing_support
