@@ -12,6 +12,9 @@ namespace scanloom::planning {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
+/// Relative: a way that is cheaper by less is not looked for.
+constexpr double kRounding = 1e-12;
+
 constexpr double kDiagonal = std::numbers::sqrt2;
 constexpr int kHere = 4; // of the 3 x 3 cells around a cell, by rows from the bottom
 
@@ -37,12 +40,28 @@ constexpr std::array<std::uint16_t, 512> possible_steps() {
 
 constexpr auto kPossibleSteps = possible_steps();
 
-/// Calls visit(direction) for each step possible from a cell.
-template <class Visit>
-void for_each_step(const BitGrid& enterable, Spot from, Visit&& visit) {
-    for (std::uint32_t steps = kPossibleSteps[enterable.around(from)]; steps != 0; steps &= steps - 1) {
-        visit(std::countr_zero(steps));
+constexpr std::uint32_t kAll = (1U << 9) - 1;
+
+/// Where it is worth going on from a cell amid others that cost the same, by the step that led to it: elsewhere its
+/// predecessor gets as cheaply without it, the diagonal step first. Of equally cheap ways one is thus left.
+/// Source  the natural neighbours of Harabor, Grastien, Online Graph Pruning for Pathfinding on Grid Maps (AAAI 2011).
+constexpr std::array<std::uint16_t, 9> natural_steps() {
+    std::array<std::uint16_t, 9> table{};
+    for (int came = 0; came < 9; ++came) {
+        const Spot step = step_of(came);
+        std::uint32_t steps = 1U << came;
+        if (is_diagonal(came)) steps |= 1U << (kHere + step.x) | 1U << (kHere + 3 * step.y);
+        table[static_cast<std::size_t>(came)] = static_cast<std::uint16_t>(came == kHere ? kAll : steps);
     }
+    return table;
+}
+
+constexpr auto kNaturalSteps = natural_steps();
+
+/// Calls visit(direction) for each of the steps.
+template <class Visit>
+void for_each_step(std::uint32_t steps, Visit&& visit) {
+    for (; steps != 0; steps &= steps - 1) visit(std::countr_zero(steps));
 }
 
 Spot moved(Spot from, int direction) {
@@ -50,8 +69,7 @@ Spot moved(Spot from, int direction) {
     return {from.x + step.x, from.y + step.y};
 }
 
-/// The cost between two cells when nothing is in the way: never more than the true one, and never less by more than
-/// a step costs when a step is taken, so that A* settles no cell wrongly.
+/// The cost between two cells when nothing is in the way, which is never more than the true one.
 double without_obstacles(Spot from, Spot to) {
     const int dx = std::abs(from.x - to.x);
     const int dy = std::abs(from.y - to.y);
@@ -96,17 +114,22 @@ void CostSearch::search(Spot start, Aim& aim) {
     const BitGrid& enterable = passability_->enterable;
     const std::size_t mask = buckets_.size() - 1;
     auto current = static_cast<std::size_t>(aim.estimate(start) / kBucketWidth);
-    buckets_[current & mask].push_back({0.0, index_of(start)});
+    buckets_[current & mask].push_back({0.0, index_of(start), kHere});
     for (std::size_t open = 1; open > 0; ++current) {
         auto& bucket = buckets_[current & mask];
-        for (std::size_t next = 0; next < bucket.size(); ++next) {
-            const Open taken = bucket[next];
+        while (!bucket.empty()) {
+            const Open taken = bucket.back();
+            bucket.pop_back();
+            --open;
             if (taken.cost > cost_[taken.cell]) continue; // it was cheaper another way
             const Spot at = spot_of(taken.cell);
-            aim.take(at, taken.cost);
+            if (!aim.take(at, taken.cost)) continue;
             const std::uint32_t danger = passability_->danger.around(at);
             const auto& costs = step_costs_.data() + (danger >> kHere & 1);
-            for_each_step(enterable, at, [&](int direction) {
+            const std::uint32_t around = enterable.around(at);
+            std::uint32_t steps = kPossibleSteps[around];
+            if (around == kAll && (danger == 0 || danger == kAll)) steps &= kNaturalSteps[taken.came];
+            for_each_step(steps, [&](int direction) {
                 const auto place = static_cast<std::size_t>(direction);
                 const std::uint32_t cell = taken.cell + static_cast<std::uint32_t>(steps_[place]);
                 const double cost = taken.cost + costs[danger >> direction & 1][place];
@@ -115,12 +138,11 @@ void CostSearch::search(Spot start, Aim& aim) {
                 cost_[cell] = cost;
                 const auto estimated =
                     static_cast<std::size_t>((cost + aim.estimate(moved(at, direction))) / kBucketWidth);
-                buckets_[std::max(estimated, current) & mask].push_back({cost, cell}); // max: for rounding
+                buckets_[std::max(estimated, current) & mask].push_back(
+                    {cost, cell, static_cast<std::uint32_t>(direction)}); // max: for rounding
                 ++open;
             });
         }
-        open -= bucket.size();
-        bucket.clear();
         if (aim.done(static_cast<double>(current + 1) * kBucketWidth)) return;
     }
 }
@@ -128,7 +150,7 @@ void CostSearch::search(Spot start, Aim& aim) {
 void CostSearch::from(Spot start) {
     struct Everything {
         [[nodiscard]] double estimate(Spot) const { return 0.0; }
-        void take(Spot, double) const {}
+        [[nodiscard]] bool take(Spot, double) const { return true; }
         [[nodiscard]] bool done(double) const { return false; }
     } everything;
     search(start, everything);
@@ -139,7 +161,10 @@ void CostSearch::between(Spot start, Spot goal) {
         Spot goal;
         const double* cost;
         [[nodiscard]] double estimate(Spot spot) const { return without_obstacles(spot, goal); }
-        void take(Spot, double) const {}
+        /// Once there is a way to the goal: only what can lead there more cheaply.
+        [[nodiscard]] bool take(Spot spot, double spot_cost) const {
+            return spot_cost + estimate(spot) < *cost * (1.0 - kRounding);
+        }
         [[nodiscard]] bool done(double bound) const { return *cost <= bound; }
     } towards{goal, &cost_[index_of(goal)]};
     search(start, towards);
@@ -152,12 +177,13 @@ std::optional<Spot> CostSearch::nearest(Spot start, const BitGrid& wanted) {
         std::optional<Spot> found = std::nullopt;
         double cost = kUnreached;
         [[nodiscard]] double estimate(Spot) const { return 0.0; }
-        void take(Spot spot, double spot_cost) {
-            if (!wanted.test(spot) || spot_cost > cost) return;
+        [[nodiscard]] bool take(Spot spot, double spot_cost) {
+            if (spot_cost > cost) return false;
+            if (!wanted.test(spot)) return true;
             const bool before = !found || spot.y < found->y || (spot.y == found->y && spot.x < found->x);
-            if (spot_cost == cost && !before) return;
-            found = spot;
+            if (spot_cost < cost || before) found = spot;
             cost = spot_cost;
+            return false;
         }
         [[nodiscard]] bool done(double) const { return found.has_value(); }
     } nearest{wanted};
@@ -173,7 +199,7 @@ std::vector<Spot> CostSearch::path_to(Spot goal) const {
         const std::uint32_t danger = passability_->danger.around(at);
         Spot best = at;
         double least = kUnreached;
-        for_each_step(passability_->enterable, at, [&](int direction) {
+        for_each_step(kPossibleSteps[passability_->enterable.around(at)], [&](int direction) {
             const std::uint32_t dangers = (danger >> kHere & 1) + (danger >> direction & 1);
             const double through =
                 cost(moved(at, direction)) + step_costs_[dangers][static_cast<std::size_t>(direction)];

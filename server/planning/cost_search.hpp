@@ -38,11 +38,12 @@ public:
     [[nodiscard]] std::vector<Spot> path_to(Spot goal) const;
 
 private:
-    static constexpr double kBucketWidth = 1.0; // cells: no step is shorter
+    static constexpr double kBucketWidth = 0.5; // cells: no step is shorter than two of them
 
     struct Open {
         double cost;
         std::uint32_t cell;
+        std::uint32_t came; // the step that led to it
     };
 
     [[nodiscard]] std::uint32_t index_of(Spot spot) const noexcept {
