@@ -1,0 +1,267 @@
+#include "server/planning/goals.hpp"
+#include "tests/support/plan_worlds.hpp"
+#include "tests/unit/server/planning/path_oracle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace scanloom::planning {
+namespace {
+
+using namespace testing_support;
+using classify::find_frontiers;
+using testing::HasSubstr;
+
+constexpr double kCellSize = 0.05;
+
+ExplorationOptions for_a_point() {
+    ExplorationOptions options;
+    options.passability.body_radius_m = 0.0;
+    return options;
+}
+
+/// An office of which discs around some places were never seen.
+ClassView partly_seen(std::mt19937& random, int unseen_places) {
+    const auto world = office(250, 250, static_cast<unsigned>(random()));
+    std::vector<Cell> unseen;
+    for (int n = 0; n < unseen_places; ++n) unseen.push_back({random_below(random, 250), random_below(random, 250)});
+    return classified({0, 0, 250, 250}, 3, [&](Cell cell) {
+        const bool hidden = std::ranges::any_of(
+            unseen, [&](Cell place) { return std::hypot(cell.i - place.i, cell.j - place.j) < 12.0; });
+        return hidden ? OccType::kUnexplored : world.at(cell);
+    });
+}
+
+std::optional<Point2> somewhere_free(std::mt19937& random, const ClassView& view) {
+    const Cell cell{random_below(random, 250), random_below(random, 250)};
+    if (class_at(view, cell) != CellClass::kFree) return std::nullopt;
+    return centre(cell, kCellSize);
+}
+
+TEST(Goals, AreTheNearestFreeCellsWithTheCheapestWay) {
+    std::mt19937 random(61);
+    int reached = 0;
+    int in_danger = 0;
+    for (int round = 0; round < 12; ++round) {
+        const auto view = partly_seen(random, 8);
+        const auto robot = somewhere_free(random, view);
+        if (!robot) continue;
+        const auto frontiers = find_frontiers(view);
+        auto passability = make_passability(view, kCellSize, {}).value();
+        CostSearch search(passability);
+        search.from(open_start(passability, *robot).value());
+        const auto goals = frontier_goals(view, kCellSize, frontiers, *robot).value();
+        ASSERT_EQ(goals.size(), frontiers.size());
+        for (std::size_t place = 0; place < goals.size(); ++place) {
+            // Rings of free cells around the frontier: the first with a reachable free cell has the goal.
+            std::set<std::pair<int, int>> seen;
+            std::vector<Cell> ring;
+            const auto is_free = [&](Cell cell) {
+                return class_at(view, cell) == CellClass::kFree || class_at(view, cell) == CellClass::kDanger;
+            };
+            const auto add = [&](Cell cell, std::vector<Cell>& to) {
+                if (is_free(cell) && seen.insert({cell.j, cell.i}).second) to.push_back(cell);
+            };
+            for (const Cell cell : frontiers[place].cells) {
+                for (int n = 0; n < 9; ++n) add({cell.i + n % 3 - 1, cell.j + n / 3 - 1}, ring);
+            }
+            double best = kInfinite;
+            double best_in_danger = kInfinite;
+            for (int step = 1; step <= 20 && best == kInfinite; ++step) {
+                double in_ring = kInfinite;
+                for (const Cell cell : ring) {
+                    const double cost = search.cost(*passability.spot_of(cell)) * kCellSize;
+                    const bool danger = class_at(view, cell) == CellClass::kDanger;
+                    (danger ? in_ring : best) = std::min(danger ? in_ring : best, cost);
+                }
+                if (best_in_danger == kInfinite) best_in_danger = in_ring;
+                std::vector<Cell> next;
+                for (const Cell cell : ring) {
+                    add({cell.i + 1, cell.j}, next);
+                    add({cell.i - 1, cell.j}, next);
+                    add({cell.i, cell.j + 1}, next);
+                    add({cell.i, cell.j - 1}, next);
+                }
+                ring = next;
+            }
+            const double expected = best < kInfinite ? best : best_in_danger;
+            ASSERT_EQ(goals[place].has_value(), expected < kInfinite);
+            if (!goals[place]) continue;
+            ASSERT_NEAR(goals[place]->cost, expected, 1e-9);
+            ASSERT_EQ(goals[place]->in_danger, best == kInfinite);
+            ASSERT_EQ(goals[place]->in_danger, class_at(view, goals[place]->cell) == CellClass::kDanger);
+            ASSERT_EQ(goals[place]->frontier, place);
+            reached += 1;
+            in_danger += goals[place]->in_danger ? 1 : 0;
+        }
+    }
+    EXPECT_GT(reached, 20);
+    EXPECT_LT(in_danger, reached / 2);
+}
+
+TEST(Goals, TellTheLengthOfTheWayAndTheNearestCellOfTheFrontier) {
+    const auto view = drawn({".........f", ".........f", ".........f"});
+    const auto frontiers = find_frontiers(view);
+    const auto goals = frontier_goals(view, 1.0, frontiers, {0.5, 1.5}, for_a_point()).value();
+    ASSERT_TRUE(goals[0]);
+    EXPECT_EQ(goals[0]->cell, (Cell{8, 1}));
+    EXPECT_EQ(goals[0]->target, (Cell{9, 1}));
+    EXPECT_NEAR(goals[0]->length_m, 8.0, 1e-12);
+    EXPECT_NEAR(goals[0]->cost, 8.0, 1e-12);
+}
+
+TEST(Goals, DangerIsTakenOnlyWhereThereIsNothingElse) {
+    const auto free_behind = drawn({"...!!!f"});
+    const auto frontiers = find_frontiers(free_behind);
+    const auto goal = frontier_goals(free_behind, 1.0, frontiers, {0.5, 0.5}, for_a_point()).value().front().value();
+    EXPECT_EQ(goal.cell, (Cell{2, 0}));
+    EXPECT_FALSE(goal.in_danger);
+    const auto narrow = drawn({".!!!!!!!!!!f"});
+    const auto only_danger =
+        frontier_goals(narrow, 1.0, find_frontiers(narrow), {0.5, 0.5}, for_a_point()).value().front().value();
+    EXPECT_EQ(only_danger.cell, (Cell{10, 0}));
+    EXPECT_TRUE(only_danger.in_danger);
+}
+
+TEST(Goals, NoneIsBehindAWall) {
+    const auto view = drawn({"....#.f", "....#..", "....#.#", "....##."});
+    const auto frontiers = find_frontiers(view);
+    EXPECT_FALSE(frontier_goals(view, 1.0, frontiers, {0.5, 0.5}, for_a_point()).value().front())
+        << "three metres away, on the other side";
+}
+
+TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
+    std::mt19937 random(62);
+    int found = 0;
+    for (int round = 0; round < 12; ++round) {
+        const auto view = partly_seen(random, 6);
+        const auto robot = somewhere_free(random, view);
+        if (!robot) continue;
+        const auto goals = frontier_goals(view, kCellSize, find_frontiers(view), *robot).value();
+        const auto next = next_goal(view, kCellSize, *robot).value();
+        double least = kInfinite;
+        for (const auto& goal : goals) least = std::min(least, goal ? goal->cost : kInfinite);
+        ASSERT_EQ(next.outcome, least < kInfinite ? Exploration::kGoal : Exploration::kComplete);
+        if (!next.goal) continue;
+        ++found;
+        EXPECT_EQ(next.goal->cost, least);
+        EXPECT_EQ(next.path.points.front(), *robot);
+        EXPECT_NEAR((next.path.points.back() - centre(next.goal->cell, kCellSize)).norm(), 0.0, 1e-9);
+        EXPECT_LE(next.path.cost, next.goal->cost * (1.0 + 1e-9));
+        EXPECT_LE(next.path.length_m, next.goal->length_m + 1e-9);
+    }
+    EXPECT_GT(found, 4);
+}
+
+TEST(NextGoal, RobotsThatAskOneAfterTheOtherNeverGetTheSameFrontier) {
+    std::mt19937 random(63);
+    int second_goals = 0;
+    int all_taken = 0;
+    for (int round = 0; round < 15; ++round) {
+        const auto view = partly_seen(random, round % 5);
+        const auto frontiers = find_frontiers(view);
+        std::vector<Cell> targets;
+        std::set<std::size_t> given;
+        for (int n = 0; n < 4; ++n) {
+            const auto robot = somewhere_free(random, view);
+            if (!robot) continue;
+            const auto next = next_goal(view, kCellSize, *robot, targets).value();
+            all_taken += next.outcome == Exploration::kTakenByOthers ? 1 : 0;
+            if (!next.goal) continue;
+            EXPECT_TRUE(given.insert(next.goal->frontier).second) << "frontier " << next.goal->frontier;
+            second_goals += given.size() > 1 ? 1 : 0;
+            targets.push_back(next.goal->target);
+        }
+    }
+    EXPECT_GT(second_goals, 10);
+    EXPECT_GT(all_taken, 0);
+}
+
+TEST(NextGoal, ATargetTakesTheFrontierThatIsThereNow) {
+    const auto view = drawn({"f........................f", "........................."});
+    const auto left = next_goal(view, 1.0, {3.5, 0.5}, {}, for_a_point()).value();
+    EXPECT_EQ(left.goal->target, (Cell{0, 1}));
+    const auto moved_on = next_goal(view, 1.0, {3.5, 0.5}, std::vector<Cell>{{3, 1}}, for_a_point()).value();
+    EXPECT_EQ(moved_on.goal->target, (Cell{25, 1})) << "the other robot's frontier moved a little";
+    const auto gone = next_goal(view, 1.0, {3.5, 0.5}, std::vector<Cell>{{12, 1}}, for_a_point()).value();
+    EXPECT_EQ(gone.goal->target, (Cell{0, 1})) << "what the other robot looks for is explored already";
+}
+
+TEST(NextGoal, AMapWithoutReachableFrontiersIsComplete) {
+    const auto closed = drawn({"#####", "#...#", "#...#", "#####"});
+    EXPECT_EQ(next_goal(closed, 1.0, {2.5, 1.5}, {}, for_a_point())->outcome, Exploration::kComplete);
+    const auto beyond_a_wall = drawn({"#####.f", "#...#.f", "#...#.f", "#####.f"});
+    EXPECT_EQ(next_goal(beyond_a_wall, 1.0, {2.5, 1.5}, {}, for_a_point())->outcome, Exploration::kComplete);
+    const auto taken = drawn({"...f"});
+    EXPECT_EQ(next_goal(taken, 1.0, {0.5, 0.5}, std::vector<Cell>{{3, 0}}, for_a_point())->outcome,
+              Exploration::kTakenByOthers);
+}
+
+TEST(NextGoal, SmallFrontiersDoNotCountWhenAskedNotTo) {
+    auto options = for_a_point();
+    const auto view = drawn({"...f", "...."});
+    options.frontier_size_min = 2;
+    EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, {}, options)->outcome, Exploration::kComplete);
+}
+
+TEST(NextGoal, WhatCannotBeIsRefused) {
+    const auto view = drawn({"#..f"});
+    EXPECT_THAT(next_goal(view, 1.0, {0.5, 0.5}, {}, for_a_point()).error().message, HasSubstr("inside an obstacle"));
+    auto options = for_a_point();
+    options.standoff_m = -1.0;
+    EXPECT_THAT(next_goal(view, 1.0, {1.5, 0.5}, {}, options).error().message, HasSubstr("standoff"));
+    EXPECT_THAT(frontier_goals(view, 1.0, {}, {-9.5, 0.5}, for_a_point()).error().message, HasSubstr("outside"));
+}
+
+FrontierGoals costs(const std::vector<double>& costs_of_frontiers) {
+    FrontierGoals goals;
+    for (std::size_t place = 0; place < costs_of_frontiers.size(); ++place) {
+        FrontierGoal goal;
+        goal.frontier = place;
+        goal.cost = costs_of_frontiers[place];
+        goals.push_back(goal.cost < 0.0 ? std::nullopt : std::optional(goal));
+    }
+    return goals;
+}
+
+using Assigned = std::vector<std::optional<std::size_t>>;
+
+TEST(AssignFrontiers, TheCheapestPairComesFirst) {
+    const std::vector<FrontierGoals> goals = {costs({4.0, 5.0, 9.0}), costs({1.0, 3.0, 7.0}), costs({2.0, 2.5, 3.0})};
+    EXPECT_EQ(assign_frontiers(goals), (Assigned{2, 0, 1}));
+}
+
+TEST(AssignFrontiers, OfEqualPairsTheFirstRobotAndTheFirstFrontierWin) {
+    EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({2.0, 2.0}), costs({2.0, 2.0})}), (Assigned{0, 1}));
+}
+
+TEST(AssignFrontiers, WhoCanReachNothingThatIsLeftGetsNothing) {
+    EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({1.0, -1.0}), costs({2.0, -1.0})}),
+              (Assigned{0, std::nullopt}));
+    EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({1.0, 3.0})}, {true, false}), (Assigned{1}));
+    EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{}), Assigned{});
+}
+
+TEST(AssignFrontiers, NoTwoRobotsGetTheSame) {
+    std::mt19937 random(64);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<FrontierGoals> goals;
+        for (int robot = 0; robot < 1 + round % 6; ++robot) {
+            std::vector<double> of_robot;
+            for (int frontier = 0; frontier < round % 8; ++frontier) of_robot.push_back(random_below(random, 8) - 1);
+            goals.push_back(costs(of_robot));
+        }
+        std::set<std::size_t> given;
+        const auto assigned = assign_frontiers(goals);
+        for (std::size_t robot = 0; robot < goals.size(); ++robot) {
+            if (!assigned[robot]) continue;
+            EXPECT_TRUE(given.insert(*assigned[robot]).second);
+            EXPECT_TRUE(goals[robot][*assigned[robot]]);
+        }
+    }
+}
+
+} // namespace
+} // namespace scanloom::planning
