@@ -1,4 +1,6 @@
-#include "server/planning/grid_path.hpp"
+#include "server/planning/coverage.hpp"
+#include "server/planning/distance_field.hpp"
+#include "server/planning/goals.hpp"
 #include "tests/support/plan_worlds.hpp"
 
 #include <benchmark/benchmark.h>
@@ -85,6 +87,61 @@ void CostsFromOnePlaceInOffice(benchmark::State& state) {
     }
 }
 
+void DistancesOfOffice(benchmark::State& state) {
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(planning::distance_field(office(), kCellSize, {0, 0, kWidth, kHeight}));
+    }
+}
+
+/// A scan's worth of changes: a fan of 5 m, 16 chunks, whose cells all change between free and unexplored.
+void ClassesOfAScan(benchmark::State& state) {
+    classify::ClassLayer layer(3);
+    std::array<classify::OccPlane, 2> planes;
+    planes[0].fill(classify::OccType::kFree);
+    planes[1].fill(classify::OccType::kUnexplored);
+    planes[0][2000] = classify::OccType::kOccupied;
+    std::vector<grid::ChunkKey> changed;
+    for (std::int32_t chunk = 0; chunk < 16; ++chunk) changed.push_back({chunk / 4, chunk % 4});
+    Revision revision = 0;
+    for (auto _ : state) {
+        layer.update(
+            changed, [&](grid::ChunkKey) { return &planes[revision % static_cast<Revision>(state.range(0))]; },
+            revision + 1);
+        ++revision;
+        benchmark::DoNotOptimize(layer.snapshot());
+    }
+}
+
+void NextGoalInOffice(benchmark::State& state) {
+    static const ClassView view = [] {
+        const auto world = testing_support::office(kWidth, kHeight, 5);
+        return testing_support::classified({0, 0, kWidth, kHeight}, 3, [&](grid::Cell cell) {
+            return cell.i > 800 || (cell.i / 90 + cell.j / 70) % 5 == 0 ? classify::OccType::kUnexplored
+                                                                        : world.at(cell);
+        });
+    }();
+    for (auto _ : state) {
+        const auto goal = planning::next_goal(view, kCellSize, centre({100, 100}, kCellSize));
+        if (!goal) return state.SkipWithError(goal.error().message.c_str());
+        state.counters["length_m"] = goal->path.length_m;
+    }
+    state.counters["frontiers"] = static_cast<double>(classify::find_frontiers(view).size());
+}
+
+void CoverageOfOffice(benchmark::State& state) {
+    for (auto _ : state) {
+        const auto coverage = planning::plan_coverage(office(), kCellSize, centre({20, 100}, kCellSize));
+        if (!coverage) return state.SkipWithError(coverage.error().message.c_str());
+        state.counters["length_m"] = coverage->path.length_m;
+        state.counters["free_m2"] = static_cast<double>(coverage->free_cells) * kCellSize * kCellSize;
+        state.counters["fraction"] = coverage->fraction;
+    }
+}
+
+BENCHMARK(ClassesOfAScan)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
+BENCHMARK(DistancesOfOffice)->Unit(benchmark::kMillisecond);
+BENCHMARK(NextGoalInOffice)->Unit(benchmark::kMillisecond);
+BENCHMARK(CoverageOfOffice)->Unit(benchmark::kMillisecond);
 BENCHMARK(PathAcrossOffice)->Unit(benchmark::kMillisecond);
 BENCHMARK(PathAcrossMaze)->Unit(benchmark::kMillisecond);
 BENCHMARK(PathAcrossOpenHall)->Unit(benchmark::kMillisecond);

@@ -1,0 +1,235 @@
+#include "server/planning/coverage.hpp"
+
+#include "server/planning/region.hpp"
+#include "server/planning/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+
+namespace scanloom::planning {
+namespace {
+
+/// What is to be covered, and from where.
+struct Task {
+    Passability passability;
+    Spot start;
+    BitGrid places;                  ///< where the body can be
+    BitGrid free;                    ///< of the region
+    BitGrid reachable;               ///< what of it is within reach of a place
+    std::vector<std::int32_t> reach; ///< half widths of the body's disc
+    std::int32_t spacing;            ///< cells
+};
+
+Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_size_m) {
+    const double body = 2.0 * options.passability.body_radius_m;
+    const double spacing = options.spacing_m.value_or(body);
+    const double cells = spacing / cell_size_m + 1e-9;
+    if (!(spacing >= 0.0 && cells <= body / cell_size_m + 1.0 + 1e-6)) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("spacing is {} m; rows more than {} m apart leave ground between them that a body of "
+                                 "radius {} m does not reach: give a smaller spacing or a larger body_radius",
+                                 spacing, body + cell_size_m, options.passability.body_radius_m)};
+    }
+    return std::max(static_cast<std::int32_t>(cells), 1);
+}
+
+Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, const Point2& start,
+                       const CoverageOptions& options) {
+    PassabilityOptions known_ground = options.passability;
+    known_ground.allow_unknown = false;
+    auto passability = make_passability(classes, cell_size_m, known_ground);
+    if (!passability) return passability.error();
+    const auto spacing = spacing_cells(options, cell_size_m);
+    if (!spacing) return spacing.error();
+    BitGrid places = passability->enterable; // without the cells that only a way out of a narrow start may use
+    const auto spot = open_start(*passability, start);
+    if (!spot) return spot.error();
+    places &= connected(passability->enterable, *spot);
+    BitGrid free = passability->ground;
+    if (options.region.empty()) {
+        free = connected(free, *spot);
+    } else {
+        const auto inside = cells_inside(*passability, options.region);
+        if (!inside) return inside.error();
+        free &= *inside;
+    }
+    auto reach = disc_half_widths(known_ground.body_radius_m / cell_size_m, false);
+    BitGrid reachable = dilated(places, reach);
+    reachable &= free;
+    if (reachable.count() == 0) {
+        return Error{Errc::kNoPath, fmt::format("from ({:g}, {:g}) a body of radius {} m reaches no free cell of the "
+                                                "region: give another start or region",
+                                                start.x(), start.y(), known_ground.body_radius_m)};
+    }
+    return Task{std::move(*passability), *spot,   std::move(places), std::move(free), std::move(reachable),
+                std::move(reach),        *spacing};
+}
+
+/// The cells gone through so far, and what is left to cover.
+class Tour {
+public:
+    explicit Tour(const Task& task)
+        : task_(task), search_(task.passability), left_(task.reachable), cells_{task.start} {
+        cover(task.start);
+    }
+
+    [[nodiscard]] Spot at() const { return cells_.back(); }
+    [[nodiscard]] const BitGrid& left() const { return left_; }
+    [[nodiscard]] const std::vector<Spot>& cells() const { return cells_; }
+
+    void go_to(Spot goal) {
+        search_.between(at(), goal);
+        append(search_.path_to(goal));
+    }
+
+    /// Straight along its row, whatever that costs. Pre  all cells between are places.
+    void go_along_row(Spot goal) {
+        while (at().x != goal.x) step({at().x + (goal.x > at().x ? 1 : -1), goal.y});
+    }
+
+    /// The nearest of some cells. Pre  one of them can be reached.
+    [[nodiscard]] Spot nearest(const BitGrid& wanted) {
+        const auto nearest = search_.nearest(at(), wanted);
+        assert(nearest);
+        return *nearest;
+    }
+
+private:
+    void append(const std::vector<Spot>& way) {
+        for (std::size_t n = 1; n < way.size(); ++n) step(way[n]);
+    }
+
+    void step(Spot next) {
+        cells_.push_back(next);
+        cover(next);
+    }
+
+    void cover(Spot centre) {
+        if (!task_.places.test(centre)) return; // beside a wall the disc would reach through it
+        const auto height = static_cast<std::int32_t>(task_.reach.size());
+        for (std::int32_t dy = 1 - height; dy < height; ++dy) {
+            const std::int32_t y = centre.y + dy;
+            if (y < 0 || y >= left_.height()) continue;
+            const std::int32_t width = task_.reach[static_cast<std::size_t>(std::abs(dy))];
+            const std::int32_t end = std::min(centre.x + width + 1, left_.width());
+            for (std::int32_t x = next_set(left_.row(y), std::max(centre.x - width, 0)); x < end;
+                 x = next_set(left_.row(y), x + 1)) {
+                left_.clear({x, y});
+            }
+        }
+    }
+
+    const Task& task_;
+    CostSearch search_;
+    BitGrid left_; // of task_.reachable
+    std::vector<Spot> cells_;
+};
+
+/// Sweeps all rows of a block from one of the ends of its first or last row.
+void sweep(Tour& tour, const SweepBlock& block, Spot entry) {
+    SweepBlock rows = block;
+    if (entry.y != rows.front().y) std::ranges::reverse(rows);
+    for (const SweepRow& row : rows) {
+        const bool from_left = std::abs(tour.at().x - row.left().x) <= std::abs(tour.at().x - row.right().x);
+        tour.go_to(from_left ? row.left() : row.right());
+        tour.go_along_row(from_left ? row.right() : row.left());
+    }
+}
+
+void sweep_all(Tour& tour, const Task& task) {
+    BitGrid ground = task.places;
+    ground &= task.free;
+    const auto blocks = sweep_blocks(ground, task.spacing);
+    std::multimap<std::pair<std::int32_t, std::int32_t>, std::size_t> entries; // (y, x) of the blocks' corners
+    BitGrid wanted(ground.width(), ground.height());
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+        for (const SweepRow& row : {blocks[n].front(), blocks[n].back()}) {
+            for (const Spot corner : {row.left(), row.right()}) {
+                entries.emplace(std::pair{corner.y, corner.x}, n);
+                wanted.set(corner);
+            }
+        }
+    }
+    std::vector<bool> swept(blocks.size());
+    for (std::size_t done = 0; done < blocks.size();) {
+        const Spot entry = tour.nearest(wanted);
+        wanted.clear(entry);
+        const auto [first, last] = entries.equal_range({entry.y, entry.x});
+        for (auto block = first; block != last; ++block) {
+            if (swept[block->second]) continue;
+            swept[block->second] = true;
+            tour.go_to(entry);
+            sweep(tour, blocks[block->second], entry);
+            ++done;
+        }
+    }
+}
+
+/// The offsets within the body's disc, the nearest first.
+std::vector<Spot> offsets_by_distance(const std::vector<std::int32_t>& reach) {
+    std::vector<Spot> offsets;
+    const auto height = static_cast<std::int32_t>(reach.size());
+    for (std::int32_t dy = 1 - height; dy < height; ++dy) {
+        const std::int32_t width = reach[static_cast<std::size_t>(std::abs(dy))];
+        for (std::int32_t dx = -width; dx <= width; ++dx) offsets.push_back({dx, dy});
+    }
+    std::ranges::stable_sort(offsets, {}, [](Spot offset) { return offset.x * offset.x + offset.y * offset.y; });
+    return offsets;
+}
+
+/// Goes to the place nearest to each cell left, from one to the nearest next; those of the cells in between are covered
+/// on the way.
+void fetch_what_is_left(Tour& tour, const Task& task) {
+    const auto offsets = offsets_by_distance(task.reach);
+    const auto place_for = [&](Spot cell) {
+        for (const Spot offset : offsets) {
+            const Spot place{cell.x + offset.x, cell.y + offset.y};
+            const bool inside =
+                place.x >= 0 && place.y >= 0 && place.x < task.places.width() && place.y < task.places.height();
+            if (inside && task.places.test(place)) return place;
+        }
+        assert(false); // the cell is reachable
+        return cell;
+    };
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Spot>> cells_of; // by the place's (y, x)
+    BitGrid wanted(task.places.width(), task.places.height());
+    for_each_set(tour.left(), [&](Spot cell) {
+        const Spot place = place_for(cell);
+        wanted.set(place);
+        cells_of[{place.y, place.x}].push_back(cell);
+    });
+    for (std::size_t visited = 0; visited < cells_of.size(); ++visited) {
+        const Spot place = tour.nearest(wanted);
+        wanted.clear(place);
+        const auto& cells = cells_of.at({place.y, place.x});
+        if (std::ranges::any_of(cells, [&](Spot cell) { return tour.left().test(cell); })) tour.go_to(place);
+    }
+}
+
+} // namespace
+
+Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_size_m, const Point2& start,
+                               const CoverageOptions& options) {
+    const auto task = make_task(classes, cell_size_m, start, options);
+    if (!task) return task.error();
+    Tour tour(*task);
+    sweep_all(tour, *task);
+    fetch_what_is_left(tour, *task);
+    Coverage coverage;
+    const Point2 end = tour.cells().size() == 1 ? start : task->passability.centre_of(tour.at());
+    coverage.path = to_path(task->passability, tour.cells(), start, end, Shape::kSteps);
+    coverage.free_cells = task->free.count();
+    coverage.covered_cells = task->reachable.count() - tour.left().count();
+    BitGrid unreachable = task->free;
+    unreachable.subtract(task->reachable);
+    for_each_set(unreachable, [&](Spot spot) { coverage.unreachable.push_back(task->passability.cell_at(spot)); });
+    coverage.unreachable_m2 = static_cast<double>(coverage.unreachable.size()) * cell_size_m * cell_size_m;
+    coverage.fraction = static_cast<double>(coverage.covered_cells) / static_cast<double>(coverage.free_cells);
+    return coverage;
+}
+
+} // namespace scanloom::planning

@@ -1,0 +1,264 @@
+#include "server/planning/coverage.hpp"
+#include "server/planning/region.hpp"
+#include "server/planning/sweep.hpp"
+#include "tests/support/plan_worlds.hpp"
+#include "tests/unit/server/planning/path_oracle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace scanloom::planning {
+namespace {
+
+using namespace testing_support;
+using testing::HasSubstr;
+
+using CellSet = std::set<std::pair<int, int>>; // (j, i)
+
+double distance_to_segment(const Point2& point, const Point2& a, const Point2& b) {
+    const Point2 ab = b - a;
+    const double length = ab.squaredNorm();
+    const double along = length == 0.0 ? 0.0 : std::clamp((point - a).dot(ab) / length, 0.0, 1.0);
+    return (a + along * ab - point).norm();
+}
+
+/// The cells whose centres are within the body's radius of the path.
+CellSet within_reach(const Path& path, double cell_size_m, double radius_m) {
+    CellSet cells;
+    for (std::size_t at = 0; at + 1 < path.points.size(); ++at) {
+        const Point2& a = path.points[at];
+        const Point2& b = path.points[at + 1];
+        const Point2 low = (a.cwiseMin(b).array() - radius_m).matrix() / cell_size_m;
+        const Point2 high = (a.cwiseMax(b).array() + radius_m).matrix() / cell_size_m;
+        for (auto j = static_cast<int>(std::floor(low.y())); j <= high.y(); ++j) {
+            for (auto i = static_cast<int>(std::floor(low.x())); i <= high.x(); ++i) {
+                if (distance_to_segment(centre({i, j}, cell_size_m), a, b) <= radius_m + 1e-9) cells.insert({j, i});
+            }
+        }
+    }
+    return cells;
+}
+
+bool is_free(const ClassView& view, int j, int i) {
+    const auto value = class_at(view, {i, j});
+    return value == CellClass::kFree || value == CellClass::kDanger;
+}
+
+/// What the header promises of a plan: each free cell of the region is within reach or listed; those listed cannot be
+/// covered from any cell that the body can get to; the way is safe.
+void expect_covers(const ClassView& view, const grid::CellBox& box, double cell_size_m, const Point2& start,
+                   const PassabilityOptions& options, const CellSet& region, const Coverage& coverage) {
+    CellSet listed;
+    for (const Cell cell : coverage.unreachable) listed.insert({cell.j, cell.i});
+    const double radius = options.body_radius_m;
+    const auto covered = within_reach(coverage.path, cell_size_m, radius);
+    for (const auto& cell : region) {
+        ASSERT_TRUE(covered.contains(cell) || listed.contains(cell)) << "cell " << cell.second << ", " << cell.first;
+    }
+    const Oracle oracle(view, box, cell_size_m, options);
+    const auto costs = oracle.costs(
+        {static_cast<int>(std::floor(start.x() / cell_size_m)), static_cast<int>(std::floor(start.y() / cell_size_m))});
+    const int reach = static_cast<int>(radius / cell_size_m) + 1;
+    for (const auto& [j, i] : listed) {
+        ASSERT_TRUE(region.contains({j, i}));
+        for (int dj = -reach; dj <= reach; ++dj) {
+            for (int di = -reach; di <= reach; ++di) {
+                if (std::hypot(di, dj) * cell_size_m > radius + 1e-9) continue;
+                ASSERT_FALSE(costs.contains({j + dj, i + di})) << "cell " << i << ", " << j << " could be covered";
+            }
+        }
+    }
+    for (std::size_t at = 0; at + 1 < coverage.path.points.size(); ++at) {
+        ASSERT_TRUE(
+            oracle.cost_of_line(coverage.path.points[at] / cell_size_m, coverage.path.points[at + 1] / cell_size_m));
+    }
+    EXPECT_EQ(coverage.free_cells, static_cast<std::int64_t>(region.size()));
+    EXPECT_EQ(coverage.covered_cells, static_cast<std::int64_t>(region.size() - listed.size()));
+    EXPECT_NEAR(coverage.unreachable_m2, static_cast<double>(listed.size()) * cell_size_m * cell_size_m, 1e-9);
+    EXPECT_NEAR(coverage.fraction, 1.0 - static_cast<double>(listed.size()) / static_cast<double>(region.size()),
+                1e-12);
+}
+
+/// The free cells that hang together with a cell.
+CellSet room_of(const ClassView& view, Cell start) {
+    CellSet room;
+    std::vector<std::pair<int, int>> open = {{start.j, start.i}};
+    while (!open.empty()) {
+        const auto [j, i] = open.back();
+        open.pop_back();
+        if (!is_free(view, j, i) || !room.insert({j, i}).second) continue;
+        for (const auto& [dj, di] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) open.push_back({j + dj, i + di});
+    }
+    return room;
+}
+
+PlanWorld random_room(std::mt19937& random, std::int32_t width, std::int32_t height) {
+    PlanWorld world(width, height, OccType::kFree);
+    world.frame(1);
+    for (int piece = 0; piece < 1 + random_below(random, 8); ++piece) {
+        world.fill(random_below(random, width), random_below(random, height), 1 + random_below(random, 25),
+                   1 + random_below(random, 25), random() % 4 == 0 ? OccType::kUnexplored : OccType::kOccupied);
+    }
+    return world;
+}
+
+TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
+    std::mt19937 random(71);
+    int planned = 0;
+    for (int round = 0; round < 40; ++round) {
+        const auto world = random_room(random, 60 + random_below(random, 60), 60 + random_below(random, 40));
+        const auto view = world.view(1 + random_below(random, 5));
+        CoverageOptions options;
+        options.passability.body_radius_m = std::array{0.0, 0.04, 0.1, 0.15, 0.22}[random() % 5];
+        if (round % 3 == 0) options.spacing_m = 0.05;
+        const Cell start{2 + random_below(random, 56), 2 + random_below(random, 56)};
+        const Oracle oracle(view, {0, 0, world.width(), world.height()}, 0.05, options.passability);
+        if (!oracle.enterable(start)) continue;
+        const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), options).value();
+        expect_covers(view, {0, 0, world.width(), world.height()}, 0.05, centre(start, 0.05), options.passability,
+                      room_of(view, start), coverage);
+        ++planned;
+        if (HasFatalFailure()) FAIL() << "in round " << round;
+    }
+    EXPECT_GT(planned, 20);
+}
+
+TEST(Coverage, OfARegionCountsTheFreeCellsInIt) {
+    std::mt19937 random(72);
+    for (int round = 0; round < 10; ++round) {
+        const auto world = random_room(random, 100, 80);
+        const auto view = world.view();
+        const PassabilityOptions body;
+        const Oracle oracle(view, {0, 0, 100, 80}, 0.05, body);
+        const Cell start{50, 40};
+        if (!oracle.enterable(start)) continue;
+        const std::vector<Point2> corners = {{1.01, 0.51}, {4.51, 1.01}, {4.01, 3.51}, {2.01, 2.01}, {0.51, 3.01}};
+        const auto inside = cells_inside(make_passability(view, 0.05, body).value(), corners).value();
+        CellSet region;
+        for (int j = 0; j < 80; ++j) {
+            for (int i = 0; i < 100; ++i) {
+                if (is_free(view, j, i) && inside.test({i, j})) region.insert({j, i});
+            }
+        }
+        const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), {body, std::nullopt, corners});
+        if (!coverage) continue; // nothing of it can be reached
+        expect_covers(view, {0, 0, 100, 80}, 0.05, centre(start, 0.05), body, region, *coverage);
+    }
+}
+
+TEST(Coverage, AnEmptyRoomIsSweptWithLittleWaste) {
+    PlanWorld world(202, 102, OccType::kFree);
+    world.frame(1);
+    const auto coverage = plan_coverage(world.view(), 0.05, centre({10, 10}, 0.05)).value();
+    EXPECT_EQ(coverage.covered_cells + static_cast<std::int64_t>(coverage.unreachable.size()), 200 * 100);
+    EXPECT_LT(coverage.unreachable.size(), 30U) << "a round body leaves the corners";
+    EXPECT_LT(coverage.path.length_m, 1.35 * 10.0 * 5.0 / 0.3) << "against area by spacing";
+    EXPECT_GT(coverage.fraction, 0.998);
+}
+
+TEST(Coverage, IsTheSameEveryTime) {
+    std::mt19937 random(73);
+    const auto view = random_room(random, 100, 80).view();
+    const auto free = room_of(view, {50, 40});
+    ASSERT_FALSE(free.empty());
+    const auto once = plan_coverage(view, 0.05, centre({50, 40}, 0.05)).value();
+    const auto again = plan_coverage(view, 0.05, centre({50, 40}, 0.05)).value();
+    EXPECT_EQ(once.path.points, again.path.points);
+    EXPECT_EQ(once.unreachable, again.unreachable);
+}
+
+TEST(Coverage, OtherRoomsAreUnreachableOnlyWhenTheyWereAskedFor) {
+    const auto view = drawn({"#########", "#...#...#", "#...#...#", "#########"});
+    CoverageOptions options;
+    options.passability.body_radius_m = 0.0;
+    const auto own = plan_coverage(view, 1.0, {1.5, 1.5}, options).value();
+    EXPECT_EQ(own.free_cells, 6);
+    EXPECT_TRUE(own.unreachable.empty());
+    options.region = {{0.0, 0.0}, {9.0, 0.0}, {9.0, 4.0}, {0.0, 4.0}};
+    const auto both = plan_coverage(view, 1.0, {1.5, 1.5}, options).value();
+    EXPECT_EQ(both.free_cells, 12);
+    EXPECT_EQ(both.unreachable, (std::vector<Cell>{{5, 1}, {6, 1}, {7, 1}, {5, 2}, {6, 2}, {7, 2}}));
+    EXPECT_NEAR(both.unreachable_m2, 6.0, 1e-12);
+    EXPECT_NEAR(both.fraction, 0.5, 1e-12);
+}
+
+TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {
+    std::vector<std::string_view> rows = {".........", ".........", ".........", "#########",
+                                          ".........", ".........", ".........", "........."};
+    const auto view = drawn(rows);
+    CoverageOptions options;
+    options.passability.body_radius_m = 1.6;
+    options.region = {{0.0, 0.0}, {9.0, 0.0}, {9.0, 8.0}, {0.0, 8.0}};
+    const auto coverage = plan_coverage(view, 1.0, {4.5, 3.5}, options).value();
+    EXPECT_EQ(coverage.path.points.front(), Point2(4.5, 3.5));
+    for (const Cell cell : coverage.unreachable) EXPECT_GT(cell.j, 2);
+    EXPECT_GE(coverage.unreachable.size(), 27U) << "all that is behind the wall";
+}
+
+TEST(Coverage, WhatCannotBeIsRefused) {
+    const auto view = drawn({"#....", "#....", "#...."});
+    CoverageOptions options;
+    options.passability.body_radius_m = 0.0;
+    const auto message = [&](const Point2& start) { return plan_coverage(view, 1.0, start, options).error().message; };
+    EXPECT_THAT(message({0.5, 0.5}), HasSubstr("start (0.5, 0.5) is inside an obstacle"));
+    options.region = {{0.0, 0.0}, {1.0, 1.0}};
+    EXPECT_THAT(message({1.5, 0.5}), HasSubstr("region has 2 corners"));
+    options.region = {{0.0, 0.0}, {1.0, 1.0}, {kInfinite, 0.0}};
+    EXPECT_THAT(message({1.5, 0.5}), HasSubstr("region[2]"));
+    options.region = {{10.0, 10.0}, {12.0, 10.0}, {11.0, 12.0}};
+    EXPECT_THAT(message({1.5, 0.5}), HasSubstr("reaches no free cell of the region"));
+    options.region.clear();
+    for (const double bad : {-1.0, 1.1, std::nan("")}) {
+        options.spacing_m = bad;
+        EXPECT_THAT(message({1.5, 0.5}), HasSubstr("spacing")) << bad;
+    }
+    options.spacing_m = 1.0;
+    EXPECT_TRUE(plan_coverage(view, 1.0, {1.5, 0.5}, options));
+}
+
+TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
+    std::mt19937 random(74);
+    std::uniform_real_distribution<double> coordinate(-1.0, 4.0);
+    const auto passability = make_passability(drawn({std::string(130, '.')}), 0.05, {}).value();
+    for (int round = 0; round < 50; ++round) {
+        std::vector<Point2> corners;
+        for (int n = 0; n < 3 + round % 6; ++n) corners.emplace_back(coordinate(random), coordinate(random));
+        const auto inside = cells_inside(passability, corners).value();
+        for (std::int32_t y = 0; y < inside.height(); ++y) {
+            for (std::int32_t x = 0; x < inside.width(); ++x) {
+                const Point2 point = passability.centre_of({x, y});
+                bool expected = false; // a ray to the left crosses an odd number of edges
+                for (std::size_t n = 0; n < corners.size(); ++n) {
+                    const Point2 a = corners[n];
+                    const Point2 b = corners[(n + 1) % corners.size()];
+                    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+                    const double x_at = a.x() + (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y());
+                    if (x_at < point.x()) expected = !expected;
+                }
+                ASSERT_EQ(inside.test({x, y}), expected) << point.transpose();
+            }
+        }
+    }
+}
+
+TEST(Sweep, RowsAroundAnObstacleAreSplitIntoBlocks) {
+    BitGrid ground(64, 9);
+    for (std::int32_t y = 0; y < 9; ++y) {
+        for (std::int32_t x = 2; x < 20; ++x) {
+            const bool obstacle = x >= 8 && x < 12 && y >= 3 && y < 7;
+            if (!obstacle) ground.set({x, y});
+        }
+    }
+    const auto blocks = sweep_blocks(ground, 2);
+    ASSERT_EQ(blocks.size(), 4U) << "below, left, right, above";
+    EXPECT_EQ(blocks[0], (SweepBlock{{0, 2, 20}, {2, 2, 20}}));
+    EXPECT_EQ(blocks[1], (SweepBlock{{4, 2, 8}, {6, 2, 8}}));
+    EXPECT_EQ(blocks[2], (SweepBlock{{4, 12, 20}, {6, 12, 20}}));
+    EXPECT_EQ(blocks[3], (SweepBlock{{8, 2, 20}}));
+    EXPECT_TRUE(sweep_blocks(BitGrid(64, 5), 1).empty());
+}
+
+} // namespace
+} // namespace scanloom::planning
