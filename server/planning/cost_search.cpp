@@ -95,14 +95,10 @@ CostSearch::CostSearch(const Passability& passability)
 }
 
 void CostSearch::begin(Spot start) {
-    if (touched_.size() > cost_.size() / 8) {
-        std::ranges::fill(cost_, kUnreached);
-    } else {
-        for (const std::uint32_t cell : touched_) cost_[cell] = kUnreached;
-    }
+    if (lowest_ <= highest_) std::fill(cost_.begin() + lowest_, cost_.begin() + highest_ + 1, kUnreached);
     for (auto& bucket : buckets_) bucket.clear();
-    touched_.assign(1, index_of(start));
-    cost_[index_of(start)] = 0.0;
+    lowest_ = highest_ = index_of(start);
+    cost_[lowest_] = 0.0;
 }
 
 /// Takes the open cells bucket by bucket. A cell that turns out to be cheaper is opened again, so that the order
@@ -134,8 +130,9 @@ void CostSearch::search(Spot start, Aim& aim) {
                 const std::uint32_t cell = taken.cell + static_cast<std::uint32_t>(steps_[place]);
                 const double cost = taken.cost + costs[danger >> direction & 1][place];
                 if (cost >= cost_[cell]) return;
-                if (cost_[cell] == kUnreached) touched_.push_back(cell);
                 cost_[cell] = cost;
+                lowest_ = std::min(lowest_, cell);
+                highest_ = std::max(highest_, cell);
                 const auto estimated =
                     static_cast<std::size_t>((cost + aim.estimate(moved(at, direction))) / kBucketWidth);
                 buckets_[std::max(estimated, current) & mask].push_back(

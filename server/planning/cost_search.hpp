@@ -20,6 +20,7 @@ class CostSearch {
 public:
     /// The passability must outlive the search.
     explicit CostSearch(const Passability& passability);
+    explicit CostSearch(Passability&&) = delete;
 
     /// Costs of every cell that can be reached.
     void from(Spot start);
@@ -62,7 +63,8 @@ private:
     std::array<std::array<double, 9>, 3> step_costs_; // by how many of its two cells are in danger, and its direction
     std::array<std::int32_t, 9> steps_;               // differences of indices
     std::vector<double> cost_;
-    std::vector<std::uint32_t> touched_; // cells whose cost is not infinite
+    std::uint32_t lowest_ = 1; // all cells whose cost is not infinite are among lowest_ .. highest_
+    std::uint32_t highest_ = 0;
     std::vector<std::vector<Open>> buckets_;
 };
 
