@@ -5,10 +5,12 @@
 #include "robot_client/source/carmen_log.hpp"
 #include "robot_client/source/simulated_source.hpp"
 #include "robot_client/source/simulation_fingerprint.hpp"
+#include "robot_client/source/sonar_log.hpp"
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <numbers>
 
 namespace scanloom::robot {
 namespace {
@@ -45,6 +47,18 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
     PreparedSource prepared{nullptr, log->skipped_lines(), replay.speed, log->fingerprint(),
                             stamps.file_order ? "file" : "time"};
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
+    return prepared;
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOptions& sonar, Console&) {
+    SonarOptions ring;
+    ring.no_return = options.no_return.value_or(ring.no_return);
+    ring.range_max = options.range_max.value_or(ring.range_max);
+    ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
+    auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
+    if (!log) return log.error();
+    PreparedSource prepared{nullptr, 0, sonar.speed, log->fingerprint(), "file"};
+    prepared.source = std::make_unique<SonarLog>(std::move(*log));
     return prepared;
 }
 

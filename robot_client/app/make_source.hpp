@@ -18,9 +18,9 @@ struct PreparedSource {
     std::string_view order;  ///< of its scans: "file" or "time", a literal
 };
 
-/// Reads the log or sets up the simulation. Lines of the log that cannot be used are told to the console, the first
-/// few, and whether its stamps go back.
-/// Errors  those of CarmenLog::open().
+/// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
+/// first few, and whether its stamps go back. Errors  those of CarmenLog::open() and SonarLog::open(); an unknown world
+/// or laser.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

@@ -16,7 +16,7 @@ namespace scanloom::robot {
 namespace {
 
 constexpr const char* kAbout =
-    "Streams a robot's scans to a Scanloom server: a recorded log, or a simulated robot.\n"
+    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, or a simulated robot.\n"
     "The same command again continues behind the scans that are stored already.\n"
     "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
     "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
@@ -105,8 +105,8 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option(
            "--max-range", options.range_max,
-           "Metres; readings of this length or more are no-return. Default: what the source states, and for logs 50 "
-           "at most")
+           "Metres; readings of this length or more are no-return. Default: what the source states, for logs 50 at "
+           "most, and 5.11 for sonar")
         ->check(check_within(0.001, kRangeMax));
     app.add_option("--no-return", raw.no_return,
                    "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "
@@ -125,6 +125,23 @@ CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
         ->check(check_not_negative)
         ->capture_default_str();
     return replay;
+}
+
+CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
+    auto* sonar = app.add_subcommand("sonar", "Replay a ring of eight sonars from two text files");
+    sonar
+        ->add_option("MEASUREMENTS", options.measurements,
+                     "Lines of: time_ms r1 .. r8, ranges in mm from right to left")
+        ->configurable(false);
+    sonar->add_option("POSES", options.poses, "Lines of: time_ms x y heading, in mm and tenths of a degree")
+        ->configurable(false);
+    sonar->add_option("--aperture", options.aperture_deg, "Degrees, full width of a sonar's cone")
+        ->check(check_within(1.0, 180.0))
+        ->capture_default_str();
+    sonar->add_option("--speed", options.speed, "1 = as recorded, 0 = as fast as the server takes it")
+        ->check(check_not_negative)
+        ->capture_default_str();
+    return sonar;
 }
 
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
@@ -167,7 +184,8 @@ Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
         return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
     }
     const std::string what = sentence_of(reason);
-    if (what == "A subcommand is required") return usage_error("say what to stream: replay FILE, or simulate");
+    if (what == "A subcommand is required")
+        return usage_error("say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate");
     return usage_error(what);
 }
 
@@ -177,6 +195,7 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     RobotOptions options;
     Raw raw;
     ReplayOptions replay_options;
+    SonarReplayOptions sonar_options;
     SimulateOptions simulate_options;
 
     CLI::App app(kAbout, "scanloom-robot");
@@ -185,6 +204,7 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     add_link_options(app, options, raw);
     add_scan_options(app, options, raw);
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
+    const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
     add_simulate(app, simulate_options)->fallthrough();
     app.require_subcommand(1);
 
@@ -203,6 +223,9 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error("replay: name the FILE to replay");
         options.source = std::move(replay_options);
+    } else if (sonar->parsed()) {
+        if (sonar_options.poses.empty()) return usage_error("sonar: name two files, MEASUREMENTS and POSES");
+        options.source = std::move(sonar_options);
     } else {
         options.source = std::move(simulate_options);
     }

@@ -27,6 +27,14 @@ struct SimulateOptions {
     double speed = 1.0; ///< 0 = as fast as the server takes it, 1 = real time
 };
 
+/// A recorded ring of sonars, see SonarLog.
+struct SonarReplayOptions {
+    std::string measurements;
+    std::string poses;
+    double aperture_deg = 30.0;
+    double speed = 0.0; ///< as in ReplayOptions
+};
+
 struct RobotOptions {
     std::string host;
     std::string port;
@@ -37,7 +45,7 @@ struct RobotOptions {
     std::optional<double> range_max; ///< metres
     std::optional<NoReturn> no_return;
     std::chrono::milliseconds give_up_after{120'000};
-    std::variant<ReplayOptions, SimulateOptions> source;
+    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;
 };
 
 /// What is to be said instead of running: help or the version on stdout, or a usage error on stderr.

@@ -36,7 +36,7 @@ private:
     void hash(std::string_view line);
     void skip(std::size_t line_number, std::string reason);
     void keep_one_view_of_each_scan();
-    void drop_lines_without_pose(const CarmenPath& path);
+    void drop_lines_without_pose(const PosePath& path);
     void order_scans(CarmenIndex& index);
     [[nodiscard]] std::string fingerprint();
 
@@ -44,7 +44,7 @@ private:
     const std::function<void(const SkippedLine&)>& report_;
     Sha256 hash_;
     std::vector<LaserLine> lines_;
-    std::vector<CarmenOdometry> odometry_;
+    std::vector<StampedPose> odometry_;
     double laser_offset_forward_ = 0.0;
     bool has_flaser_ = false;
     bool has_robot_laser_ = false;
@@ -102,11 +102,11 @@ void Indexer::keep_one_view_of_each_scan() {
     for (LaserLine& line : lines_) line.is_used = line.is_used && !line.is_raw;
 }
 
-void Indexer::drop_lines_without_pose(const CarmenPath& path) {
+void Indexer::drop_lines_without_pose(const PosePath& path) {
     for (LaserLine& line : lines_) {
         if (!line.is_used || !line.is_raw || path.at(line.stamp)) continue;
         line.is_used = false;
-        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kOdometryGapMax));
+        skip(line.line_number, fmt::format("RAWLASER1: no ODOM line within {:g} s tells its pose", kPoseGapMax));
     }
 }
 
@@ -146,7 +146,7 @@ std::string Indexer::fingerprint() {
 CarmenIndex Indexer::build() {
     CarmenIndex index;
     keep_one_view_of_each_scan();
-    index.path = CarmenPath(std::move(odometry_));
+    index.path = PosePath(std::move(odometry_));
     drop_lines_without_pose(index.path);
     order_scans(index);
     index.fingerprint = fingerprint();

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "robot_client/source/carmen_observation.hpp"
-#include "robot_client/source/carmen_path.hpp"
 #include "robot_client/source/line_reader.hpp"
+#include "robot_client/source/pose_path.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +35,7 @@ struct CarmenIndex {
     static constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
     std::uint32_t scan_count = 0;
-    CarmenPath path; ///< only where the scans come from RAWLASER lines
+    PosePath path; ///< only where the scans come from RAWLASER lines
     double laser_offset_forward = 0.0;
     std::size_t skipped_lines = 0;
     StampReport stamps;

@@ -1,6 +1,7 @@
 #include "robot_client/source/carmen_line.hpp"
 
 #include "common/scan/limits.hpp"
+#include "robot_client/source/tokens.hpp"
 
 #include <fmt/format.h>
 
@@ -14,32 +15,10 @@
 namespace scanloom::robot {
 namespace {
 
-using Tokens = std::vector<std::string_view>;
 using TokenSpan = std::span<const std::string_view>;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kFullTurn = 2.0 * kPi + 1e-6; ///< what the wire allows
-
-Tokens split(std::string_view line) {
-    constexpr std::string_view kBlanks = " \t\r\v\f";
-    Tokens tokens;
-    for (std::size_t at = line.find_first_not_of(kBlanks); at != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-        tokens.push_back(line.substr(at, end - at));
-        at = line.find_first_not_of(kBlanks, end);
-    }
-    return tokens;
-}
-
-/// A whole token as a number; one too large for a double counts as infinite.
-std::optional<double> to_number(std::string_view token) {
-    double value = 0.0;
-    const auto [end, failed] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (end != token.data() + token.size()) return std::nullopt;
-    if (failed == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
-    if (failed != std::errc{}) return std::nullopt;
-    return value;
-}
 
 std::optional<std::size_t> to_count(std::string_view token) {
     std::size_t value = 0;
@@ -48,24 +27,14 @@ std::optional<std::size_t> to_count(std::string_view token) {
     return value;
 }
 
-/// A token for people: short, and without what a terminal could take for a command.
-std::string shown(std::string_view token) {
-    constexpr std::size_t kShownMax = 24;
-    std::string text(token.substr(0, kShownMax));
-    for (char& c : text) {
-        if (c < ' ' || c > '~') c = '?';
-    }
-    return token.size() > kShownMax ? text + "..." : text;
-}
-
 Error malformed(std::string message) { return {Errc::kMalformed, std::move(message)}; }
 
 Result<double> finite(std::string_view field, std::string_view token, double magnitude_max) {
     const auto value = to_number(token);
-    if (!value) return malformed(fmt::format("{} is '{}', not a number", field, shown(token)));
+    if (!value) return malformed(fmt::format("{} is '{}', not a number", field, shown_token(token)));
     if (!std::isfinite(*value) || std::abs(*value) > magnitude_max) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("{} is {}; at most {:g} either way is allowed", field, shown(token), magnitude_max)};
+        return Error{Errc::kInvalidField, fmt::format("{} is {}; at most {:g} either way is allowed", field,
+                                                      shown_token(token), magnitude_max)};
     }
     return *value;
 }
@@ -95,7 +64,7 @@ Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     std::vector<RangeMm> ranges(*count);
     for (std::size_t i = 0; i < *count; ++i) {
         const auto range = to_number(tokens[1 + i]);
-        if (!range) return malformed(fmt::format("range {} is '{}', not a number", i + 1, shown(tokens[1 + i])));
+        if (!range) return malformed(fmt::format("range {} is '{}', not a number", i + 1, shown_token(tokens[1 + i])));
         ranges[i] = std::isfinite(*range) ? to_range_mm(*range) : kInvalidRange;
     }
     tokens = tokens.subspan(1 + *count);
@@ -152,7 +121,7 @@ Result<> take_laser_head(TokenSpan& tokens, CarmenScan& scan) {
     if (*increment == 0.0)
         return Error{Errc::kInvalidField, "angular_resolution is 0; the beams would all point one way"};
     const auto range_max = to_number(tokens[4]);
-    if (!range_max) return malformed(fmt::format("maximum_range is '{}', not a number", shown(tokens[4])));
+    if (!range_max) return malformed(fmt::format("maximum_range is '{}', not a number", shown_token(tokens[4])));
     if (*range_max > 0.0) scan.range_max = *range_max;
     scan.angles = {*start, *increment, 0};
     tokens = tokens.subspan(7);

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
 #include "common/scan/scan.hpp"
+#include "robot_client/source/pose_path.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -26,10 +27,7 @@ struct CarmenScan {
     std::optional<double> stamp;     ///< ipc_timestamp, else logger_timestamp, else nothing
 };
 
-struct CarmenOdometry {
-    Pose2 robot;
-    double stamp = 0.0;
-};
+using CarmenOdometry = StampedPose;
 
 /// PARAM robot_frontlaser_offset: metres from the robot's centre forward to the front laser.
 struct CarmenLaserOffset {

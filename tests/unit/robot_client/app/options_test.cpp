@@ -86,6 +86,14 @@ TEST_F(Options, DefaultsAreThoseOfTheContract) {
     EXPECT_FALSE(std::get<SimulateOptions>(simulate.source).duration);
 }
 
+TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
+    const auto options = parsed({"sonar", "m.txt", "p.txt", "--aperture", "15", "--session", "s", "--robot", "r"});
+    const auto& sonar = std::get<SonarReplayOptions>(options.source);
+    EXPECT_EQ(sonar.measurements + " " + sonar.poses, "m.txt p.txt");
+    EXPECT_EQ(sonar.aperture_deg, 15.0);
+    EXPECT_EQ(sonar.speed, 0.0);
+}
+
 TEST_F(Options, FlagBeatsEnvironmentBeatsFile) {
     const auto path =
         file("session = \"from_file\"\nrobot = \"r\"\ncell-size = 0.1\n[simulate]\nseed = 5\nworld = \"room\"\n");
@@ -141,10 +149,12 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
     };
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "--session"},
-        {{"--session", "s", "--robot", "r"}, "say what to stream: replay FILE, or simulate;"},
+        {{"--session", "s", "--robot", "r"}, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},
+        {{"sonar", "m.txt", "--session", "s", "--robot", "r"}, "name two files"},
+        {{"sonar", "m", "p", "--aperture", "181", "--session", "s", "--robot", "r"}, "--aperture"},
         {with({"--world", "moon"}), "moon"},
         {with({"--noise", "loud"}), "loud"},
         {with({"--no-return", "maybe"}), "maybe"},

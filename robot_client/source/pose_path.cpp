@@ -1,24 +1,24 @@
-#include "robot_client/source/carmen_path.hpp"
+#include "robot_client/source/pose_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace scanloom::robot {
 
-CarmenPath::CarmenPath(std::vector<CarmenOdometry> samples) : samples_(std::move(samples)) {
+PosePath::PosePath(std::vector<StampedPose> samples) : samples_(std::move(samples)) {
     std::stable_sort(samples_.begin(), samples_.end(),
-                     [](const CarmenOdometry& a, const CarmenOdometry& b) { return a.stamp < b.stamp; });
+                     [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
 }
 
-std::optional<Pose2> CarmenPath::at(double stamp) const {
+std::optional<Pose2> PosePath::at(double stamp) const {
     const auto after = std::lower_bound(samples_.begin(), samples_.end(), stamp,
-                                        [](const CarmenOdometry& sample, double time) { return sample.stamp < time; });
-    const auto is_near = [&](auto sample) { return std::abs(sample->stamp - stamp) <= kOdometryGapMax; };
+                                        [](const StampedPose& sample, double time) { return sample.stamp < time; });
+    const auto is_near = [&](auto sample) { return std::abs(sample->stamp - stamp) <= kPoseGapMax; };
     const bool has_after = after != samples_.end() && is_near(after);
     const bool has_before = after != samples_.begin() && is_near(after - 1);
     if (!has_after && !has_before) return std::nullopt;
-    const CarmenOdometry& from = has_before ? *(after - 1) : *after;
-    const CarmenOdometry& to = has_after ? *after : *(after - 1);
+    const StampedPose& from = has_before ? *(after - 1) : *after;
+    const StampedPose& to = has_after ? *after : *(after - 1);
     const double gap = to.stamp - from.stamp;
     const double share = gap > 0.0 ? (stamp - from.stamp) / gap : 0.0;
     return Pose2{from.robot.x + share * (to.robot.x - from.robot.x), from.robot.y + share * (to.robot.y - from.robot.y),
