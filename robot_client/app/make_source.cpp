@@ -74,6 +74,9 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     }
     SimulatorOptions simulator{std::move(*world), std::move(*laser), std::nullopt, simulate.seed};
     if (simulate.noise == "gaussian") simulator.noise = Noise{};
+    if (simulate.noise == "uniform") {
+        simulator.noise = Noise{.range = 0.0, .range_uniform = simulate.noise_width, .beam_angle = 0.0};
+    }
     SimulationLimits limits;
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;

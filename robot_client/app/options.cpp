@@ -147,7 +147,7 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
     simulate->add_option("--world", options.world, "Where it drives")
-        ->check(CLI::IsMember({"room", "office"}))
+        ->check(CLI::IsMember({"room", "room_walker", "office"}))
         ->capture_default_str();
     simulate->add_option("--drive", options.drive, "How it drives")
         ->check(CLI::IsMember({"wall_follower"}))
@@ -156,7 +156,12 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->check(CLI::IsMember({"reference", "lidar360", "wide"}))
         ->capture_default_str();
     simulate->add_option("--noise", options.noise, "What its measurements suffer from")
-        ->check(CLI::IsMember({"none", "gaussian"}))
+        ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
+        ->capture_default_str();
+    simulate
+        ->add_option("--noise-width", options.noise_width,
+                     "Metres; uniform noise makes each reading too long by 0 up to this")
+        ->check(check_positive)
         ->capture_default_str();
     simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
         ->check(check_whole_number_from(0))

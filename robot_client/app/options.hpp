@@ -20,6 +20,7 @@ struct SimulateOptions {
     std::string world = "office";
     std::string drive = "wall_follower";
     std::string noise = "none";
+    double noise_width = 0.05; ///< metres, of uniform noise
     std::string laser = "reference";
     std::uint64_t seed = 1;
     std::optional<double> duration; ///< seconds of the simulation

@@ -12,9 +12,10 @@
 
 namespace scanloom::robot {
 
-/// Standard deviations of what a simulated robot measures.
+/// What the measurements of a simulated robot suffer from. Standard deviations, but for the uniform one.
 struct Noise {
     double range = 0.02;            ///< metres, of each return
+    double range_uniform = 0.0;     ///< metres; each return is too long by 0 up to this, all equally likely
     double beam_angle = 0.005;      ///< radians, of each beam's true direction
     double odometry_forward = 0.05; ///< metres for each metre driven, within one control step
     double odometry_turn = 0.05;    ///< radians for each radian turned
@@ -26,8 +27,8 @@ struct Noise {
 /// Errors  kNotFound: no laser of that name; the message lists those there are.
 [[nodiscard]] Result<Sensor> find_laser(std::string_view name);
 
-/// What the laser measures from a place. Without noise the readings are exact but for the rounding to millimetres.
-/// Beams that meet nothing within range_max are kNoReturn; noise neither makes nor takes returns.
+/// What the laser measures from a place, walkers included. Without noise the readings are exact but for the rounding to
+/// millimetres. Beams that meet nothing within range_max are kNoReturn; noise neither makes nor takes returns.
 [[nodiscard]] std::vector<RangeMm> sweep(const World& world, const Sensor& laser, const Pose2& T_map_laser,
                                          const std::optional<Noise>& noise, Random& random);
 

@@ -42,4 +42,15 @@ double cast_ray(std::span<const Segment> segments, const Point2& origin, double 
     return nearest;
 }
 
+double cast_ray(const Disc& disc, const Point2& origin, double yaw_rad) {
+    const Point2 to_centre = disc.centre - origin;
+    const double along = to_centre.x() * std::cos(yaw_rad) + to_centre.y() * std::sin(yaw_rad);
+    const double aside = to_centre.y() * std::cos(yaw_rad) - to_centre.x() * std::sin(yaw_rad);
+    const double square = disc.radius * disc.radius - aside * aside;
+    if (square < 0.0) return std::numeric_limits<double>::infinity();
+    const double half_chord = std::sqrt(square);
+    if (along >= half_chord) return along - half_chord;
+    return along + half_chord >= 0.0 ? along + half_chord : std::numeric_limits<double>::infinity();
+}
+
 } // namespace scanloom::robot

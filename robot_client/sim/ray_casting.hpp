@@ -14,4 +14,7 @@ namespace scanloom::robot {
 /// Exact but for rounding. The ends of a segment belong to it, so walls that meet are closed.
 [[nodiscard]] double cast_ray(std::span<const Segment> segments, const Point2& origin, double yaw_rad);
 
+/// The same for a disc; from inside it, to where the ray leaves it.
+[[nodiscard]] double cast_ray(const Disc& disc, const Point2& origin, double yaw_rad);
+
 } // namespace scanloom::robot

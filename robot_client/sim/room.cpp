@@ -25,4 +25,11 @@ World make_room() {
     return make_world("room", std::move(solids), {{-5.0, -5.0, 5.0, 5.0}});
 }
 
+World make_room_walker() {
+    World world = make_room();
+    world.name = "room_walker";
+    world.walkers = {{.loop = {{-2.4, -1.0}, {1.4, -1.0}, {1.4, 3.0}, {-2.4, 3.0}}}};
+    return world;
+}
+
 } // namespace scanloom::robot

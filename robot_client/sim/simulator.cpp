@@ -23,7 +23,7 @@ Pose2 choose_start(const World& world, Random& random) {
 
 Simulator::Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour)
     : options_(std::move(options)), behaviour_(std::move(behaviour)), random_(options_.seed),
-      pose_(choose_start(options_.world, random_)) {}
+      pose_(options_.start ? *options_.start : choose_start(options_.world, random_)) {}
 
 Scan Simulator::next_scan() {
     if (scans_ > 0) {
@@ -47,6 +47,7 @@ void Simulator::control_step() {
     if (motion.forward == 0.0 && wanted.forward != 0.0) ++collisions_;
     pose_ = moved(pose_, motion);
     odometry_ = moved(odometry_, as_the_wheels_tell(motion));
+    walk(options_.world, {pose_.x, pose_.y}, kControlPeriod);
 }
 
 Motion Simulator::as_the_wheels_tell(const Motion& motion) {

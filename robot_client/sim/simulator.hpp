@@ -19,10 +19,11 @@ struct SimulatorOptions {
     Sensor laser;
     std::optional<Noise> noise; ///< absent: everything is exact
     std::uint64_t seed = 1;
+    std::optional<Pose2> start; ///< absent: a free place that the seed chooses
 };
 
 /// A robot that drives through a world and scans it. Everything follows from the options: no clock, no other
-/// randomness. It starts on a free place that the seed chooses. scan.pose is the true pose in the world; scan.odometry
+/// randomness. People in the world walk on while it drives. scan.pose is the true pose in the world; scan.odometry
 /// is what its wheels believe, from (0, 0, 0) on.
 class Simulator {
 public:
@@ -31,9 +32,11 @@ public:
     /// The next scan, a tenth of a second after the one before; the first is taken where the robot starts, at 0 s.
     [[nodiscard]] Scan next_scan();
 
+    /// The world as it is now: people have moved.
+    [[nodiscard]] const World& world() const noexcept { return options_.world; }
     [[nodiscard]] const Pose2& pose() const noexcept { return pose_; }
     [[nodiscard]] const Sensor& laser() const noexcept { return options_.laser; }
-    /// Control steps in which a solid kept the robot from advancing.
+    /// Control steps in which a solid or a person kept the robot from advancing.
     [[nodiscard]] std::uint64_t collisions() const noexcept { return collisions_; }
 
 private:

@@ -27,7 +27,7 @@ struct Motion {
 [[nodiscard]] Pose2 moved(const Pose2& pose, const Motion& motion);
 
 /// What the robot does in one control period, its velocity cut to what it can.
-/// A body that would touch a solid does not advance; it may still turn, being round.
+/// A body that would touch a solid or a walker does not advance; it may still turn, being round.
 [[nodiscard]] Motion drive(const World& world, const Pose2& pose, const Velocity& wanted);
 
 } // namespace scanloom::robot

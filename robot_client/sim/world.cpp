@@ -9,7 +9,7 @@
 namespace scanloom::robot {
 
 World make_world(std::string name, std::vector<Box> solids, std::vector<Box> floors) {
-    World world{std::move(name), std::move(solids), std::move(floors), {}};
+    World world{std::move(name), std::move(solids), std::move(floors), {}, {}};
     for (const Box& box : world.solids) {
         world.outlines.push_back({box.x_min, box.y_min, box.x_max, box.y_min});
         world.outlines.push_back({box.x_max, box.y_min, box.x_max, box.y_max});
@@ -35,13 +35,19 @@ double clearance(const World& world, const Point2& point) {
     }
     double nearest = std::numeric_limits<double>::infinity();
     for (const Segment& segment : world.outlines) nearest = std::min(nearest, distance(segment, point));
+    for (const Walker& walker : world.walkers) nearest = std::min(nearest, distance(body_of(walker), point));
     return nearest;
+}
+
+void walk(World& world, const Point2& robot, double seconds) {
+    for (Walker& walker : world.walkers) walk(walker, robot, seconds);
 }
 
 Result<World> find_world(std::string_view name) {
     if (name == "room") return make_room();
+    if (name == "room_walker") return make_room_walker();
     if (name == "office") return make_office();
-    return Error{Errc::kNotFound, fmt::format("there is no world '{}'; choose room or office", name)};
+    return Error{Errc::kNotFound, fmt::format("there is no world '{}'; choose room, room_walker or office", name)};
 }
 
 } // namespace scanloom::robot

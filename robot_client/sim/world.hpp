@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "robot_client/sim/walker.hpp"
 
 #include <string>
 #include <string_view>
@@ -29,24 +30,30 @@ struct Box {
     }
 };
 
-/// A place to drive in. It is closed: from any point of a floor every ray meets a solid.
+/// A place to drive in, at one moment. It is closed: from any point of a floor every ray meets a solid.
 struct World {
     std::string name;
     std::vector<Box> solids;       ///< walls and furniture; they may overlap and then leave no gap between them
     std::vector<Box> floors;       ///< where a robot may be put, furniture included
     std::vector<Segment> outlines; ///< the sides of the solids
+    std::vector<Walker> walkers;   ///< people, where they are now
 };
 
 /// Builds the outlines of the solids.
 [[nodiscard]] World make_world(std::string name, std::vector<Box> solids, std::vector<Box> floors);
 
-/// Metres from a point to the nearest outline; 0 inside a solid.
+/// Metres from a point to the nearest outline or walker; 0 inside one.
 [[nodiscard]] double clearance(const World& world, const Point2& point);
 
 [[nodiscard]] double distance(const Segment& segment, const Point2& point);
 
-/// "room": 10 x 10 m with furniture. "office": 30 x 20 m, thirteen rooms and two lounges around a ring of corridors.
+/// Lets the walkers go on for some time, around a robot.
+void walk(World& world, const Point2& robot, double seconds);
+
+/// "room": 10 x 10 m with furniture. "room_walker": the same, and a person who walks around its table and sofa.
+/// "office": 30 x 20 m, thirteen rooms and two lounges around a ring of corridors.
 [[nodiscard]] World make_room();
+[[nodiscard]] World make_room_walker();
 [[nodiscard]] World make_office();
 
 /// Errors  kNotFound: no world of that name; the message lists those there are.

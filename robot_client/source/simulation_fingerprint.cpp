@@ -27,7 +27,13 @@ std::string text_of(const SimulatorOptions& options, std::string_view drive, NoR
     if (const auto& noise = options.noise) {
         add("noise", noise->range, noise->beam_angle, noise->odometry_forward, noise->odometry_turn,
             noise->odometry_drift);
+        if (noise->range_uniform > 0.0) add("uniform", noise->range_uniform);
     }
+    for (const Walker& walker : options.world.walkers) {
+        add("walker", walker.radius, walker.pace, walker.walked);
+        for (const Point2& corner : walker.loop) add("corner", corner.x(), corner.y());
+    }
+    if (const auto& start = options.start) add("start", start->x, start->y, start->yaw);
     return text;
 }
 

@@ -157,6 +157,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {{"sonar", "m", "p", "--aperture", "181", "--session", "s", "--robot", "r"}, "--aperture"},
         {with({"--world", "moon"}), "moon"},
         {with({"--noise", "loud"}), "loud"},
+        {with({"--noise-width", "0"}), "--noise-width"},
         {with({"--no-return", "maybe"}), "maybe"},
         {with({"--cell-size", "0"}), "--cell-size"},
         {with({"--cell-size", "nan"}), "--cell-size"},

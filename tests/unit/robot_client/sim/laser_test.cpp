@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -69,6 +70,45 @@ TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
         }
     }
     EXPECT_NEAR(std::sqrt(squares / count), 0.02, 0.001);
+}
+
+TEST(Sweep, UniformNoiseMakesReadingsTooLongByUpToItsWidth) {
+    const World room = make_room();
+    const Sensor laser = *find_laser("reference");
+    Random random(6);
+    const Pose2 pose{4.0, 0.0, 0.0};
+    const Noise noise{.range = 0.0, .range_uniform = 0.3, .beam_angle = 0.0};
+    double sum = 0.0;
+    double largest = 0.0;
+    int count = 0;
+    for (int i = 0; i < 100; ++i) {
+        const auto exact = sweep(room, laser, pose, std::nullopt, random);
+        const auto noisy = sweep(room, laser, pose, noise, random);
+        for (std::size_t beam = 0; beam < exact.size(); ++beam) {
+            if (exact[beam] == kNoReturn || exact[beam] > 4600) continue;
+            const double excess = (static_cast<double>(noisy[beam]) - static_cast<double>(exact[beam])) / 1000.0;
+            EXPECT_GT(excess, -0.0011);
+            sum += excess;
+            largest = std::max(largest, excess);
+            ++count;
+        }
+    }
+    EXPECT_NEAR(sum / count, 0.15, 0.003);
+    EXPECT_NEAR(largest, 0.3, 0.002);
+}
+
+TEST(Sweep, SeesAWalkerInFrontOfTheWall) {
+    World world = make_room();
+    world.walkers = {{.loop = {{3.0, 3.0}, {4.0, 3.0}}, .radius = 0.25}};
+    Sensor laser = *find_laser("reference");
+    laser.angles = UniformAngles{0.0, 0.1, 1};
+    Random random(1);
+    EXPECT_EQ(sweep(world, laser, {3.0, 4.5, -std::numbers::pi / 2.0}, std::nullopt, random).at(0), 1250U);
+    EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), 1250U);
+    walk(world, {-4.0, -4.0}, 0.5);
+    EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), 1750U) << "it has walked on";
+    laser.range_max = 1.5;
+    EXPECT_EQ(sweep(world, laser, {1.5, 3.0, 0.0}, std::nullopt, random).at(0), kNoReturn);
 }
 
 } // namespace

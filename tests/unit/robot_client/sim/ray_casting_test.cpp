@@ -27,6 +27,24 @@ TEST(RayCasting, TheNearestWallCounts) {
     EXPECT_NEAR(cast_ray(walls, {0, 0}, 0.0), 1.0, 1e-12);
 }
 
+TEST(RayCasting, MeetsADiscWhereGeometrySays) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const Disc disc{{3.0, 4.0}, 0.5};
+    const double ahead = std::atan2(4.0, 3.0);
+    EXPECT_NEAR(cast_ray(disc, {0, 0}, ahead), 4.5, 1e-12);
+    EXPECT_NEAR(cast_ray(disc, {0, 0}, ahead + std::asin(0.1) * 0.999999), std::sqrt(25.0 - 0.25), 2e-3) << "a tangent";
+    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead - 0.1003), kNone) << "beside";
+    EXPECT_EQ(cast_ray(disc, {0, 0}, ahead + kPi), kNone) << "behind";
+    EXPECT_NEAR(cast_ray(disc, {3.0, 4.0}, 1.0), 0.5, 1e-12) << "from inside";
+    Random random(5);
+    for (int i = 0; i < 1000; ++i) {
+        const double yaw = ahead + random.uniform(-0.1, 0.1);
+        const Point2 hit = cast_ray(disc, {0, 0}, yaw) * Point2(std::cos(yaw), std::sin(yaw));
+        EXPECT_NEAR((hit - disc.centre).norm(), disc.radius, 1e-9);
+        EXPECT_LT(hit.norm(), 5.0) << "its near side";
+    }
+}
+
 TEST(RayCasting, AClosedOutlineIsClosedAtItsCorners) {
     const std::vector<Segment> triangle = {{0.1, 0.1, 3.3, 0.7}, {3.3, 0.7, 1.9, 2.3}, {1.9, 2.3, 0.1, 0.1}};
     Random random(12);
@@ -111,7 +129,7 @@ TEST_P(Worlds, CullingFarSegmentsChangesNothingWithinTheRadius) {
 INSTANTIATE_TEST_SUITE_P(All, Worlds, testing::Values("room", "office"));
 
 TEST(FindWorld, AnUnknownNameListsTheWorldsThereAre) {
-    EXPECT_EQ(find_world("moon").error().message, "there is no world 'moon'; choose room or office");
+    EXPECT_EQ(find_world("moon").error().message, "there is no world 'moon'; choose room, room_walker or office");
 }
 
 } // namespace

@@ -37,6 +37,23 @@ TEST(Simulator, ScansComeTenTimesASecond) {
     for (int i = 0; i < 50; ++i) EXPECT_NEAR(simulator.next_scan().stamp, 0.1 * i, 1e-9);
 }
 
+TEST(Simulator, StartsWhereItIsTold) {
+    const Pose2 start{1.2, 3.4, 0.5};
+    Simulator simulator({make_room(), *find_laser("reference"), std::nullopt, 1, start},
+                        std::make_unique<WallFollower>());
+    EXPECT_EQ(simulator.next_scan().pose, start);
+}
+
+TEST(Simulator, PeopleWalkOnBetweenScansAndAreSeen) {
+    auto walked = make("room_walker", 3);
+    auto still = make("room", 3);
+    const double before = walked.world().walkers.at(0).walked;
+    bool is_seen = false;
+    for (int i = 0; i < 50; ++i) is_seen |= walked.next_scan().ranges != still.next_scan().ranges;
+    EXPECT_TRUE(is_seen);
+    EXPECT_NEAR(walked.world().walkers.at(0).walked - before, 4.9, 1e-9);
+}
+
 TEST(Simulator, OdometryWithoutNoiseIsTheTruePathFromItsStart) {
     auto simulator = make("room", 2);
     const Pose2 start = simulator.next_scan().pose;
@@ -60,7 +77,8 @@ TEST(Simulator, OdometryWithNoiseDriftsButNotAway) {
 
 /// How one simulated robot fared.
 struct Drive {
-    double clearance_min = 10.0;
+    double clearance_min = 10.0; // from what stands still
+    double walker_distance_min = 10.0;
     double path_length = 0.0;
     double longest_stay = 0.0; // seconds within half a metre
     std::size_t square_metres = 0;
@@ -79,6 +97,10 @@ Drive watch(Simulator simulator, const World& world, double seconds) {
         const Pose2& pose = scan.pose;
         drive.path_length += std::hypot(pose.x - last.x, pose.y - last.y);
         drive.clearance_min = std::min(drive.clearance_min, clearance(world, {pose.x, pose.y}));
+        for (const Walker& walker : simulator.world().walkers) {
+            drive.walker_distance_min =
+                std::min(drive.walker_distance_min, distance(body_of(walker), {pose.x, pose.y}));
+        }
         visited.emplace(static_cast<int>(std::floor(pose.x)), static_cast<int>(std::floor(pose.y)));
         if (std::hypot(pose.x - stay.x, pose.y - stay.y) > 0.5) {
             stay = pose;
@@ -124,6 +146,14 @@ TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandst
 INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
                          testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
                                          Setting{"office", "reference", false}, Setting{"office", "lidar360", true}));
+
+TEST(WallFollowerDrives, FiveMinutesWithAWalkerWithoutTouchingHim) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Drive drive = watch(make("room_walker", seed), make_room(), 300.0);
+        EXPECT_GT(drive.walker_distance_min, kBodyRadius) << seed;
+        EXPECT_GT(drive.path_length, 60.0) << seed;
+    }
+}
 
 /// The rooms of the office in the order in which the robot came into them: 0 to 4 in the north, 5 to 9 in the south,
 /// each row from the west.

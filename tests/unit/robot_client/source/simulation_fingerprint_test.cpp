@@ -29,6 +29,11 @@ TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
         [](SimulatorOptions& o) { o.laser.mount.x = 0.1; },
         [](SimulatorOptions& o) { o.noise.reset(); },
         [](SimulatorOptions& o) { o.noise->odometry_drift = 0.03; },
+        [](SimulatorOptions& o) { o.noise->range_uniform = 0.1; },
+        [](SimulatorOptions& o) { o.world.walkers = make_room_walker().walkers; },
+        [](SimulatorOptions& o) {
+            o.start = Pose2{1, 2, 0.5};
+        },
         [](SimulatorOptions& o) { o.seed = 8; },
     };
     for (const auto change : kChanges) {

@@ -1,0 +1,105 @@
+#include "robot_client/sim/truth_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace scanloom::robot {
+namespace {
+
+/// Ways are looked for on cells of this size at most: coarser ones would close doors.
+constexpr double kWayCellMax = 0.1; // metres
+
+/// Share of a cell by which a side counts as lying on the border of one.
+constexpr double kSnapCells = 1e-6;
+
+std::int32_t first_cell(double metres, double cells_per_metre) {
+    return static_cast<std::int32_t>(std::floor(metres * cells_per_metre + kSnapCells));
+}
+
+std::int32_t end_cell(double metres, double cells_per_metre) {
+    return static_cast<std::int32_t>(std::ceil(metres * cells_per_metre - kSnapCells));
+}
+
+TruthGrid blank_grid(const World& world, double cell_size_m) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Box all{kFar, kFar, -kFar, -kFar};
+    for (const Box& box : world.solids) {
+        all = {std::min(all.x_min, box.x_min), std::min(all.y_min, box.y_min), std::max(all.x_max, box.x_max),
+               std::max(all.y_max, box.y_max)};
+    }
+    const double cells_per_metre = 1.0 / cell_size_m;
+    TruthGrid grid{cell_size_m, first_cell(all.x_min, cells_per_metre), first_cell(all.y_min, cells_per_metre), 0, 0,
+                   {}};
+    grid.width = end_cell(all.x_max, cells_per_metre) - grid.i_begin;
+    grid.height = end_cell(all.y_max, cells_per_metre) - grid.j_begin;
+    grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), Truth::kOutside);
+    return grid;
+}
+
+/// Calls visit(Truth&, index) for the cells of the grid that a box stands in.
+template <class Visit>
+void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
+    const double cells_per_metre = 1.0 / grid.cell_size;
+    const auto columns = std::pair{std::max(0, first_cell(box.x_min, cells_per_metre) - grid.i_begin),
+                                   std::min(grid.width, end_cell(box.x_max, cells_per_metre) - grid.i_begin)};
+    const auto rows = std::pair{std::max(0, first_cell(box.y_min, cells_per_metre) - grid.j_begin),
+                                std::min(grid.height, end_cell(box.y_max, cells_per_metre) - grid.j_begin)};
+    for (std::int32_t row = rows.first; row < rows.second; ++row) {
+        for (std::int32_t column = columns.first; column < columns.second; ++column) {
+            const auto index =
+                static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(column);
+            visit(grid.cells[index], index);
+        }
+    }
+}
+
+void mark_solids(const World& world, TruthGrid& grid) {
+    for (const Box& box : world.solids) {
+        for_cells_of(box, grid, [](Truth& cell, std::size_t) { cell = Truth::kOccupied; });
+    }
+}
+
+/// Frees what four-connected ways reach from the floors.
+void mark_free(const World& world, TruthGrid& grid) {
+    std::vector<std::size_t> open;
+    const auto reach = [&](Truth& cell, std::size_t index) {
+        if (cell != Truth::kOutside) return;
+        cell = Truth::kFree;
+        open.push_back(index);
+    };
+    for (const Box& floor : world.floors) for_cells_of(floor, grid, reach);
+    const auto width = static_cast<std::size_t>(grid.width);
+    while (!open.empty()) {
+        const std::size_t at = open.back();
+        open.pop_back();
+        if (at % width > 0) reach(grid.cells[at - 1], at - 1);
+        if (at % width + 1 < width) reach(grid.cells[at + 1], at + 1);
+        if (at >= width) reach(grid.cells[at - width], at - width);
+        if (at + width < grid.cells.size()) reach(grid.cells[at + width], at + width);
+    }
+}
+
+} // namespace
+
+TruthGrid truth_of(const World& world, double cell_size_m) {
+    TruthGrid grid = blank_grid(world, cell_size_m);
+    const int parts = static_cast<int>(std::ceil(cell_size_m / kWayCellMax - 1e-9));
+    TruthGrid ways = blank_grid(world, cell_size_m / parts);
+    mark_solids(world, ways);
+    mark_free(world, ways);
+    if (parts == 1) return ways;
+    mark_solids(world, grid);
+    for (std::int32_t j = 0; j < grid.height; ++j) {
+        for (std::int32_t i = 0; i < grid.width; ++i) {
+            // nothing stands in the cell, so one part of it tells for all
+            Truth& cell = grid.cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.width) +
+                                     static_cast<std::size_t>(i)];
+            const bool is_reached = ways.at((grid.i_begin + i) * parts, (grid.j_begin + j) * parts) == Truth::kFree;
+            if (cell == Truth::kOutside && is_reached) cell = Truth::kFree;
+        }
+    }
+    return grid;
+}
+
+} // namespace scanloom::robot

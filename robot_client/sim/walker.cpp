@@ -1,0 +1,44 @@
+#include "robot_client/sim/walker.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+double length_of(const std::vector<Point2>& loop) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i) length += (loop[(i + 1) % loop.size()] - loop[i]).norm();
+    return length;
+}
+
+} // namespace
+
+Disc body_of(const Walker& walker) {
+    const auto& loop = walker.loop;
+    const double length = length_of(loop);
+    assert(length > 0.0);
+    double left = std::fmod(walker.walked, length);
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point2 side = loop[(i + 1) % loop.size()] - loop[i];
+        if (left < side.norm()) return {loop[i] + left / side.norm() * side, walker.radius};
+        left -= side.norm();
+    }
+    return {loop.front(), walker.radius}; // rounding: all the way round
+}
+
+void walk(Walker& walker, const Point2& robot, double seconds) {
+    const auto distance_to_robot = [&](const Walker& at) { return (body_of(at).centre - robot).norm(); };
+    Walker next = walker;
+    next.walked += walker.pace * seconds;
+    const bool comes_nearer = distance_to_robot(next) < distance_to_robot(walker);
+    if (comes_nearer && distance_to_robot(next) < kWalkerDistance) return;
+    walker = std::move(next);
+}
+
+double distance(const Disc& disc, const Point2& point) {
+    return std::max(0.0, (point - disc.centre).norm() - disc.radius);
+}
+
+} // namespace scanloom::robot

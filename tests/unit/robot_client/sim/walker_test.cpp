@@ -1,0 +1,55 @@
+#include "robot_client/sim/walker.hpp"
+
+#include "robot_client/sim/world.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::robot {
+namespace {
+
+/// Once round in 8 s.
+Walker square() { return {.loop = {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, .radius = 0.25, .pace = 1.0}; }
+
+Point2 place_after(double seconds) {
+    Walker walker = square();
+    walk(walker, {100.0, 100.0}, seconds);
+    return body_of(walker).centre;
+}
+
+TEST(Walker, GoesRoundItsLoopAtItsPace) {
+    EXPECT_LT((place_after(0.0) - Point2(0, 0)).norm(), 1e-9);
+    EXPECT_LT((place_after(1.5) - Point2(1.5, 0)).norm(), 1e-9);
+    EXPECT_LT((place_after(3.0) - Point2(2, 1)).norm(), 1e-9);
+    EXPECT_LT((place_after(7.0) - Point2(0, 1)).norm(), 1e-9);
+    EXPECT_LT((place_after(80.5) - Point2(0.5, 0)).norm(), 1e-9);
+    EXPECT_EQ(body_of(square()).radius, 0.25);
+}
+
+TEST(Walker, WaitsForARobotInItsWayAndGoesOnWhenItHasGone) {
+    Walker walker = square();
+    for (int step = 0; step < 200; ++step) walk(walker, {1.5, 0.0}, 0.05);
+    const double distance_waiting = (body_of(walker).centre - Point2(1.5, 0.0)).norm();
+    EXPECT_GE(distance_waiting, kWalkerDistance - 1e-9);
+    EXPECT_LT(distance_waiting, kWalkerDistance + 0.06);
+    walk(walker, {100.0, 100.0}, 1.0);
+    EXPECT_GT(body_of(walker).centre.x(), 1.5);
+}
+
+TEST(Walker, GoesAwayFromARobotThatCameTooNear) {
+    Walker walker = square();
+    walker.walked = 1.0;
+    for (int step = 0; step < 20; ++step) walk(walker, {0.5, 0.0}, 0.05);
+    EXPECT_NEAR(body_of(walker).centre.x(), 2.0, 1e-9);
+}
+
+TEST(Walker, ItsLoopInTheRoomKeepsClearOfTheFurniture) {
+    const World room = make_room();
+    Walker walker = make_room_walker().walkers.at(0);
+    for (int step = 0; step < 400; ++step) {
+        EXPECT_GT(clearance(room, body_of(walker).centre), walker.radius + 0.1);
+        walk(walker, {100.0, 100.0}, 0.05);
+    }
+}
+
+} // namespace
+} // namespace scanloom::robot
