@@ -45,6 +45,16 @@ TEST(TruthGrid, ACellIsOccupiedWhereAPartOfItIs) {
                            "#######\n");
 }
 
+TEST(TruthGrid, RoundingPutsNoSolidIntoTheNextCell) {
+    const auto tenths = truth_of(make_world("", {{0.0, 0.0, 1.1, 0.3}}, {}), 0.1); // 1.1 * 10 > 11
+    EXPECT_EQ(tenths.width, 11);
+    EXPECT_EQ(tenths.height, 3);
+    const auto hundredths = truth_of(make_world("", {{0.29, 0.0, 0.57, 0.07}}, {}), 0.01); // 0.29 * 100 < 29
+    EXPECT_EQ(hundredths.i_begin, 29);
+    EXPECT_EQ(hundredths.width, 28);
+    EXPECT_EQ(hundredths.height, 7);
+}
+
 TEST(TruthGrid, WhatNoWayLeadsToIsOutside) {
     World world = closet();
     world.solids.push_back({0.0, 0.6, 1.0, 0.8});

@@ -1,5 +1,6 @@
 #include "robot_client/sim/walker.hpp"
 
+#include "robot_client/sim/unicycle.hpp"
 #include "robot_client/sim/world.hpp"
 
 #include <gtest/gtest.h>
@@ -40,6 +41,16 @@ TEST(Walker, GoesAwayFromARobotThatCameTooNear) {
     walker.walked = 1.0;
     for (int step = 0; step < 20; ++step) walk(walker, {0.5, 0.0}, 0.05);
     EXPECT_NEAR(body_of(walker).centre.x(), 2.0, 1e-9);
+}
+
+TEST(Walker, StandsInARobotsWay) {
+    World world = make_room();
+    world.walkers = {square()};
+    world.walkers[0].loop = {{3.5, -3.0}, {3.5, -2.0}};
+    EXPECT_EQ(clearance(world, {3.6, -3.0}), 0.0);
+    EXPECT_NEAR(clearance(world, {3.0, -3.0}), 0.25, 1e-9);
+    EXPECT_EQ(drive(world, {3.09, -3.0, 0.0}, {0.4, 0.1}), (Motion{0.0, 0.1 * kControlPeriod}));
+    EXPECT_GT(drive(world, {3.05, -3.0, 0.0}, {0.4, 0.1}).forward, 0.0);
 }
 
 TEST(Walker, ItsLoopInTheRoomKeepsClearOfTheFurniture) {
