@@ -1,16 +1,14 @@
 #include "robot_client/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
+#include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
 #include "common/scan/limits.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace scanloom::robot {
 namespace {
@@ -35,39 +33,6 @@ struct Raw {
 std::string check_name(const std::string& name) {
     if (is_valid_name(name)) return {};
     return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
-}
-
-/// CLI::Range lets NaN pass.
-auto check_within(double low, double high) {
-    return [=](const std::string& text) {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
-        return fmt::format("'{}' is not within {:g} to {:g}", text, low, high);
-    };
-}
-
-std::string check_positive(const std::string& text) {
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};
-    return fmt::format("'{}' is not more than 0", text);
-}
-
-std::string check_not_negative(const std::string& text) {
-    double value = 0.0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
-    return fmt::format("'{}' is not 0 or more", text);
-}
-
-/// CLI11 by itself would take -1 for the largest number.
-auto check_whole_number_from(std::uint64_t low) {
-    return [=](const std::string& text) {
-        std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stopped, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc{} && stopped == end && value >= low) return std::string();
-        return fmt::format("'{}' is not a whole number from {} to {}", text, low,
-                           std::numeric_limits<std::uint64_t>::max());
-    };
 }
 
 /// HOST:PORT or [ADDRESS]:PORT.

@@ -2,19 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace scanloom::robot {
-namespace {
-
-std::string as_clock(double seconds) {
-    const auto whole = static_cast<std::int64_t>(std::clamp(std::ceil(seconds), 0.0, 1e9));
-    if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
-} // namespace
 
 std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
                           std::chrono::duration<double> elapsed) {
@@ -40,25 +28,6 @@ std::string reading_text(std::string_view file, const ReadProgress& progress) {
 
 std::string pause_text(std::chrono::duration<double> pause) {
     return fmt::format("the next scan is due in {}; --speed 0 would not wait for it", as_clock(pause.count()));
-}
-
-std::chrono::milliseconds Console::progress_period() const {
-    return out_.is_terminal() ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000);
-}
-
-void Console::progress(std::string_view text) {
-    line_is_open_ = out_.is_terminal();
-    out_.write(line_is_open_ ? fmt::format("\r\x1b[K{}", text) : fmt::format("{}\n", text));
-}
-
-void Console::note(std::string_view text) {
-    out_.write(fmt::format("{}{}\n", line_is_open_ ? "\r\x1b[K" : "", text));
-    line_is_open_ = false;
-}
-
-void Console::finish() {
-    if (line_is_open_) out_.write("\n");
-    line_is_open_ = false;
 }
 
 } // namespace scanloom::robot

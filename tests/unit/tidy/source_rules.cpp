@@ -59,6 +59,11 @@ const std::vector<Folder> kFolders = {
                      "robot_client/sim"}},
     {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
+
+    // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
+    {.path = "lab",
+     .may_include = {"common", "server/grid", "server/mapping", "server/tiles", "robot_client/drive",
+                     "robot_client/sim", "robot_client/source"}},
 };
 
 /// Headers that only some folders may include.
@@ -71,7 +76,7 @@ const std::vector<Package> kPackages = {
     {"scanloom/v1/", {"common/wire"}},
     {"google/protobuf/", {"common/wire"}},
     {"openssl/", {"common/hash", "server/http"}},
-    {"opencv2/", {"server/tiles"}},
+    {"opencv2/", {"server/tiles", "lab"}},
     {"rocksdb/", {"server/store"}},
     {"prometheus/", {"server/metrics"}},
     {"spdlog/", {"server/session", "server/sockets", "server/ingest", "server/http", "server/app", "robot_client/app"}},
@@ -81,7 +86,7 @@ const std::vector<Package> kPackages = {
     {"boost/beast", {"server/http", "server/app"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source"}},
-    {"CLI/", {"common/app", "server/app", "robot_client/app"}},
+    {"CLI/", {"common/app", "server/app", "robot_client/app", "lab"}},
 };
 
 // How a file, socket, clock, thread or log shows among the standard headers.
@@ -113,7 +118,7 @@ std::optional<std::string_view> included(std::string_view line) {
 }
 
 std::optional<std::string> forbidden_arrow(const Folder& folder, std::string_view header) {
-    const bool ours = any_holds({"common", "server", "robot_client", "tests"}, header);
+    const bool ours = any_holds({"common", "server", "robot_client", "lab", "tests"}, header);
     if (ours && !holds(folder.path, header) && !any_holds(folder.may_include, header)) {
         return fmt::format("{} may not include {}", folder.path, header);
     }
@@ -141,7 +146,7 @@ void for_each_line(std::string_view text, Visit visit) {
 }
 
 void check_includes(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
-    if (!any_holds({"common", "server", "robot_client"}, path)) return;
+    if (!any_holds({"common", "server", "robot_client", "lab"}, path)) return;
     const auto folder = std::ranges::find_if(kFolders, [&](const Folder& row) { return holds(row.path, path); });
     if (folder == kFolders.end()) {
         complaints.push_back(fmt::format("{}: its folder has no row in tests/unit/tidy/source_rules.cpp", path));

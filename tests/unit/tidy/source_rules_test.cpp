@@ -34,6 +34,15 @@ TEST(SourceRules, CommonMayIncludeNeitherServerNorRobot) {
     EXPECT_THAT(including("common/scan/scan.cpp", "\"common/wire/messages.hpp\""), testing::SizeIs(1));
 }
 
+TEST(SourceRules, TheLabMayIncludeBothSidesAndNobodyTheLab) {
+    EXPECT_THAT(including("lab/weaving.cpp", "\"server/mapping/projection.hpp\""), IsEmpty());
+    EXPECT_THAT(including("lab/recording.cpp", "\"robot_client/sim/world.hpp\""), IsEmpty());
+    EXPECT_THAT(including("lab/weaving.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("lab/weaving.cpp", "\"robot_client/uplink/uplink.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("server/tiles/map_image.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
+}
+
 TEST(SourceRules, ProductionCodeMayNotIncludeTests) {
     EXPECT_THAT(including("server/store/log_file.cpp", "\"tests/support/memory_scan_log.hpp\""), testing::SizeIs(1));
 }

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+/// A report as plain values, so that its two forms cannot differ in what they say.
+namespace scanloom::lab {
+
+struct Heading {
+    int level = 1;
+    std::string text;
+};
+struct Paragraph {
+    std::string text;
+};
+struct Items {
+    std::vector<std::string> texts;
+};
+struct Code {
+    std::string text;
+};
+struct Link {
+    std::string text;
+    std::string file; ///< without its ending: Markdown links to .md, HTML to .html
+};
+/// Numbers and short words; every row is as long as the head.
+struct Table {
+    std::vector<std::string> head;
+    std::vector<std::vector<std::string>> rows;
+};
+struct Picture {
+    std::string file; ///< relative to the report
+    std::string caption;
+};
+
+using Block = std::variant<Heading, Paragraph, Items, Code, Link, Table, Picture>;
+using Document = std::vector<Block>;
+
+/// Markdown as GitHub and GitLab show it. Texts are taken as they are.
+[[nodiscard]] std::string to_markdown(const Document& document);
+
+/// One page without scripts and without anything from elsewhere but its pictures.
+[[nodiscard]] std::string to_html(const Document& document, std::string_view title);
+
+} // namespace scanloom::lab

@@ -1,0 +1,23 @@
+#include "common/app/standard_error.hpp"
+#include "common/app/standard_streams.hpp"
+#include "lab/options.hpp"
+#include "lab/run.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <exception>
+
+int main(int argc, char** argv) try {
+    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
+    scanloom::open_missing_standard_streams();
+    const auto options = scanloom::lab::parse_options(argc, argv);
+    if (const auto* leave = std::get_if<scanloom::lab::Leave>(&options)) {
+        fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
+        return leave->code;
+    }
+    return scanloom::lab::run(std::get<scanloom::lab::LabOptions>(options));
+} catch (const std::exception& error) {
+    scanloom::standard_error().write(fmt::format("scanloom-lab: {}\n", error.what()));
+    return scanloom::kExitFailed;
+}

@@ -1,0 +1,89 @@
+#include "lab/options.hpp"
+
+#include "common/app/environment_first.hpp"
+#include "common/app/option_checks.hpp"
+#include "common/app/parse_failure.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::lab {
+namespace {
+
+constexpr const char* kAbout =
+    "Measures how good and how fast the maps are, in simulated worlds that are known exactly.\n"
+    "Exits 0 when done, 1 when something failed, 2 when it was called wrongly.";
+constexpr const char* kFooter =
+    "Every option may also stand in the file of --config (TOML, in a section of its command) or in the environment\n"
+    "(--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
+
+CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
+    auto* experiment = app.add_subcommand(
+        "experiment", "The reference experiments: scenes, cell sizes, ray models, noise and starts, as a report");
+    experiment->add_option("--out", options.out,
+                           "Directory for report.md, report.html, times.md, times.html and pictures/; made if it does "
+                           "not exist, what is there is overwritten");
+    experiment->add_option("--seed", options.seed, "Of the noise; the same seed gives the same report, times excepted")
+        ->check(check_whole_number_from(0))
+        ->capture_default_str();
+    experiment
+        ->add_option("--scans", options.scans, "Scans of each run, 10 to 100000; default: 1500, once around the room")
+        ->check(check_within(10, 100'000))
+        ->check(check_whole_number_from(1));
+    experiment->add_flag("--quick", options.quick,
+                         "Coarse cells, two kinds of noise and one start: seconds, not minutes");
+    return experiment;
+}
+
+CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
+    auto* truth = app.add_subcommand("truth", "What a perfect map of a world would hold, as map.pgm and map.yaml");
+    truth->add_option("--world", options.world, "Which world")
+        ->check(CLI::IsMember({"room", "office"}))
+        ->capture_default_str();
+    truth->add_option("--cell-size", options.cell_size, "Metres a cell")
+        ->check(check_within(0.01, 1.0))
+        ->capture_default_str();
+    truth->add_option("--out", options.out, "Directory for the two files; made if it does not exist");
+    return truth;
+}
+
+Leave usage_error(std::string_view what) {
+    return {kExitUsage, fmt::format("scanloom-lab: {}; see scanloom-lab --help\n", what)};
+}
+
+Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
+    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
+        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+    }
+    const std::string what = sentence_of(reason);
+    return usage_error(what == "A subcommand is required" ? "say what to do: experiment, or truth" : what);
+}
+
+} // namespace
+
+std::variant<LabOptions, Leave> parse_options(int argc, const char* const* argv) {
+    ExperimentOptions experiment_options;
+    TruthOptions truth_options;
+    CLI::App app(kAbout, "scanloom-lab");
+    app.footer(kFooter);
+    app.set_version_flag("--version", fmt::format("scanloom-lab {}", kVersion));
+    const CLI::App* experiment = add_experiment(app, experiment_options);
+    add_truth(app, truth_options);
+    app.require_subcommand(1);
+    try {
+        read_settings_from_environment_and_file(app);
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& reason) {
+        return leave_for(app, reason);
+    }
+    // not required() by the parser: an environment meant for one command would be asked for by the other
+    const bool is_experiment = experiment->parsed();
+    if ((is_experiment ? experiment_options.out : truth_options.out).empty()) {
+        return usage_error(fmt::format("{}: name a directory with --out", is_experiment ? "experiment" : "truth"));
+    }
+    if (is_experiment) return LabOptions(std::move(experiment_options));
+    return LabOptions(std::move(truth_options));
+}
+
+} // namespace scanloom::lab

@@ -1,0 +1,125 @@
+#include "lab/pictures.hpp"
+
+#include "server/tiles/map_image.hpp"
+#include "server/tiles/occupancy_percent.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace scanloom::lab {
+namespace {
+
+// blue, green, red
+const cv::Scalar kPathColour(200, 100, 0);
+const cv::Scalar kPointColour(40, 30, 220);
+const cv::Scalar kWalkerColour(0, 140, 255);
+const cv::Scalar kGapColour(255, 255, 255);
+constexpr int kGap = 8;        // pixels between two moments
+constexpr int kShift = 4;      // OpenCV draws at 1/16 of a pixel
+constexpr double kSnap = 1e-6; // cells: a pixel's side this near to a cell's lies on it
+
+/// From metres to pixels of one moment's picture.
+struct Canvas {
+    tiles::Extent part;
+    int width;
+    int height;
+
+    [[nodiscard]] cv::Point at(const Point2& point) const {
+        const double scale = kPixelsPerMetre * (1 << kShift);
+        return {static_cast<int>(std::lround((point.x() - part.min_x) * scale)),
+                static_cast<int>(std::lround((part.max_y - point.y()) * scale))};
+    }
+
+    [[nodiscard]] int length(double metres) const {
+        return static_cast<int>(std::lround(metres * kPixelsPerMetre * (1 << kShift)));
+    }
+};
+
+/// The cells that each pixel of a row or column covers, counted from the first of the part.
+std::vector<std::pair<int, int>> cells_of_pixels(int pixels, double cell_size_m, int cells) {
+    std::vector<std::pair<int, int>> covered;
+    const double cells_per_pixel = 1.0 / (kPixelsPerMetre * cell_size_m);
+    for (int pixel = 0; pixel < pixels; ++pixel) {
+        const int begin = std::min(cells - 1, static_cast<int>(std::floor(pixel * cells_per_pixel + kSnap)));
+        const int end = static_cast<int>(std::ceil((pixel + 1) * cells_per_pixel - kSnap));
+        covered.emplace_back(begin, std::clamp(end, begin + 1, cells));
+    }
+    return covered;
+}
+
+cv::Mat draw_map(const mapping::Snapshot& snapshot, const Canvas& canvas) {
+    const double cell_size = snapshot.config.cell_size;
+    const auto frame = tiles::map_frame(snapshot, canvas.part).value();
+    const auto image = tiles::render_map(snapshot, frame);
+    const auto columns = cells_of_pixels(canvas.width, cell_size, frame.width());
+    const auto rows = cells_of_pixels(canvas.height, cell_size, frame.height());
+    cv::Mat picture(canvas.height, canvas.width, CV_8UC3);
+    for (int y = 0; y < canvas.height; ++y) {
+        for (int x = 0; x < canvas.width; ++x) {
+            const auto [i_begin, i_end] = columns[static_cast<std::size_t>(x)];
+            const auto [j_begin, j_end] = rows[static_cast<std::size_t>(y)];
+            tiles::Salience most = tiles::kUnknownSalience;
+            for (int j = j_begin; j < j_end; ++j) {
+                for (int i = i_begin; i < i_end; ++i) {
+                    const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(frame.width()) +
+                                    static_cast<std::size_t>(i);
+                    most = std::max(most, tiles::salience_of(image.percent[at]));
+                }
+            }
+            const auto grey = tiles::grey_of(tiles::percent_of_salience(most));
+            picture.at<cv::Vec3b>(y, x) = {grey, grey, grey};
+        }
+    }
+    return picture;
+}
+
+void draw_run(cv::Mat& picture, const Canvas& canvas, const Recording& recording, std::size_t scans) {
+    for (std::size_t n = 1; n < scans; ++n) {
+        const Pose2& from = recording.scans[n - 1].pose;
+        const Pose2& to = recording.scans[n].pose;
+        cv::line(picture, canvas.at({from.x, from.y}), canvas.at({to.x, to.y}), kPathColour, 1, cv::LINE_8, kShift);
+    }
+    const Scan& newest = recording.scans[scans - 1];
+    for (std::size_t beam = 0; beam < newest.ranges.size(); ++beam) {
+        const RangeMm range = newest.ranges[beam];
+        if (range == kInvalidRange || range == kNoReturn) continue;
+        const double angle = beam_angle(recording.laser.angles, beam);
+        const Point2 point = transform(newest.pose, range * 1e-3 * Point2(std::cos(angle), std::sin(angle)));
+        cv::circle(picture, canvas.at(point), canvas.length(0.02), kPointColour, cv::FILLED, cv::LINE_8, kShift);
+    }
+    const Point2 robot{newest.pose.x, newest.pose.y};
+    cv::circle(picture, canvas.at(robot), canvas.length(robot::kBodyRadius), kPathColour, cv::FILLED, cv::LINE_8,
+               kShift);
+    cv::line(picture, canvas.at(robot), canvas.at(transform(newest.pose, {2.0 * robot::kBodyRadius, 0.0})), kPathColour,
+             2, cv::LINE_8, kShift);
+    for (const robot::Disc& walker : recording.walkers[scans - 1]) {
+        cv::circle(picture, canvas.at(walker.centre), canvas.length(walker.radius), kWalkerColour, 2, cv::LINE_8,
+                   kShift);
+    }
+}
+
+} // namespace
+
+tiles::Bytes strip_png(std::span<const Moment> moments, const Recording& recording, const tiles::Extent& part) {
+    const Canvas canvas{part, static_cast<int>(std::lround((part.max_x - part.min_x) * kPixelsPerMetre)),
+                        static_cast<int>(std::lround((part.max_y - part.min_y) * kPixelsPerMetre))};
+    const int count = static_cast<int>(moments.size());
+    cv::Mat strip(canvas.height, count * canvas.width + (count - 1) * kGap, CV_8UC3, kGapColour);
+    for (int n = 0; n < count; ++n) {
+        const Moment& moment = moments[static_cast<std::size_t>(n)];
+        cv::Mat picture = draw_map(moment.snapshot, canvas);
+        draw_run(picture, canvas, recording, moment.scans);
+        picture.copyTo(strip(cv::Rect(n * (canvas.width + kGap), 0, canvas.width, canvas.height)));
+    }
+    tiles::Bytes png;
+    if (!cv::imencode(".png", strip, png, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
+        throw std::runtime_error("OpenCV could not encode a PNG");
+    }
+    return png;
+}
+
+} // namespace scanloom::lab

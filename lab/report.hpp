@@ -1,0 +1,19 @@
+#pragma once
+
+#include "lab/document.hpp"
+#include "lab/experiment.hpp"
+
+namespace scanloom::lab {
+
+/// Names of the report's files, without their endings, and of its folder of pictures.
+inline constexpr const char* kReportFile = "report";
+inline constexpr const char* kTimesFile = "times";
+inline constexpr const char* kPicturesFolder = "pictures";
+
+/// Everything that is the same whenever the same matrix is run: the same bytes.
+[[nodiscard]] Document report_of(const Matrix& matrix, const std::vector<RunResult>& results);
+
+/// What differs each time: how long it took.
+[[nodiscard]] Document times_of(const Matrix& matrix, const std::vector<RunResult>& results);
+
+} // namespace scanloom::lab

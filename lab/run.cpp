@@ -1,0 +1,116 @@
+#include "lab/run.hpp"
+
+#include "lab/output_directory.hpp"
+#include "lab/report.hpp"
+
+#include "common/app/console.hpp"
+#include "robot_client/sim/truth_grid.hpp"
+#include "server/tiles/occupancy_percent.hpp"
+#include "server/tiles/ros_map.hpp"
+
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace scanloom::lab {
+namespace {
+
+double steady_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Tells how far an experiment is, now and then.
+class Progress {
+public:
+    Progress(Console& console, const Matrix& matrix) : console_(console), matrix_(matrix) {}
+
+    void operator()(const RunSpec& running, std::size_t runs_done, std::size_t scans_done) {
+        const double now = steady_seconds();
+        if (now < next_) return;
+        next_ = now + std::chrono::duration<double>(console_.progress_period()).count();
+        const double total = static_cast<double>(matrix_.run_count() * matrix_.scans);
+        const double rate = static_cast<double>(scans_done) / std::max(now - begun_, 1e-9);
+        console_.progress(fmt::format("run {} of {}: {}, {:.0f} scans a second, {} left", runs_done + 1,
+                                      matrix_.run_count(), name_of(running), rate,
+                                      as_clock((total - static_cast<double>(scans_done)) / rate)));
+    }
+
+private:
+    Console& console_;
+    const Matrix& matrix_;
+    double begun_ = steady_seconds();
+    double next_ = begun_ + std::chrono::duration<double>(console_.progress_period()).count();
+};
+
+Result<> write_document(const OutputDirectory& directory, const std::string& name, const Document& document) {
+    if (auto written = directory.write(name + ".md", to_markdown(document)); !written) return written.error();
+    return directory.write(name + ".html", to_html(document, std::get<Heading>(document.front()).text));
+}
+
+Result<std::string> run_one(const ExperimentOptions& options, Console& console) {
+    Matrix matrix = options.quick ? quick_matrix() : full_matrix();
+    matrix.seed = options.seed;
+    matrix.scans = options.scans.value_or(matrix.scans);
+    const auto directory = OutputDirectory::open(options.out);
+    if (!directory) return directory.error();
+    const auto pictures = OutputDirectory::open(directory->path() / kPicturesFolder);
+    if (!pictures) return pictures.error();
+
+    const double begun = steady_seconds();
+    const auto keep = [&](const std::string& file, const tiles::Bytes& png) { return pictures->write(file, png); };
+    const auto results = run_experiment(matrix, {steady_seconds, keep, Progress(console, matrix)});
+    if (!results) return results.error();
+    for (const auto& [name, document] :
+         {std::pair{kReportFile, report_of(matrix, *results)}, std::pair{kTimesFile, times_of(matrix, *results)}}) {
+        if (auto written = write_document(*directory, name, document); !written) return written.error();
+    }
+    return fmt::format(R"({{"runs":{},"scans":{},"seconds":{:.3f},"report":{}}})", results->size(),
+                       results->size() * matrix.scans, steady_seconds() - begun,
+                       boost::json::serialize((directory->path() / kReportFile).string() + ".html"));
+}
+
+/// As a map that holds what is known: occupied, free, and unknown outside.
+tiles::MapImage image_of(const robot::TruthGrid& truth) {
+    tiles::MapImage image{
+        {{truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height}, truth.cell_size},
+        {}};
+    for (std::int32_t j = truth.j_begin + truth.height - 1; j >= truth.j_begin; --j) {
+        for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
+            switch (truth.at(i, j)) {
+            case robot::Truth::kOccupied: image.percent.push_back(100); break;
+            case robot::Truth::kFree: image.percent.push_back(0); break;
+            case robot::Truth::kOutside: image.percent.push_back(tiles::kUnknownPercent); break;
+            }
+        }
+    }
+    return image;
+}
+
+Result<std::string> run_one(const TruthOptions& options, Console&) {
+    const auto world = robot::find_world(options.world);
+    if (!world) return world.error();
+    const auto directory = OutputDirectory::open(options.out);
+    if (!directory) return directory.error();
+    const tiles::MapImage image = image_of(robot::truth_of(*world, options.cell_size));
+    if (auto written = directory->write("map.pgm", tiles::map_pgm(image)); !written) return written.error();
+    if (auto written = directory->write("map.yaml", tiles::map_yaml(image.frame)); !written) return written.error();
+    return fmt::format(R"({{"width":{},"height":{},"map":{}}})", image.frame.width(), image.frame.height(),
+                       boost::json::serialize((directory->path() / "map.yaml").string()));
+}
+
+} // namespace
+
+ExitCode run(const LabOptions& options) {
+    Console console(standard_error());
+    const auto result = std::visit([&](const auto& chosen) { return run_one(chosen, console); }, options);
+    if (!result) {
+        console.note("scanloom-lab: " + result.error().message);
+        return kExitFailed;
+    }
+    console.finish();
+    fmt::print("{}\n", *result);
+    return kExitDone;
+}
+
+} // namespace scanloom::lab

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "lab/options.hpp"
+
+namespace scanloom::lab {
+
+/// Does what was asked for. Progress and errors go to stderr, one line of JSON about the result to stdout.
+[[nodiscard]] ExitCode run(const LabOptions& options);
+
+} // namespace scanloom::lab
