@@ -9,34 +9,38 @@ using MaybeNoise = std::optional<robot::Noise>;
 
 robot::Noise uniform(double width_m) { return {.range = 0.0, .range_uniform = width_m, .beam_angle = 0.0}; }
 
-const std::vector<Scene> kScenes{{"static", "room"}, {"dynamic", "room_walker"}};
+std::vector<Scene> scenes() { return {{"static", "room"}, {"dynamic", "room_walker"}}; }
 
-const std::vector<RayModelChoice> kRayModels{
-    {"inverse_sensor_model", [](SessionOptions&) {}},
-};
+std::vector<RayModelChoice> ray_models() {
+    return {
+        {"inverse_sensor_model", [](SessionOptions&) {}},
+    };
+}
 
-const NoiseChoice kNone{"none", [](double) { return MaybeNoise{}; }, false};
-const NoiseChoice kGaussian{"gaussian", [](double) { return MaybeNoise(robot::Noise{}); }, true};
-const NoiseChoice kOneCell{"1_cell", [](double cell_size_m) { return MaybeNoise(uniform(cell_size_m)); }, false};
-const NoiseChoice kThreeCells{"3_cells", [](double cell_size_m) { return MaybeNoise(uniform(3.0 * cell_size_m)); },
-                              false};
+constexpr NoiseChoice kNone{"none", [](double) { return MaybeNoise{}; }, false};
+constexpr NoiseChoice kGaussian{"gaussian", [](double) { return MaybeNoise(robot::Noise{}); }, true};
+constexpr NoiseChoice kOneCell{"1_cell", [](double cell_size_m) { return MaybeNoise(uniform(cell_size_m)); }, false};
+constexpr NoiseChoice kThreeCells{"3_cells", [](double cell_size_m) { return MaybeNoise(uniform(3.0 * cell_size_m)); },
+                                  false};
 
 // In opposite corners of the room, in the frame of the map; the robot follows the walls from there.
-const Start kSouthWest{"south_west", {-3.5, -3.8, 0.0}};
-const Start kNorthEast{"north_east", {3.5, 3.6, std::numbers::pi}};
+constexpr Start kSouthWest{"south_west", {-3.5, -3.8, 0.0}};
+constexpr Start kNorthEast{"north_east", {3.5, 3.6, std::numbers::pi}};
 
 } // namespace
 
 Matrix full_matrix() {
-    return {kScenes,
+    return {scenes(),
             {0.01, 0.05, 0.1, 0.5},
-            kRayModels,
+            ray_models(),
             {kNone, kGaussian, kOneCell, kThreeCells},
             {kSouthWest, kNorthEast},
             kScansDefault,
             1};
 }
 
-Matrix quick_matrix() { return {kScenes, {0.1, 0.5}, kRayModels, {kNone, kGaussian}, {kSouthWest}, kScansDefault, 1}; }
+Matrix quick_matrix() {
+    return {scenes(), {0.1, 0.5}, ray_models(), {kNone, kGaussian}, {kSouthWest}, kScansDefault, 1};
+}
 
 } // namespace scanloom::lab

@@ -29,9 +29,11 @@ struct Canvas {
     int height;
 
     [[nodiscard]] cv::Point at(const Point2& point) const {
-        const double scale = kPixelsPerMetre * (1 << kShift);
-        return {static_cast<int>(std::lround((point.x() - part.min_x) * scale)),
-                static_cast<int>(std::lround((part.max_y - point.y()) * scale))};
+        // OpenCV counts from the middle of the first pixel
+        const auto drawn = [](double metres) {
+            return static_cast<int>(std::lround((metres * kPixelsPerMetre - 0.5) * (1 << kShift)));
+        };
+        return {drawn(point.x() - part.min_x), drawn(part.max_y - point.y())};
     }
 
     [[nodiscard]] int length(double metres) const {

@@ -178,7 +178,7 @@ Document report_of(const Matrix& matrix, const std::vector<RunResult>& results) 
     return document;
 }
 
-Document times_of(const Matrix& matrix, const std::vector<RunResult>& results) {
+Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results) {
     Table means{{"cell", "ray model", "mean ms", "median ms", "95 % below, ms", "published, ms"}, {}};
     for (const double cell_size : matrix.cell_sizes) {
         for (const RayModelChoice& model : matrix.ray_models) {

@@ -14,6 +14,6 @@ inline constexpr const char* kPicturesFolder = "pictures";
 [[nodiscard]] Document report_of(const Matrix& matrix, const std::vector<RunResult>& results);
 
 /// What differs each time: how long it took.
-[[nodiscard]] Document times_of(const Matrix& matrix, const std::vector<RunResult>& results);
+[[nodiscard]] Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results);
 
 } // namespace scanloom::lab

@@ -61,8 +61,8 @@ Result<std::string> run_one(const ExperimentOptions& options, Console& console) 
     const auto keep = [&](const std::string& file, const tiles::Bytes& png) { return pictures->write(file, png); };
     const auto results = run_experiment(matrix, {steady_seconds, keep, Progress(console, matrix)});
     if (!results) return results.error();
-    for (const auto& [name, document] :
-         {std::pair{kReportFile, report_of(matrix, *results)}, std::pair{kTimesFile, times_of(matrix, *results)}}) {
+    for (const auto& [name, document] : {std::pair{kReportFile, report_of(matrix, *results)},
+                                         std::pair{kTimesFile, times_report_of(matrix, *results)}}) {
         if (auto written = write_document(*directory, name, document); !written) return written.error();
     }
     return fmt::format(R"({{"runs":{},"scans":{},"seconds":{:.3f},"report":{}}})", results->size(),

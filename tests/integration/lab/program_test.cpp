@@ -1,0 +1,103 @@
+#include "tests/support/child_process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+
+/// scanloom-lab as its user sees it.
+namespace scanloom::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+struct Outcome {
+    int code = 0;
+    std::string line;   ///< first of standard output
+    std::string errors; ///< standard error
+};
+
+class Lab : public testing::Test {
+protected:
+    Outcome run(const std::vector<std::string>& arguments) {
+        const auto errors = place_.path() / "errors";
+        fs::remove(errors);
+        ChildProcess lab(fs::path(SCANLOOM_PROGRAMS) / "scanloom-lab", arguments, errors);
+        const auto line = lab.read_line();
+        const int code = lab.wait();
+        return {code, line.value_or(""), contents(errors)};
+    }
+
+    /// Files below a directory that are the same each time.
+    static std::map<std::string, std::string> lasting_files(const fs::path& directory) {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+            if (!entry.is_regular_file() || entry.path().stem() == "times") continue;
+            files[entry.path().lexically_relative(directory).string()] = contents(entry.path());
+        }
+        return files;
+    }
+
+    const TemporaryDirectory place_;
+};
+
+TEST_F(Lab, WritesTheSameReportTwiceWithEveryPictureItShows) {
+    const auto first = place_.path() / "first";
+    const auto second = place_.path() / "deep" / "second";
+    const auto outcome = run({"experiment", "--quick", "--scans", "20", "--out", first.string()});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    const auto summary = boost::json::parse(outcome.line);
+    EXPECT_EQ(summary.at("report").as_string(), (first / "report.html").string());
+    EXPECT_EQ(summary.at("scans").as_int64(), 20 * summary.at("runs").as_int64());
+    EXPECT_TRUE(fs::exists(first / "times.md") && fs::exists(first / "times.html"));
+
+    EXPECT_EQ(run({"experiment", "--quick", "--scans", "20", "--out", second.string()}).code, 0);
+    const auto files = lasting_files(first);
+    EXPECT_EQ(files, lasting_files(second));
+    for (const auto& [file, text] : files) {
+        if (!file.ends_with(".png")) continue;
+        EXPECT_THAT(files.at("report.md"), HasSubstr("(" + file + ")"));
+        EXPECT_THAT(files.at("report.html"), HasSubstr("\"" + file + "\""));
+    }
+    EXPECT_GT(files.size(), 4U);
+}
+
+TEST_F(Lab, WritesTheTruthAsAMapThatRosLoads) {
+    const auto outcome = run({"truth", "--world", "room", "--cell-size", "0.1", "--out", place_.path().string()});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    const auto pgm = contents(place_.path() / "map.pgm");
+    EXPECT_THAT(pgm, testing::StartsWith("P5\n"));
+    EXPECT_THAT(pgm, HasSubstr("\n104 104\n255\n"));
+    EXPECT_EQ(static_cast<unsigned char>(pgm.back()), 0) << "a wall";
+    EXPECT_THAT(contents(place_.path() / "map.yaml"), HasSubstr("origin: [-5.2, -5.2, 0]"));
+}
+
+TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
+    std::ofstream(place_.path() / "file") << "no directory";
+    const auto outcome = run({"experiment", "--quick", "--out", (place_.path() / "file").string()});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.line, "");
+    EXPECT_THAT(outcome.errors, testing::StartsWith("scanloom-lab: "));
+    EXPECT_THAT(outcome.errors, HasSubstr("/file"));
+    EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1);
+}
+
+TEST_F(Lab, CalledWronglyItExits2) {
+    EXPECT_EQ(run({}).code, 2);
+    EXPECT_EQ(run({"experiment"}).code, 2);
+    EXPECT_EQ(run({"--help"}).code, 0);
+}
+
+} // namespace
+} // namespace scanloom::test

@@ -1,0 +1,79 @@
+#include "lab/pictures.hpp"
+
+#include "lab/weaving.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <gtest/gtest.h>
+
+namespace scanloom::lab {
+namespace {
+
+constexpr double kMiddle = 0.0125; // the middle of a pixel
+
+/// A robot that drives a metre along x and sees something 1.5 m ahead; a walker stands aside.
+Recording short_drive() {
+    Recording recording;
+    recording.laser.angles = UniformAngles{-0.3, 0.02, 31};
+    recording.laser.range_max = 3.0;
+    for (int n = 0; n <= 10; ++n) {
+        Scan scan;
+        scan.seq = static_cast<std::uint64_t>(n + 1);
+        scan.pose = {0.0125 + 0.1 * n, kMiddle, 0.0};
+        scan.ranges.assign(31, 1500);
+        recording.scans.push_back(scan);
+        recording.walkers.push_back({{{1.0, -0.8}, 0.25}});
+    }
+    return recording;
+}
+
+cv::Mat strip_of(double cell_size) {
+    const Recording recording = short_drive();
+    std::vector<Moment> moments;
+    SessionOptions options;
+    options.cell_size = cell_size;
+    const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
+        if (scans == 1 || scans == 11) moments.push_back({projection.snapshot(), scans});
+    };
+    EXPECT_TRUE(weave(
+        recording, options, [] { return 0.0; }, keep));
+    return cv::imdecode(strip_png(moments, recording, {-0.5, -1.2, 3.0, 1.0}), cv::IMREAD_COLOR);
+}
+
+const cv::Vec3b kWhite(255, 255, 255);
+const cv::Vec3b kGrey(128, 128, 128);
+const cv::Vec3b kBlue(200, 100, 0);
+const cv::Vec3b kRed(40, 30, 220);
+const cv::Vec3b kOrange(0, 140, 255);
+
+/// The pixel at a place of the map, of the first or second moment.
+cv::Vec3b at(const cv::Mat& strip, double x, double y, int moment) {
+    return strip.at<cv::Vec3b>(static_cast<int>((1.0 - y) * 40.0),
+                               static_cast<int>((x + 0.5) * 40.0) + moment * (140 + 8));
+}
+
+class Strips : public testing::TestWithParam<double> {};
+
+TEST_P(Strips, ShowEachMomentWithMapPathPointsRobotAndWalker) {
+    const cv::Mat strip = strip_of(GetParam());
+    ASSERT_EQ(strip.cols, 140 + 8 + 140);
+    ASSERT_EQ(strip.rows, 88);
+    const auto is_light = [&](double x, double y, int moment) { return at(strip, x, y, moment)[0] > 220; };
+    EXPECT_TRUE(is_light(1.0, 0.05, 0)) << "free, after one scan";
+    EXPECT_TRUE(is_light(2.0, 0.05, 1)) << "free, after all";
+    EXPECT_EQ(at(strip, 2.3, kMiddle, 0), kGrey) << "not yet seen";
+    EXPECT_EQ(at(strip, 1.51, kMiddle, 0), kRed) << "the newest scan";
+    EXPECT_EQ(at(strip, 2.51, kMiddle, 1), kRed);
+    EXPECT_NE(at(strip, 1.51, kMiddle, 1), kRed) << "older scans show in the map only";
+    EXPECT_EQ(at(strip, 0.0, kMiddle, 0), kBlue) << "the robot";
+    EXPECT_EQ(at(strip, 1.0, kMiddle, 1), kBlue);
+    EXPECT_EQ(at(strip, 0.4, kMiddle, 1), kBlue) << "the path so far";
+    EXPECT_EQ(at(strip, 1.25, -0.8, 0), kOrange);
+    EXPECT_EQ(at(strip, 2.8, 0.9, 1), kGrey);
+    EXPECT_EQ(strip.at<cv::Vec3b>(40, 143), kWhite) << "the gap";
+}
+
+INSTANTIATE_TEST_SUITE_P(CellSizes, Strips, testing::Values(0.01, 0.05, 0.1));
+
+} // namespace
+} // namespace scanloom::lab

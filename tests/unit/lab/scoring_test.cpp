@@ -1,0 +1,99 @@
+#include "tests/unit/lab/drawn_grids.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::lab {
+namespace {
+
+const Rows kTruth{"##########", //
+                  "#........#", //
+                  "#........#", //
+                  "#........#", //
+                  "#........#", //
+                  "##########"};
+const Rows kAll(6, "xxxxxxxxxx");
+const Rows kNone(6, "          ");
+
+Scores scores_of(const Rows& map, const Rows& seen = kAll, const Rows& walked = kNone) {
+    return score(map_of(map), truth_cells_of(kTruth), mask_of(seen), mask_of(walked));
+}
+
+TEST(Scoring, AMapThatIsTheTruthIsPerfect) { EXPECT_EQ(scores_of(kTruth), (Scores{1.0, 1.0, 1.0, 1.0, 1.0, 28, 0})); }
+
+TEST(Scoring, AnEmptyMapHasNothingRight) { EXPECT_EQ(scores_of(kNone), (Scores{0, 0, 0, 0, 0, 0, 0})); }
+
+TEST(Scoring, AnInvertedMapHasOnlyWhatTouchesRight) {
+    const auto scores = scores_of({"..........", //
+                                   ".########.", //
+                                   ".########.", //
+                                   ".########.", //
+                                   ".########.", //
+                                   ".........."});
+    EXPECT_DOUBLE_EQ(scores.precision, 20.0 / 32.0);
+    EXPECT_EQ(scores.iou_exact, 0.0);
+    EXPECT_EQ(scores.free_recall, 0.0);
+}
+
+TEST(Scoring, ACellBesideIsRightWithinTheToleranceButNotExactly) {
+    const auto scores = scores_of({"          ", //
+                                   " ######## ", //
+                                   " #......# ", //
+                                   " #......# ", //
+                                   " ######## ", //
+                                   "          "});
+    EXPECT_EQ(scores.precision, 1.0);
+    EXPECT_EQ(scores.recall, 1.0);
+    EXPECT_EQ(scores.iou, 1.0);
+    EXPECT_EQ(scores.iou_exact, 0.0);
+    EXPECT_EQ(scores.free_recall, 1.0) << "what touches a wall is not asked for";
+}
+
+TEST(Scoring, WhatIsFarFromEverySolidCountsAgainstPrecision) {
+    Rows map = kTruth;
+    map[2] = "#..##....#";
+    const auto scores = scores_of(map);
+    EXPECT_DOUBLE_EQ(scores.precision, 28.0 / 30.0);
+    EXPECT_EQ(scores.recall, 1.0);
+    EXPECT_DOUBLE_EQ(scores.iou, 28.0 / 30.0);
+    EXPECT_DOUBLE_EQ(scores.iou_exact, 28.0 / 30.0);
+    EXPECT_DOUBLE_EQ(scores.free_recall, 10.0 / 12.0);
+    EXPECT_EQ(scores.occupied, 30U);
+    EXPECT_EQ(scores.residue, 0U) << "nobody walked there";
+}
+
+TEST(Scoring, ResidueIsWhatIsLeftWhereAWalkerWasAndNoSolidIs) {
+    Rows map = kTruth;
+    map[2] = "#..##.#..#";
+    Rows walked = kNone;
+    walked[2] = "xxxx      "; // past the wall, which is no residue
+    EXPECT_EQ(scores_of(map, kAll, walked).residue, 1U);
+}
+
+TEST(Scoring, OnlyWhatCouldBeSeenIsAskedFor) {
+    Rows seen = kNone;
+    seen[5] = "xxxxx     ";
+    seen[3] = "xxxx      ";
+    const auto scores = scores_of({"          ", //
+                                   "          ", //
+                                   "          ", //
+                                   "  ..      ", //
+                                   "          ", //
+                                   "##        "},
+                                  seen);
+    EXPECT_EQ(scores.precision, 1.0);
+    EXPECT_DOUBLE_EQ(scores.recall, 3.0 / 6.0) << "three of five below, none of one on the left";
+    EXPECT_DOUBLE_EQ(scores.iou, 2.0 / (2.0 + 3.0));
+    EXPECT_DOUBLE_EQ(scores.iou_exact, 2.0 / 6.0);
+    EXPECT_DOUBLE_EQ(scores.free_recall, 2.0 / 2.0);
+}
+
+TEST(Scoring, WallsBeyondTheRoomCountAgainstPrecision) {
+    const Rows truth{"      ", "      ", "      ", "###   "};
+    const Rows map{"   ## ", "      ", "      ", "###   "};
+    const Rows none(4, "      ");
+    const auto scores = score(map_of(map), truth_cells_of(truth), mask_of(none), mask_of(none));
+    EXPECT_DOUBLE_EQ(scores.precision, 3.0 / 5.0);
+}
+
+} // namespace
+} // namespace scanloom::lab

@@ -1,0 +1,66 @@
+#include "lab/weaving.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::lab {
+namespace {
+
+/// A robot at (0.05, 0.05) that looks one way and sees something at a metre, three times.
+Recording one_beam(double range_max = 5.0) {
+    Recording recording;
+    recording.laser.angles = UniformAngles{0.0, 0.1, 1};
+    recording.laser.range_max = range_max;
+    for (std::uint64_t seq = 1; seq <= 3; ++seq) {
+        Scan scan;
+        scan.seq = seq;
+        scan.pose = {0.05, 0.05, 0.0};
+        scan.ranges = {1000};
+        recording.scans.push_back(scan);
+        recording.walkers.emplace_back();
+    }
+    return recording;
+}
+
+SessionOptions cells_of(double size) {
+    SessionOptions options;
+    options.cell_size = size;
+    return options;
+}
+
+TEST(Weaving, CountsNothingButTheFoldingOfScans) {
+    double clock = 0.0;
+    std::vector<std::size_t> told;
+    const auto seconds = weave(
+        one_beam(), cells_of(0.1), [&] { return clock += 1.0; },
+        [&](std::size_t scans, mapping::Projection&) {
+            clock += 100.0;
+            told.push_back(scans);
+        });
+    ASSERT_TRUE(seconds);
+    EXPECT_EQ(*seconds, (std::vector<double>{1.0, 1.0, 1.0}));
+    EXPECT_EQ(told, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(Weaving, SettingsThatNoSessionTakesAreRefused) {
+    const auto woven = weave(
+        one_beam(), cells_of(0.0), [] { return 0.0; }, [](std::size_t, mapping::Projection&) {});
+    ASSERT_FALSE(woven);
+    EXPECT_EQ(woven.error().code, Errc::kInvalidField);
+}
+
+TEST(StatesOf, AMapAreItsCellsByTheThresholdsOfTheClasses) {
+    std::optional<mapping::Snapshot> end;
+    const auto keep = [&](std::size_t, mapping::Projection& projection) { end = projection.snapshot(); };
+    ASSERT_TRUE(weave(
+        one_beam(), cells_of(0.1), [] { return 0.0; }, keep));
+    const auto map = states_of(*end, {0, -1, 12, 2});
+    for (std::int32_t i = 0; i < 10; ++i) EXPECT_EQ(map.states.at({i, 0}), CellState::kFree) << i;
+    EXPECT_EQ(map.states.at({10, 0}), CellState::kOccupied);
+    EXPECT_EQ(map.states.at({11, 0}), CellState::kUnknown);
+    EXPECT_EQ(map.states.at({5, 1}), CellState::kUnknown);
+    EXPECT_EQ(map.touched, 11U);
+    EXPECT_EQ(states_of(*end, {0, 0, 5, 1}).touched, 11U) << "of the whole map";
+}
+
+} // namespace
+} // namespace scanloom::lab
