@@ -52,7 +52,7 @@ std::vector<std::string> joined(std::vector<std::string> front, const std::vecto
 Items conditions(const Matrix& matrix) {
     return {{
         "Scenes: static, a furnished room of 10 x 10 m; dynamic, the same with a person (a disc of 0.5 m) who walks "
-        "around its table and sofa at 1 m/s. The truth is the room without the person.",
+        "around its furniture at 1 m/s. The truth is the room without the person.",
         fmt::format(
             "Each run: {} scans, ten a second, of the reference laser (684 beams over 180 degrees, 5 m), on the "
             "way of the wall follower from one of {} starts. Poses are exact, and the way is the same in "

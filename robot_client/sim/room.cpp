@@ -28,7 +28,7 @@ World make_room() {
 World make_room_walker() {
     World world = make_room();
     world.name = "room_walker";
-    world.walkers = {{.loop = {{-2.4, -1.0}, {1.4, -1.0}, {1.4, 3.0}, {-2.4, 3.0}}}};
+    world.walkers = {{.loop = {{-3.0, -3.3}, {3.1, -3.3}, {3.1, 3.2}, {-3.0, 3.2}}}};
     return world;
 }
 

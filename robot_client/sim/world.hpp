@@ -50,7 +50,7 @@ struct World {
 /// Lets the walkers go on for some time, around a robot.
 void walk(World& world, const Point2& robot, double seconds);
 
-/// "room": 10 x 10 m with furniture. "room_walker": the same, and a person who walks around its table and sofa.
+/// "room": 10 x 10 m with furniture. "room_walker": the same, and a person who walks around what stands free in it.
 /// "office": 30 x 20 m, thirteen rooms and two lounges around a ring of corridors.
 [[nodiscard]] World make_room();
 [[nodiscard]] World make_room_walker();

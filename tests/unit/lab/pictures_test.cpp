@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace scanloom::lab {
 namespace {
 
@@ -52,9 +54,9 @@ cv::Vec3b at(const cv::Mat& strip, double x, double y, int moment) {
                                static_cast<int>((x + 0.5) * 40.0) + moment * (140 + 8));
 }
 
-class Strips : public testing::TestWithParam<double> {};
+class StripsAt : public testing::TestWithParam<double> {};
 
-TEST_P(Strips, ShowEachMomentWithMapPathPointsRobotAndWalker) {
+TEST_P(StripsAt, ShowEachMomentWithMapPathPointsRobotAndWalker) {
     const cv::Mat strip = strip_of(GetParam());
     ASSERT_EQ(strip.cols, 140 + 8 + 140);
     ASSERT_EQ(strip.rows, 88);
@@ -73,7 +75,28 @@ TEST_P(Strips, ShowEachMomentWithMapPathPointsRobotAndWalker) {
     EXPECT_EQ(strip.at<cv::Vec3b>(40, 143), kWhite) << "the gap";
 }
 
-INSTANTIATE_TEST_SUITE_P(CellSizes, Strips, testing::Values(0.01, 0.05, 0.1));
+TEST(Strips, AWallThinnerThanAPixelShowsInEveryRow) {
+    Recording recording = short_drive();
+    recording.scans.resize(2);
+    recording.scans[1].ranges.assign(31, kInvalidRange); // so that no points hide the wall
+    std::vector<Moment> moments;
+    SessionOptions options;
+    options.cell_size = 0.01;
+    options.obstacle_thickness = 0.01;
+    const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
+        if (scans == 2) moments.push_back({projection.snapshot(), scans});
+    };
+    ASSERT_TRUE(weave(
+        recording, options, [] { return 0.0; }, keep));
+    const cv::Mat strip = cv::imdecode(strip_png(moments, recording, {-0.5, -1.2, 3.0, 1.0}), cv::IMREAD_COLOR);
+    for (double y = -0.3; y < 0.3; y += 0.025) {
+        int darkest = 255;
+        for (double x = 1.3; x < 1.6; x += 0.025) darkest = std::min<int>(darkest, at(strip, x, y, 0)[0]);
+        EXPECT_LT(darkest, 60) << y;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(CellSizes, StripsAt, testing::Values(0.01, 0.05, 0.1));
 
 } // namespace
 } // namespace scanloom::lab

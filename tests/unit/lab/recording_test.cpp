@@ -59,6 +59,17 @@ TEST(Recordings, DifferInTheirNoiseAndByTheirSeedAlone) {
     EXPECT_NE(ranges("1_cell", 0.1, 1), ranges("3_cells", 0.1, 1));
 }
 
+TEST(Recordings, OfTheDynamicSceneHoldAWalkerWhoGoesOnAndIsSeen) {
+    const auto path = drive_from(kMatrix.starts[0], kScansDefault);
+    const auto empty = record(kMatrix.scenes[0], path, noise("none"), 0.1, 1);
+    const auto walked = record(kMatrix.scenes[1], path, noise("none"), 0.1, 1);
+    EXPECT_NEAR((walked.walkers[31].at(0).centre - walked.walkers[1].at(0).centre).norm(), 3.0, 1e-6);
+    std::size_t scans_with_walker = 0;
+    for (std::size_t n = 0; n < path.size(); ++n) scans_with_walker += walked.scans[n].ranges != empty.scans[n].ranges;
+    EXPECT_GT(scans_with_walker, kScansDefault / 8);
+    EXPECT_LT(scans_with_walker, kScansDefault);
+}
+
 TEST(Recordings, GaussianNoiseLeavesBeamsWithoutReturnOut) {
     const auto path = drive_from(kMatrix.starts[0], 1);
     const auto exact = record(kMatrix.scenes[0], path, noise("none"), 0.1, 1).scans[0].ranges;

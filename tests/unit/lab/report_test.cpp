@@ -49,17 +49,17 @@ TEST(Report, HoldsEveryRunOnceAndEveryPicture) {
     EXPECT_THAT(text, HasSubstr("(pictures/dynamic_0.05_inverse_sensor_model_3_cells_south_west.png)"));
 }
 
-TEST(Report, ItsSummaryIsTheMeanOverTheStarts) {
+TEST(Report, ItsSummaryIsTheMeanOverTheStartsWithoutNoise) {
     Matrix matrix = quick_matrix();
     matrix.starts = full_matrix().starts;
     matrix.cell_sizes = {0.1};
     matrix.scenes.resize(1);
-    matrix.noises.resize(1);
     matrix.ray_models.resize(1);
     auto results = results_for(matrix, 1.0);
-    ASSERT_EQ(results.size(), 2U);
+    ASSERT_EQ(results.size(), 4U);
     results[0].scores.recall = 0.25;
-    results[1].scores.recall = 0.75;
+    results[1].scores.recall = 0.9; // with noise
+    results[2].scores.recall = 0.75;
     EXPECT_THAT(to_markdown(report_of(matrix, results)),
                 HasSubstr("| static | 0.1 m | inverse_sensor_model | 0.001 | 0.500 |"));
 }
