@@ -1,5 +1,6 @@
 #include "lab/experiment.hpp"
 
+#include "lab/map_cells.hpp"
 #include "lab/pictures.hpp"
 #include "lab/standard.hpp"
 
@@ -87,10 +88,10 @@ Result<> Runner::run(const RunSpec& spec, const Recording& recording, const Stan
 
     RunResult result{spec, {}, 0, "", times_of(std::move(*seconds))};
     const mapping::Snapshot& end = moments.back().snapshot;
-    const MapStates map = states_of(end, standard.truth.box);
+    const LogOddsGrid map = occupancy_of(end, standard.truth.box);
     result.scores =
-        score(map.states, standard.truth, standard.seen, walked_cells(recording, end.config, standard.truth.box));
-    result.touched = map.touched;
+        score(states_of(map), standard.truth, standard.seen, walked_cells(recording, end.config, standard.truth.box));
+    result.touched = touched_cells(map);
     if (moments.size() == kMoments.size()) {
         result.picture = name_of(spec) + ".png";
         if (auto kept = surroundings_.keep_picture(result.picture, strip_png(moments, recording, pictured_part()));

@@ -1,7 +1,6 @@
 #include "lab/pictures.hpp"
 
-#include "server/tiles/map_image.hpp"
-#include "server/tiles/occupancy_percent.hpp"
+#include "lab/map_cells.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -41,38 +40,45 @@ struct Canvas {
     }
 };
 
-/// The cells that each pixel of a row or column covers, counted from the first of the part.
-std::vector<std::pair<int, int>> cells_of_pixels(int pixels, double cell_size_m, int cells) {
-    std::vector<std::pair<int, int>> covered;
-    const double cells_per_pixel = 1.0 / (kPixelsPerMetre * cell_size_m);
+/// The cells that each of some pixels in a row covers, from `begin_m` on.
+std::vector<std::pair<std::int32_t, std::int32_t>> cells_of_pixels(int pixels, double begin_m, double cell_size_m) {
+    std::vector<std::pair<std::int32_t, std::int32_t>> covered;
     for (int pixel = 0; pixel < pixels; ++pixel) {
-        const int begin = std::min(cells - 1, static_cast<int>(std::floor(pixel * cells_per_pixel + kSnap)));
-        const int end = static_cast<int>(std::ceil((pixel + 1) * cells_per_pixel - kSnap));
-        covered.emplace_back(begin, std::clamp(end, begin + 1, cells));
+        const auto at = [&](int n) { return (begin_m + n / kPixelsPerMetre) / cell_size_m; };
+        const auto begin = static_cast<std::int32_t>(std::floor(at(pixel) + kSnap));
+        const auto end = static_cast<std::int32_t>(std::ceil(at(pixel + 1) - kSnap));
+        covered.emplace_back(begin, std::max(end, begin + 1));
     }
     return covered;
 }
 
+/// Of cells that share a pixel shows the one most likely occupied, else the one most likely free.
+mapping::LogOdds more_telling(mapping::LogOdds a, mapping::LogOdds b) {
+    if (a > 0 || b > 0) return std::max(a, b); // the unknown is below all others
+    if (a == mapping::kUnknownLogOdds || b == mapping::kUnknownLogOdds) return std::max(a, b);
+    return std::min(a, b);
+}
+
+std::uint8_t grey_of(mapping::LogOdds cell) {
+    if (cell == mapping::kUnknownLogOdds) return 128;
+    return static_cast<std::uint8_t>(std::lround(255.0 * (1.0 - mapping::probability_of(cell))));
+}
+
 cv::Mat draw_map(const mapping::Snapshot& snapshot, const Canvas& canvas) {
     const double cell_size = snapshot.config.cell_size;
-    const auto frame = tiles::map_frame(snapshot, canvas.part).value();
-    const auto image = tiles::render_map(snapshot, frame);
-    const auto columns = cells_of_pixels(canvas.width, cell_size, frame.width());
-    const auto rows = cells_of_pixels(canvas.height, cell_size, frame.height());
+    const auto columns = cells_of_pixels(canvas.width, canvas.part.min_x, cell_size);
+    const auto rows = cells_of_pixels(canvas.height, canvas.part.min_y, cell_size); // from below
+    const auto occupancy =
+        occupancy_of(snapshot, {columns.front().first, rows.front().first, columns.back().second, rows.back().second});
     cv::Mat picture(canvas.height, canvas.width, CV_8UC3);
     for (int y = 0; y < canvas.height; ++y) {
         for (int x = 0; x < canvas.width; ++x) {
             const auto [i_begin, i_end] = columns[static_cast<std::size_t>(x)];
-            const auto [j_begin, j_end] = rows[static_cast<std::size_t>(y)];
-            tiles::Salience most = tiles::kUnknownSalience;
-            for (int j = j_begin; j < j_end; ++j) {
-                for (int i = i_begin; i < i_end; ++i) {
-                    const auto at = static_cast<std::size_t>(j) * static_cast<std::size_t>(frame.width()) +
-                                    static_cast<std::size_t>(i);
-                    most = std::max(most, tiles::salience_of(image.percent[at]));
-                }
-            }
-            const auto grey = tiles::grey_of(tiles::percent_of_salience(most));
+            const auto [j_begin, j_end] = rows[static_cast<std::size_t>(canvas.height - 1 - y)];
+            auto most = mapping::kUnknownLogOdds;
+            for_each_cell({i_begin, j_begin, i_end, j_end},
+                          [&](grid::Cell cell) { most = more_telling(most, occupancy.at(cell)); });
+            const auto grey = grey_of(most);
             picture.at<cv::Vec3b>(y, x) = {grey, grey, grey};
         }
     }

@@ -1,4 +1,5 @@
 #include "lab/experiment.hpp"
+#include "lab/map_cells.hpp"
 #include "lab/report.hpp"
 #include "lab/standard.hpp"
 
@@ -90,7 +91,7 @@ protected:
         };
         EXPECT_TRUE(weave(
             recording, options, [] { return 0.0; }, keep));
-        return states_of(end, standard_.truth.box).states;
+        return states_of(occupancy_of(end, standard_.truth.box));
     }
 
     Scores scores_of(const StateGrid& map) const {

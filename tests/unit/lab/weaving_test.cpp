@@ -1,5 +1,7 @@
 #include "lab/weaving.hpp"
 
+#include "lab/map_cells.hpp"
+
 #include <gtest/gtest.h>
 
 namespace scanloom::lab {
@@ -48,18 +50,28 @@ TEST(Weaving, SettingsThatNoSessionTakesAreRefused) {
     EXPECT_EQ(woven.error().code, Errc::kInvalidField);
 }
 
-TEST(StatesOf, AMapAreItsCellsByTheThresholdsOfTheClasses) {
+TEST(MapCells, AreThoseOfTheMapInTheBox) {
     std::optional<mapping::Snapshot> end;
     const auto keep = [&](std::size_t, mapping::Projection& projection) { end = projection.snapshot(); };
     ASSERT_TRUE(weave(
         one_beam(), cells_of(0.1), [] { return 0.0; }, keep));
-    const auto map = states_of(*end, {0, -1, 12, 2});
-    for (std::int32_t i = 0; i < 10; ++i) EXPECT_EQ(map.states.at({i, 0}), CellState::kFree) << i;
-    EXPECT_EQ(map.states.at({10, 0}), CellState::kOccupied);
-    EXPECT_EQ(map.states.at({11, 0}), CellState::kUnknown);
-    EXPECT_EQ(map.states.at({5, 1}), CellState::kUnknown);
-    EXPECT_EQ(map.touched, 11U);
-    EXPECT_EQ(states_of(*end, {0, 0, 5, 1}).touched, 11U) << "of the whole map";
+    const auto occupancy = occupancy_of(*end, {0, -1, 12, 2});
+    const auto map = states_of(occupancy);
+    for (std::int32_t i = 0; i < 10; ++i) EXPECT_EQ(map.at({i, 0}), CellState::kFree) << i;
+    EXPECT_EQ(map.at({10, 0}), CellState::kOccupied);
+    EXPECT_EQ(map.at({11, 0}), CellState::kUnknown);
+    EXPECT_EQ(map.at({5, 1}), CellState::kUnknown);
+    EXPECT_EQ(touched_cells(occupancy), 11U);
+    EXPECT_EQ(touched_cells(occupancy_of(*end, {0, 0, 5, 1})), 5U);
+}
+
+TEST(MapCells, AreOccupiedFreeOrNeitherByTheThresholdsOfTheClasses) {
+    const auto l = [](double p) { return mapping::to_fixed(mapping::log_odds_of(p)); };
+    LogOddsGrid occupancy({0, 0, 5, 1}, mapping::kUnknownLogOdds);
+    occupancy.values = {l(0.66), l(0.64), l(0.36), l(0.34), mapping::kUnknownLogOdds};
+    EXPECT_EQ(states_of(occupancy).values, (std::vector{CellState::kOccupied, CellState::kUnknown, CellState::kUnknown,
+                                                        CellState::kFree, CellState::kUnknown}));
+    EXPECT_EQ(touched_cells(occupancy), 4U);
 }
 
 } // namespace
