@@ -71,21 +71,18 @@ Items conditions(const Matrix& matrix) {
 
 Items definitions() {
     return {{
-        "A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the truth is solid when a solid "
-        "stands in any part of it.",
-        "Could be seen: a free cell whose centre, a solid cell with a point of whose surface, was in the line of sight "
-        "of "
-        "one of the run's poses, in the laser's range and field of view. Other cells are not asked for.",
+        "A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the truth is solid when a "
+        "solid stands in any part of it.",
+        "Could be seen: a free cell whose centre, a solid cell with a point of whose surface, was in the line of "
+        "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for.",
         "Tolerance: one cell (the eight around a cell count as itself), but for exact IoU, which has none.",
         "precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
-        "those "
-        "with an occupied one in the map. IoU: what both agree on, of all that either claims.",
+        "those with an occupied one in the map. IoU: what both agree on, of all that either claims.",
         "free recall: of the free cells that could be seen and do not touch a solid one, those free in the map.",
         "residue: occupied cells away from every solid where only the person was, and is not at the end of the run.",
         "occupied: the map's occupied cells. touched: its cells that any scan changed.",
-        "The inverse sensor model marks a band of 0.1 m, half of it before the surface. With cells of 1 cm these are "
-        "five "
-        "cells, more than the tolerance, and they count against precision and free recall.",
+        "The inverse sensor model marks a band of 0.1 m, half of it before the surface. At 1 cm that half is five "
+        "cells, more than the tolerance, and counts against precision and free recall.",
     }};
 }
 
@@ -200,8 +197,8 @@ Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& res
     return {
         Heading{1, "Times of the reference experiments"},
         Paragraph{
-            "Milliseconds for adding one scan of 684 beams to the map, on one core, on the machine that made this "
-            "file. Published: what the slow language of the original report took."},
+            "Milliseconds for adding one scan of 684 beams to all maps of a session, on one core of the machine that "
+            "made this file. Published: what the slow language of the original report took."},
         Link{"The report", kReportFile},
         Heading{2, "Means over scenes, noises and starts"},
         std::move(means),
