@@ -72,9 +72,9 @@ Result<std::string> run_one(const ExperimentOptions& options, Console& console) 
 
 /// As a map that holds what is known: occupied, free, and unknown outside.
 tiles::MapImage image_of(const robot::TruthGrid& truth) {
-    tiles::MapImage image{
-        {{truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height}, truth.cell_size},
-        {}};
+    tiles::MapImage image;
+    image.frame = {{truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height},
+                   truth.cell_size};
     for (std::int32_t j = truth.j_begin + truth.height - 1; j >= truth.j_begin; --j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
             switch (truth.at(i, j)) {
