@@ -20,11 +20,13 @@ void PrintTo(const Scores& scores, std::ostream* out) {
 
 namespace {
 
-/// What every run of the quick matrix reaches; measured are precision 0.980, recall 0.857, exact IoU 0.671, free recall
-/// 0.975 and residue 2 at worst.
-bool is_good(const Scores& scores) {
-    return scores.precision > 0.96 && scores.recall > 0.83 && scores.iou_exact > 0.65 && scores.free_recall > 0.97 &&
-           scores.residue < 10;
+/// What every run of the quick matrix reaches, whatever its ray model. Measured at worst: recall 0.857, exact IoU
+/// 0.671; of still scenes precision 1.000 and free recall 0.989, with the walker (0.5 m cells, of which he fills some)
+/// 0.935 and 0.926.
+bool is_good(const Scores& scores, bool is_still) {
+    const bool is_true = is_still ? scores.precision > 0.99 && scores.free_recall > 0.97 && scores.residue == 0
+                                  : scores.precision > 0.92 && scores.free_recall > 0.91 && scores.residue < 15;
+    return is_true && scores.recall > 0.83 && scores.iou_exact > 0.65;
 }
 
 struct Everything {
@@ -53,7 +55,8 @@ TEST(Experiment, EveryRunOfTheQuickMatrixIsGood) {
     ASSERT_EQ(everything.results.size(), matrix.run_count());
     EXPECT_EQ(everything.scans_told, matrix.run_count() * matrix.scans);
     for (const RunResult& result : everything.results) {
-        EXPECT_TRUE(is_good(result.scores)) << name_of(result.spec) << ": " << testing::PrintToString(result.scores);
+        EXPECT_TRUE(is_good(result.scores, result.spec.scene.name == "static"))
+            << name_of(result.spec) << ": " << testing::PrintToString(result.scores);
         EXPECT_NEAR(result.times.mean, 1.0, 1e-6);
         EXPECT_NEAR(result.times.percentile_95, 1.0, 1e-6);
     }
@@ -99,14 +102,14 @@ protected:
     }
 };
 
-TEST_F(BrokenModels, AWholeOneIsGood) { EXPECT_TRUE(is_good(scores_of(map_of(recording())))); }
+TEST_F(BrokenModels, AWholeOneIsGood) { EXPECT_TRUE(is_good(scores_of(map_of(recording())), true)); }
 
 TEST_F(BrokenModels, SwappingFreeAndOccupiedIsNoticed) {
     StateGrid map = map_of(recording());
     for (CellState& state : map.values) {
         if (state != CellState::kUnknown) state = state == CellState::kFree ? CellState::kOccupied : CellState::kFree;
     }
-    EXPECT_FALSE(is_good(scores_of(map)));
+    EXPECT_FALSE(is_good(scores_of(map), true));
 }
 
 TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsNoticed) {
@@ -116,7 +119,7 @@ TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsNoticed) {
             scan.pose.x += dx * cell_size_;
             scan.pose.y += dy * cell_size_;
         }
-        EXPECT_FALSE(is_good(scores_of(map_of(shifted))))
+        EXPECT_FALSE(is_good(scores_of(map_of(shifted)), true))
             << dx << ' ' << dy << ": " << testing::PrintToString(scores_of(map_of(shifted)));
     }
 }
@@ -124,13 +127,13 @@ TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsNoticed) {
 TEST_F(BrokenModels, IgnoringTheHeadingIsNoticed) {
     Recording turned = recording();
     for (Scan& scan : turned.scans) scan.pose.yaw = 0.0;
-    EXPECT_FALSE(is_good(scores_of(map_of(turned))));
+    EXPECT_FALSE(is_good(scores_of(map_of(turned)), true));
 }
 
 TEST_F(BrokenModels, AMirroredLaserIsNoticed) {
     Recording mirrored = recording();
     for (Scan& scan : mirrored.scans) std::reverse(scan.ranges.begin(), scan.ranges.end());
-    EXPECT_FALSE(is_good(scores_of(map_of(mirrored))));
+    EXPECT_FALSE(is_good(scores_of(map_of(mirrored)), true));
 }
 
 } // namespace
