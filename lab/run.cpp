@@ -20,25 +20,31 @@ double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Tells how far an experiment is, now and then.
+/// Tells how far an experiment is, now and then. Fine cells take most of the time: what is left is reckoned by the time
+/// of a scan going with 1 / cell size, as measured times nearly do.
 class Progress {
 public:
-    Progress(Console& console, const Matrix& matrix) : console_(console), matrix_(matrix) {}
+    Progress(Console& console, const Matrix& matrix) : console_(console), matrix_(matrix) {
+        for (const double cell_size : matrix.cell_sizes) work_ += 1.0 / cell_size;
+        work_ *= static_cast<double>(matrix.scans * matrix.run_count() / matrix.cell_sizes.size());
+    }
 
     void operator()(const RunSpec& running, std::size_t runs_done, std::size_t scans_done) {
+        work_done_ += 1.0 / running.cell_size;
         const double now = steady_seconds();
         if (now < next_) return;
         next_ = now + std::chrono::duration<double>(console_.progress_period()).count();
-        const double total = static_cast<double>(matrix_.run_count() * matrix_.scans);
-        const double rate = static_cast<double>(scans_done) / std::max(now - begun_, 1e-9);
+        const double elapsed = now - begun_;
         console_.progress(fmt::format("run {} of {}: {}, {:.0f} scans a second, {} left", runs_done + 1,
-                                      matrix_.run_count(), name_of(running), rate,
-                                      as_clock((total - static_cast<double>(scans_done)) / rate)));
+                                      matrix_.run_count(), name_of(running), static_cast<double>(scans_done) / elapsed,
+                                      as_clock(elapsed * (work_ - work_done_) / work_done_)));
     }
 
 private:
     Console& console_;
     const Matrix& matrix_;
+    double work_ = 0.0;
+    double work_done_ = 0.0;
     double begun_ = steady_seconds();
     double next_ = begun_ + std::chrono::duration<double>(console_.progress_period()).count();
 };
