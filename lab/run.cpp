@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 namespace scanloom::lab {
 namespace {
@@ -32,9 +33,11 @@ public:
     void operator()(const RunSpec& running, std::size_t runs_done, std::size_t scans_done) {
         work_done_ += 1.0 / running.cell_size;
         const double now = steady_seconds();
-        if (now < next_) return;
-        next_ = now + std::chrono::duration<double>(console_.progress_period()).count();
-        const double elapsed = now - begun_;
+        const double period = std::chrono::duration<double>(console_.progress_period()).count();
+        if (!begun_) begun_ = told_ = now; // what is prepared before the first scan says nothing of the others
+        if (now < told_ + period) return;
+        told_ = now;
+        const double elapsed = now - *begun_;
         console_.progress(fmt::format("run {} of {}: {}, {:.0f} scans a second, {} left", runs_done + 1,
                                       matrix_.run_count(), name_of(running), static_cast<double>(scans_done) / elapsed,
                                       as_clock(elapsed * (work_ - work_done_) / work_done_)));
@@ -45,8 +48,8 @@ private:
     const Matrix& matrix_;
     double work_ = 0.0;
     double work_done_ = 0.0;
-    double begun_ = steady_seconds();
-    double next_ = begun_ + std::chrono::duration<double>(console_.progress_period()).count();
+    std::optional<double> begun_; ///< with the first scan
+    double told_ = 0.0;
 };
 
 Result<> write_document(const OutputDirectory& directory, const std::string& name, const Document& document) {
