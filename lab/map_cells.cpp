@@ -12,11 +12,12 @@ constexpr double kFreeUpTo = 0.35;
 
 LogOddsGrid occupancy_of(const mapping::Snapshot& snapshot, const grid::CellBox& box) {
     LogOddsGrid occupancy(box, mapping::kUnknownLogOdds);
-    snapshot.occupancy.visit(grid::chunks_of(box), 0, [&](grid::ChunkKey at, const mapping::OccupancyChunk& chunk) {
+    snapshot.laser.visit(grid::chunks_of(box), 0, [&](grid::ChunkKey at, const mapping::LaserChunk& chunk) {
         const grid::CellBox shared{
             std::max(box.i_begin, at.ci * grid::kChunkSide), std::max(box.j_begin, at.cj * grid::kChunkSide),
             std::min(box.i_end, (at.ci + 1) * grid::kChunkSide), std::min(box.j_end, (at.cj + 1) * grid::kChunkSide)};
-        for_each_cell(shared, [&](grid::Cell cell) { occupancy.at(cell) = chunk.at(cell); });
+        for_each_cell(shared,
+                      [&](grid::Cell cell) { occupancy.at(cell) = chunk.occupancy[grid::index_in_chunk(cell)]; });
     });
     return occupancy;
 }

@@ -13,7 +13,9 @@ std::vector<Scene> scenes() { return {{"static", "room"}, {"dynamic", "room_walk
 
 std::vector<RayModelChoice> ray_models() {
     return {
-        {"inverse_sensor_model", [](SessionOptions&) {}},
+        {"inverse_sensor_model", [](SessionOptions& options) { options.ray_model = RayModel::kInverseSensorModel; }},
+        {"bresenham", [](SessionOptions& options) { options.ray_model = RayModel::kBresenham; }},
+        {"traversal", [](SessionOptions& options) { options.ray_model = RayModel::kTraversal; }},
     };
 }
 

@@ -87,9 +87,9 @@ tiles::MapImage image_of(const robot::TruthGrid& truth) {
     for (std::int32_t j = truth.j_begin + truth.height - 1; j >= truth.j_begin; --j) {
         for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
             switch (truth.at(i, j)) {
-            case robot::Truth::kOccupied: image.percent.push_back(100); break;
-            case robot::Truth::kFree: image.percent.push_back(0); break;
-            case robot::Truth::kOutside: image.percent.push_back(tiles::kUnknownPercent); break;
+            case robot::Truth::kOccupied: image.codes.push_back(100); break;
+            case robot::Truth::kFree: image.codes.push_back(0); break;
+            case robot::Truth::kOutside: image.codes.push_back(tiles::kUnknownPercent); break;
             }
         }
     }
@@ -102,7 +102,7 @@ Result<std::string> run_one(const TruthOptions& options, Console&) {
     const auto directory = OutputDirectory::open(options.out);
     if (!directory) return directory.error();
     const tiles::MapImage image = image_of(robot::truth_of(*world, options.cell_size));
-    if (auto written = directory->write("map.pgm", tiles::map_pgm(image)); !written) return written.error();
+    if (auto written = directory->write("map.pgm", tiles::map_pgm(image, {})); !written) return written.error();
     if (auto written = directory->write("map.yaml", tiles::map_yaml(image.frame)); !written) return written.error();
     return fmt::format(R"({{"width":{},"height":{},"map":{}}})", image.frame.width(), image.frame.height(),
                        boost::json::serialize((directory->path() / "map.yaml").string()));
