@@ -3,6 +3,7 @@
 #include "server/http/handlers/changes.hpp"
 #include "server/http/handlers/digest.hpp"
 #include "server/http/handlers/health.hpp"
+#include "server/http/handlers/log.hpp"
 #include "server/http/handlers/map_files.hpp"
 #include "server/http/handlers/metrics.hpp"
 #include "server/http/handlers/openapi.hpp"
@@ -92,6 +93,7 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kMapNpy: return get_map_npy(maps_, slots_, call);
     case Operation::kDigest: return get_digest(maps_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
+    case Operation::kLog: return get_log(sessions_, log_, call);
     case Operation::kStartWeave: return start_weave(maps_, call);
     case Operation::kListWeaves: return list_weaves(maps_, call);
     case Operation::kGetWeave: return get_weave(maps_, call);

@@ -24,7 +24,7 @@ struct Target;
 /// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
 class Api {
 public:
-    Api(session::SessionRegistry& sessions, session::Weaves& weaves, const store::ScanLog& log,
+    Api(session::SessionRegistry& sessions, session::Weaves& weaves, store::ScanLog& log,
         const metrics::Metrics& metrics, WebFiles web)
         : sessions_(sessions), weaves_(weaves), maps_(sessions, weaves), log_(log), metrics_(metrics),
           web_(std::move(web)) {}
@@ -44,7 +44,7 @@ private:
     session::SessionRegistry& sessions_;
     session::Weaves& weaves_;
     const MapsLookup maps_;
-    const store::ScanLog& log_;
+    store::ScanLog& log_;
     const metrics::Metrics& metrics_;
     const WebFiles web_;
     const AnswerSlots slots_;

@@ -78,6 +78,15 @@ Response answer_guarded(const Answer& answer, const Request& request) {
     }
 }
 
+/// The same for a piece of an answer.
+Result<std::string> next_guarded(BodyStream& stream) {
+    try {
+        return stream.next();
+    } catch (const std::exception& failure) {
+        return Error{Errc::kInternal, failure.what()};
+    }
+}
+
 } // namespace
 
 Connection::Connection(net::ip::tcp::socket socket, std::shared_ptr<const Service> service)
@@ -128,19 +137,21 @@ net::awaitable<bool> Connection::serve_request() {
         co_return false;
     }
     if (const auto refusal = refusal_of(parser)) {
-        co_await write(*refusal, true, false);
+        co_await write(*refusal, {});
         co_return false;
     }
     const bool is_whole = co_await read_body(parser);
     if (!is_whole) co_return false;
 
-    const bool keep_alive = parser.get().keep_alive();
-    const bool with_body = parser.get().method() != beast::http::verb::head;
+    Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
+                  .keep_alive = parser.get().keep_alive(),
+                  .takes_chunks = parser.get().version() >= 11};
     const auto begin = std::chrono::steady_clock::now();
     const Response response = co_await compute(request_of(parser.release()));
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     service_->counters.request_seconds.Observe(seconds.count());
-    co_return co_await write(response, with_body, keep_alive && !stopping_);
+    if (stopping_) manner.keep_alive = false;
+    co_return co_await write(response, manner);
 }
 
 /// What is wrong with a request whose body is therefore not read.
@@ -220,20 +231,50 @@ net::awaitable<void> Connection::refuse(beast::error_code reason) {
     if (is_frame(buffer_)) {
         co_await write(problem(Status::bad_request,
                                "this is no HTTP but what robots send; they connect to the robot port (--listen)", ""),
-                       true, false);
+                       {});
     } else if (const auto refusal = http::refusal_of(reason)) {
-        co_await write(*refusal, true, false);
+        co_await write(*refusal, {});
     }
 }
 
 /// @return whether the connection can take another request.
-net::awaitable<bool> Connection::write(const Response& response, bool with_body, bool keep_alive) {
+net::awaitable<bool> Connection::write(const Response& response, Manner manner) {
     service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
-    const std::string head = head_text(response, keep_alive, date_now());
-    const bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
-    must_linger_ = written && !keep_alive;
-    const bool can_go_on = written && keep_alive;
+    const bool is_streamed = response.stream != nullptr;
+    const Framing framing = !is_streamed          ? Framing::kLength
+                            : manner.takes_chunks ? Framing::kChunked
+                                                  : Framing::kUntilClosed;
+    if (framing == Framing::kUntilClosed) manner.keep_alive = false;
+    const std::string head = head_text(response, manner.keep_alive, date_now(), framing);
+    const bool with_body = manner.with_body && !is_streamed;
+    bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
+    const bool with_stream = written && manner.with_body && is_streamed;
+    if (with_stream) written = co_await write_stream(*response.stream, framing);
+    must_linger_ = written && !manner.keep_alive;
+    const bool can_go_on = written && manner.keep_alive;
     co_return can_go_on;
+}
+
+/// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
+net::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
+    for (;;) {
+        auto make = [&stream]() -> net::awaitable<Result<std::string>> { co_return next_guarded(stream); };
+        const Result<std::string> piece =
+            co_await net::co_spawn(service_->executors.survey, std::move(make), net::use_awaitable);
+        if (!piece) {
+            spdlog::error("an answer broke off: {}", piece.error().message);
+            co_return false;
+        }
+        if (framing == Framing::kUntilClosed) {
+            if (piece->empty()) co_return true;
+            const bool sent = co_await write_all(*piece, {});
+            if (!sent) co_return false;
+            continue;
+        }
+        const std::string chunk = fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty one is the last
+        const bool sent = co_await write_all(chunk, {});
+        if (!sent || piece->empty()) co_return sent;
+    }
 }
 
 /// A deadline for each piece, so that a large answer may take its time as long as somebody reads it; and one for all,

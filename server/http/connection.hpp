@@ -74,7 +74,15 @@ private:
     [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(Lane lane) const;
     [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
-    [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, bool with_body, bool keep_alive);
+    /// How the request wants to be answered.
+    struct Manner {
+        bool with_body = true;
+        bool keep_alive = false;
+        bool takes_chunks = true; ///< HTTP/1.1
+    };
+
+    [[nodiscard]] boost::asio::awaitable<bool> write(const Response& response, Manner manner);
+    [[nodiscard]] boost::asio::awaitable<bool> write_stream(BodyStream& stream, Framing framing);
     [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
     [[nodiscard]] boost::asio::awaitable<void> linger();
 

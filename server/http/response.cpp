@@ -42,7 +42,7 @@ Response not_modified(std::string_view etag, std::string_view cache_control) {
     return response;
 }
 
-std::string head_text(const Response& response, bool keep_alive, std::string_view date) {
+std::string head_text(const Response& response, bool keep_alive, std::string_view date, Framing framing) {
     const auto reason = boost::beast::http::obsolete_reason(response.status);
     std::string head = fmt::format("HTTP/1.1 {} {}\r\n", static_cast<unsigned>(response.status),
                                    std::string_view(reason.data(), reason.size()));
@@ -52,7 +52,8 @@ std::string head_text(const Response& response, bool keep_alive, std::string_vie
     add("Date", date);
     for (const auto& [name, value] : response.fields) add(name, value);
     if (response.status != Status::no_content && response.status != Status::not_modified) {
-        add("Content-Length", fmt::to_string(response.body.bytes().size()));
+        if (framing == Framing::kLength) add("Content-Length", fmt::to_string(response.body.bytes().size()));
+        if (framing == Framing::kChunked) add("Transfer-Encoding", "chunked");
     }
     if (!keep_alive) add("Connection", "close");
     add("X-Content-Type-Options", "nosniff");

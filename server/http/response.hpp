@@ -1,5 +1,7 @@
 #pragma once
 
+#include "server/http/body_stream.hpp"
+
 #include <boost/beast/http/status.hpp>
 #include <boost/json/value.hpp>
 
@@ -46,6 +48,7 @@ struct Response {
     Status status = Status::ok;
     std::vector<std::pair<std::string_view, std::string>> fields; ///< names are literals, "ETag"
     Body body;
+    std::shared_ptr<BodyStream> stream = nullptr; ///< in place of `body`
 
     Response& set(std::string_view field, std::string_view value) &;
     Response&& set(std::string_view field, std::string_view value) &&;
@@ -63,9 +66,17 @@ struct Response {
 /// 304: the one who asks has it already.
 [[nodiscard]] Response not_modified(std::string_view etag, std::string_view cache_control);
 
+/// How whoever reads an answer knows its end.
+enum class Framing {
+    kLength,      ///< Content-Length
+    kChunked,     ///< Transfer-Encoding: chunked
+    kUntilClosed, ///< the connection's end
+};
+
 /// Status line and fields up to the empty line, as they go over the wire; with what every answer
-/// carries: its length, whether the connection stays, and what browsers may do with it.
+/// carries: its framing, whether the connection stays, and what browsers may do with it.
 /// `date` is an IMF-fixdate (RFC 9110, section 5.6.7).
-[[nodiscard]] std::string head_text(const Response& response, bool keep_alive, std::string_view date);
+[[nodiscard]] std::string head_text(const Response& response, bool keep_alive, std::string_view date,
+                                    Framing framing = Framing::kLength);
 
 } // namespace scanloom::http

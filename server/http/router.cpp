@@ -30,6 +30,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/sessions/{session}/map.npy", Operation::kMapNpy},
     Route{"GET", "/api/v1/sessions/{session}/digest", Operation::kDigest},
     Route{"GET", "/api/v1/sessions/{session}/trajectory.geojson", Operation::kTrajectory},
+    Route{"GET", "/api/v1/sessions/{session}/log", Operation::kLog},
     Route{"GET", "/api/v1/sessions/{session}/weave", Operation::kListWeaves},
     Route{"POST", "/api/v1/sessions/{session}/weave", Operation::kStartWeave},
     Route{"GET", "/api/v1/sessions/{session}/weave/{weave}", Operation::kGetWeave},

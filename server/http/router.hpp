@@ -32,6 +32,7 @@ enum class Operation {
     kMapNpy,
     kDigest,
     kTrajectory,
+    kLog,
     kStartWeave,
     kListWeaves,
     kGetWeave,

@@ -30,8 +30,8 @@ TEST(DescribedAnswer, EveryFaultIsFound) {
     EXPECT_THAT(of_digest(R"({"revision":"1","layers":{}})"), ElementsAre(HasSubstr("body.revision is no integer")));
     EXPECT_THAT(undescribed(kDigest, ok("text/plain", Body("x"))),
                 ElementsAre(HasSubstr("text/plain is not described")));
-    EXPECT_THAT(undescribed(kDigest, problem(Error{Errc::kFull, "no"}, "/")),
-                ElementsAre(HasSubstr("status 507 is not described")));
+    EXPECT_THAT(undescribed(kDigest, problem(Error{Errc::kTooLarge, "no"}, "/")),
+                ElementsAre(HasSubstr("status 413 is not described")));
     const auto list = [](std::string_view session) {
         const auto body = boost::json::parse(fmt::format(R"({{"sessions":[{}],"next":null}})", session));
         return undescribed({.target = "/api/v1/sessions"}, ok(body));

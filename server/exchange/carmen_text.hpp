@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace scanloom::exchange {
+
+/// A session's log as a CARMEN log: a comment at its head, then a ROBOTLASER1 line for each scan, in the order of the
+/// log. Replayed into a session of the same settings it gives the same maps, bit for bit.
+///
+/// Both poses of a line are the sensor's in the map, from which maps are woven; the robot's would have to be got back
+/// from it by way of the mount, and rounding would move cells. Numbers have as many digits as it takes to read the same
+/// value again; ranges are metres with three decimals. No return is written as the sensor's range_max, no valid reading
+/// as 0. The host name is the robot's name, both stamps are the scan's.
+/// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
+class CarmenText {
+public:
+    /// The lines at the head of the file.
+    [[nodiscard]] static std::string head(const std::string& session);
+
+    /// The lines that an entry becomes; robots and sensors become none, but for a comment where a sensor reaches
+    /// further than a reader may believe. Entries come in the order of the log. Errors  kConflict: what the format
+    /// cannot say, a scan of sonars, of beams that are not evenly spaced, or of an
+    ///         aperture of its own. kMalformed: a scan of nothing known.
+    [[nodiscard]] Result<std::string> lines(const LogEntry& entry);
+
+private:
+    [[nodiscard]] Result<std::string> text_of(const RobotJoined& joined);
+    [[nodiscard]] Result<std::string> text_of(const SensorDescribed& described);
+    [[nodiscard]] Result<std::string> text_of(const ScanTaken& taken);
+
+    std::vector<std::string> robots_;
+    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;
+};
+
+} // namespace scanloom::exchange

@@ -1,0 +1,133 @@
+#include "server/http/handlers/log.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/exchange/carmen_text.hpp"
+#include "server/http/body_stream.hpp"
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/in_quotes.hpp"
+
+#include <boost/endian/conversion.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace scanloom::http {
+namespace {
+
+constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
+
+const Error kEnough{Errc::kShuttingDown, "the piece is large enough"};
+
+/// How an entry is written.
+class Format {
+public:
+    Format() = default;
+    Format(const Format&) = delete;
+    Format& operator=(const Format&) = delete;
+    virtual ~Format() = default;
+
+    [[nodiscard]] virtual std::string head() const = 0;
+    [[nodiscard]] virtual Result<> append(std::string& text, std::string_view entry) = 0;
+};
+
+class ProtobufFormat final : public Format {
+public:
+    [[nodiscard]] std::string head() const override { return {}; }
+    [[nodiscard]] Result<> append(std::string& text, std::string_view entry) override {
+        std::array<unsigned char, 4> length{};
+        boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(entry.size()));
+        text.append(reinterpret_cast<const char*>(length.data()), length.size()).append(entry);
+        return {};
+    }
+};
+
+class CarmenFormat final : public Format {
+public:
+    explicit CarmenFormat(std::string session) : session_(std::move(session)) {}
+
+    [[nodiscard]] std::string head() const override { return exchange::CarmenText::head(session_); }
+    [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
+        const auto entry = wire::decode_entry(bytes);
+        if (!entry) return entry.error();
+        const auto lines = carmen_.lines(*entry);
+        if (!lines) return lines.error();
+        text += *lines;
+        return {};
+    }
+
+private:
+    std::string session_;
+    exchange::CarmenText carmen_;
+};
+
+/// Reads a log piece by piece: nothing is held between two of them but where it goes on.
+class LogStream final : public BodyStream {
+public:
+    LogStream(std::shared_ptr<session::Session> session, store::ScanLog& log, std::unique_ptr<Format> format)
+        : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(session_->snapshot()->revision),
+          piece_(format_->head()) {}
+
+    /// Reads the first piece, so that what cannot be written at all is told before anything is sent.
+    [[nodiscard]] Result<> begin() { return read(); }
+
+    [[nodiscard]] Result<std::string> next() override {
+        if (piece_.empty()) {
+            if (auto done = read(); !done) return done.error();
+        }
+        return std::exchange(piece_, {});
+    }
+
+private:
+    [[nodiscard]] Result<> read() {
+        if (read_ == newest_) return {};
+        const auto done =
+            log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> Result<> {
+                if (revision > newest_ || piece_.size() >= kPieceBytes) return kEnough;
+                if (auto appended = format_->append(piece_, bytes); !appended) return appended;
+                read_ = revision;
+                return {};
+            });
+        return done || done.error() == kEnough ? Result<>{} : done;
+    }
+
+    std::shared_ptr<session::Session> session_;
+    store::ScanLog& log_;
+    std::unique_ptr<Format> format_;
+    const Revision newest_;
+    Revision read_ = 0;
+    std::string piece_; // read and not yet handed out
+};
+
+} // namespace
+
+Result<Response> get_log(const session::SessionRegistry& sessions, store::ScanLog& log, const Call& call) {
+    if (auto known = call.query.check_only({"format"}); !known) return known.error();
+    const auto format = call.query.find("format").value_or("protobuf");
+    const bool is_carmen = format == "clf";
+    if (!is_carmen && format != "protobuf") {
+        return Error{Errc::kInvalidField,
+                     fmt::format("format is {}; possible are clf and protobuf", in_quotes(format))};
+    }
+    const auto session = find_session(sessions, call);
+    if (!session) return session.error();
+    const auto& name = (*session)->info().name;
+
+    std::unique_ptr<Format> written_as = std::make_unique<ProtobufFormat>();
+    if (is_carmen) written_as = std::make_unique<CarmenFormat>(name);
+    auto stream = std::make_shared<LogStream>(*session, log, std::move(written_as));
+    if (auto begun = stream->begin(); !begun) return begun.error();
+
+    Response response;
+    response.set("Content-Type", is_carmen ? "text/plain; charset=utf-8" : "application/octet-stream")
+        .set("Content-Disposition", fmt::format("attachment; filename=\"{}.{}\"", name, is_carmen ? "clf" : "scanlog"))
+        .set("Cache-Control", kNotKept);
+    response.stream = std::move(stream);
+    return response;
+}
+
+} // namespace scanloom::http
