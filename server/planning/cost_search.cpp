@@ -12,9 +12,6 @@ namespace scanloom::planning {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
-/// Relative: a way that is cheaper by less is not looked for.
-constexpr double kRounding = 1e-12;
-
 constexpr double kDiagonal = std::numbers::sqrt2;
 constexpr int kHere = 4; // of the 3 x 3 cells around a cell, by rows from the bottom
 
@@ -76,6 +73,44 @@ double without_obstacles(Spot from, Spot to) {
     return std::max(dx, dy) + (kDiagonal - 1.0) * std::min(dx, dy);
 }
 
+/// What a search is for: see CostSearch::search(). A step, less what the estimate falls by, is never shorter than a
+/// bucket is wide.
+struct Everything {
+    static constexpr double kBucketWidth = 0.5;
+    [[nodiscard]] double estimate(Spot) const { return 0.0; }
+    [[nodiscard]] bool take(Spot, double) const { return true; }
+    [[nodiscard]] bool done(double) const { return false; }
+};
+
+struct Towards {
+    static constexpr double kTrust = 0.95; // of 1 of the estimate nothing of a step straight to the goal would be left
+    static constexpr double kBucketWidth = 1.0 - kTrust;
+    Spot goal;
+    const double* goal_cost; // so far
+
+    [[nodiscard]] double estimate(Spot spot) const { return kTrust * without_obstacles(spot, goal); }
+    [[nodiscard]] bool take(Spot, double) const { return true; }
+    [[nodiscard]] bool done(double bound) const { return *goal_cost <= bound; }
+};
+
+struct Nearest {
+    static constexpr double kBucketWidth = Everything::kBucketWidth;
+    const BitGrid& wanted;
+    std::optional<Spot> found = std::nullopt;
+    double found_cost = kUnreached;
+
+    [[nodiscard]] double estimate(Spot) const { return 0.0; }
+    [[nodiscard]] bool take(Spot spot, double cost) {
+        if (cost > found_cost) return false;
+        if (!wanted.test(spot)) return true;
+        const bool before = !found || spot.y < found->y || (spot.y == found->y && spot.x < found->x);
+        if (cost < found_cost || before) found = spot;
+        found_cost = cost;
+        return false;
+    }
+    [[nodiscard]] bool done(double) const { return found.has_value(); }
+};
+
 } // namespace
 
 CostSearch::CostSearch(const Passability& passability)
@@ -83,15 +118,13 @@ CostSearch::CostSearch(const Passability& passability)
       cost_(static_cast<std::size_t>(passability.window.width() * passability.window.height()), kUnreached) {
     for (int direction = 0; direction < 9; ++direction) {
         const auto place = static_cast<std::size_t>(direction);
-        const Spot step = step_of(direction);
-        steps_[place] = step.y * passability.enterable.width() + step.x;
         for (int dangers = 0; dangers <= 2; ++dangers) {
             step_costs_[static_cast<std::size_t>(dangers)][place] =
                 (is_diagonal(direction) ? kDiagonal : 1.0) * (1.0 + 0.5 * dangers * passability.options.danger_cost);
         }
     }
     const double farthest = 2.0 * kDiagonal + kDiagonal * passability.options.danger_cost; // one step and its estimate
-    buckets_.resize(std::bit_ceil(static_cast<std::size_t>(farthest / kBucketWidth) + 3));
+    buckets_.resize(std::bit_ceil(static_cast<std::size_t>(farthest / Towards::kBucketWidth) + 3));
 }
 
 void CostSearch::begin(Spot start) {
@@ -101,17 +134,28 @@ void CostSearch::begin(Spot start) {
     cost_[lowest_] = 0.0;
 }
 
-/// Takes the open cells bucket by bucket. A cell that turns out to be cheaper is opened again, so that the order
-/// within a bucket does not matter; `aim` estimates what is left, sees every cell taken, and says when to stop: once
-/// nothing still open can cost less than a bound.
+/// Takes the open cells bucket by bucket, by their cost and what `aim` estimates to be left. As no step stays within a
+/// bucket, all costs in the first one are final, in whatever order they are taken. `aim` is told of each cell taken and
+/// says whether to go on from there, and when to stop: once nothing still open can cost less than a bound.
 template <class Aim>
 void CostSearch::search(Spot start, Aim& aim) {
     begin(start);
-    const BitGrid& enterable = passability_->enterable;
+    constexpr double kBucketsPerCell = 1.0 / Aim::kBucketWidth;
     const std::size_t mask = buckets_.size() - 1;
-    auto current = static_cast<std::size_t>(aim.estimate(start) / kBucketWidth);
+    auto current = static_cast<std::size_t>(aim.estimate(start) * kBucketsPerCell);
     buckets_[current & mask].push_back({0.0, index_of(start), kHere});
-    for (std::size_t open = 1; open > 0; ++current) {
+    std::size_t open = 1;
+    const auto reach = [&](Spot spot, double cost, std::uint32_t came) {
+        const std::uint32_t cell = index_of(spot);
+        if (cost >= cost_[cell]) return;
+        cost_[cell] = cost;
+        lowest_ = std::min(lowest_, cell);
+        highest_ = std::max(highest_, cell);
+        const auto place = static_cast<std::size_t>((cost + aim.estimate(spot)) * kBucketsPerCell);
+        buckets_[std::max(place, current) & mask].push_back({cost, cell, came}); // max: for rounding
+        ++open;
+    };
+    for (; open > 0; ++current) {
         auto& bucket = buckets_[current & mask];
         while (!bucket.empty()) {
             const Open taken = bucket.back();
@@ -119,71 +163,39 @@ void CostSearch::search(Spot start, Aim& aim) {
             --open;
             if (taken.cost > cost_[taken.cell]) continue; // it was cheaper another way
             const Spot at = spot_of(taken.cell);
-            if (!aim.take(at, taken.cost)) continue;
-            const std::uint32_t danger = passability_->danger.around(at);
-            const auto& costs = step_costs_.data() + (danger >> kHere & 1);
-            const std::uint32_t around = enterable.around(at);
-            std::uint32_t steps = kPossibleSteps[around];
-            if (around == kAll && (danger == 0 || danger == kAll)) steps &= kNaturalSteps[taken.came];
-            for_each_step(steps, [&](int direction) {
-                const auto place = static_cast<std::size_t>(direction);
-                const std::uint32_t cell = taken.cell + static_cast<std::uint32_t>(steps_[place]);
-                const double cost = taken.cost + costs[danger >> direction & 1][place];
-                if (cost >= cost_[cell]) return;
-                cost_[cell] = cost;
-                lowest_ = std::min(lowest_, cell);
-                highest_ = std::max(highest_, cell);
-                const auto estimated =
-                    static_cast<std::size_t>((cost + aim.estimate(moved(at, direction))) / kBucketWidth);
-                buckets_[std::max(estimated, current) & mask].push_back(
-                    {cost, cell, static_cast<std::uint32_t>(direction)}); // max: for rounding
-                ++open;
-            });
+            if (aim.take(at, taken.cost)) expand(at, taken, reach);
         }
-        if (aim.done(static_cast<double>(current + 1) * kBucketWidth)) return;
+        if (aim.done(static_cast<double>(current + 1) * Aim::kBucketWidth)) return;
     }
 }
 
+/// Calls reach(Spot, cost, step) for the cells around one that was taken.
+template <class Reach>
+void CostSearch::expand(Spot at, const Open& taken, Reach& reach) const {
+    const std::uint32_t danger = passability_->danger.around(at);
+    const auto* costs = step_costs_.data() + (danger >> kHere & 1);
+    const std::uint32_t around = passability_->enterable.around(at);
+    std::uint32_t steps = kPossibleSteps[around];
+    if (around == kAll && (danger == 0 || danger == kAll)) steps &= kNaturalSteps[taken.came];
+    for_each_step(steps, [&](int direction) {
+        const double step = costs[danger >> direction & 1][static_cast<std::size_t>(direction)];
+        reach(moved(at, direction), taken.cost + step, static_cast<std::uint32_t>(direction));
+    });
+}
+
 void CostSearch::from(Spot start) {
-    struct Everything {
-        [[nodiscard]] double estimate(Spot) const { return 0.0; }
-        [[nodiscard]] bool take(Spot, double) const { return true; }
-        [[nodiscard]] bool done(double) const { return false; }
-    } everything;
+    Everything everything;
     search(start, everything);
 }
 
 void CostSearch::between(Spot start, Spot goal) {
-    struct Towards {
-        Spot goal;
-        const double* cost;
-        [[nodiscard]] double estimate(Spot spot) const { return without_obstacles(spot, goal); }
-        /// Once there is a way to the goal: only what can lead there more cheaply.
-        [[nodiscard]] bool take(Spot spot, double spot_cost) const {
-            return spot_cost + estimate(spot) < *cost * (1.0 - kRounding);
-        }
-        [[nodiscard]] bool done(double bound) const { return *cost <= bound; }
-    } towards{goal, &cost_[index_of(goal)]};
+    Towards towards{goal, &cost_[index_of(goal)]};
     search(start, towards);
     assert(cost(goal) < kUnreached);
 }
 
 std::optional<Spot> CostSearch::nearest(Spot start, const BitGrid& wanted) {
-    struct Nearest {
-        const BitGrid& wanted;
-        std::optional<Spot> found = std::nullopt;
-        double cost = kUnreached;
-        [[nodiscard]] double estimate(Spot) const { return 0.0; }
-        [[nodiscard]] bool take(Spot spot, double spot_cost) {
-            if (spot_cost > cost) return false;
-            if (!wanted.test(spot)) return true;
-            const bool before = !found || spot.y < found->y || (spot.y == found->y && spot.x < found->x);
-            if (spot_cost < cost || before) found = spot;
-            cost = spot_cost;
-            return false;
-        }
-        [[nodiscard]] bool done(double) const { return found.has_value(); }
-    } nearest{wanted};
+    Nearest nearest{wanted};
     search(start, nearest);
     return nearest.found;
 }

@@ -39,8 +39,6 @@ public:
     [[nodiscard]] std::vector<Spot> path_to(Spot goal) const;
 
 private:
-    static constexpr double kBucketWidth = 0.5; // cells: no step is shorter than two of them
-
     struct Open {
         double cost;
         std::uint32_t cell;
@@ -57,11 +55,12 @@ private:
     void begin(Spot start);
     template <class Aim>
     void search(Spot start, Aim& aim);
+    template <class Reach>
+    void expand(Spot at, const Open& taken, Reach& reach) const;
 
     const Passability* passability_;
     std::uint32_t width_;
     std::array<std::array<double, 9>, 3> step_costs_; // by how many of its two cells are in danger, and its direction
-    std::array<std::int32_t, 9> steps_;               // differences of indices
     std::vector<double> cost_;
     std::uint32_t lowest_ = 1; // all cells whose cost is not infinite are among lowest_ .. highest_
     std::uint32_t highest_ = 0;

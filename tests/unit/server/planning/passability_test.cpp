@@ -27,6 +27,9 @@ TEST(Passability, ABodyMayEnterTheCellsFarEnoughFromEveryOccupiedSquare) {
                     const Spot spot = passability.spot_of({i, j}).value();
                     ASSERT_EQ(passability.enterable.test(spot), oracle.enterable({i, j}))
                         << "cell " << i << ", " << j << ", radius " << radius;
+                    const auto value = class_at(view, {i, j});
+                    ASSERT_EQ(passability.ground.test(spot), value == CellClass::kFree || value == CellClass::kDanger ||
+                                                                 (allow_unknown && value != CellClass::kOccupied));
                     ASSERT_EQ(passability.danger.test(spot), class_at(view, {i, j}) == CellClass::kDanger);
                     ASSERT_EQ(passability.occupied.test(spot), class_at(view, {i, j}) == CellClass::kOccupied);
                 }
@@ -77,6 +80,7 @@ TEST(Passability, ChunksAtTheEndsOfTheNumbersDoNoHarm) {
     ClassMap map;
     map.set({0, 0}, CellClass::kFree);
     map.set({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, CellClass::kFree);
+    map.set({std::numeric_limits<std::int32_t>::max() - 127, 0}, CellClass::kFree);
     EXPECT_EQ(make_passability(map.view(), 1.0, {})->window, (grid::CellBox{0, 0, 64, 64}));
     const std::vector<Point2> held = {{2147483000.0, 0.0}};
     EXPECT_EQ(make_passability(map.view(), 1.0, {.allow_unknown = true}, held).error().code, Errc::kTooLarge);
