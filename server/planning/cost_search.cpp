@@ -83,7 +83,7 @@ struct Everything {
 };
 
 struct Towards {
-    static constexpr double kTrust = 0.95; // of 1 of the estimate nothing of a step straight to the goal would be left
+    static constexpr double kTrust = 0.95; // in the estimate: with all of it, steps straight on would stay in a bucket
     static constexpr double kBucketWidth = 1.0 - kTrust;
     Spot goal;
     const double* goal_cost; // so far

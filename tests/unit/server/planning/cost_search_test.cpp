@@ -125,10 +125,11 @@ TEST(CostSearch, OfEquallyNearCellsTheFirstByRowsIsTaken) {
     PlanWorld world(64, 64, OccType::kFree);
     const auto passability = make_passability(world.view(), 0.05, {}).value();
     const Spot start = *passability.spot_of({30, 30});
-    const std::array by_rows = {Spot{0, -9}, Spot{-9, 0}, Spot{9, 0}, Spot{0, 9}};
-    for (std::uint32_t some = 1; some < 16; ++some) {
+    const std::array by_rows = {Spot{-3, -5}, Spot{3, -5}, Spot{-5, -3}, Spot{5, -3},
+                                Spot{-5, 3},  Spot{5, 3},  Spot{-3, 5},  Spot{3, 5}};
+    for (std::uint32_t some = 1; some < 256; ++some) {
         BitGrid wanted(passability.enterable.width(), passability.enterable.height());
-        for (std::uint32_t n = 0; n < 4; ++n) {
+        for (std::uint32_t n = 0; n < by_rows.size(); ++n) {
             if ((some >> n & 1) != 0) wanted.set({start.x + by_rows[n].x, start.y + by_rows[n].y});
         }
         const Spot first = by_rows[static_cast<std::size_t>(std::countr_zero(some))];
