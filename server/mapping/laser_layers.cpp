@@ -3,12 +3,11 @@
 #include "server/mapping/inverse_sensor_model.hpp"
 #include "server/mapping/work.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace scanloom::mapping {
 namespace {
-
-constexpr double kSnap = 1e-9; // a probability written as a threshold reaches it, whatever rounding says
 
 LaserChunk blank_chunk() {
     LaserChunk chunk;
@@ -18,11 +17,14 @@ LaserChunk blank_chunk() {
     return chunk;
 }
 
+/// Rounded as evidence is, so that evidence of exactly a threshold's probability, and a clamp there, reach it.
 classify::Hysteresis<LogOdds> hysteresis_of_occupancy(const MapConfig& config) {
-    const auto occupied = std::ceil(log_odds_of(config.class_p_occupied) * kLogOddsScale - kSnap);
-    const auto free = std::floor(log_odds_of(config.class_p_free) * kLogOddsScale + kSnap);
-    const auto clamped = [](double fixed) { return static_cast<LogOdds>(std::clamp(fixed, -32767.0, 32767.0)); };
-    return {clamped(occupied), clamped(free), clamped(free), kUnknownLogOdds};
+    const auto fixed = [](double p) {
+        return static_cast<LogOdds>(std::lround(std::clamp(log_odds_of(p) * kLogOddsScale, -32766.0, 32767.0)));
+    };
+    const LogOdds occupied = fixed(config.class_p_occupied);
+    const LogOdds free = std::min(fixed(config.class_p_free), static_cast<LogOdds>(occupied - 1));
+    return {occupied, free, free, kUnknownLogOdds};
 }
 
 /// An unexplored cell is free when it is counted down to 0: a first hit leaves it at less than what a free cell may
