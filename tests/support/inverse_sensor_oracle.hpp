@@ -102,37 +102,54 @@ inline double gap_around(const Scene& scene, double phi) {
     return ahead + behind;
 }
 
-inline bool is_seen(const Scene& scene, double phi, const Nearest& nearest) {
-    return nearest.distance <= scene.sight.beta / 2.0 || gap_around(scene, phi) <= scene.sight.gap_max;
+/// What looks towards a direction, and whether it sees anything there.
+struct Sighting {
+    std::size_t beam = 0;
+    bool is_seen = false;
+};
+
+inline Sighting sighting_at(const Scene& scene, double phi) {
+    const Nearest nearest = nearest_beam(scene, phi);
+    const auto& sight = scene.sight;
+    const bool in_a_small_gap = sight.gap_max > 0.0 && gap_around(scene, phi) <= sight.gap_max;
+    return {nearest.beam, nearest.distance <= sight.beta / 2.0 || in_a_small_gap};
 }
 
-inline Verdict verdict_at(const Scene& scene, double r, double phi, const Nearest& nearest) {
+inline Verdict verdict_at(const Scene& scene, double r, Sighting sighting) {
     const double alpha = std::max(scene.alpha, scene.cell_size);
-    const double z = scene.readings[nearest.beam];
+    const double z = scene.readings[sighting.beam];
     if (std::isnan(z) || z <= 0.0 || z < scene.range_min) return Verdict::kNothing;
-    if (r > std::min(scene.range_max, z + alpha / 2.0) || !is_seen(scene, phi, nearest)) return Verdict::kNothing;
+    if (r > std::min(scene.range_max, z + alpha / 2.0) || !sighting.is_seen) return Verdict::kNothing;
     if (z < scene.range_max && std::abs(r - z) < alpha / 2.0) return Verdict::kOccupied;
     if (r <= z) return Verdict::kFree;
     return Verdict::kNothing;
 }
 
-/// Verdict for a cell; none where moving r or phi by 2e-5 would change it.
-inline std::optional<Verdict> verdict_of_cell(const Scene& scene, int i, int j) {
+/// Moves of r and phi that a firm verdict bears: metres, radians.
+inline constexpr double kStep = 2e-5;
+
+/// Verdict for a cell; none where moving r or phi by 2e-5 would change it. `sighting_of` is sighting_at(), or what
+/// gives the same.
+template <class SightingOf>
+std::optional<Verdict> verdict_of_cell(const Scene& scene, int i, int j, SightingOf&& sighting_of) {
     const double x = (i + 0.5) * scene.cell_size - scene.T_map_sensor.x;
     const double y = (j + 0.5) * scene.cell_size - scene.T_map_sensor.y;
     const double r = std::hypot(x, y);
     const double phi = std::atan2(y, x) - scene.T_map_sensor.yaw;
-    const double step = 2e-5;
-    if (r < step) return std::nullopt; // a centre on the sensor itself has no direction
-    if (r > scene.range_max + step) return Verdict::kNothing;
-    const Verdict verdict = verdict_at(scene, r, phi, nearest_beam(scene, phi));
-    for (const double dphi : {-step, 0.0, step}) {
-        const Nearest nearest = nearest_beam(scene, phi + dphi);
-        for (const double dr : {-step, 0.0, step}) {
-            if (verdict_at(scene, r + dr, phi + dphi, nearest) != verdict) return std::nullopt;
+    if (r < kStep) return std::nullopt; // a centre on the sensor itself has no direction
+    if (r > scene.range_max + kStep) return Verdict::kNothing;
+    const Verdict verdict = verdict_at(scene, r, sighting_of(phi));
+    for (const double dphi : {-kStep, 0.0, kStep}) {
+        const Sighting sighting = sighting_of(phi + dphi);
+        for (const double dr : {-kStep, 0.0, kStep}) {
+            if (verdict_at(scene, r + dr, sighting) != verdict) return std::nullopt;
         }
     }
     return verdict;
+}
+
+inline std::optional<Verdict> verdict_of_cell(const Scene& scene, int i, int j) {
+    return verdict_of_cell(scene, i, j, [&](double phi) { return sighting_at(scene, phi); });
 }
 
 } // namespace scanloom::oracle

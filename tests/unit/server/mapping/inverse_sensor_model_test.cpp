@@ -1,6 +1,7 @@
 #include "server/mapping/inverse_sensor_model.hpp"
 
 #include "tests/support/kernel_against_oracle.hpp"
+#include "tests/support/random_angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,35 +21,9 @@ public:
     double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
     unsigned below(unsigned n) { return static_cast<unsigned>(random_() % n); }
 
-    BeamAngles angles(unsigned shape, std::string& name) {
-        switch (shape) {
-        case 0: name = "half-turn scanner"; return UniformAngles{-kPi / 2, kDegree, 180};
-        case 1: name = "full turn"; return UniformAngles{-kPi, 2 * kPi / 120, 120};
-        case 2: name = "full turn, first direction repeated"; return UniformAngles{0.0, 2 * kPi / 90, 91};
-        case 3: name = "clockwise"; return UniformAngles{kPi, -2 * kPi / 100, 100};
-        case 4: name = "sparse ring"; return UniformAngles{uniform(-4.0, 4.0), 2 * kPi / 16, 16};
-        case 5: name = "few wide beams"; return UniformAngles{uniform(-4.0, 4.0), kPi / 2, 2 + below(3)};
-        case 6: name = "one beam"; return UniformAngles{uniform(-4.0, 4.0), 1.0, 1};
-        case 7: name = "two opposite beams"; return UniformAngles{uniform(-4.0, 4.0), kPi, 2};
-        case 8: name = "270 degrees"; return UniformAngles{-0.75 * kPi, 1.5 * kPi / 200, 201};
-        case 9: {
-            name = "projected through a tangent";
-            ExplicitAngles list;
-            for (int i = -60; i <= 60; ++i) list.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
-            return list;
-        }
-        default: {
-            name = "any angles in any order";
-            ExplicitAngles list(1 + below(150));
-            for (double& angle : list) angle = uniform(-6.0, 6.0);
-            return list;
-        }
-        }
-    }
-
     Case next(unsigned shape) {
         Case c;
-        c.angles = angles(shape, c.shape);
+        c.angles = testing_support::random_angles(random_, shape, c.shape);
         c.cell_size = std::array{0.01, 0.05, 0.1, 0.5}[below(4)];
         c.range_max = c.cell_size * uniform(4.0, 32.0);
         c.range_min = below(2) == 0 ? 0.0 : c.range_max * uniform(0.0, 0.3);
@@ -74,7 +49,7 @@ private:
 
 TEST(InverseSensorModel, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
     std::size_t firm = 0;
-    for (unsigned shape = 0; shape <= 10; ++shape) {
+    for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
         RandomCases cases(100 + shape);
         for (int round = 0; round < 300; ++round) {
             const Case c = cases.next(shape);

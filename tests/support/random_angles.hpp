@@ -1,0 +1,47 @@
+#pragma once
+
+#include "common/scan/beam_angles.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+/// Beam angles of every kind of sensor there is, and of some that there are not.
+namespace scanloom::testing_support {
+
+inline constexpr unsigned kAngleShapes = 11;
+
+/// Pre: shape < kAngleShapes. `name` says which it is.
+inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::string& name) {
+    constexpr double kPi = std::numbers::pi;
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const auto below = [&](unsigned n) { return static_cast<unsigned>(random() % n); };
+    switch (shape) {
+    case 0: name = "half-turn scanner"; return UniformAngles{-kPi / 2, kPi / 180, 180};
+    case 1: name = "full turn"; return UniformAngles{-kPi, 2 * kPi / 120, 120};
+    case 2: name = "full turn, first direction repeated"; return UniformAngles{0.0, 2 * kPi / 90, 91};
+    case 3: name = "clockwise"; return UniformAngles{kPi, -2 * kPi / 100, 100};
+    case 4: name = "sparse ring"; return UniformAngles{uniform(-4.0, 4.0), 2 * kPi / 16, 16};
+    case 5: name = "few wide beams"; return UniformAngles{uniform(-4.0, 4.0), kPi / 2, 2 + below(3)};
+    case 6: name = "one beam"; return UniformAngles{uniform(-4.0, 4.0), 1.0, 1};
+    case 7: name = "two opposite beams"; return UniformAngles{uniform(-4.0, 4.0), kPi, 2};
+    case 8: name = "270 degrees"; return UniformAngles{-0.75 * kPi, 1.5 * kPi / 200, 201};
+    case 9: {
+        name = "projected through a tangent";
+        ExplicitAngles list;
+        for (int i = -60; i <= 60; ++i) list.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
+        return list;
+    }
+    default: {
+        name = "any angles in any order";
+        ExplicitAngles list(1 + below(150));
+        for (double& angle : list) angle = uniform(-6.0, 6.0);
+        return list;
+    }
+    }
+}
+
+} // namespace scanloom::testing_support
