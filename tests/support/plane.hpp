@@ -2,25 +2,39 @@
 
 #include "server/grid/cell.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
+#include <unordered_map>
 
 namespace scanloom::oracle {
 
-/// Cells around the origin as one plain array; asking for others throws.
+/// Cells anywhere, blank until written; kept in blocks so that only those in use take memory.
 template <class Value>
 class Plane {
 public:
-    static constexpr std::int32_t kHalf = 1024;
-
-    explicit Plane(Value blank) : cells_(std::size_t{4} * kHalf * kHalf, blank) {}
+    explicit Plane(Value blank) : blank_(blank) {}
 
     [[nodiscard]] Value& operator[](grid::Cell cell) {
         box_.include_row(cell.j, cell.i, cell.i + 1);
-        return cells_.at(index_of(cell));
+        auto& block = blocks_[block_of(cell)];
+        if (!block) {
+            block = std::make_unique<Block>();
+            block->fill(blank_);
+        }
+        return (*block)[place_of(cell)];
     }
-    [[nodiscard]] const Value& at(grid::Cell cell) const { return cells_.at(index_of(cell)); }
+
+    [[nodiscard]] const Value& at(grid::Cell cell) const {
+        if (const auto wanted = block_of(cell); !has_last_ || wanted != last_) {
+            const auto found = blocks_.find(wanted);
+            last_ = wanted;
+            last_block_ = found == blocks_.end() ? nullptr : found->second.get();
+            has_last_ = last_block_ != nullptr;
+        }
+        return last_block_ == nullptr ? blank_ : (*last_block_)[place_of(cell)];
+    }
 
     /// Calls visit(Cell, const Value&) for the cells of the smallest box that holds all that were written, and for
     /// `margin` cells around it.
@@ -28,19 +42,32 @@ public:
     void for_each(std::int32_t margin, Visit&& visit) const {
         if (box_.empty()) return;
         for (std::int32_t j = box_.j_begin - margin; j < box_.j_end + margin; ++j) {
-            for (std::int32_t i = box_.i_begin - margin; i < box_.i_end + margin; ++i)
+            for (std::int32_t i = box_.i_begin - margin; i < box_.i_end + margin; ++i) {
                 visit(grid::Cell{i, j}, at({i, j}));
+            }
         }
     }
 
 private:
-    [[nodiscard]] static std::size_t index_of(grid::Cell cell) {
-        if (cell.i < -kHalf || cell.i >= kHalf || cell.j < -kHalf || cell.j >= kHalf) return SIZE_MAX;
-        return static_cast<std::size_t>(cell.j + kHalf) * 2 * kHalf + static_cast<std::size_t>(cell.i + kHalf);
+    static constexpr std::int32_t kSide = 128;
+    using Block = std::array<Value, std::size_t{kSide} * kSide>;
+
+    [[nodiscard]] static std::int32_t floored(std::int32_t n) { return n < 0 ? -1 - (-1 - n) / kSide : n / kSide; }
+    [[nodiscard]] static std::uint64_t block_of(grid::Cell cell) {
+        return std::uint64_t{static_cast<std::uint32_t>(floored(cell.j))} << 32 |
+               static_cast<std::uint32_t>(floored(cell.i));
+    }
+    [[nodiscard]] static std::size_t place_of(grid::Cell cell) {
+        const auto within = [](std::int32_t n) { return static_cast<std::size_t>(n - floored(n) * kSide); };
+        return within(cell.j) * kSide + within(cell.i);
     }
 
-    std::vector<Value> cells_;
+    Value blank_;
+    std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;
     grid::CellBox box_;
+    mutable bool has_last_ = false; // the block asked for last, as neighbours mostly are in the same one
+    mutable std::uint64_t last_ = 0;
+    mutable const Block* last_block_ = nullptr;
 };
 
 } // namespace scanloom::oracle
