@@ -3,6 +3,7 @@
 #include "common/scan/scan.hpp"
 #include "server/grid/cell.hpp"
 #include "server/mapping/inverse_sensor_model.hpp"
+#include "tests/support/beam_index.hpp"
 #include "tests/support/inverse_sensor_oracle.hpp"
 
 #include <gtest/gtest.h>
@@ -76,10 +77,14 @@ inline double reach_of(const Case& c) {
     return reach + std::max(c.thickness, c.cell_size);
 }
 
+/// What the oracle asks for each cell: every beam, or, for large scans, an index of them.
+enum class Beams { kEach, kIndexed };
+
 /// Compares every cell around the sensor; counts the cells compared in `firm`.
-inline void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
+inline void expect_equal_to_oracle(const Case& c, std::size_t& firm, Beams beams = Beams::kEach) {
     const auto kernel = run_kernel(c);
     const auto scene = scene_of(c);
+    const oracle::BeamIndex index(scene);
     const auto index_of = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / c.cell_size)); };
     const grid::Cell centre{index_of(c.T_map_sensor.x), index_of(c.T_map_sensor.y)};
     const int reach = static_cast<int>(std::ceil(reach_of(c) / c.cell_size)) + 2;
@@ -88,7 +93,8 @@ inline void expect_equal_to_oracle(const Case& c, std::size_t& firm) {
     }
     for (int j = centre.j - reach; j <= centre.j + reach; ++j) {
         for (int i = centre.i - reach; i <= centre.i + reach; ++i) {
-            const auto expected = oracle::verdict_of_cell(scene, i, j);
+            const auto expected = beams == Beams::kEach ? oracle::verdict_of_cell(scene, i, j)
+                                                        : oracle::verdict_of_cell(scene, i, j, index);
             if (!expected) continue;
             const auto found = kernel.find({i, j});
             const auto got = found == kernel.end() ? oracle::Verdict::kNothing : found->second;
