@@ -2,6 +2,7 @@
 
 #include "server/mapping/projection.hpp"
 #include "tests/support/random_scans.hpp"
+#include "tests/support/restored.hpp"
 #include "tests/support/room_scans.hpp"
 #include "tests/support/snapshot_cells.hpp"
 
@@ -142,16 +143,8 @@ TEST_P(ClassesFrom, ACheckpointBetweenScansChangesNothing) {
     for (const std::size_t cut : {5U, 20U, 40U}) {
         Projection first{config()};
         for (std::size_t n = 0; n < cut; ++n) ASSERT_TRUE(first.fold(log[n]));
-        Projection second{config()};
-        second.restore(first.state());
-        const auto saved = first.snapshot();
-        saved.laser.visit({}, 0, [&](grid::ChunkKey key, const LaserChunk& chunk) {
-            auto& restored = second.restore_laser_chunk(key, chunk.revision);
-            restored.occupancy = chunk.occupancy;
-            restored.himm = chunk.himm;
-            restored.occ_types = chunk.occ_types;
-        });
-        EXPECT_EQ(classes_of(second.snapshot()), classes_of(saved)) << "cut after " << cut;
+        Projection second = testing_support::restored(first);
+        EXPECT_EQ(classes_of(second.snapshot()), classes_of(first.snapshot())) << "cut after " << cut;
         for (std::size_t n = cut; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
         EXPECT_EQ(classes_of(second.snapshot()), expected) << "cut after " << cut;
     }

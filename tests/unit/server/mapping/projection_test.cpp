@@ -2,6 +2,7 @@
 
 #include "server/mapping/reach.hpp"
 #include "tests/support/digests.hpp"
+#include "tests/support/restored.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -192,20 +193,7 @@ TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
 
     Projection first{config()};
     for (std::size_t n = 0; n < 201; ++n) ASSERT_TRUE(first.fold(log[n]));
-    Projection second{config()};
-    second.restore(first.state());
-    const auto saved = first.snapshot();
-    saved.laser.visit({}, 0, [&](grid::ChunkKey key, const LaserChunk& chunk) {
-        auto& restored = second.restore_laser_chunk(key, chunk.revision);
-        restored.occupancy = chunk.occupancy;
-        restored.himm = chunk.himm;
-        restored.occ_types = chunk.occ_types;
-    });
-    saved.sonar.visit({}, 0, [&](grid::ChunkKey key, const SonarChunk& chunk) {
-        second.restore_sonar_chunk(key, chunk.revision).cells = chunk.cells;
-    });
-    const auto& trajectory = saved.robots.front().trajectory;
-    for (std::size_t n = 0; n < trajectory.size(); ++n) ASSERT_TRUE(second.restore_point(0, trajectory[n]));
+    Projection second = testing_support::restored(first);
     for (std::size_t n = 201; n < log.size(); ++n) ASSERT_TRUE(second.fold(log[n]));
 
     const auto a = whole.snapshot();

@@ -1,12 +1,20 @@
 #include "server/tiles/changes.hpp"
 
+#include "server/tiles/tile.hpp"
 #include "server/tiles/tile_version.hpp"
 #include "tests/support/random_map.hpp"
+#include "tests/support/random_scans.hpp"
+#include "tests/support/restored.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace scanloom::tiles {
 namespace {
@@ -64,6 +72,90 @@ TEST(Changes, EqualBruteForceAfterAnyRevision) {
     EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision), testing::IsEmpty());
     EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision + 1), testing::IsEmpty());
     EXPECT_THAT(changed_tiles(mapping::Snapshot{}, Layer::kOccupancy, 0), testing::IsEmpty());
+}
+
+/// What viewers keep: the bytes of tiles, by revision.
+class Cache {
+public:
+    /// Compares with what was shown before, and takes in what is shown now.
+    void look_at(const mapping::Snapshot& snapshot) {
+        for (const Layer layer : mapping::kLayers) {
+            for (const auto& [key, revision] : changed_tiles(snapshot, layer, 0)) {
+                if (!is_looked_at(key)) continue;
+                const auto codes = tile_codes(snapshot, layer, key);
+                const auto at = std::tuple(layer, key.zoom, key.y, key.x);
+                const auto [kept, is_new] = by_revision_.try_emplace({at, revision}, codes);
+                ASSERT_TRUE(is_new || *kept->second == *codes)
+                    << mapping::name_of(layer) << " " << key.zoom << "/" << key.x << "/" << key.y
+                    << " is something else than it was at the same revision, " << revision;
+                newest_[at] = codes;
+            }
+        }
+    }
+
+    /// Fails for a tile that does not look as it did and is not listed as changed since then.
+    void expect_listed(const mapping::Snapshot& now, Revision since) const {
+        for (const Layer layer : mapping::kLayers) {
+            std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> listed;
+            for (const auto& changed : changed_tiles(now, layer, since)) {
+                listed.emplace(changed.key.zoom, changed.key.y, changed.key.x);
+            }
+            for (const auto& changed : changed_tiles(now, layer, 0)) {
+                const auto& key = changed.key;
+                if (!is_looked_at(key) || listed.contains({key.zoom, key.y, key.x})) continue;
+                const auto kept = newest_.find(std::tuple(layer, key.zoom, key.y, key.x));
+                ASSERT_TRUE(kept != newest_.end() && *kept->second == *tile_codes(now, layer, key))
+                    << mapping::name_of(layer) << " " << key.zoom << "/" << key.x << "/" << key.y
+                    << " changed unnoticed since " << since;
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] static bool is_looked_at(const TileKey& key) { return key.zoom == 9 || key.zoom == 6; }
+
+    using Place = std::tuple<Layer, std::uint32_t, std::uint32_t, std::uint32_t>;
+    std::map<std::pair<Place, Revision>, SharedBytes> by_revision_;
+    std::map<Place, SharedBytes> newest_;
+};
+
+std::vector<LogEntry> walk_with_laser_and_sonar(std::size_t scans) {
+    Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
+    std::vector<LogEntry> log{RobotJoined{0, "r"}, SensorDescribed{0, testing_support::small_laser()},
+                              SensorDescribed{0, sonar}};
+    for (std::uint64_t seq = 1; seq <= scans; ++seq) {
+        Scan scan = testing_support::random_scan(77, seq);
+        if (seq % 3 == 0) {
+            scan.sensor = 9;
+            scan.ranges.resize(6);
+        }
+        log.push_back(ScanTaken{0, std::move(scan)});
+    }
+    return log;
+}
+
+TEST(Changes, ARevisionOfATileAlwaysMeansTheSameBytesAndNoChangeIsMissed) {
+    const auto log = walk_with_laser_and_sonar(45);
+    const auto config = mapping::resolve({.cell_size = 0.08, .danger_cells = 20}).value();
+    Cache cache;
+    for (const std::size_t looks_every : {1U, 4U}) {
+        for (const std::size_t cut : {0U, 20U, 35U}) { // where the server is stopped and started again
+            std::optional<mapping::Projection> projection(config);
+            Cache viewer;
+            Revision seen = 0;
+            for (std::size_t n = 0; n < log.size(); ++n) {
+                if (n == cut) projection.emplace(testing_support::restored(*projection));
+                ASSERT_TRUE(projection->fold(log[n]));
+                if (n % looks_every != 0) continue;
+                const auto snapshot = projection->snapshot();
+                ASSERT_NO_FATAL_FAILURE(cache.look_at(snapshot)) << "after entry " << n << ", cut at " << cut;
+                ASSERT_NO_FATAL_FAILURE(viewer.expect_listed(snapshot, seen))
+                    << "after entry " << n << ", cut at " << cut;
+                viewer.look_at(snapshot);
+                seen = snapshot.revision;
+            }
+        }
+    }
 }
 
 } // namespace

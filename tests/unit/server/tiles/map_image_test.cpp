@@ -1,11 +1,17 @@
 #include "server/tiles/map_image.hpp"
 
+#include "server/mapping/projection.hpp"
 #include "server/tiles/occupancy_percent.hpp"
+#include "tests/support/pixel_oracle.hpp"
 #include "tests/support/random_map.hpp"
+#include "tests/support/random_scans.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+
+#include <algorithm>
+#include <iterator>
 
 namespace scanloom::tiles {
 namespace {
@@ -50,6 +56,39 @@ TEST(MapImage, OfTheWholeMapIsEveryCellOfItsBounds) {
     EXPECT_DOUBLE_EQ(frame.origin().x(), -7.0);
     EXPECT_DOUBLE_EQ(frame.origin().y(), -15.0);
     expect_equals_brute_force(snapshot, render_map(snapshot, Layer::kOccupancy, frame));
+}
+
+TEST(MapImage, OfAnyLayerHoldsEveryCellThatTheLayerShows) {
+    for (const auto source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
+        mapping::Projection projection(mapping::resolve({.cell_size = 0.1, .class_source = source}).value());
+        Sensor sonar{.id = 9, .kind = SensorKind::kSonar, .angles = UniformAngles{0.0, 1.0, 6}, .range_max = 4.0};
+        ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+        ASSERT_TRUE(projection.fold(SensorDescribed{0, testing_support::small_laser()}));
+        ASSERT_TRUE(projection.fold(SensorDescribed{0, sonar}));
+        for (Scan scan : testing_support::random_scans(3, 1, 8)) {
+            if (scan.seq % 4 == 0) scan.sensor = 9;
+            if (scan.seq % 4 == 0) scan.ranges.resize(6);
+            ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+        }
+        const auto snapshot = projection.snapshot();
+        for (const Layer layer : mapping::kLayers) {
+            const auto frame = map_frame(snapshot, layer, {}).value();
+            const auto image = render_map(snapshot, layer, frame);
+            std::size_t known = 0;
+            oracle::for_each_code(snapshot, layer, [&](std::int32_t i, std::int32_t j, oracle::Code code) {
+                if (code == oracle::unknown_code(layer)) return;
+                ++known;
+                const auto& box = frame.cells;
+                ASSERT_TRUE(box.i_begin <= i && i < box.i_end && box.j_begin <= j && j < box.j_end)
+                    << mapping::name_of(layer) << " " << i << ", " << j;
+                const auto n = static_cast<std::size_t>((box.j_end - 1 - j) * frame.width() + i - box.i_begin);
+                ASSERT_EQ(image.codes[n], code) << mapping::name_of(layer) << " " << i << ", " << j;
+            });
+            EXPECT_GT(known, 1000U);
+            EXPECT_EQ(static_cast<std::ptrdiff_t>(known),
+                      std::ssize(image.codes) - std::ranges::count(image.codes, oracle::unknown_code(layer)));
+        }
+    }
 }
 
 TEST(MapImage, OfAnyBoxIsThatBoxWithTheUnseenUnknown) {

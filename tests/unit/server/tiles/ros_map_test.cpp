@@ -123,6 +123,21 @@ TEST(RosMap, TheGreysAreThoseOfMapSaver) {
     EXPECT_EQ(Bytes(pgm.end() - 6, pgm.end()), (Bytes{254, 254, 205, 205, 0, 205}));
 }
 
+Bytes greys_of(Layer layer, const Bytes& codes, const mapping::MapConfig& config = {}) {
+    const auto pgm = map_pgm({{{0, 0, static_cast<std::int32_t>(codes.size()), 1}, 0.05}, layer, codes}, config);
+    return {pgm.end() - static_cast<std::ptrdiff_t>(codes.size()), pgm.end()};
+}
+
+TEST(RosMap, EveryLayerIsShownInTheSameThreeGreys) {
+    EXPECT_EQ(greys_of(Layer::kSonar, {0, 25, 26, 64, 65, 100, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
+    EXPECT_EQ(greys_of(Layer::kClassification, {0, 1, 2, 3, 4}), (Bytes{205, 254, 0, 205, 254}));
+    EXPECT_EQ(greys_of(Layer::kHimm, {0, 4, 5, 7, 8, 15, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
+    mapping::MapConfig config;
+    config.class_himm_occupied = 12;
+    config.class_himm_free = 1;
+    EXPECT_EQ(greys_of(Layer::kHimm, {0, 1, 2, 11, 12, 255}, config), (Bytes{254, 254, 205, 205, 0, 205}));
+}
+
 TEST(RosMap, TheYamlIsExactlyThis) {
     EXPECT_EQ(map_yaml({{-101, 0, 10, 10}, 0.05}), "image: map.pgm\n"
                                                    "mode: trinary\n"

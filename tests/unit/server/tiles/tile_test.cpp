@@ -1,16 +1,20 @@
 #include "server/tiles/tile.hpp"
 
+#include "server/tiles/layer_style.hpp"
 #include "server/tiles/occupancy_percent.hpp"
 #include "server/tiles/tile_version.hpp"
+#include "tests/support/pixel_oracle.hpp"
+#include "tests/support/random_layers.hpp"
 #include "tests/support/random_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include <cmath>
-#include <optional>
+#include <map>
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace scanloom::tiles {
 namespace {
@@ -18,108 +22,118 @@ namespace {
 using mapping::Layer;
 using mapping::LogOdds;
 using testing_support::HandMadeMap;
-using testing_support::random_map;
+using testing_support::random_layers;
 
-/// The rule for pixels that show many cells, word for word.
-class PixelOracle {
-public:
-    void add(int percent) {
-        if (percent == 255) return;
-        if (percent > 50 && percent > furthest_above_.value_or(50)) furthest_above_ = percent;
-        if (percent < lowest_known_.value_or(101)) lowest_known_ = percent;
-    }
-    [[nodiscard]] int percent() const { return furthest_above_.value_or(lowest_known_.value_or(255)); }
+class TileOf : public testing::TestWithParam<Layer> {};
 
-private:
-    std::optional<int> furthest_above_;
-    std::optional<int> lowest_known_;
-};
+INSTANTIATE_TEST_SUITE_P(AnyLayer, TileOf, testing::ValuesIn(mapping::kLayers),
+                         [](const auto& tried) { return std::string(mapping::name_of(tried.param)); });
 
-using TilePixels = std::map<int, PixelOracle>; // by 256 py + px
-using Pyramid = std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, TilePixels>;
-
-/// Puts every cell where the contract says that it is seen, zoom by zoom.
-Pyramid oracle_of(const HandMadeMap& map) {
-    Pyramid pyramid;
-    for (const auto& [key, cells] : map.chunks()) {
-        for (int n = 0; n < 4096; ++n) {
-            const int i = key.ci * 64 + n % 64;
-            const int j = key.cj * 64 + n / 64;
-            if (i < -65536 || i > 65535 || j < -65536 || j > 65535) continue;
-            const LogOdds l = cells[static_cast<std::size_t>(n)];
-            const int percent =
-                l == mapping::kUnknownLogOdds ? 255 : static_cast<int>(std::lround(100 / (1 + std::exp(-l / 2048.0))));
-            for (std::uint32_t zoom = 0; zoom <= 9; ++zoom) {
-                const int column = (i + 65536) >> (9 - zoom);
-                const int row = (65535 - j) >> (9 - zoom);
-                pyramid[{zoom, column / 256, row / 256}][row % 256 * 256 + column % 256].add(percent);
-            }
-        }
-    }
-    return pyramid;
-}
-
-TEST(Tile, EqualsBruteForceAtEveryZoom) {
-    const auto map = random_map(11);
-    const auto snapshot = map.snapshot();
-    const auto pyramid = oracle_of(map);
+TEST_P(TileOf, EqualsBruteForceAtEveryZoom) {
+    const Layer layer = GetParam();
+    const auto snapshot = random_layers(11);
+    const auto pyramid = oracle::pyramid_of(snapshot, layer);
     ASSERT_GT(pyramid.size(), 200U);
+    std::map<Code, int> seen;
     for (const auto& [at, pixels] : pyramid) {
         const auto [zoom, x, y] = at;
-        std::vector<std::uint8_t> expected(65536, 255);
-        for (const auto& [pixel, oracle] : pixels) {
-            expected[static_cast<std::size_t>(pixel)] = static_cast<std::uint8_t>(oracle.percent());
-        }
-        ASSERT_TRUE(*tile_codes(snapshot, Layer::kOccupancy, {zoom, x, y}) == expected) << zoom << "/" << x << "/" << y;
+        Bytes expected(65536, oracle::unknown_code(layer));
+        for (const auto& [pixel, oracle] : pixels) expected[static_cast<std::size_t>(pixel)] = oracle.code();
+        for (const auto code : expected) ++seen[code];
+        ASSERT_TRUE(*tile_codes(snapshot, layer, {zoom, x, y}) == expected) << zoom << "/" << x << "/" << y;
     }
+    EXPECT_GE(seen.size(), layer == Layer::kHimm ? 17U : layer == Layer::kClassification ? 5U : 90U);
 }
 
-Bytes composed_of_children(const mapping::Snapshot& snapshot, TileKey key) {
+Bytes composed_of_children(const mapping::Snapshot& snapshot, Layer layer, TileKey key) {
     Bytes composed(65536);
     for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
         const std::uint32_t right = quarter % 2;
         const std::uint32_t below = quarter / 2;
-        const auto child =
-            tile_codes(snapshot, Layer::kOccupancy, {key.zoom + 1, 2 * key.x + right, 2 * key.y + below});
+        const auto child = tile_codes(snapshot, layer, {key.zoom + 1, 2 * key.x + right, 2 * key.y + below});
         for (std::uint32_t n = 0; n < 128 * 128; ++n) {
             const std::uint32_t column = n % 128;
             const std::uint32_t row = n / 128;
-            PixelOracle oracle;
+            oracle::PixelOracle oracle(layer);
             for (const std::uint32_t at : {0U, 1U, 256U, 257U}) oracle.add((*child)[512 * row + 2 * column + at]);
-            composed[256 * (128 * below + row) + 128 * right + column] = static_cast<Percent>(oracle.percent());
+            composed[256 * (128 * below + row) + 128 * right + column] = oracle.code();
         }
     }
     return composed;
 }
 
-TEST(Tile, IsTheSameMadeFromItsFourChildren) {
-    const auto snapshot = random_map(12).snapshot();
+TEST_P(TileOf, IsTheSameMadeFromItsFourChildren) {
+    const auto snapshot = random_layers(12);
     for (std::uint32_t zoom = 0; zoom < 9; ++zoom) {
         for (const auto cell : {grid::Cell{0, 0}, {-1, -1}, {-1, 0}, {65535, 65535}, {-65536, -65536}}) {
             const auto key = tile_of(cell, zoom);
-            ASSERT_TRUE(*tile_codes(snapshot, Layer::kOccupancy, key) == composed_of_children(snapshot, key))
+            ASSERT_TRUE(*tile_codes(snapshot, GetParam(), key) == composed_of_children(snapshot, GetParam(), key))
                 << zoom << "/" << key.x << "/" << key.y;
         }
     }
 }
 
-TEST(Tile, AOneCellWallSurvivesEveryZoom) {
-    HandMadeMap map;
-    for (std::int32_t j = -700; j < 700; ++j) {
-        for (std::int32_t i = -100; i < 100; ++i) map.set({i, j}, i == 37 ? LogOdds{3000} : LogOdds{-14000});
+/// Free ground with one column of cells occupied, in every layer.
+mapping::Snapshot ground_with_a_wall(std::int32_t wall) {
+    mapping::LaserLayers lasers{mapping::MapConfig{}};
+    mapping::SonarLayer sonars{mapping::MapConfig{}};
+    classify::ClassLayer classes(3);
+    std::map<grid::ChunkKey, classify::OccPlane> types;
+    std::vector<grid::ChunkKey> keys;
+    for (std::int32_t cj = -11; cj < 11; ++cj) {
+        for (std::int32_t ci = -2; ci < 2; ++ci) {
+            auto& laser = lasers.restore({cj, ci}, 1);
+            auto& sonar = sonars.restore({cj, ci}, 1);
+            auto& plane = types[{cj, ci}];
+            for (std::int32_t n = 0; n < 4096; ++n) {
+                const bool is_wall = 64 * ci + n % 64 == wall;
+                const auto at = static_cast<std::size_t>(n);
+                laser.occupancy[at] = sonar.cells[at] = is_wall ? LogOdds{3000} : LogOdds{-14000};
+                laser.himm[at] = is_wall ? 9 : 0;
+                plane[at] = is_wall ? classify::OccType::kOccupied : classify::OccType::kFree;
+            }
+            keys.push_back({cj, ci});
+        }
     }
-    const auto snapshot = map.snapshot();
-    const Percent wall = percent_table()[3000];
+    classes.update(
+        keys, [&](grid::ChunkKey key) { return &types.at(key); }, 1);
+    return {.revision = 1, .laser = lasers.snapshot(), .sonar = sonars.snapshot(), .classes = classes.snapshot()};
+}
+
+TEST_P(TileOf, AOneCellWallSurvivesEveryZoom) {
+    const Layer layer = GetParam();
+    const auto snapshot = ground_with_a_wall(37);
+    const Code wall = layer == Layer::kHimm ? 9 : layer == Layer::kClassification ? 2 : percent_table()[3000];
     for (std::uint32_t zoom = 0; zoom <= 9; ++zoom) {
         std::map<std::uint32_t, SharedBytes> column_of_tiles;
         for (std::int32_t j = -700; j < 700; ++j) {
             const auto key = tile_of({37, j}, zoom);
             auto& tile = column_of_tiles[key.y];
-            if (!tile) tile = tile_codes(snapshot, Layer::kOccupancy, key);
+            if (!tile) tile = tile_codes(snapshot, layer, key);
             const auto cells = cells_of(key);
             const auto px = (37 - cells.i_begin) >> (9 - zoom);
             const auto py = (cells.j_end - 1 - j) >> (9 - zoom);
             ASSERT_EQ((*tile)[static_cast<std::size_t>(py * 256 + px)], wall) << "zoom " << zoom << ", row " << j;
+        }
+    }
+}
+
+TEST_P(TileOf, ThePngHasTheColoursOfItsCodes) {
+    const Layer layer = GetParam();
+    const auto snapshot = random_layers(13);
+    const auto& style = style_of(layer);
+    for (const TileKey key : {TileKey{9, 256, 255}, TileKey{7, 63, 64}, TileKey{0, 0, 0}, TileKey{9, 0, 5}}) {
+        const auto tile = tile_codes(snapshot, layer, key);
+        const auto png = tile_png(snapshot, layer, key);
+        ASSERT_GT(png->size(), 26U);
+        EXPECT_EQ(png->at(24), 8) << "bits a sample";
+        EXPECT_EQ(png->at(25), layer == Layer::kClassification ? 2 : 0) << "grey or RGB, no alpha";
+        const cv::Mat image = cv::imdecode(*png, cv::IMREAD_COLOR);
+        ASSERT_EQ(image.size(), cv::Size(256, 256));
+        for (std::size_t n = 0; n < tile->size(); ++n) {
+            const auto& bgr = image.at<cv::Vec3b>(static_cast<int>(n / 256), static_cast<int>(n % 256));
+            const Colour expected = style.palette[(*tile)[n]];
+            ASSERT_EQ((Colour{bgr[2], bgr[1], bgr[0]}), expected) << n;
         }
     }
 }
@@ -148,7 +162,7 @@ TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
 }
 
 TEST(Tile, ThePngIsEightBitGreyOfTheSamePixels) {
-    const auto snapshot = random_map(13).snapshot();
+    const auto snapshot = testing_support::random_map(13).snapshot();
     for (const TileKey key : {TileKey{9, 256, 255}, TileKey{7, 63, 64}, TileKey{0, 0, 0}, TileKey{9, 0, 5}}) {
         const auto tile = tile_codes(snapshot, Layer::kOccupancy, key);
         const auto png = tile_png(snapshot, Layer::kOccupancy, key);
