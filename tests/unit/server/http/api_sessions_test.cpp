@@ -45,6 +45,42 @@ TEST_F(ApiTest, BadSessionRequestsAreRefusedByField) {
     EXPECT_TRUE(registry_.list().empty());
 }
 
+TEST_F(ApiTest, SettingsOfAnotherKindAreRefusedByNameAndMakeNoSession) {
+    const auto refuse = [&](const mapping::ConfigField& field, const char* value) {
+        const auto body = R"({"name":"a",")" + std::string(field.name) + "\":" + value + "}";
+        EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", body), Status::bad_request), testing::StartsWith(field.name))
+            << body;
+    };
+    for (const auto& field : mapping::config_fields()) {
+        const auto held = mapping::value_of(field, {});
+        for (const char* value : {"null", "[]", "{}", "\"stone\"", "\"\"", "[0.5]", "\"0.5\""}) refuse(field, value);
+        if (!std::holds_alternative<bool>(held)) refuse(field, "true");
+        if (std::holds_alternative<std::int32_t>(held)) {
+            for (const char* value : {"3.5", "1e30", "-4000000000", "0.0001"}) refuse(field, value);
+        }
+        if (std::holds_alternative<std::string_view>(held)) refuse(field, "1");
+    }
+    EXPECT_TRUE(registry_.list().empty());
+    EXPECT_TRUE(get_json("/api/v1/sessions").at("sessions").as_array().empty()) << "not even half made";
+}
+
+TEST_F(ApiTest, EverySettingIsShownAsItWasGiven) {
+    const std::string config = R"({"ray_model":"bresenham","accumulate":true,"hit_radius":0.2,"drop_no_return":true,)"
+                               R"("cell_size":0.1,"p_occupied":0.8,"p_free":0.2,"p_prior":0.4,"p_min":0.01,)"
+                               R"("p_max":0.99,"obstacle_thickness":0.3,"beam_aperture":0.02,"himm_increment":4,)"
+                               R"("himm_decrement":2,"himm_obstacle_thickness":0.25,"himm_beam_aperture":0.03,)"
+                               R"("sonar_obstacle_thickness":0.6,"sonar_beam_aperture":0.4,)"
+                               R"("sonar_p_occupied_max":0.9,"sonar_p_min":0.02,"sonar_p_max":0.95,)"
+                               R"("class_source":"himm","class_p_occupied":0.7,"class_p_free":0.3,)"
+                               R"("class_himm_occupied":9,"class_himm_free":3,"danger_cells":5,"danger_radius":0.4})";
+    const auto wanted = boost::json::parse(config).as_object();
+    ASSERT_EQ(wanted.size(), mapping::config_fields().size());
+    const auto response = ask("POST", "/api/v1/sessions", R"({"name":"a",)" + config.substr(1));
+    ASSERT_EQ(response.status, Status::created) << response.body.bytes();
+    const auto shown = get_json("/api/v1/sessions/a").at("config").as_object();
+    for (const auto& [name, value] : wanted) EXPECT_EQ(shown.at(name), value) << name;
+}
+
 TEST_F(ApiTest, ASessionIsMadeOnce) {
     create("a");
     EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::conflict), HasSubstr("exists"));
