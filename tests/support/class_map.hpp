@@ -69,7 +69,7 @@ template <class TypeAt>
                 plane = std::make_unique<classify::OccPlane>();
                 plane->fill(OccType::kUnexplored);
             }
-            (*plane)[classify::ClassChunk::index_of({i, j})] = type_at(Cell{i, j});
+            (*plane)[grid::index_in_chunk({i, j})] = type_at(Cell{i, j});
         }
     }
     std::vector<grid::ChunkKey> keys;
