@@ -53,6 +53,15 @@ TEST(DistanceField, AWindowThatIsTooLargeIsRefused) {
     EXPECT_EQ(distance_field(ClassView{}, 0.05, {0, 0, 10'000, 10'000}).error().code, Errc::kTooLarge);
 }
 
+TEST(DistanceField, FarObstaclesDoNotDisturbNearOnes) {
+    ClassMap map;
+    map.set({0, 0}, CellClass::kOccupied);
+    map.set({1, 1 << 17}, CellClass::kOccupied);
+    const auto field = distance_field(map.view(), 1.0, {0, 0, 2, (1 << 17) + 1}).value();
+    EXPECT_FLOAT_EQ(field.at({1, 0}), 1.0F);
+    EXPECT_FLOAT_EQ(field.at({0, 1 << 17}), 1.0F);
+}
+
 TEST(DistanceField, ALongRowIsExactToItsEnd) {
     const auto field = distance_field(drawn({"#"}), 1.0, {0, 0, 3'000'000, 1}).value();
     EXPECT_FLOAT_EQ(field.at({2'999'999, 0}), 2'999'999.0F);

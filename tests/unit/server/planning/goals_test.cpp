@@ -104,12 +104,19 @@ TEST(Goals, AreTheNearestFreeCellsWithTheCheapestWay) {
 TEST(Goals, TellTheLengthOfTheWayAndTheNearestCellOfTheFrontier) {
     const auto view = drawn({".........f", ".........f", ".........f"});
     const auto frontiers = find_frontiers(view);
-    const auto goals = frontier_goals(view, 1.0, frontiers, {0.5, 1.5}, for_a_point()).value();
+    const auto goals = frontier_goals(view, 0.5, frontiers, {0.25, 0.75}, for_a_point()).value();
     ASSERT_TRUE(goals[0]);
     EXPECT_EQ(goals[0]->cell, (Cell{8, 1}));
     EXPECT_EQ(goals[0]->target, (Cell{9, 1}));
-    EXPECT_NEAR(goals[0]->length_m, 8.0, 1e-12);
-    EXPECT_NEAR(goals[0]->cost, 8.0, 1e-12);
+    EXPECT_NEAR(goals[0]->length_m, 4.0, 1e-12);
+    EXPECT_NEAR(goals[0]->cost, 4.0, 1e-12);
+}
+
+TEST(Goals, OneCellMayServeSeveralFrontiers) {
+    const auto view = drawn({"f.f", "..."});
+    const auto goals = frontier_goals(view, 1.0, find_frontiers(view), {1.5, 0.5}, for_a_point()).value();
+    ASSERT_EQ(goals.size(), 2U);
+    for (const auto& goal : goals) EXPECT_EQ(goal->cell, (Cell{1, 0})) << "where the robot is";
 }
 
 TEST(Goals, DangerIsTakenOnlyWhereThereIsNothingElse) {
@@ -130,6 +137,10 @@ TEST(Goals, NoneIsBehindAWall) {
     const auto frontiers = find_frontiers(view);
     EXPECT_FALSE(frontier_goals(view, 1.0, frontiers, {0.5, 0.5}, for_a_point()).value().front())
         << "three metres away, on the other side";
+    const auto slanted = drawn({"#....", ".#...", "..#..", "...#.", "f...#"});
+    EXPECT_FALSE(frontier_goals(slanted, 1.0, find_frontiers(slanted), {4.5, 4.5}, for_a_point()).value().front());
+    const auto other_slant = drawn({"....#", "...#.", "..#..", ".#...", "#...f"});
+    EXPECT_FALSE(frontier_goals(other_slant, 1.0, find_frontiers(other_slant), {0.5, 4.5}, for_a_point())->front());
 }
 
 TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
