@@ -132,6 +132,13 @@ TEST(GridPath, PointsOnTheBordersOfCellsAreLikeOthers) {
     EXPECT_GT(found, 50);
 }
 
+TEST(GridPath, APointAHairBelowAnObstacleIsNotInIt) {
+    const auto view = drawn({"####", "...."}, {0, -1});
+    const auto path = plan_path(view, 1.0, {0.5, -1e-17}, {3.5, -0.5}, {.body_radius_m = 0.0}).value();
+    EXPECT_NEAR(path.cost, std::hypot(3.0, 0.5), 1e-9);
+    EXPECT_NEAR(path.length_m, std::hypot(3.0, 0.5), 1e-9);
+}
+
 TEST(GridPath, IsTheSameEveryTime) {
     std::mt19937 random(35);
     const auto view = scattered(random, kBox, 15);
