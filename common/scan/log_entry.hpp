@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/map_patch.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -40,6 +41,6 @@ struct ScanTaken {
 };
 
 /// One entry of a session's append-only log, from which every map is woven.
-using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken>;
+using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch>;
 
 } // namespace scanloom

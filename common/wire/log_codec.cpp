@@ -1,11 +1,15 @@
 #include "common/wire/log_codec.hpp"
 
+#include "common/scan/limits.hpp"
 #include "common/wire/proto_convert.hpp"
 #include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/log.pb.h"
 
 #include <google/protobuf/arena.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace scanloom::wire {
 namespace {
@@ -31,7 +35,29 @@ struct ToProto {
         out.mutable_scan_taken()->set_robot(taken.robot);
         to_proto(taken.scan, *out.mutable_scan_taken()->mutable_scan());
     }
+    void operator()(const MapPatch& patch) const {
+        auto& proto = *out.mutable_map_patch();
+        proto.set_cell_size(patch.cell_size);
+        proto.set_min_x(patch.min_x);
+        proto.set_min_y(patch.min_y);
+        proto.set_width(patch.width);
+        proto.set_cells(patch.cells.data(), patch.cells.size());
+    }
 };
+
+Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
+    const auto& cells = proto.cells();
+    const bool is_placed = proto.cell_size() > 0.0 && proto.cell_size() <= kMapCellSizeMax &&
+                           std::abs(proto.min_x()) <= kCoordinateMax && std::abs(proto.min_y()) <= kCoordinateMax;
+    const bool is_whole = proto.width() > 0 && cells.size() <= kMapPatchCellsMax && cells.size() % proto.width() == 0;
+    const bool are_cells = std::all_of(cells.begin(), cells.end(), [](char cell) { return cell >= 0 && cell <= 2; });
+    if (!is_placed || !is_whole || !are_cells) return damaged("a part of an imported map");
+    MapPatch patch{proto.cell_size(), proto.min_x(), proto.min_y(), proto.width(), {}};
+    patch.cells.resize(cells.size());
+    std::transform(cells.begin(), cells.end(), patch.cells.begin(),
+                   [](char cell) { return static_cast<MapCell>(cell); });
+    return LogEntry(std::move(patch));
+}
 
 } // namespace
 
@@ -55,6 +81,7 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
         if (!sensor) return prefixed("sensor_described.", sensor.error());
         return LogEntry(SensorDescribed{proto->sensor_described().robot(), std::move(*sensor)});
     }
+    case v1::LogEntry::kMapPatch: return read_map_patch(proto->map_patch());
     case v1::LogEntry::kScanTaken: {
         auto scan = from_proto(proto->scan_taken().scan());
         if (!scan) return prefixed("scan_taken.", scan.error());
@@ -70,6 +97,7 @@ std::string encode_session(const SessionRecord& record) {
     proto.set_name(record.name);
     proto.set_created(record.created);
     to_proto(record.options, *proto.mutable_config());
+    proto.set_map_patches(record.map_patches);
     return proto.SerializeAsString();
 }
 
@@ -78,7 +106,7 @@ Result<SessionRecord> decode_session(std::string_view bytes) {
     if (!proto.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a session");
     auto options = from_proto(proto.config());
     if (!options) return options.error();
-    return SessionRecord{proto.name(), proto.created(), *options};
+    return SessionRecord{proto.name(), proto.created(), *options, proto.map_patches()};
 }
 
 } // namespace scanloom::wire

@@ -4,6 +4,7 @@
 #include "common/scan/log_entry.hpp"
 #include "common/scan/session_options.hpp"
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,7 @@ struct SessionRecord {
     std::string name;
     double created = 0.0;   ///< seconds since the epoch
     SessionOptions options; ///< fully resolved when the session was created
+    std::uint32_t map_patches = 0; ///< entries that an import begins its log with
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };

@@ -65,6 +65,11 @@ Result<std::string> CarmenText::text_of(const SensorDescribed& described) {
     return fmt::format("# replay with --max-range {}\n", described.sensor.range_max);
 }
 
+Result<std::string> CarmenText::text_of(const MapPatch&) {
+    return Error{Errc::kConflict, "the session begins with an imported map, which a CARMEN log cannot say; ask for the "
+                                  "log without format=clf"};
+}
+
 Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Scan& scan = taken.scan;
     const auto known = sensors_.find({taken.robot, scan.sensor});

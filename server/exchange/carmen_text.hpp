@@ -26,15 +26,16 @@ public:
     [[nodiscard]] static std::string head(const std::string& session);
 
     /// The lines that an entry becomes; robots and sensors become none, but for a comment where a sensor reaches
-    /// further than a reader may believe. Entries come in the order of the log. Errors  kConflict: what the format
-    /// cannot say, a scan of sonars, of beams that are not evenly spaced, or of an
-    ///         aperture of its own. kMalformed: a scan of nothing known.
+    /// further than a reader may believe. Entries come in the order of the log.
+    /// Errors  kConflict: what the format cannot say: an imported map, a scan of sonars, of beams that are not evenly
+    ///         spaced, or of an aperture of its own. kMalformed: a scan of nothing known.
     [[nodiscard]] Result<std::string> lines(const LogEntry& entry);
 
 private:
     [[nodiscard]] Result<std::string> text_of(const RobotJoined& joined);
     [[nodiscard]] Result<std::string> text_of(const SensorDescribed& described);
     [[nodiscard]] Result<std::string> text_of(const ScanTaken& taken);
+    [[nodiscard]] static Result<std::string> text_of(const MapPatch& patch);
 
     std::vector<std::string> robots_;
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;

@@ -3,6 +3,7 @@
 #include "server/http/handlers/changes.hpp"
 #include "server/http/handlers/digest.hpp"
 #include "server/http/handlers/health.hpp"
+#include "server/http/handlers/import.hpp"
 #include "server/http/handlers/log.hpp"
 #include "server/http/handlers/map_files.hpp"
 #include "server/http/handlers/metrics.hpp"
@@ -16,6 +17,7 @@
 #include "server/http/handlers/weaves.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
+#include "server/http/multipart.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
@@ -39,6 +41,16 @@ bool needs_sessions(Operation operation) {
     }
 }
 
+/// What a body must be.
+Result<> check_content_type(Operation operation, const Request& request) {
+    if (request.method != "POST") return {};
+    const bool wants_form = operation == Operation::kImportMap;
+    if (wants_form ? is_form(request.content_type) : is_json(request.content_type)) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("the body is {}; send Content-Type: {}", in_quotes(request.content_type),
+                             wants_form ? "multipart/form-data" : "application/json")};
+}
+
 } // namespace
 
 Response Api::answer(const Request& request) {
@@ -57,12 +69,11 @@ Response Api::answer(const Request& request) {
                        path)
             .set("Allow", refused->allow);
     }
-    if (request.method == "POST" && !is_json(request.content_type)) {
-        return problem(
-            Status::unsupported_media_type,
-            fmt::format("the body is {}; send Content-Type: application/json", in_quotes(request.content_type)), path);
+    const auto& match = std::get<Match>(routing);
+    if (auto accepted = check_content_type(match.operation, request); !accepted) {
+        return problem(Status::unsupported_media_type, accepted.error().message, path);
     }
-    auto response = call(std::get<Match>(routing), *target, request);
+    auto response = call(match, *target, request);
     return response ? std::move(*response) : problem(response.error(), path);
 }
 
@@ -82,6 +93,7 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kCreateSession: return create_session(sessions_, call);
     case Operation::kGetSession: return get_session(sessions_, call);
     case Operation::kDeleteSession: return delete_session(sessions_, weaves_, call);
+    case Operation::kImportMap: return import_map(sessions_, call);
     case Operation::kTilePng: return get_tile_png(maps_, call);
     case Operation::kTileBin: return get_tile_bin(maps_, call);
     case Operation::kTileJson: return get_tilejson(maps_, call);

@@ -53,6 +53,14 @@ std::optional<Response> refusal_of(beast::error_code reason) {
     return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
 }
 
+/// What tells the lane.
+Request head_of(const beast::http::request<beast::http::string_body>& message) {
+    Request request;
+    request.method = view(message.method_string());
+    request.target = view(message.target());
+    return request;
+}
+
 Request request_of(beast::http::request<beast::http::string_body>&& message) {
     Request request;
     request.method = view(message.method_string());
@@ -129,7 +137,7 @@ net::awaitable<bool> Connection::wait_for_request() {
 net::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
-    parser.body_limit(service_->config.body_bytes_max);
+    parser.body_limit(service_->config.import_bytes_max); // of what it asks for, once that is known: refusal_of()
     stream_.expires_after(service_->config.header);
     const auto [error, size] = co_await beast::http::async_read_header(stream_, buffer_, parser, kAwaitTuple);
     if (error) {
@@ -140,6 +148,13 @@ net::awaitable<bool> Connection::serve_request() {
         co_await write(*refusal, {});
         co_return false;
     }
+    const Lane lane = lane_of(head_of(parser.get()));
+    Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
+    if (lane == Lane::kImporting) slot = take_slot(lane); // its body is large
+    if (!slot) {
+        co_await write(problem(slot.error(), instance_of(view(parser.get().target()))), {});
+        co_return false;
+    }
     const bool is_whole = co_await read_body(parser);
     if (!is_whole) co_return false;
 
@@ -147,7 +162,7 @@ net::awaitable<bool> Connection::serve_request() {
                   .keep_alive = parser.get().keep_alive(),
                   .takes_chunks = parser.get().version() >= 11};
     const auto begin = std::chrono::steady_clock::now();
-    const Response response = co_await compute(request_of(parser.release()));
+    const Response response = co_await compute(lane, request_of(parser.release()));
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     service_->counters.request_seconds.Observe(seconds.count());
     if (stopping_) manner.keep_alive = false;
@@ -165,6 +180,10 @@ std::optional<Response> Connection::refusal_of(const Parser& parser) const {
     if (message.count(field::host) > 1 || (message.count(field::host) == 0 && message.version() >= 11)) {
         return problem(Status::bad_request, "a request has exactly one Host field", path);
     }
+    const bool is_import = lane_of(head_of(message)) == Lane::kImporting;
+    if (!is_import && parser.content_length().value_or(0) > service_->config.body_bytes_max) {
+        return problem(Status::payload_too_large, "the body is too large; send less", path);
+    }
     const auto host = view(message[field::host]);
     if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
         return problem(Status::misdirected_request,
@@ -181,17 +200,20 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
         const bool asked = co_await write_all("HTTP/1.1 100 Continue\r\n\r\n", {});
         if (!asked) co_return false;
     }
-    stream_.expires_after(service_->config.body);
+    const auto& config = service_->config;
+    const auto bytes = static_cast<double>(parser.content_length().value_or(0));
+    const std::chrono::duration<double> more(bytes / static_cast<double>(config.read_rate_min));
+    stream_.expires_after(config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more));
     const auto [error, size] = co_await beast::http::async_read(stream_, buffer_, parser, kAwaitTuple);
     if (error) co_await refuse(error);
     co_return !error;
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.
-net::awaitable<Response> Connection::compute(Request request) {
-    const Lane lane = lane_of(request);
+net::awaitable<Response> Connection::compute(Lane lane, Request request) {
     if (lane == Lane::kAtOnce) co_return answer_guarded(service_->answer, request);
-    const auto slot = take_slot(lane);
+    Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
+    if (lane != Lane::kImporting) slot = take_slot(lane);
     if (!slot) co_return problem(slot.error(), instance_of(request.target));
     auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
         co_return answer_guarded(service->answer, request);
@@ -209,6 +231,10 @@ Result<std::shared_ptr<const void>> Connection::take_slot(Lane lane) const {
                          "too many sessions are being created or deleted at this moment; try again soon"};
         }
     }
+    if (lane == Lane::kImporting) {
+        slot = service_->imports.try_take();
+        if (!slot) return Error{Errc::kOverloaded, "other maps are being imported at this moment; try again soon"};
+    }
     if (lane == Lane::kWeaving) {
         slot = service_->weaves.try_take();
         if (!slot) return Error{Errc::kOverloaded, "too many maps are being waited for at this moment; try again soon"};
@@ -222,6 +248,7 @@ const net::any_io_executor& Connection::executor_of(Lane lane) const {
     case Lane::kTelling: return service_->executors.telling;
     case Lane::kSurvey: return service_->executors.survey;
     case Lane::kWeaving: return service_->executors.weaving;
+    case Lane::kImporting:
     case Lane::kChanging: return service_->executors.changing;
     default: return service_->executors.serving;
     }

@@ -42,6 +42,7 @@ struct Service {
     Answer answer;
     metrics::HttpCounters& counters;
     Slots changes; ///< requests in Lane::kChanging
+    Slots imports; ///< requests in Lane::kImporting
     Slots weaves;  ///< requests in Lane::kWeaving
 };
 
@@ -70,7 +71,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
-    [[nodiscard]] boost::asio::awaitable<Response> compute(Request request);
+    [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request);
     [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(Lane lane) const;
     [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);

@@ -36,6 +36,7 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kMapPgm:
     case Operation::kMapCsv:
     case Operation::kMapNpy: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kSurvey;
+    case Operation::kImportMap: return Lane::kImporting;
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;

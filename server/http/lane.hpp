@@ -6,12 +6,13 @@ namespace scanloom::http {
 
 /// What an answer may have to wait for; each lane has an executor of its own, so that none holds up another.
 enum class Lane {
-    kAtOnce,   ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
-    kTelling,  ///< a look at the system: metrics
-    kServing,  ///< its own work on a part of a snapshot: tiles, facts
-    kSurvey,   ///< its own work on a whole map, which may take a second: digests, images, tiles that show much
-    kWeaving,  ///< maps that are to be woven first
-    kChanging, ///< the disk, or a session's strand: creating and deleting sessions
+    kAtOnce,    ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
+    kTelling,   ///< a look at the system: metrics
+    kServing,   ///< its own work on a part of a snapshot: tiles, facts
+    kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, tiles that show much
+    kWeaving,   ///< maps that are to be woven first
+    kImporting, ///< as kChanging, with a large body
+    kChanging,  ///< the disk, or a session's strand: creating and deleting sessions
 };
 
 [[nodiscard]] Lane lane_of(const Request& request);

@@ -19,6 +19,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/sessions", Operation::kCreateSession},
     Route{"GET", "/api/v1/sessions/{session}", Operation::kGetSession},
     Route{"DELETE", "/api/v1/sessions/{session}", Operation::kDeleteSession},
+    Route{"POST", "/api/v1/sessions/{session}/import", Operation::kImportMap},
     Route{"GET", "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.png", Operation::kTilePng},
     Route{"GET", "/api/v1/sessions/{session}/tiles/{layer}/{z}/{x}/{y}.bin", Operation::kTileBin},
     Route{"GET", "/api/v1/sessions/{session}/tiles/{layer}.json", Operation::kTileJson},

@@ -21,6 +21,7 @@ enum class Operation {
     kCreateSession,
     kGetSession,
     kDeleteSession,
+    kImportMap,
     kTilePng,
     kTileBin,
     kTileJson,

@@ -20,10 +20,13 @@ struct ServerConfig {
 
     std::uint32_t header_bytes_max = 8 * 1024;
     std::uint64_t body_bytes_max = 64 * 1024;
+    std::uint64_t import_bytes_max = std::uint64_t{80} << 20; ///< a map of 64 million cells, and what goes with it
+    std::size_t imports_max = 2;                              ///< at once; one more is answered 503
 
     std::chrono::milliseconds idle{60'000};    ///< between requests
     std::chrono::milliseconds header{10'000};  ///< from a request's first byte to the end of its header
-    std::chrono::milliseconds body{30'000};    ///< for all of the body
+    std::chrono::milliseconds body{30'000};    ///< for all of the body, and what read_rate_min adds for a large one
+    std::uint64_t read_rate_min = 256 * 1024;  ///< bytes a second of a large body
     std::chrono::milliseconds write{30'000};   ///< in which some of the answer must go out
     std::uint64_t write_rate_min = 256 * 1024; ///< bytes a second that may be added to `write` for all of the answer
     std::chrono::milliseconds linger{2'000};   ///< for the peer to read the last answer and hang up

@@ -1,6 +1,7 @@
 #include "server/mapping/laser_layers.hpp"
 
 #include "server/mapping/inverse_sensor_model.hpp"
+#include "server/mapping/map_patch_cells.hpp"
 #include "server/mapping/work.hpp"
 
 #include <algorithm>
@@ -81,6 +82,30 @@ bool LaserLayers::integrate(const LaserScan& scan, Revision revision, double& wo
     done_ = 0;
     touched_ = {};
     return true;
+}
+
+void LaserLayers::import(const MapPatch& patch, Revision revision) {
+    grid_.begin(revision);
+    for_each_cell_of(patch, config_.cell_size, [&](grid::Cell cell, MapCell to) { set(cell, to); });
+    double unbounded = HUGE_VAL;
+    changed_ = grid_.changed_in(touched_);
+    static_cast<void>(fold_classes(unbounded));
+    done_ = 0;
+    touched_ = {};
+}
+
+void LaserLayers::set(grid::Cell cell, MapCell to) {
+    if (to == MapCell::kUnknown) return;
+    const Verdict verdict = to == MapCell::kOccupied ? Verdict::kOccupied : Verdict::kFree;
+    bounds_.occupancy.include_row(cell.j, cell.i, cell.i + 1);
+    bounds_.himm.include_row(cell.j, cell.i, cell.i + 1);
+    touched_.include_row(cell.j, cell.i, cell.i + 1);
+    grid_.write_row(cell.j, cell.i, cell.i + 1, [&](LaserChunk& chunk, std::int32_t i, std::size_t) {
+        const auto at = grid::index_in_chunk({i, cell.j});
+        if (verdict == Verdict::kFree && chunk.occupancy[at] != kUnknownLogOdds) return;
+        chunk.occupancy[at] = occupancy_.certain(verdict);
+        chunk.himm[at] = verdict == Verdict::kOccupied ? kHimmMax : 0;
+    });
 }
 
 /// The inverse sensor model: cells by sectors.

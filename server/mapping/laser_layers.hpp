@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/map_patch.hpp"
 #include "server/classify/cell_class.hpp"
 #include "server/classify/hysteresis.hpp"
 #include "server/mapping/chunk_grid.hpp"
@@ -58,6 +59,12 @@ public:
     /// @return whether all of the scan is in; until then nothing but the same call may follow.
     [[nodiscard]] bool integrate(const LaserScan& scan, Revision revision, double& work);
 
+    /// Takes over what a map that was made elsewhere says, the log's entry `revision`, as certain as cells can be.
+    /// Where its cells are no larger than ours, one of ours is occupied when any of those whose centres it holds is,
+    /// else free when any is; where they are larger, it is as the one that holds its centre.
+    /// Pre  no scan has been integrated: what is free does not erase what is occupied.
+    void import(const MapPatch& patch, Revision revision);
+
     /// The cells that any scan changed.
     struct Bounds {
         grid::CellBox occupancy;
@@ -86,6 +93,7 @@ private:
     [[nodiscard]] bool count(const LaserScan& scan, double& work);
     [[nodiscard]] bool fold_classes(double& work);
     void add_first_marks();
+    void set(grid::Cell cell, MapCell to);
 
     const MapConfig config_;
     const OccupancyRule occupancy_;

@@ -181,6 +181,13 @@ Result<> check_classes(const MapConfig& c) {
     if (!(c.class_p_free > 0.0 && c.class_p_free < c.class_p_occupied)) {
         return out_of_range("class_p_free", c.class_p_free, "more than 0 and less than class_p_occupied is needed");
     }
+    if (c.class_source == ClassSource::kOccupancy && c.class_p_occupied > c.p_max) {
+        return out_of_range("class_p_occupied", c.class_p_occupied,
+                            "at most p_max is needed, or no cell could reach it");
+    }
+    if (c.class_source == ClassSource::kOccupancy && c.class_p_free < c.p_min) {
+        return out_of_range("class_p_free", c.class_p_free, "at least p_min is needed, or no cell could reach it");
+    }
     if (auto ok = check_count("class_himm_occupied", c.class_himm_occupied, 1, 15); !ok) return ok;
     if (!(c.class_himm_free >= 0 && c.class_himm_free < c.class_himm_occupied)) {
         return out_of_range("class_himm_free", c.class_himm_free,

@@ -26,6 +26,11 @@ public:
         }
     }
 
+    /// What a cell can hold at most and at least.
+    [[nodiscard]] LogOdds certain(Verdict verdict) const noexcept {
+        return verdict == Verdict::kOccupied ? l_max_ : l_min_;
+    }
+
 private:
     LogOdds prior_;
     LogOdds l_min_;

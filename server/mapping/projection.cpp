@@ -1,5 +1,7 @@
 #include "server/mapping/projection.hpp"
 
+#include "server/mapping/reach.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -71,6 +73,13 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
     robot.state.stamp = scan.stamp;
     robot.state.pose = scan.pose;
     robot.trajectory.append({revision, scan.stamp, scan.pose});
+    return true;
+}
+
+Result<bool> Projection::fold_entry(const MapPatch& patch, double& work) {
+    if (!robots_.empty()) return misplaced(revision_ + 1, "an imported map after robots have joined");
+    work -= reach_of(config_, patch).work;
+    laser_.import(patch, revision_ + 1);
     return true;
 }
 

@@ -101,6 +101,7 @@ private:
     Result<bool> fold_entry(const RobotJoined& joined, double& work);
     Result<bool> fold_entry(const SensorDescribed& described, double& work);
     Result<bool> fold_entry(const ScanTaken& taken, double& work);
+    Result<bool> fold_entry(const MapPatch& patch, double& work);
     [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 

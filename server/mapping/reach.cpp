@@ -1,5 +1,6 @@
 #include "server/mapping/reach.hpp"
 
+#include "server/mapping/map_patch_cells.hpp"
 #include "server/mapping/work.hpp"
 
 #include <fmt/format.h>
@@ -105,6 +106,12 @@ Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan) 
                                              : reach_of_sonar(config, sensor, scan);
 }
 
+Reach reach_of(const MapConfig& config, const MapPatch& patch) {
+    const auto cells = cells_of(patch, config.cell_size);
+    const auto ours = static_cast<double>(cells.width()) * static_cast<double>(cells.height());
+    return {SensorKind::kLaser, cells, 8.0 * std::max(ours, static_cast<double>(patch.cells.size()))};
+}
+
 std::int64_t chunk_count_of(const grid::CellBox& box) noexcept {
     const grid::ChunkBox chunks = grid::chunks_of(box);
     return (chunks.ci_end - chunks.ci_begin) * (chunks.cj_end - chunks.cj_begin);
@@ -121,8 +128,8 @@ Result<> check_reach(const MapConfig& config, const Sensor& sensor) {
 Result<> check_work(const Reach& reach) {
     if (reach.work <= kScanWorkMax) return {};
     return Error{Errc::kInvalidField,
-                 "ranges of so many cones, so wide and so long, cover too many cells to be woven at once; use larger "
-                 "cells, fewer beams in a scan, or a smaller range_max"};
+                 "this covers too many cells to be woven at once; use larger cells, or of a sensor fewer beams in a "
+                 "scan, or a smaller range_max"};
 }
 
 } // namespace scanloom::mapping

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/map_patch.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "server/grid/chunk.hpp"
@@ -19,6 +20,9 @@ struct Reach {
 /// Cost  the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
 
+/// Of taking over a part of an imported map.
+[[nodiscard]] Reach reach_of(const MapConfig& config, const MapPatch& patch);
+
 /// How many chunks hold any cell of the box.
 [[nodiscard]] std::int64_t chunk_count_of(const grid::CellBox& box) noexcept;
 
@@ -29,7 +33,8 @@ inline constexpr double kScanWorkMax = 1e9;
 /// Errors  kInvalidField: range_max spans more than 8192 cells.
 [[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
 
-/// Errors  kInvalidField: so many cones, so wide, so far, at such small cells, that weaving would take seconds.
+/// Errors  kInvalidField: so many cones, so wide, so far (or such a map), at such small cells, that weaving would
+///         take seconds.
 [[nodiscard]] Result<> check_work(const Reach& reach);
 
 } // namespace scanloom::mapping

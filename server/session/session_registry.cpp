@@ -2,6 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
+#include "server/mapping/reach.hpp"
 #include "server/session/checkpoint.hpp"
 
 #include <boost/asio/post.hpp>
@@ -12,6 +13,37 @@
 #include <latch>
 
 namespace scanloom::session {
+namespace {
+
+Result<> check_name(std::string_view name) {
+    if (is_valid_name(name)) return {};
+    return Error{
+        Errc::kInvalidField,
+        fmt::format("name is not a valid session name; use 1 to {} characters of A-Z a-z 0-9 _ -", kNameBytesMax)};
+}
+
+/// Whether a map fits into a session.
+Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches) {
+    if (patches.empty()) return Error{Errc::kInvalidField, "the map has no cells"};
+    grid::CellBox cells;
+    for (const auto& patch : patches) {
+        const auto reach = mapping::reach_of(config, patch);
+        if (auto ok = mapping::check_work(reach); !ok) return ok;
+        cells.include(reach.cells);
+    }
+    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(SessionLimits{}.chunks_max)) return {};
+    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than a session can have; use "
+                                          "larger cells",
+                                          cells.width(), cells.height(), config.cell_size)};
+}
+
+Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revision, const MapPatch& patch) {
+    std::promise<Result<>> appended;
+    log.append(id, revision, {wire::encode_entry(patch)}, [&](Result<> done) { appended.set_value(std::move(done)); });
+    return appended.get_future().get();
+}
+
+} // namespace
 
 SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now,
                                  std::optional<boost::asio::any_io_executor> may_wait)
@@ -36,6 +68,10 @@ void SessionRegistry::recover_one(const store::StoredSession& stored) {
     if (draining_) return; // told to stop meanwhile: what is not woven now will be at the next start
     std::string name = fmt::format("#{}", stored.id); // until its record has told
     auto session = weave(stored, name);
+    if (!session && session.error().code == Errc::kGone) { // nobody was told that it exists
+        spdlog::warn("session '{}' is removed: {}", name, session.error().message);
+        if (log_.remove_session(stored.id)) return;
+    }
     const std::unique_lock lock(mutex_);
     if (session && *session) {
         sessions_[name] = std::move(*session);
@@ -59,6 +95,10 @@ Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSessi
     if (recovered->checkpoint_rejected) {
         spdlog::warn("session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", name,
                      recovered->checkpoint_rejected->message);
+    }
+    if (recovered->complete && recovered->projection.revision() < record->map_patches) {
+        return Error{Errc::kGone, fmt::format("its import came to {} of {} parts before a crash",
+                                              recovered->projection.revision(), record->map_patches)};
     }
     if (!recovered->complete) {
         keep_progress(stored.id, name, *recovered);
@@ -105,41 +145,66 @@ std::map<std::string, Error> SessionRegistry::damaged() const {
     return reasons;
 }
 
-Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options) {
-    if (!is_valid_name(name)) {
-        return Error{
-            Errc::kInvalidField,
-            fmt::format("name is not a valid session name; use 1 to {} characters of A-Z a-z 0-9 _ -", kNameBytesMax)};
+Result<> SessionRegistry::check_new(std::string_view name) const {
+    if (draining_)
+        return Error{Errc::kShuttingDown,
+                     "the server is shutting down and makes no new sessions; try again when it is back"};
+    const std::shared_lock lock(mutex_);
+    if (sessions_.contains(name)) {
+        return Error{Errc::kAlreadyExists,
+                     fmt::format("session '{}' exists already; choose another name or delete it first", name)};
     }
+    if (damaged_.contains(name)) {
+        return Error{Errc::kAlreadyExists,
+                     fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
+    }
+    return {};
+}
+
+std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
+    auto session = std::make_shared<Session>(std::move(info), std::move(projection), 0, log_, compute_, counters_,
+                                             SessionLimits{}, may_wait_);
+    const std::unique_lock lock(mutex_);
+    sessions_.emplace(session->info().name, session);
+    return session;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options) {
+    if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
 
     const std::lock_guard changing(changing_);
-    if (draining_)
-        return Error{Errc::kShuttingDown,
-                     "the server is shutting down and makes no new sessions; try again when it is back"};
-    {
-        const std::shared_lock lock(mutex_);
-        if (sessions_.contains(name)) {
-            return Error{Errc::kAlreadyExists,
-                         fmt::format("session '{}' exists already; choose another name or delete it first", name)};
-        }
-        if (damaged_.contains(name)) {
-            return Error{
-                Errc::kAlreadyExists,
-                fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
-        }
-    }
+    if (auto is_new = check_new(name); !is_new) return is_new.error();
     const double created = now_();
     const auto id =
         log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
     if (!id) return id.error();
-    auto session =
-        std::make_shared<Session>(SessionInfo{*id, std::string(name), created, *config}, mapping::Projection(*config),
-                                  0, log_, compute_, counters_, SessionLimits{}, may_wait_);
-    const std::unique_lock lock(mutex_);
-    sessions_.emplace(name, session);
-    return session;
+    return add({*id, std::string(name), created, *config}, mapping::Projection(*config));
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view name, const SessionOptions& options,
+                                                             const std::vector<MapPatch>& patches) {
+    if (auto ok = check_name(name); !ok) return ok.error();
+    const auto config = mapping::resolve(options);
+    if (!config) return config.error();
+    if (auto ok = check_patches(*config, patches); !ok) return ok.error();
+
+    const std::lock_guard changing(changing_);
+    if (auto is_new = check_new(name); !is_new) return is_new.error();
+    const double created = now_();
+    const auto id = log_.create_session(wire::encode_session(
+        {std::string(name), created, mapping::options_of(*config), static_cast<std::uint32_t>(patches.size())}));
+    if (!id) return id.error();
+    mapping::Projection projection(*config);
+    for (std::size_t n = 0; n < patches.size(); ++n) {
+        auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
+        if (imported) imported = projection.fold(patches[n]);
+        if (imported) continue;
+        static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
+        return imported.error();
+    }
+    return add({*id, std::string(name), created, *config}, std::move(projection));
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

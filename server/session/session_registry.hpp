@@ -51,6 +51,12 @@ public:
     /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options);
 
+    /// The same, beginning with a map that was made elsewhere: its patches are the log's first entries. Where a crash
+    /// comes between, the next start removes what there is of it.
+    /// Errors  also kInvalidField, kFull: the map at these cells.
+    [[nodiscard]] Result<std::shared_ptr<Session>> import_map(std::string_view name, const SessionOptions& options,
+                                                              const std::vector<MapPatch>& patches);
+
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
     /// Pre  never called from a thread of the compute executor.
     [[nodiscard]] Result<> remove(std::string_view name);
@@ -72,6 +78,8 @@ private:
         Error error;
     };
 
+    [[nodiscard]] Result<> check_new(std::string_view name) const;
+    [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
     void recover_one(const store::StoredSession& stored);
     [[nodiscard]] Result<std::shared_ptr<Session>> weave(const store::StoredSession& stored, std::string& name);
     void keep_progress(store::SessionId id, const std::string& name, Recovered& recovered);

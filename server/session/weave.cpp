@@ -33,8 +33,11 @@ void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
 /// What no robot is told any more, since its log is what it is.
 Result<> check_entry(const mapping::MapConfig& config, const LogEntry& entry) {
-    const auto* described = std::get_if<SensorDescribed>(&entry);
-    return described == nullptr ? Result<>{} : mapping::check_reach(config, described->sensor);
+    if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
+        return mapping::check_reach(config, described->sensor);
+    }
+    const auto* patch = std::get_if<MapPatch>(&entry);
+    return patch == nullptr ? Result<>{} : mapping::check_work(mapping::reach_of(config, *patch));
 }
 
 } // namespace

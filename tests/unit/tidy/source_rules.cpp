@@ -77,6 +77,7 @@ const std::vector<Package> kPackages = {
     {"scanloom/v1/", {"common/wire"}},
     {"google/protobuf/", {"common/wire"}},
     {"openssl/", {"common/hash", "server/http"}},
+    {"yaml-cpp/", {"server/tiles"}},
     {"opencv2/", {"server/tiles", "lab"}},
     {"rocksdb/", {"server/store"}},
     {"prometheus/", {"server/metrics"}},

@@ -1,5 +1,6 @@
 #include "server/session/session_registry.hpp"
 
+#include "common/wire/log_codec.hpp"
 #include "tests/support/digests.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
@@ -326,6 +327,57 @@ TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
     for (auto& thread : threads) thread.join();
     EXPECT_EQ(static_cast<std::size_t>(created - removed), registry_->list().size());
     EXPECT_EQ(registry_->list().size(), log_.sessions()->size());
+}
+
+TEST(ImportedMap, IsThereAgainAfterARestart) {
+    store::MemoryScanLog log;
+    boost::asio::thread_pool pool(2);
+    const MapPatch bottom{0.1, -1.0, 2.0, 3, {MapCell::kFree, MapCell::kFree, MapCell::kUnknown}};
+    const MapPatch top{0.1, -1.0, 2.1, 3, {MapCell::kOccupied, MapCell::kFree, MapCell::kFree}};
+    std::string digests;
+    {
+        SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
+        const auto session = registry.import_map("depot", {.cell_size = 0.1}, {bottom, top});
+        ASSERT_TRUE(session) << session.error().message;
+        EXPECT_EQ((*session)->snapshot()->revision, 2U);
+        digests = testing_support::digests_of(*(*session)->snapshot());
+        registry.drain();
+    }
+    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
+    ASSERT_TRUE(registry.recover());
+    EXPECT_EQ(testing_support::digests_of(*registry.find("depot")->snapshot()), digests);
+    registry.drain();
+}
+
+TEST(ImportedMap, ThatACrashCutShortIsGoneAfterTheRestart) {
+    store::MemoryScanLog log;
+    boost::asio::thread_pool pool(2);
+    const auto id = log.create_session(wire::encode_session({"depot", 1.0, {}, 2})).value();
+    std::promise<void> appended;
+    log.append(id, 1, {wire::encode_entry(MapPatch{0.1, 0.0, 0.0, 1, {MapCell::kFree}})},
+               [&](const Result<>&) { appended.set_value(); });
+    appended.get_future().wait();
+    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
+    ASSERT_TRUE(registry.recover());
+    EXPECT_EQ(registry.find("depot"), nullptr);
+    EXPECT_TRUE(registry.damaged().empty());
+    EXPECT_TRUE(log.sessions()->empty());
+    EXPECT_TRUE(registry.import_map("depot", {}, {MapPatch{0.1, 0.0, 0.0, 1, {MapCell::kFree}}}));
+    registry.drain();
+}
+
+TEST(ImportedMap, ThatFitsIntoNoSessionIsRefusedAndMakesNone) {
+    store::MemoryScanLog log;
+    boost::asio::thread_pool pool(2);
+    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
+    EXPECT_EQ(registry.import_map("depot", {}, {}).error().code, Errc::kInvalidField);
+    const MapPatch coarse{100.0, 0.0, 0.0, 100, std::vector<MapCell>(10'000, MapCell::kFree)};
+    EXPECT_EQ(registry.import_map("depot", {.cell_size = 0.01}, {coarse}).error().code, Errc::kInvalidField);
+    const MapPatch here{0.1, 0.0, 0.0, 1, {MapCell::kFree}};
+    const MapPatch far{0.1, 100'000.0, 100'000.0, 1, {MapCell::kFree}};
+    EXPECT_EQ(registry.import_map("depot", {}, {here, far}).error().code, Errc::kFull);
+    EXPECT_TRUE(log.sessions()->empty());
+    registry.drain();
 }
 
 } // namespace

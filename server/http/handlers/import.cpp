@@ -1,0 +1,71 @@
+#include "server/http/handlers/import.hpp"
+
+#include "server/http/handlers/session_json.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/multipart.hpp"
+#include "server/mapping/map_config.hpp"
+#include "server/tiles/ros_map_import.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+/// What the form holds.
+struct Form {
+    std::optional<std::string_view> yaml;
+    std::optional<std::string_view> image;
+    SessionOptions options;
+};
+
+Result<Form> read_form(const Request& request) {
+    const auto fields = parse_form(request.content_type, request.body);
+    if (!fields) return fields.error();
+    Form form;
+    for (const auto& [name, content] : *fields) {
+        const auto* setting = mapping::find_config_field(name);
+        if (name == "yaml") {
+            form.yaml = content;
+        } else if (name == "image") {
+            form.image = content;
+        } else if (setting == nullptr) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("the field {} is unknown here; possible are yaml, image and the "
+                                     "settings of a session",
+                                     in_quotes(name))};
+        } else if (auto set = mapping::set_option(form.options, *setting, content); !set) {
+            return set.error();
+        }
+    }
+    if (!form.yaml) return Error{Errc::kInvalidField, "yaml is missing; the map's description is needed"};
+    if (!form.image) return Error{Errc::kInvalidField, "image is missing; the map's PGM or PNG is needed"};
+    return form;
+}
+
+} // namespace
+
+Result<Response> import_map(session::SessionRegistry& sessions, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    auto form = read_form(call.request);
+    if (!form) return form.error();
+    const auto description = tiles::parse_ros_yaml(*form->yaml);
+    if (!description) return description.error();
+    const auto* pixels = reinterpret_cast<const std::uint8_t*>(form->image->data());
+    const auto patches = tiles::read_ros_image(*description, std::span(pixels, form->image->size()));
+    if (!patches) return patches.error();
+
+    if (!form->options.cell_size) form->options.cell_size = description->resolution;
+    const auto session = sessions.import_map(call.arguments["session"], form->options, *patches);
+    if (!session) return session.error();
+    auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));
+    response.status = Status::created;
+    return response;
+}
+
+} // namespace scanloom::http
