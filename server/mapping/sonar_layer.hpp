@@ -32,8 +32,9 @@ struct SonarFan {
 /// What an echo says of a cell, before it is limited: the probability of occupation, with
 ///   w = ((R - r) / R + (h - a) / h) / 2
 /// 0.5 + 0.5 w in region I, the band around the echo, and 0.5 (1 - w) in region II, before it.
-/// Units   r, the cell's distance, and R, range_max: metres; a, its angle off the axis, and h, half the aperture:
-/// radians. Source  Murphy, Introduction to AI Robotics (2000), section 11.3.
+/// Units   metres: r, the cell's distance, and R, range_max; radians: a, its angle off the axis, and h, half the
+///         aperture.
+/// Source  Murphy, Introduction to AI Robotics (2000), section 11.3.
 [[nodiscard]] double sonar_probability(Verdict region, double r, double range_max, double a,
                                        double half_aperture) noexcept;
 

@@ -11,8 +11,8 @@ namespace scanloom::tiles {
 /// zoom.
 ///
 /// Pre     the tile exists.
-/// Cost    follows the chunks that exist in the tile. All tiles of a layer that were never touched are one and the
-/// same. Thread  any.
+/// Cost    follows the chunks that exist in the tile. All tiles of a layer that were never touched are one.
+/// Thread  any.
 [[nodiscard]] SharedBytes tile_codes(const mapping::Snapshot& snapshot, mapping::Layer layer, TileKey key);
 
 /// The same as a PNG in the layer's colours.
