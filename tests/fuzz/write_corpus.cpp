@@ -111,6 +111,8 @@ void write_log_entries(const std::filesystem::path& folder) {
     write_file(folder / "laser_described", wire::encode_entry(SensorDescribed{0, laser()}));
     write_file(folder / "sonar_described", wire::encode_entry(SensorDescribed{0, sonar_ring()}));
     write_file(folder / "scan_taken", wire::encode_entry(ScanTaken{0, full_scan()}));
+    write_file(folder / "map_patch",
+               wire::encode_entry(MapPatch{0.05, -1.0, 2.0, 2, {MapCell::kFree, MapCell::kOccupied}}));
     write_file(folder / "session", wire::encode_session({"lab", 1.7e9, options()}));
 }
 
