@@ -42,7 +42,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
-      weaves_(*log_, reweaving_.get_executor()), api_(sessions_, weaves_, *log_, metrics_, std::move(web)),
+      weaves_(*log_, reweaving_.get_executor()), api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web)),
       patience_(io_), weaving_patience_(io_) {}
 
 Server::~Server() {
@@ -55,6 +55,7 @@ void Server::join_pools() {
     weaves_.stop(); // nobody waits for them any more
     telling_.join();
     awaiting_.join();
+    planning_.join();
     reweaving_.join();
     changing_.join();
     checkpointing_.join();
@@ -100,7 +101,7 @@ Result<> Server::listen() {
     auto http = http::Server::listen(
         io_,
         {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
-         changing_.get_executor()},
+         planning_.get_executor(), changing_.get_executor()},
         config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);

@@ -29,6 +29,7 @@ namespace scanloom::app {
 ///   survey         answers made from a whole snapshot: one at a time, as they may take a second
 ///   reweaving      maps woven once more, with other settings: with a lower priority than all else
 ///   awaiting       answers that wait for such maps
+///   planning       ways through maps, for robots and people: one search at a time
 ///   changing       creating and deleting sessions: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   telling        metrics
@@ -66,12 +67,14 @@ private:
     boost::asio::thread_pool survey_{1};
     boost::asio::thread_pool reweaving_{2};
     boost::asio::thread_pool awaiting_{4};
+    boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool telling_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     session::Weaves weaves_;
+    guide::GoalBook goals_;
     http::Api api_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;

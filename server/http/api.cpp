@@ -1,13 +1,17 @@
 #include "server/http/api.hpp"
 
 #include "server/http/handlers/changes.hpp"
+#include "server/http/handlers/coverage.hpp"
 #include "server/http/handlers/digest.hpp"
+#include "server/http/handlers/frontiers.hpp"
+#include "server/http/handlers/goal.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/import.hpp"
 #include "server/http/handlers/log.hpp"
 #include "server/http/handlers/map_files.hpp"
 #include "server/http/handlers/metrics.hpp"
 #include "server/http/handlers/openapi.hpp"
+#include "server/http/handlers/plan.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/handlers/sessions.hpp"
 #include "server/http/handlers/tile.hpp"
@@ -105,6 +109,10 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kMapNpy: return get_map_npy(maps_, slots_, call);
     case Operation::kDigest: return get_digest(maps_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
+    case Operation::kFrontiers: return get_frontiers(maps_, slots_, call);
+    case Operation::kPlan: return post_plan(maps_, slots_, call);
+    case Operation::kCoverage: return post_coverage(maps_, slots_, call);
+    case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);
     case Operation::kLog: return get_log(sessions_, log_, call);
     case Operation::kStartWeave: return start_weave(maps_, call);
     case Operation::kListWeaves: return list_weaves(maps_, call);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/guide/goal_book.hpp"
 #include "server/http/answer_slots.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/maps_lookup.hpp"
@@ -24,9 +25,9 @@ struct Target;
 /// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
 class Api {
 public:
-    Api(session::SessionRegistry& sessions, session::Weaves& weaves, store::ScanLog& log,
+    Api(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
         const metrics::Metrics& metrics, WebFiles web)
-        : sessions_(sessions), weaves_(weaves), maps_(sessions, weaves), log_(log), metrics_(metrics),
+        : sessions_(sessions), weaves_(weaves), goals_(goals), maps_(sessions, weaves), log_(log), metrics_(metrics),
           web_(std::move(web)) {}
 
     /// From now on the sessions are served; before, whoever asks for them is told to wait.
@@ -43,6 +44,7 @@ private:
 
     session::SessionRegistry& sessions_;
     session::Weaves& weaves_;
+    guide::GoalBook& goals_;
     const MapsLookup maps_;
     store::ScanLog& log_;
     const metrics::Metrics& metrics_;

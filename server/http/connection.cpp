@@ -239,6 +239,10 @@ Result<std::shared_ptr<const void>> Connection::take_slot(Lane lane) const {
         slot = service_->weaves.try_take();
         if (!slot) return Error{Errc::kOverloaded, "too many maps are being waited for at this moment; try again soon"};
     }
+    if (lane == Lane::kPlanning) {
+        slot = service_->plans.try_take();
+        if (!slot) return Error{Errc::kOverloaded, "too many ways are being looked for at this moment; try again soon"};
+    }
     return slot;
 }
 
@@ -249,6 +253,7 @@ const net::any_io_executor& Connection::executor_of(Lane lane) const {
     case Lane::kSurvey: return service_->executors.survey;
     case Lane::kWeaving: return service_->executors.weaving;
     case Lane::kImporting:
+    case Lane::kPlanning: return service_->executors.planning;
     case Lane::kChanging: return service_->executors.changing;
     default: return service_->executors.serving;
     }

@@ -31,6 +31,7 @@ struct Executors {
     boost::asio::any_io_executor serving;
     boost::asio::any_io_executor survey;
     boost::asio::any_io_executor weaving;
+    boost::asio::any_io_executor planning;
     boost::asio::any_io_executor changing;
 };
 
@@ -44,6 +45,7 @@ struct Service {
     Slots changes; ///< requests in Lane::kChanging
     Slots imports; ///< requests in Lane::kImporting
     Slots weaves;  ///< requests in Lane::kWeaving
+    Slots plans;   ///< requests in Lane::kPlanning
 };
 
 /// One connection: reads a request, has it answered, writes the answer, and again, in order.

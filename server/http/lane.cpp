@@ -37,6 +37,10 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kMapCsv:
     case Operation::kMapNpy: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kSurvey;
     case Operation::kImportMap: return Lane::kImporting;
+    case Operation::kFrontiers:
+    case Operation::kPlan:
+    case Operation::kCoverage:
+    case Operation::kGoal: return Lane::kPlanning;
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;

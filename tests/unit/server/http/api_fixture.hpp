@@ -109,17 +109,27 @@ protected:
 
     /// Scans 1 to `count` of robot r1, taken and woven; the link stays.
     void stream(std::string_view name, std::uint64_t count) {
-        const auto session = registry_.find(name);
-        const auto link = std::make_shared<Link>(count);
-        std::promise<void> joined;
-        session->join("r1", "", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
-        joined.get_future().wait();
-        session->submit(link, laser(), 0);
         std::vector<Scan> scans;
         for (std::uint64_t seq = 1; seq <= count; ++seq) scans.push_back(scan(seq));
+        stream(name, "r1", std::move(scans));
+    }
+
+    /// A robot's first scans, taken and woven; the link stays.
+    void stream(std::string_view name, const std::string& robot, std::vector<Scan> scans) {
+        const auto session = registry_.find(name);
+        const auto link = join(name, robot, scans.back().seq);
+        session->submit(link, laser(), 0);
         session->submit(link, std::move(scans), 1);
         link->wait();
+    }
+
+    std::shared_ptr<Link> join(std::string_view name, const std::string& robot, std::uint64_t awaited_seq) {
+        const auto link = std::make_shared<Link>(awaited_seq);
+        std::promise<void> joined;
+        registry_.find(name)->join(robot, "", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        joined.get_future().wait();
         links_.push_back(link);
+        return link;
     }
 
     boost::asio::thread_pool pool_{2};
@@ -127,7 +137,8 @@ protected:
     session::SessionRegistry registry_{log_, pool_.get_executor(), [] { return 1795251600.5; }};
     metrics::Metrics metrics_{"1.2.3"};
     session::Weaves weaves_{log_, pool_.get_executor()};
-    Api api_{registry_, weaves_, log_, metrics_, {}};
+    guide::GoalBook goals_;
+    Api api_{registry_, weaves_, goals_, log_, metrics_, {}};
     std::vector<std::shared_ptr<Link>> links_;
 };
 

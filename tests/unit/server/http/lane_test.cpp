@@ -38,6 +38,14 @@ TEST(Lane, WhatIsToBeWovenFirstHoldsUpNothing) {
     EXPECT_EQ(lane("GET", session + "/map.png?weave=0123456789abcdef"), Lane::kSurvey) << "which is done or is not";
 }
 
+TEST(Lane, SearchesHoldUpNothingElse) {
+    const std::string session = "/api/v1/sessions/s";
+    EXPECT_EQ(lane("GET", session + "/frontiers.geojson?robot=r"), Lane::kPlanning);
+    EXPECT_EQ(lane("GET", session + "/goal?robot=r"), Lane::kPlanning);
+    EXPECT_EQ(lane("POST", session + "/plan"), Lane::kPlanning);
+    EXPECT_EQ(lane("POST", session + "/coverage?weave=0123456789abcdef"), Lane::kPlanning);
+}
+
 TEST(Lane, WhatWaitsForTheDiskOrTheSystemHasItsOwn) {
     EXPECT_EQ(lane("POST", "/api/v1/sessions"), Lane::kChanging);
     EXPECT_EQ(lane("DELETE", "/api/v1/sessions/s"), Lane::kChanging);

@@ -57,8 +57,8 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), weaving_.get_executor(),
-                changing_.get_executor()};
+        return {telling_.get_executor(), serving_.get_executor(),  survey_.get_executor(),
+                weaving_.get_executor(), planning_.get_executor(), changing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
@@ -69,6 +69,7 @@ private:
     boost::asio::thread_pool serving_{1};
     boost::asio::thread_pool survey_{1};
     boost::asio::thread_pool weaving_{1};
+    boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{1};
     boost::asio::io_context io_;
     std::shared_ptr<Server> server_;
@@ -409,6 +410,23 @@ TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
     gate.open();
     EXPECT_EQ(first.read().status, 200);
     EXPECT_EQ(answer_to(server, post("/api/v1/sessions")).status, 200);
+}
+
+TEST(HttpServer, OneSearchTooManyIsToldToComeBackAndTilesAreNotHeldUp) {
+    Gate gate(1);
+    RunningServer server(ServerConfig{.plans_max = 1}, [&](const Request& request) {
+        if (request.target.ends_with("/plan")) gate.pass_slowly();
+        return echo(request);
+    });
+    HttpClient first(server.port());
+    first.send(post("/api/v1/sessions/s/plan"));
+    gate.wait_until_all_are_in();
+    EXPECT_EQ(answer_to(server, get("/api/v1/sessions/s/goal?robot=r")).status, 503);
+    EXPECT_EQ(answer_to(server, get("/api/v1/sessions/s/tiles/occupancy/9/256/255.png")).status, 200);
+    EXPECT_EQ(answer_to(server, get("/api/v1/sessions/s/map.png")).status, 200);
+    gate.open();
+    EXPECT_EQ(first.read().status, 200);
+    EXPECT_EQ(answer_to(server, get("/api/v1/sessions/s/goal?robot=r")).status, 200);
 }
 
 TEST(HttpServer, AfterStoppingNobodyIsAccepted) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "server/http/answer_slots.hpp"
+#include "server/http/handlers/call.hpp"
+#include "server/http/handlers/maps_lookup.hpp"
+#include "server/http/response.hpp"
+
+namespace scanloom::http {
+
+/// POST .../coverage {start?, spacing?, region?, body_radius?}: a way over all free ground, as a LineString, and the
+/// ground that no such way covers, as areas. `start` may be {"robot": name}; without it, where the only robot is.
+[[nodiscard]] Result<Response> post_coverage(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
+
+} // namespace scanloom::http

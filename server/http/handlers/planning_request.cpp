@@ -1,0 +1,143 @@
+#include "server/http/handlers/planning_request.hpp"
+
+#include "common/scan/limits.hpp"
+#include "server/guide/robots.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
+#include "server/http/number.hpp"
+#include "server/planning/region.hpp"
+
+#include <boost/json/array.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace scanloom::http {
+namespace {
+
+Error invalid(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
+
+Result<double> read_coordinate(const boost::json::value& value, std::string_view name) {
+    if (!value.is_number()) return invalid(fmt::format("{} is not a number", name));
+    const double metres = value.to_number<double>();
+    if (std::abs(metres) <= kCoordinateMax) return metres;
+    return invalid(fmt::format("{} is {} m; it must be within {} m of the origin", name, metres, kCoordinateMax));
+}
+
+Result<> set(const boost::json::object& body, std::string_view name, double& to) {
+    const auto number = read_number(body, name);
+    if (!number) return number.error();
+    to = number->value_or(to);
+    return {};
+}
+
+Result<> set(const boost::json::object& body, std::string_view name, bool& to) {
+    const auto* value = body.if_contains(name);
+    if (value == nullptr) return {};
+    if (!value->is_bool()) return invalid(fmt::format("{} is neither true nor false", name));
+    to = value->get_bool();
+    return {};
+}
+
+Result<std::vector<Point2>> read_box(const boost::json::array& edges, std::string_view name) {
+    std::array<double, 4> box{};
+    for (std::size_t n = 0; n < box.size(); ++n) {
+        const auto edge = read_coordinate(edges[n], fmt::format("{}[{}]", name, n));
+        if (!edge) return edge.error();
+        box[n] = *edge;
+    }
+    const auto [min_x, min_y, max_x, max_y] = box;
+    if (min_x < max_x && min_y < max_y) {
+        return std::vector<Point2>{{min_x, min_y}, {max_x, min_y}, {max_x, max_y}, {min_x, max_y}};
+    }
+    return invalid(fmt::format("{} is an empty box; give [min_x, min_y, max_x, max_y]", name));
+}
+
+} // namespace
+
+Result<Maps> find_for_search(const MapsLookup& maps, const Call& call, std::initializer_list<std::string_view> known) {
+    if (maps.sessions().is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
+    return maps.find(call, known);
+}
+
+Result<planning::ExplorationOptions> exploration_options(const Query& query) {
+    planning::ExplorationOptions options;
+    if (const auto text = query.find("size_min")) {
+        const auto size = parse_integer<std::size_t>(*text);
+        if (!size || *size < 1) {
+            return invalid(
+                fmt::format("size_min is {}; a whole number of cells from 1 on is needed", in_quotes(*text)));
+        }
+        options.frontier_size_min = *size;
+    }
+    if (const auto text = query.find("body_radius")) {
+        const auto radius = parse_real(*text);
+        if (!radius) return invalid(fmt::format("body_radius is {}; metres are needed", in_quotes(*text)));
+        options.passability.body_radius_m = *radius;
+    }
+    return options;
+}
+
+Result<planning::PassabilityOptions> passability_options(const boost::json::object& body) {
+    planning::PassabilityOptions options;
+    if (auto ok = set(body, "allow_unknown", options.allow_unknown); !ok) return ok.error();
+    if (auto ok = set(body, "body_radius", options.body_radius_m); !ok) return ok.error();
+    if (auto ok = set(body, "danger_cost", options.danger_cost); !ok) return ok.error();
+    return options;
+}
+
+Result<Position> read_point(const boost::json::value& value, std::string_view name) {
+    if (!value.is_array() || value.get_array().size() != 2) {
+        return invalid(fmt::format("{} is not a point; give [x, y] in metres", name));
+    }
+    const auto x = read_coordinate(value.get_array()[0], fmt::format("{}[0]", name));
+    if (!x) return x.error();
+    const auto y = read_coordinate(value.get_array()[1], fmt::format("{}[1]", name));
+    if (!y) return y.error();
+    return Position{*x, *y};
+}
+
+Result<Position> read_place(const boost::json::value& value, std::string_view name, const mapping::Snapshot& maps) {
+    if (!value.is_object()) {
+        if (value.is_array()) return read_point(value, name);
+        return invalid(fmt::format(R"({} is neither [x, y] nor {{"robot": "name"}})", name));
+    }
+    constexpr std::array<std::string_view, 1> kKnown = {"robot"};
+    const auto within = fmt::format("{}: ", name);
+    if (auto ok = check_members(value.get_object(), kKnown); !ok) return prefixed(within, ok.error());
+    const auto robot = read_text(value.get_object(), "robot");
+    if (!robot) return prefixed(within, robot.error());
+    const auto index = guide::find_robot(maps, *robot);
+    if (!index) return prefixed(fmt::format("{} is robot {}: ", name, in_quotes(*robot)), index.error());
+    const auto pose = guide::pose_of(maps, *index);
+    if (!pose) return prefixed(within, pose.error());
+    return Position{pose->x, pose->y};
+}
+
+Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name) {
+    const auto* corners = value.if_array();
+    if (corners == nullptr) {
+        return invalid(
+            fmt::format("{} is neither a polygon [[x, y], ...] nor a box [min_x, min_y, max_x, max_y]", name));
+    }
+    if (corners->size() == 4 && std::ranges::none_of(*corners, [](const auto& one) { return one.is_array(); })) {
+        return read_box(*corners, name);
+    }
+    if (corners->size() < 3 || corners->size() > planning::kRegionCornersMax) {
+        return invalid(fmt::format("{} has {} corners; a polygon of 3 to {} is needed, or a box [min_x, min_y, max_x, "
+                                   "max_y]",
+                                   name, corners->size(), planning::kRegionCornersMax));
+    }
+    std::vector<Point2> polygon;
+    for (const auto& corner : *corners) {
+        const auto point = read_point(corner, fmt::format("{}[{}]", name, polygon.size()));
+        if (!point) return point.error();
+        polygon.push_back(point->point());
+    }
+    return polygon;
+}
+
+} // namespace scanloom::http

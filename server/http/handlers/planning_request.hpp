@@ -1,0 +1,54 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
+#include "server/http/handlers/call.hpp"
+#include "server/http/handlers/maps_lookup.hpp"
+#include "server/planning/goals.hpp"
+#include "server/planning/passability.hpp"
+
+#include <boost/json/object.hpp>
+#include <boost/json/value.hpp>
+
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+/// What requests for ways have in common. All errors name the field.
+namespace scanloom::http {
+
+/// A point as JSON has it, in metres of the map frame. (An Eigen vector in a Result would claim to be made of errors.)
+struct Position {
+    double x = 0.0;
+    double y = 0.0;
+
+    [[nodiscard]] Point2 point() const { return {x, y}; }
+};
+
+/// MapsLookup::find() for a search: none is begun while the server shuts down.
+/// Errors  also kShuttingDown.
+[[nodiscard]] Result<Maps> find_for_search(const MapsLookup& maps, const Call& call,
+                                           std::initializer_list<std::string_view> known);
+
+/// The parameters size_min and body_radius.
+/// Errors  kInvalidField.
+[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query);
+
+/// The members allow_unknown, body_radius and danger_cost, each if it is there. Ranges are for the planning to check.
+/// Errors  kInvalidField.
+[[nodiscard]] Result<planning::PassabilityOptions> passability_options(const boost::json::object& body);
+
+/// [x, y], in metres.
+/// Errors  kInvalidField: something else, or further out than any robot may be.
+[[nodiscard]] Result<Position> read_point(const boost::json::value& value, std::string_view name);
+
+/// [x, y], or {"robot": name}: where that robot is.
+/// Errors  kInvalidField; kNotFound: no such robot; kNoPath: nobody knows where it is.
+[[nodiscard]] Result<Position> read_place(const boost::json::value& value, std::string_view name,
+                                          const mapping::Snapshot& maps);
+
+/// A polygon's corners [[x, y], ...], or a box [min_x, min_y, max_x, max_y].
+/// Errors  kInvalidField.
+[[nodiscard]] Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name);
+
+} // namespace scanloom::http
