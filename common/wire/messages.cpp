@@ -1,8 +1,10 @@
 #include "common/wire/messages.hpp"
 
 #include "common/scan/limits.hpp"
+#include "common/wire/error_codes.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/proto_convert.hpp"
+#include "common/wire/request_convert.hpp"
 #include "common/wire/session_convert.hpp"
 
 #include "scanloom/v1/frame.pb.h"
@@ -22,45 +24,6 @@ namespace {
 
 constexpr std::size_t kClientBytesMax = 128;
 constexpr std::size_t kSourceBytesMax = 64;
-
-struct ErrorCodePair {
-    Errc errc;
-    v1::ErrorCode code;
-};
-
-constexpr ErrorCodePair kErrorCodes[] = {
-    {Errc::kMalformed, v1::ERROR_CODE_MALFORMED_FRAME},
-    {Errc::kTooLarge, v1::ERROR_CODE_FRAME_TOO_LARGE},
-    {Errc::kUnsupportedVersion, v1::ERROR_CODE_UNSUPPORTED_VERSION},
-    {Errc::kInvalidField, v1::ERROR_CODE_INVALID_FIELD},
-    {Errc::kNotFound, v1::ERROR_CODE_UNKNOWN_SESSION},
-    {Errc::kConflict, v1::ERROR_CODE_SESSION_CONFLICT},
-    {Errc::kOutOfOrder, v1::ERROR_CODE_OUT_OF_ORDER},
-    {Errc::kCreditExceeded, v1::ERROR_CODE_CREDIT_EXCEEDED},
-    {Errc::kTimeout, v1::ERROR_CODE_TIMEOUT},
-    {Errc::kReplaced, v1::ERROR_CODE_REPLACED},
-    {Errc::kGone, v1::ERROR_CODE_SESSION_DELETED},
-    {Errc::kStoreFailed, v1::ERROR_CODE_STORE_FAILED},
-    {Errc::kShuttingDown, v1::ERROR_CODE_SHUTTING_DOWN},
-    {Errc::kUnauthorized, v1::ERROR_CODE_UNAUTHORIZED},
-    {Errc::kOverloaded, v1::ERROR_CODE_OVERLOADED},
-    {Errc::kFull, v1::ERROR_CODE_SESSION_FULL},
-    {Errc::kInternal, v1::ERROR_CODE_INTERNAL},
-};
-
-v1::ErrorCode to_code(Errc errc) {
-    for (const auto& pair : kErrorCodes) {
-        if (pair.errc == errc) return pair.code;
-    }
-    return v1::ERROR_CODE_INTERNAL;
-}
-
-Errc to_errc(v1::ErrorCode code) {
-    for (const auto& pair : kErrorCodes) {
-        if (pair.code == code) return pair.errc;
-    }
-    return Errc::kInternal; // a code of a newer server; its sentence tells
-}
 
 Result<> check_name(std::string_view field, std::string_view name) {
     if (is_valid_name(name)) return {};
@@ -116,6 +79,12 @@ Result<Message> read_batch(const v1::ScanBatch& proto) {
     return Message(std::move(batch));
 }
 
+template <class Kind>
+Result<Message> as_message(std::string_view where, Result<Kind> read) {
+    if (!read) return prefixed(where, read.error());
+    return Message(std::move(*read));
+}
+
 Result<Message> read_frame(const v1::Frame& frame) {
     switch (frame.body_case()) {
     case v1::Frame::kHello: return read_hello(frame.hello());
@@ -144,6 +113,12 @@ Result<Message> read_frame(const v1::Frame& frame) {
         if (!pose) return prefixed("correction.T_map_odom.", pose.error());
         return Message(Correction{*pose, frame.correction().revision()});
     }
+    case v1::Frame::kPlanRequest: return as_message("plan_request.", from_proto(frame.plan_request()));
+    case v1::Frame::kPlanReply: return as_message("plan_reply.", from_proto(frame.plan_reply()));
+    case v1::Frame::kGoalRequest: return as_message("goal_request.", from_proto(frame.goal_request()));
+    case v1::Frame::kGoalReply: return as_message("goal_reply.", from_proto(frame.goal_reply()));
+    case v1::Frame::kCoverageRequest: return as_message("coverage_request.", from_proto(frame.coverage_request()));
+    case v1::Frame::kCoverageReply: return as_message("coverage_reply.", from_proto(frame.coverage_reply()));
     case v1::Frame::BODY_NOT_SET: break;
     }
     return Error{Errc::kMalformed, "a frame without a body this program knows; it may come from a newer version"};
@@ -195,14 +170,23 @@ struct ToProto {
         to_proto(correction.T_map_odom, *frame.mutable_correction()->mutable_t_map_odom());
         frame.mutable_correction()->set_revision(correction.revision);
     }
+    void operator()(const PlanRequest& request) const { to_proto(request, *frame.mutable_plan_request()); }
+    void operator()(const PlanReply& reply) const { to_proto(reply, *frame.mutable_plan_reply()); }
+    void operator()(const GoalRequest& request) const { to_proto(request, *frame.mutable_goal_request()); }
+    void operator()(const GoalReply& reply) const { to_proto(reply, *frame.mutable_goal_reply()); }
+    void operator()(const CoverageRequest& request) const { to_proto(request, *frame.mutable_coverage_request()); }
+    void operator()(const CoverageReply& reply) const { to_proto(reply, *frame.mutable_coverage_reply()); }
 };
 
 } // namespace
 
 std::string_view name_of(const Message& message) noexcept {
-    constexpr std::string_view kNames[] = {
-        "hello", "welcome", "sensor_description", "scan_batch", "ack", "error", "ping",
-        "pong",  "goodbye", "correction"};
+    constexpr std::string_view kNames[] = {"hello",         "welcome",      "sensor_description",
+                                           "scan_batch",    "ack",          "error",
+                                           "ping",          "pong",         "goodbye",
+                                           "correction",    "plan_request", "plan_reply",
+                                           "goal_request",  "goal_reply",   "coverage_request",
+                                           "coverage_reply"};
     static_assert(std::size(kNames) == std::variant_size_v<Message>);
     return kNames[message.index()];
 }

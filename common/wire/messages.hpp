@@ -1,10 +1,12 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
 #include "common/scan/session_options.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -94,7 +96,93 @@ struct Correction {
     friend bool operator==(const Correction&, const Correction&) = default;
 };
 
-using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction>;
+inline constexpr std::size_t kPathPointsMax = 65'000; ///< so that every path fits a frame
+inline constexpr std::size_t kRegionPointsMax = 4096;
+
+/// Straight from point to point; metres, in the map frame.
+struct Path {
+    std::vector<Point2> points; ///< at least 1
+    double length = 0.0;
+    double cost = 0.0; ///< length, metres in danger counting 1 + danger_cost
+
+    friend bool operator==(const Path&, const Path&) = default;
+};
+
+/// Requests and replies are matched by `id`. What of a request is no point is checked by whoever meets it.
+struct PlanRequest {
+    std::uint64_t id = 0;
+    std::optional<Point2> start; ///< none: where the robot's newest scan was taken
+    Point2 goal{0.0, 0.0};
+    bool allow_unknown = false;
+    std::optional<double> body_radius; ///< metres
+    std::optional<double> danger_cost;
+
+    friend bool operator==(const PlanRequest&, const PlanRequest&) = default;
+};
+
+struct PlanReply {
+    std::uint64_t id = 0;
+    std::uint64_t revision = 0; ///< of the maps
+    Result<Path> path;          ///< or why there is none
+
+    friend bool operator==(const PlanReply&, const PlanReply&) = default;
+};
+
+struct GoalRequest {
+    std::uint64_t id = 0;
+    std::optional<Point2> start;
+    std::optional<double> body_radius;   ///< metres
+    std::uint32_t frontier_size_min = 0; ///< cells; 0 is 1
+
+    friend bool operator==(const GoalRequest&, const GoalRequest&) = default;
+};
+
+enum class Exploration : std::uint8_t { kGoal = 1, kTakenByOthers = 2, kComplete = 3 };
+
+struct Goal {
+    Exploration exploration = Exploration::kComplete;
+    std::optional<Path> path;     ///< with kGoal: to where to stand
+    std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there
+
+    friend bool operator==(const Goal&, const Goal&) = default;
+};
+
+struct GoalReply {
+    std::uint64_t id = 0;
+    std::uint64_t revision = 0;
+    Result<Goal> goal;
+
+    friend bool operator==(const GoalReply&, const GoalReply&) = default;
+};
+
+struct CoverageRequest {
+    std::uint64_t id = 0;
+    std::optional<Point2> start;
+    std::optional<double> body_radius; ///< metres
+    std::optional<double> spacing;     ///< metres
+    std::vector<Point2> region;        ///< corners of a polygon; none: all free ground that the start is part of
+
+    friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
+};
+
+struct Coverage {
+    Path path;
+    double free_area = 0.0;    ///< square metres
+    double covered_area = 0.0; ///< square metres
+
+    friend bool operator==(const Coverage&, const Coverage&) = default;
+};
+
+struct CoverageReply {
+    std::uint64_t id = 0;
+    std::uint64_t revision = 0;
+    Result<Coverage> coverage;
+
+    friend bool operator==(const CoverageReply&, const CoverageReply&) = default;
+};
+
+using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction,
+                             PlanRequest, PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply>;
 
 /// Name of the frame a message travels in, as proto/ spells it ("scan_batch").
 [[nodiscard]] std::string_view name_of(const Message& message) noexcept;

@@ -42,8 +42,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
-      weaves_(*log_, reweaving_.get_executor()), api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web)),
-      patience_(io_), weaving_patience_(io_) {}
+      weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
+      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -87,7 +87,8 @@ Result<> Server::listen() {
     robots.greeting_max = limits_.greeting;
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
-            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest()}, robots);
+            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest(), desk_},
+            robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};

@@ -75,6 +75,7 @@ private:
     session::SessionRegistry sessions_;
     session::Weaves weaves_;
     guide::GoalBook goals_;
+    ingest::RequestDesk desk_;
     http::Api api_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;

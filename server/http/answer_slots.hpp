@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "server/http/slots.hpp"
+#include "server/sockets/slots.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -27,8 +27,8 @@ public:
     }
 
 private:
-    const Slots large_{kLargeAnswers};
-    const Slots huge_{kHugeAnswers};
+    const sockets::Slots large_{kLargeAnswers};
+    const sockets::Slots huge_{kHugeAnswers};
 };
 
 } // namespace scanloom::http

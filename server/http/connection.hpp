@@ -4,8 +4,8 @@
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/server_config.hpp"
-#include "server/http/slots.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/sockets/slots.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
@@ -42,10 +42,10 @@ struct Service {
     Executors executors;
     Answer answer;
     metrics::HttpCounters& counters;
-    Slots changes; ///< requests in Lane::kChanging
-    Slots imports; ///< requests in Lane::kImporting
-    Slots weaves;  ///< requests in Lane::kWeaving
-    Slots plans;   ///< requests in Lane::kPlanning
+    sockets::Slots changes; ///< requests in Lane::kChanging
+    sockets::Slots imports; ///< requests in Lane::kImporting
+    sockets::Slots weaves;  ///< requests in Lane::kWeaving
+    sockets::Slots plans;   ///< requests in Lane::kPlanning
 };
 
 /// One connection: reads a request, has it answered, writes the answer, and again, in order.

@@ -34,6 +34,12 @@ void Outbox::acknowledge(const wire::Ack& ack, std::shared_ptr<void> owner) {
     start(std::move(owner));
 }
 
+void Outbox::answer(std::string frame, std::shared_ptr<const void> kept, std::shared_ptr<void> owner) {
+    if (closed_) return;
+    answers_.push_back({std::move(frame), std::move(kept)});
+    start(std::move(owner));
+}
+
 void Outbox::put_ack() {
     if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), bytes_);
 }
@@ -45,11 +51,13 @@ void Outbox::start(std::shared_ptr<void> owner) {
 
 /// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
 asio::awaitable<void> Outbox::write([[maybe_unused]] std::shared_ptr<void> owner) {
-    while (ack_ || !bytes_.empty()) {
+    while (ack_ || !bytes_.empty() || !answers_.empty()) {
         put_ack();
-        const std::string sending = std::exchange(bytes_, {});
+        const bool answering = bytes_.empty();
+        const std::string sending = std::exchange(answering ? answers_.front().frame : bytes_, {});
         const auto [error, written] =
             co_await asio::async_write(socket_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
+        if (answering) answers_.pop_front();
         if (error) break;
     }
     writing_ = false;

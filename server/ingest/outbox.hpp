@@ -7,6 +7,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,9 +15,11 @@
 
 namespace scanloom::ingest {
 
-/// What a link still has to write to its robot, in order; of acks only the newest.
+/// What a link still has to write to its robot, in order; of acks only the newest. Answers to requests, which may be
+/// long, come one by one when nothing else waits.
 ///
-/// Queue   "link's outbox": answers to what was read, which whoever reads bounds by waiting(), and one ack.
+/// Queue   "link's outbox": pongs and refusals, which whoever reads bounds by waiting(); answers, by
+///         answers_waiting(); and one ack.
 /// Thread  the socket's executor, a strand.
 class Outbox {
 public:
@@ -28,6 +31,12 @@ public:
 
     /// Replaces an ack that was not written yet.
     void acknowledge(const wire::Ack& ack, std::shared_ptr<void> owner);
+
+    /// Sends a whole frame after all else. `kept` is let go of when it was written.
+    void answer(std::string frame, std::shared_ptr<const void> kept, std::shared_ptr<void> owner);
+
+    /// Answers that are not wholly written yet.
+    [[nodiscard]] std::size_t answers_waiting() const noexcept { return answers_.size(); }
 
     /// Nothing may follow what is in it.
     void close() { closed_ = true; }
@@ -45,6 +54,12 @@ private:
 
     boost::asio::ip::tcp::socket& socket_;
     std::string bytes_;
+    struct Answer {
+        std::string frame;
+        std::shared_ptr<const void> kept;
+    };
+
+    std::deque<Answer> answers_;
     std::optional<wire::Ack> ack_; // the newest, not in bytes_ yet
     bool writing_ = false;
     bool closed_ = false;

@@ -20,8 +20,11 @@ namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10;
 
-/// Answers to pings that a robot has not read.
-constexpr std::size_t kPongBytesMax = std::size_t{64} << 10;
+/// Pongs and refusals that a robot has not read.
+constexpr std::size_t kSmallAnswerBytesMax = std::size_t{64} << 10;
+
+/// Requests that were not refused and whose replies are not written yet.
+constexpr std::size_t kRequestsUnderWayMax = 4;
 
 /// Sensor descriptions under way besides the credit, which is for scans: twice what 64 sensors of 4096 explicit
 /// angles take.
@@ -115,10 +118,11 @@ asio::awaitable<Result<>> RobotLink::serve() {
     co_return co_await settle();
 }
 
-/// What was submitted before the goodbye is acknowledged after it. How long that takes is our disk's matter.
+/// What was submitted before the goodbye is acknowledged after it, and what was asked is answered. How long that takes
+/// is our matter.
 asio::awaitable<Result<>> RobotLink::settle() {
     deadline_ = std::chrono::steady_clock::time_point::max();
-    while (under_way_ > 0 && !ended_by_) co_await settled_.async_wait(kAsTuple);
+    while ((under_way_ > 0 || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAsTuple);
     if (ended_by_) co_return *ended_by_;
     co_return Result<>();
 }
@@ -130,6 +134,7 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
     session_ = std::move(*session);
+    index_ = joined->robot;
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
@@ -179,16 +184,8 @@ Result<> RobotLink::handle(wire::Message message) {
         session_->submit(self, std::move(batch->scans), frame_bytes_);
         return {};
     }
-    if (const auto* ping = std::get_if<wire::Ping>(&message)) {
-        if (outbox_.waiting() > kPongBytesMax) {
-            return Error{
-                Errc::kCreditExceeded,
-                fmt::format("{} bytes of pongs wait to be read, at most {} may; read them before the next ping",
-                            outbox_.waiting(), kPongBytesMax)};
-        }
-        outbox_.send(wire::Pong{ping->nonce}, self);
-        return {};
-    }
+    if (const auto* ping = std::get_if<wire::Ping>(&message)) return answer_ping(*ping);
+    if (auto request = as_request(std::move(message))) return ask(std::move(*request));
     if (std::holds_alternative<wire::Pong>(message)) return {};
     if (std::holds_alternative<wire::Goodbye>(message)) {
         goodbye_ = true;
@@ -196,8 +193,53 @@ Result<> RobotLink::handle(wire::Message message) {
     }
     return Error{Errc::kMalformed,
                  fmt::format("a {} frame is not for the server; after the hello it takes sensor_description, "
-                             "scan_batch, ping and goodbye",
+                             "scan_batch, requests, ping and goodbye",
                              wire::name_of(message))};
+}
+
+Result<> RobotLink::answer_ping(const wire::Ping& ping) {
+    if (auto ok = check_small_answers(); !ok) return ok;
+    outbox_.send(wire::Pong{ping.nonce}, shared_from_this());
+    return {};
+}
+
+Result<> RobotLink::check_small_answers() const {
+    if (outbox_.waiting() <= kSmallAnswerBytesMax) return {};
+    return Error{Errc::kCreditExceeded,
+                 fmt::format("{} bytes of pongs and refusals wait to be read, at most {} may; read them before the "
+                             "next ping or request",
+                             outbox_.waiting(), kSmallAnswerBytesMax)};
+}
+
+/// A request that cannot be taken now is refused at once; the link goes on.
+Result<> RobotLink::ask(Request request) {
+    if (auto ok = check_small_answers(); !ok) return ok;
+    const std::size_t under_way = asked_ + outbox_.answers_waiting();
+    if (under_way >= kRequestsUnderWayMax) {
+        const Error why{Errc::kOverloaded, fmt::format("{} requests are under way, the most a link may have; read "
+                                                       "their replies before the next",
+                                                       under_way)};
+        outbox_.send(refusal_of(request, why), shared_from_this());
+        return {};
+    }
+    auto done = [self = shared_from_this()](std::string frame, std::shared_ptr<const void> slot) {
+        asio::post(self->socket_.get_executor(), [self, frame = std::move(frame), slot = std::move(slot)]() mutable {
+            self->answer(std::move(frame), std::move(slot));
+        });
+    };
+    const auto refused = services_.desk.ask({session_, index_}, request, std::move(done));
+    if (refused) {
+        outbox_.send(refusal_of(request, *refused), shared_from_this());
+    } else {
+        ++asked_;
+    }
+    return {};
+}
+
+void RobotLink::answer(std::string frame, std::shared_ptr<const void> slot) {
+    --asked_;
+    outbox_.answer(std::move(frame), std::move(slot), shared_from_this());
+    settled_.cancel();
 }
 
 Result<> RobotLink::charge_batch() {

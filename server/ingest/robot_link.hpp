@@ -3,6 +3,7 @@
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
 #include "server/ingest/outbox.hpp"
+#include "server/ingest/request_desk.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
@@ -34,15 +35,16 @@ struct LinkServices {
     session::SessionRegistry& sessions;
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
+    RequestDesk& desk;
 };
 
 /// One robot's connection, from the hello to the farewell.
 ///
 /// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
-/// go to the session, acks come back -> goodbye, after which what is under way is still acknowledged; an error; or
-/// the end of the connection.
-/// A fault ends this link with an Error frame and disturbs no other.
-/// Thread  run() and everything private on the socket's strand; the listener's calls from any thread.
+/// go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which what is under
+/// way is still acknowledged; an error; or the end of the connection. A fault ends this link with an Error frame and
+/// disturbs no other. Thread  run() and everything private on the socket's strand; the listener's calls from any
+/// thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
     /// Pre: the socket's executor is a strand.
@@ -71,6 +73,10 @@ private:
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
     [[nodiscard]] Result<> handle(wire::Message message);
+    [[nodiscard]] Result<> answer_ping(const wire::Ping& ping);
+    [[nodiscard]] Result<> ask(Request request);
+    [[nodiscard]] Result<> check_small_answers() const;
+    void answer(std::string frame, std::shared_ptr<const void> slot);
     [[nodiscard]] Result<> charge_batch();
     [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
@@ -92,8 +98,10 @@ private:
     std::size_t frame_bytes_ = 0; // of the frame last received, with its length prefix
     std::shared_ptr<session::Session> session_;
     std::string robot_;
+    RobotIndex index_ = 0;      // of the robot in the session
     std::size_t under_way_ = 0; // bytes submitted and not yet durable
     std::size_t described_ = 0; // at least as many of them as are of sensor descriptions, never more than all
+    std::size_t asked_ = 0;     // requests that are being met
     bool goodbye_ = false;
     bool parting_ = false; // nothing more is said or heard
 

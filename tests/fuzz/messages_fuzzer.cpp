@@ -17,6 +17,29 @@ void check_scan_batch(const ScanBatch& batch) {
     }
 }
 
+void check_points(const std::vector<Point2>& points) {
+    for (const Point2& point : points) fuzz::check(point.allFinite(), "points are finite");
+}
+
+void check_path(const Path& path) {
+    fuzz::check(!path.points.empty() && path.points.size() <= kPathPointsMax, "a path has 1 to 65,000 points");
+    check_points(path.points);
+}
+
+void check_requests_and_replies(const Message& message) {
+    if (const auto* plan = std::get_if<PlanRequest>(&message)) check_points({plan->goal});
+    if (const auto* coverage = std::get_if<CoverageRequest>(&message)) check_points(coverage->region);
+    if (const auto* plan = std::get_if<PlanReply>(&message); plan != nullptr && plan->path) check_path(*plan->path);
+    if (const auto* goal = std::get_if<GoalReply>(&message); goal != nullptr && goal->goal) {
+        fuzz::check(goal->goal->path.has_value() == (goal->goal->exploration == Exploration::kGoal),
+                    "a goal has a path");
+        if (goal->goal->path) check_path(*goal->goal->path);
+    }
+    if (const auto* coverage = std::get_if<CoverageReply>(&message); coverage != nullptr && coverage->coverage) {
+        check_path(coverage->coverage->path);
+    }
+}
+
 } // namespace
 } // namespace scanloom::wire
 
@@ -30,6 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) wire::check_scan_batch(*batch);
+    wire::check_requests_and_replies(*message);
 
     // Compared as bytes, not as values: a NaN in hello.create is for the server to refuse, and differs from itself.
     std::string once;

@@ -84,6 +84,15 @@ std::vector<wire::Message> messages() {
         wire::Pong{42},
         wire::Goodbye{"done"},
         wire::Correction{{1.0, 2.0, 3.0}, 9},
+        wire::PlanRequest{1, Point2(1.0, 2.0), {3.0, 4.0}, true, 0.2, 2.0},
+        wire::PlanReply{1, 9, wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}},
+        wire::PlanReply{1, 9, Error{Errc::kNoPath, "the goal (3, 4) is inside an obstacle"}},
+        wire::GoalRequest{2, Point2(1.0, 2.0), 0.2, 5},
+        wire::GoalReply{2, 9,
+                        wire::Goal{wire::Exploration::kGoal, wire::Path{{{1.0, 2.0}}, 0.0, 0.0}, Point2(1.0, 2.5)}},
+        wire::GoalReply{2, 9, wire::Goal{wire::Exploration::kComplete, std::nullopt, std::nullopt}},
+        wire::CoverageRequest{3, Point2(1.0, 2.0), 0.2, 0.4, {{0.0, 0.0}, {4.0, 0.0}, {0.0, 4.0}}},
+        wire::CoverageReply{3, 9, wire::Coverage{wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}, 8.0, 7.5}},
     };
 }
 

@@ -27,11 +27,13 @@ using testing_support::small_laser;
 /// The ingest half of the server in this process: real sockets on the loopback, real threads.
 class RunningIngest {
 public:
-    explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {}) : sessions_(log, pool(), now) {
+    explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {},
+                           std::size_t requests_max = RequestDesk::kRequestsMax)
+        : sessions_(log, pool(), now), desk_(planning_.get_executor(), goals_, sessions_, requests_max) {
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest()}, config);
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), desk_}, config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
     }
@@ -45,12 +47,15 @@ public:
         server_->stop();
         sessions_.drain();
         for (auto& thread : io_threads_) thread.join();
+        planning_.join();
         may_wait_.join();
         compute_.join();
     }
 
     void stop_accepting() { server_->stop(); }
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] guide::GoalBook& goals() { return goals_; }
+    [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
@@ -68,8 +73,11 @@ private:
     boost::asio::thread_pool compute_{2};
     metrics::Metrics metrics_{"test"};
     boost::asio::thread_pool may_wait_{2};
+    boost::asio::thread_pool planning_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
+    guide::GoalBook goals_;
+    RequestDesk desk_;
     std::unique_ptr<IngestServer> server_;
     std::vector<std::thread> io_threads_;
 };

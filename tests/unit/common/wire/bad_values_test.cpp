@@ -215,6 +215,105 @@ TEST(BadCorrection, IsRefusedByTheNameOfItsField) {
     expect_refused(body_of(Correction{{0.0, kNan, 0.0}, 1}), Errc::kInvalidField, "correction.T_map_odom.y is nan;");
 }
 
+TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
+    const Spoilt<PlanRequest> kSpoilt[] = {
+        {[](PlanRequest& r) { r.start->x() = kNan; }, "plan_request.start.x is nan;"},
+        {[](PlanRequest& r) { r.start->y() = 1.1e6; }, "plan_request.start.y is 1.1e+06;"},
+        {[](PlanRequest& r) { r.goal.x() = kInfinity; }, "plan_request.goal.x is inf;"},
+        {[](PlanRequest& r) { r.goal.y() = -1e300; }, "plan_request.goal.y is -1e+300;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        PlanRequest request = example_plan_request();
+        spoilt.spoil(request);
+        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+    }
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_plan_request())));
+    frame.mutable_plan_request()->clear_goal();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "plan_request.goal is absent;");
+}
+
+TEST(BadGoalRequest, IsRefusedByTheNameOfItsField) {
+    GoalRequest request = example_goal_request();
+    request.start->y() = kNan;
+    expect_refused(body_of(request), Errc::kInvalidField, "goal_request.start.y is nan;");
+}
+
+TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
+    const Spoilt<CoverageRequest> kSpoilt[] = {
+        {[](CoverageRequest& r) { r.start->x() = kNan; }, "coverage_request.start.x is nan;"},
+        {[](CoverageRequest& r) { r.region[1].y() = kNan; }, "coverage_request.region[3] is nan;"},
+        {[](CoverageRequest& r) { r.region[2].x() = -2e6; }, "coverage_request.region[4] is -2e+06;"},
+        {[](CoverageRequest& r) {
+             r.region.assign(kRegionPointsMax + 1, {1.0, 1.0});
+         },
+         "coverage_request.region has 4097 points, at most 4096", Errc::kTooLarge},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        CoverageRequest request = example_coverage_request();
+        spoilt.spoil(request);
+        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+    }
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_coverage_request())));
+    frame.mutable_coverage_request()->mutable_region()->RemoveLast();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "coverage_request.region has 5 numbers;");
+}
+
+TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
+    const Spoilt<Path> kSpoilt[] = {
+        {[](Path& p) { p.points.clear(); }, "points is empty;"},
+        {[](Path& p) { p.points[1].x() = kNan; }, "points[2] is nan;"},
+        {[](Path& p) { p.points[2].y() = 1.1e6; }, "points[5] is 1.1e+06;"},
+        {[](Path& p) {
+             p.points.assign(kPathPointsMax + 1, {0.0, 0.0});
+         },
+         "points has 65001 points, at most 65000", Errc::kTooLarge},
+        {[](Path& p) { p.length = kNan; }, "length is nan;"},
+        {[](Path& p) { p.length = -1.0; }, "length is -1;"},
+        {[](Path& p) { p.cost = kInfinity; }, "cost is inf;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        Path path = example_path();
+        spoilt.spoil(path);
+        expect_refused(body_of(PlanReply{1, 2, path}), spoilt.code, std::string("plan_reply.path.") + spoilt.beginning);
+        expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, path, Point2(0.0, 0.0)}}), spoilt.code,
+                       std::string("goal_reply.goal.path.") + spoilt.beginning);
+        expect_refused(body_of(CoverageReply{1, 2, Coverage{path, 2.0, 1.0}}), spoilt.code,
+                       std::string("coverage_reply.coverage.path.") + spoilt.beginning);
+    }
+}
+
+TEST(BadReply, IsRefusedByTheNameOfItsField) {
+    expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), kNan, 1.0}}), Errc::kInvalidField,
+                   "coverage_reply.coverage.free_area is nan;");
+    expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, -1.0}}), Errc::kInvalidField,
+                   "coverage_reply.coverage.covered_area is -1;");
+    expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), Point2(kNan, 0.0)}}),
+                   Errc::kInvalidField, "goal_reply.goal.target.x is nan;");
+    expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), std::nullopt}}),
+                   Errc::kInvalidField, "goal_reply.goal.exploration does not go with path and target;");
+    expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kComplete, example_path(), std::nullopt}}),
+                   Errc::kInvalidField, "goal_reply.goal.exploration does not go with path and target;");
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(GoalReply{1, 2, example_goal()})));
+    for (const int exploration : {0, 4, -1}) {
+        frame.mutable_goal_reply()->mutable_goal()->set_exploration(static_cast<v1::Exploration>(exploration));
+        expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                       "goal_reply.goal.exploration is " + std::to_string(exploration) + ";");
+    }
+}
+
+TEST(BadReply, WithoutAnOutcomeIsRefused) {
+    v1::Frame frame;
+    frame.mutable_plan_reply()->set_id(1);
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "plan_reply.outcome is absent;");
+    frame.mutable_goal_reply()->set_id(1);
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "goal_reply.outcome is absent;");
+    frame.mutable_coverage_reply()->set_id(1);
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "coverage_reply.outcome is absent;");
+}
+
 TEST(CheckScan, UniformAnglesOfTheSensorMustNotPassAFullTurn) {
     Sensor sensor = example_sensor();
     sensor.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 360.0, 180};

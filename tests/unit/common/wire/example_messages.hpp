@@ -79,6 +79,33 @@ inline Hello example_hello() {
     return hello;
 }
 
+inline Path example_path() { return {{{0.5, -1.25}, {2.0, 3.0}, {-1e6, 1e6}}, 7.75, 9.5}; }
+
+inline PlanRequest example_plan_request() {
+    return {.id = 0xFEDCBA9876543210U,
+            .start = Point2(1.5, -2.5),
+            .goal = {-3.25, 4.0},
+            .allow_unknown = true,
+            .body_radius = 0.25,
+            .danger_cost = 3.0};
+}
+
+inline GoalRequest example_goal_request() {
+    return {.id = 18, .start = Point2(1.5, -2.5), .body_radius = 0.25, .frontier_size_min = 9};
+}
+
+inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2(-1e6, 1e6)}; }
+
+inline CoverageRequest example_coverage_request() {
+    return {.id = 19,
+            .start = Point2(1.5, -2.5),
+            .body_radius = 0.25,
+            .spacing = 0.5,
+            .region = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 5.0}}};
+}
+
+inline Coverage example_coverage() { return {example_path(), 12.5, 11.25}; }
+
 /// The body of the frame that holds the message, as the decoder would hand it out.
 inline std::string body_of(const Message& message) {
     std::string frame;

@@ -25,7 +25,13 @@ std::vector<Message> one_of_each() {
             Ping{0xFEDCBA9876543210U},
             Pong{42},
             Goodbye{"every scan is acknowledged"},
-            Correction{{1.0, 2.0, -0.5}, 99}};
+            Correction{{1.0, 2.0, -0.5}, 99},
+            example_plan_request(),
+            PlanReply{17, 99, example_path()},
+            example_goal_request(),
+            GoalReply{18, 99, example_goal()},
+            example_coverage_request(),
+            CoverageReply{19, 99, example_coverage()}};
 }
 
 TEST(Messages, EveryKindSurvivesTheWire) {
@@ -60,6 +66,14 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     hello.create = SessionOptions{.p_min = 0.0};
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 is not an absent one";
 
+    for (const Message& request : {Message(PlanRequest{.id = 1, .goal = {0.0, 0.0}}), Message(GoalRequest{}),
+                                   Message(CoverageRequest{.id = 3})}) {
+        EXPECT_EQ(decode(body_of(request)).value(), request);
+    }
+    const Message point =
+        PlanRequest{.start = Point2(0.0, 0.0), .goal = {0.0, 0.0}, .body_radius = 0.0, .danger_cost = 0.0};
+    EXPECT_EQ(decode(body_of(point)).value(), point) << "what is 0 is not absent";
+
     Scan scan = example_scan();
     scan.odometry.reset();
     scan.intensities.clear();
@@ -74,9 +88,12 @@ TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {
     for (const Errc code : {Errc::kMalformed, Errc::kTooLarge, Errc::kUnsupportedVersion, Errc::kInvalidField,
                             Errc::kNotFound, Errc::kConflict, Errc::kOutOfOrder, Errc::kCreditExceeded, Errc::kTimeout,
                             Errc::kReplaced, Errc::kGone, Errc::kStoreFailed, Errc::kShuttingDown, Errc::kUnauthorized,
-                            Errc::kOverloaded, Errc::kInternal, Errc::kFull}) {
-        const Message message = LinkError{{code, "why"}, false};
-        EXPECT_EQ(decode(body_of(message)).value(), message) << name_of(code);
+                            Errc::kOverloaded, Errc::kInternal, Errc::kFull, Errc::kNoPath}) {
+        for (const Message& message :
+             {Message(LinkError{{code, "why"}, false}), Message(PlanReply{1, 2, Error{code, "why"}}),
+              Message(GoalReply{1, 2, Error{code, "why"}}), Message(CoverageReply{1, 2, Error{code, "why"}})}) {
+            EXPECT_EQ(decode(body_of(message)).value(), message) << name_of(code);
+        }
     }
 }
 
@@ -94,6 +111,24 @@ TEST(Messages, TheLargestScanAndTheLargestBatchArePossible) {
     scan.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / 4095.0, kBeamsMax};
     EXPECT_TRUE(decode(body_of(ScanBatch{{scan}}))) << "the first direction may be repeated at the end of the turn";
     EXPECT_TRUE(decode(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax, example_scan())})));
+}
+
+TEST(Messages, TheLongestPathFitsAFrame) {
+    const Path path{std::vector<Point2>(kPathPointsMax, Point2(-1e5 / 3.0, 1e6 / 3.0)), 1e9 / 3.0, 1e10 / 3.0};
+    for (const Message& reply :
+         {Message(PlanReply{UINT64_MAX, UINT64_MAX, path}),
+          Message(GoalReply{UINT64_MAX, UINT64_MAX, Goal{Exploration::kGoal, path, Point2(0.1, 0.2)}}),
+          Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{path, 0.1, 0.2}})}) {
+        EXPECT_LE(body_of(reply).size(), kFrameBytesMax);
+        EXPECT_EQ(decode(body_of(reply)).value(), reply);
+    }
+}
+
+TEST(Messages, AGoalMayBeNone) {
+    for (const auto none : {Exploration::kTakenByOthers, Exploration::kComplete}) {
+        const Message reply = GoalReply{1, 2, Goal{none, std::nullopt, std::nullopt}};
+        EXPECT_EQ(decode(body_of(reply)).value(), reply);
+    }
 }
 
 TEST(Messages, AFrameWithoutABodyIsMalformed) {

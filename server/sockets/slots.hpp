@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-namespace scanloom::http {
+namespace scanloom::sockets {
 
 /// How many of a kind there may be at once. Nobody waits for a slot: who gets none says so.
 /// Thread  any.
@@ -23,4 +23,4 @@ private:
     std::shared_ptr<std::atomic<std::ptrdiff_t>> free_;
 };
 
-} // namespace scanloom::http
+} // namespace scanloom::sockets

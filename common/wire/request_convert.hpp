@@ -1,0 +1,27 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/wire/messages.hpp"
+
+#include "scanloom/v1/frame.pb.h"
+
+/// Requests for ways and their replies, between protobuf and values.
+/// `from_proto` checks every point; the error names the field relative to the message.
+namespace scanloom::wire {
+
+[[nodiscard]] Result<PlanRequest> from_proto(const v1::PlanRequest& request);
+[[nodiscard]] Result<PlanReply> from_proto(const v1::PlanReply& reply);
+[[nodiscard]] Result<GoalRequest> from_proto(const v1::GoalRequest& request);
+[[nodiscard]] Result<GoalReply> from_proto(const v1::GoalReply& reply);
+[[nodiscard]] Result<CoverageRequest> from_proto(const v1::CoverageRequest& request);
+[[nodiscard]] Result<CoverageReply> from_proto(const v1::CoverageReply& reply);
+
+/// Pre  of a path: at most kPathPointsMax points; of a region: at most kRegionPointsMax.
+void to_proto(const PlanRequest& request, v1::PlanRequest& out);
+void to_proto(const PlanReply& reply, v1::PlanReply& out);
+void to_proto(const GoalRequest& request, v1::GoalRequest& out);
+void to_proto(const GoalReply& reply, v1::GoalReply& out);
+void to_proto(const CoverageRequest& request, v1::CoverageRequest& out);
+void to_proto(const CoverageReply& reply, v1::CoverageReply& out);
+
+} // namespace scanloom::wire

@@ -1,0 +1,36 @@
+#include "server/ingest/request_desk.hpp"
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace scanloom::ingest {
+
+std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
+    auto slot = slots_.try_take();
+    if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
+    boost::asio::post(planning_, [this, asker = std::move(asker), request = std::move(request), done = std::move(done),
+                                  slot = std::move(slot)]() mutable {
+        std::string frame;
+        wire::encode(meet(request, asker), frame);
+        done(std::move(frame), std::move(slot));
+    });
+    return std::nullopt;
+}
+
+/// While the server shuts down no search is begun: it would have to be waited for.
+wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
+    if (sessions_.is_draining()) return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
+    try {
+        return reply_to(request, asker, goals_);
+    } catch (const std::bad_alloc&) {
+        return refusal_of(request, {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
+    } catch (const std::exception& failure) {
+        return refusal_of(request, {Errc::kInternal, fmt::format("the search failed: {}", failure.what())});
+    }
+}
+
+} // namespace scanloom::ingest

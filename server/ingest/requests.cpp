@@ -1,0 +1,116 @@
+#include "server/ingest/requests.hpp"
+
+#include "server/guide/robots.hpp"
+#include "server/planning/coverage.hpp"
+#include "server/planning/grid_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scanloom::ingest {
+namespace {
+
+/// What each kind of request is answered by.
+wire::PlanReply reply(const wire::PlanRequest& to, Revision revision, Result<wire::Path> path) {
+    return {to.id, revision, std::move(path)};
+}
+wire::GoalReply reply(const wire::GoalRequest& to, Revision revision, Result<wire::Goal> goal) {
+    return {to.id, revision, std::move(goal)};
+}
+wire::CoverageReply reply(const wire::CoverageRequest& to, Revision revision, Result<wire::Coverage> coverage) {
+    return {to.id, revision, std::move(coverage)};
+}
+
+planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) {
+    planning::PassabilityOptions options;
+    options.body_radius_m = body_radius.value_or(options.body_radius_m);
+    return options;
+}
+
+/// Errors  kTooLarge: it would fit no frame.
+Result<wire::Path> to_wire(planning::Path path) {
+    if (path.points.size() > wire::kPathPointsMax) {
+        return Error{Errc::kTooLarge, fmt::format("the path has {} points, at most {} fit a reply; ask for a smaller "
+                                                  "region, or rows further apart",
+                                                  path.points.size(), wire::kPathPointsMax)};
+    }
+    return wire::Path{std::move(path.points), path.length_m, path.cost};
+}
+
+/// Searches one snapshot from one place.
+struct Search {
+    const Asker& asker;
+    const mapping::Snapshot& maps;
+    guide::GoalBook& goals;
+    const Point2& start;
+
+    [[nodiscard]] Result<wire::Path> operator()(const wire::PlanRequest& request) const {
+        auto options = passability_of(request.body_radius);
+        options.allow_unknown = request.allow_unknown;
+        options.danger_cost = request.danger_cost.value_or(options.danger_cost);
+        auto path = planning::plan_path(maps.classes, maps.config.cell_size, start, request.goal, options);
+        if (!path) return path.error();
+        return to_wire(std::move(*path));
+    }
+
+    [[nodiscard]] Result<wire::Goal> operator()(const wire::GoalRequest& request) const {
+        planning::ExplorationOptions options;
+        options.passability = passability_of(request.body_radius);
+        options.frontier_size_min = std::max<std::size_t>(1, request.frontier_size_min);
+        auto next = goals.next(asker.session, maps, asker.robot, start, guide::GoalBook::Clock::now(), options);
+        if (!next) return next.error();
+        if (next->outcome == planning::Exploration::kTakenByOthers) {
+            return wire::Goal{wire::Exploration::kTakenByOthers, std::nullopt, std::nullopt};
+        }
+        if (!next->goal) return wire::Goal{wire::Exploration::kComplete, std::nullopt, std::nullopt};
+        auto path = to_wire(std::move(next->path));
+        if (!path) return path.error();
+        const grid::Cell cell = next->goal->target;
+        return wire::Goal{wire::Exploration::kGoal, std::move(*path),
+                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size};
+    }
+
+    [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {
+        const planning::CoverageOptions options{passability_of(request.body_radius), request.spacing, request.region};
+        auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options);
+        if (!coverage) return coverage.error();
+        auto path = to_wire(std::move(coverage->path));
+        if (!path) return path.error();
+        const double cell_area = maps.config.cell_size * maps.config.cell_size;
+        return wire::Coverage{std::move(*path), static_cast<double>(coverage->free_cells) * cell_area,
+                              static_cast<double>(coverage->covered_cells) * cell_area};
+    }
+};
+
+template <class Kind>
+wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBook& goals) {
+    const auto maps = asker.session->snapshot();
+    auto start = request.start;
+    if (!start) {
+        const auto pose = guide::pose_of(*maps, asker.robot);
+        if (!pose) return reply(request, maps->revision, pose.error());
+        start = Point2(pose->x, pose->y);
+    }
+    return reply(request, maps->revision, Search{asker, *maps, goals, *start}(request));
+}
+
+} // namespace
+
+std::optional<Request> as_request(wire::Message&& message) {
+    if (auto* plan = std::get_if<wire::PlanRequest>(&message)) return std::move(*plan);
+    if (auto* goal = std::get_if<wire::GoalRequest>(&message)) return std::move(*goal);
+    if (auto* coverage = std::get_if<wire::CoverageRequest>(&message)) return std::move(*coverage);
+    return std::nullopt;
+}
+
+wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals) {
+    return std::visit([&](const auto& kind) { return reply_from(kind, asker, goals); }, request);
+}
+
+wire::Message refusal_of(const Request& request, const Error& why) {
+    return std::visit([&](const auto& kind) -> wire::Message { return reply(kind, 0, why); }, request);
+}
+
+} // namespace scanloom::ingest

@@ -1,0 +1,314 @@
+#include "tests/integration/ingest_fixture.hpp"
+
+#include "server/classify/frontiers.hpp"
+#include "server/guide/robots.hpp"
+#include "server/planning/grid_path.hpp"
+
+#include <boost/asio/post.hpp>
+
+#include <algorithm>
+#include <future>
+#include <numbers>
+#include <set>
+
+/// Robots that ask for ways.
+namespace scanloom::ingest {
+namespace {
+
+Sensor half_round_laser() {
+    Sensor sensor;
+    sensor.id = 1;
+    sensor.name = "laser";
+    sensor.angles = UniformAngles{-std::numbers::pi / 2, std::numbers::pi / 180, 181};
+    sensor.range_max = 20.0;
+    return sensor;
+}
+
+/// A wall three metres away, and a sector in which nothing was read: frontiers are there and behind.
+Scan scan_with_a_gap(std::uint64_t seq = 1) {
+    Scan scan;
+    scan.seq = seq;
+    scan.stamp = static_cast<double>(seq);
+    scan.sensor = 1;
+    scan.pose = {0.5, 1.25, 0.0};
+    scan.ranges.assign(181, 3'000);
+    std::fill(scan.ranges.begin() + 100, scan.ranges.begin() + 130, kInvalidRange);
+    return scan;
+}
+
+class RequestsTest : public IngestTest {
+protected:
+    /// A robot whose first scan is in the maps.
+    std::unique_ptr<RobotSocket> looking_around(const std::string& name, const std::string& session = "lab") {
+        auto robot = welcomed(port(), hello(name, session));
+        robot->send(half_round_laser());
+        robot->send(wire::ScanBatch{{scan_with_a_gap()}});
+        robot->wait_for_ack(1);
+        return robot;
+    }
+
+    /// Nothing is searched until the returned promise is kept.
+    std::promise<void> hold_searches() {
+        std::promise<void> go_on;
+        boost::asio::post(running_->planning(), [wait = go_on.get_future().share()] { wait.wait(); });
+        return go_on;
+    }
+};
+
+wire::PlanRequest plan_to(const Point2& goal, std::uint64_t id = 1) { return {.id = id, .goal = goal}; }
+
+TEST_F(RequestsTest, APlanIsThePathThatPlanningFinds) {
+    auto& ingest = start();
+    const auto robot = looking_around("r");
+    robot->send(wire::PlanRequest{.id = 7, .start = Point2(1.0, 1.0), .goal = {2.5, 0.2}, .body_radius = 0.2});
+    const auto reply = robot->receive_kind<wire::PlanReply>();
+    const auto maps = ingest.snapshot("lab");
+    planning::PassabilityOptions options;
+    options.body_radius_m = 0.2;
+    const auto expected = planning::plan_path(maps->classes, 0.05, {1.0, 1.0}, {2.5, 0.2}, options).value();
+    EXPECT_EQ(reply.id, 7U);
+    EXPECT_EQ(reply.revision, 3U);
+    EXPECT_EQ(reply.path.value(), (wire::Path{expected.points, expected.length_m, expected.cost}));
+}
+
+TEST_F(RequestsTest, WithoutAStartTheRobotsNewestScanIsMeant) {
+    start();
+    const auto robot = looking_around("r");
+    robot->send(plan_to({2.5, 0.2}));
+    EXPECT_EQ(robot->receive_kind<wire::PlanReply>().path.value().points.front(), Point2(0.5, 1.25));
+    const auto mute = welcomed(port(), hello("mute"));
+    mute->send(plan_to({2.5, 0.2}));
+    EXPECT_EQ(mute->receive_kind<wire::PlanReply>().path.error().code, Errc::kNoPath);
+    mute->send(wire::GoalRequest{});
+    EXPECT_THAT(mute->receive_kind<wire::GoalReply>().goal.error().message, testing::HasSubstr("'mute'"));
+    mute->send(wire::CoverageRequest{});
+    EXPECT_EQ(mute->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kNoPath);
+}
+
+TEST_F(RequestsTest, WhatCannotBeMetIsRefusedAndTheLinkGoesOn) {
+    start();
+    const auto robot = looking_around("r");
+    robot->send(plan_to({3.53, 1.25}));
+    const auto blocked = robot->receive_kind<wire::PlanReply>();
+    EXPECT_EQ(blocked.path.error().code, Errc::kNoPath);
+    EXPECT_THAT(blocked.path.error().message, testing::HasSubstr("inside an obstacle"));
+    robot->send(wire::PlanRequest{.id = 2, .goal = {2.5, 0.2}, .body_radius = -1.0});
+    const auto bad = robot->receive_kind<wire::PlanReply>();
+    EXPECT_EQ(bad.path.error().code, Errc::kInvalidField);
+    EXPECT_THAT(bad.path.error().message, testing::StartsWith("body_radius is -1 m"));
+    robot->send(wire::CoverageRequest{.id = 3, .spacing = 9.0});
+    EXPECT_EQ(robot->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kInvalidField);
+    robot->send(wire::ScanBatch{{scan_with_a_gap(2)}});
+    robot->wait_for_ack(2);
+}
+
+TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
+    auto& ingest = start();
+    const auto frontier_of = [&](const Point2& target) {
+        const auto frontiers = classify::find_frontiers(ingest.snapshot("lab")->classes, 10);
+        const grid::Cell cell{static_cast<std::int32_t>(std::floor(target.x() / 0.05)),
+                              static_cast<std::int32_t>(std::floor(target.y() / 0.05))};
+        return std::ranges::find_if(
+                   frontiers, [&](const auto& one) { return std::ranges::find(one.cells, cell) != one.cells.end(); }) -
+               frontiers.begin();
+    };
+    const auto first = looking_around("a");
+    const auto second = looking_around("b");
+    first->send(wire::GoalRequest{.id = 1, .frontier_size_min = 10});
+    const auto goal = first->receive_kind<wire::GoalReply>().goal.value();
+    ASSERT_EQ(goal.exploration, wire::Exploration::kGoal);
+    EXPECT_EQ(goal.path->points.front(), Point2(0.5, 1.25));
+
+    // As HTTP does it for b.
+    const auto session = ingest.sessions().find("lab");
+    const auto maps = session->snapshot();
+    planning::ExplorationOptions options;
+    options.frontier_size_min = 10;
+    const auto other = ingest.goals()
+                           .next(session, *maps, guide::find_robot(*maps, "b").value(), {0.5, 1.25},
+                                 guide::GoalBook::Clock::now(), options)
+                           .value();
+    ASSERT_TRUE(other.goal);
+    const Point2 target = Point2(other.goal->target.i + 0.5, other.goal->target.j + 0.5) * 0.05;
+    EXPECT_NE(frontier_of(target), frontier_of(*goal.target));
+
+    std::set<std::ptrdiff_t> given = {frontier_of(target), frontier_of(*goal.target)};
+    std::vector<std::unique_ptr<RobotSocket>> others;
+    for (int n = 0;; ++n) {
+        others.push_back(looking_around("c" + std::to_string(n)));
+        others.back()->send(wire::GoalRequest{.id = 9, .frontier_size_min = 10});
+        const auto next = others.back()->receive_kind<wire::GoalReply>().goal.value();
+        if (next.exploration != wire::Exploration::kGoal) {
+            EXPECT_EQ(next.exploration, wire::Exploration::kTakenByOthers);
+            break;
+        }
+        ASSERT_TRUE(given.insert(frontier_of(*next.target)).second);
+    }
+}
+
+TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
+    start();
+    const auto robot = looking_around("r");
+    robot->send(wire::CoverageRequest{.id = 5, .region = {{1.0, 0.5}, {2.0, 0.5}, {2.0, 1.5}, {1.0, 1.5}}});
+    const auto reply = robot->receive_kind<wire::CoverageReply>();
+    EXPECT_EQ(reply.id, 5U);
+    const auto coverage = reply.coverage.value();
+    EXPECT_NEAR(coverage.free_area, 1.0, 0.1);
+    EXPECT_NEAR(coverage.covered_area, coverage.free_area, 0.1);
+    EXPECT_EQ(coverage.path.points.front(), Point2(0.5, 1.25));
+    EXPECT_GT(coverage.path.length, 3.0);
+}
+
+TEST_F(RequestsTest, ARobotIsAnsweredOnTheMapsOfItsOwnSession) {
+    start();
+    const auto here = looking_around("r", "here");
+    const auto elsewhere = welcomed(port(), hello("r", "elsewhere"));
+    elsewhere->send(wire::PlanRequest{.id = 1, .start = Point2(1.0, 1.0), .goal = {2.5, 0.2}});
+    EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().path.error().message, testing::HasSubstr("outside the map"));
+}
+
+TEST_F(RequestsTest, ScansAreTakenAndAcknowledgedWhileASearchLasts) {
+    start();
+    const auto robot = looking_around("r");
+    auto go_on = hold_searches();
+    robot->send(plan_to({2.5, 0.2}));
+    robot->send(wire::ScanBatch{{scan_with_a_gap(2)}});
+    robot->wait_for_ack(2);
+    robot->send(wire::Ping{9});
+    EXPECT_EQ(robot->receive_kind<wire::Pong>().nonce, 9U);
+    go_on.set_value();
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+}
+
+TEST_F(RequestsTest, OneRequestTooManyIsRefusedAndTheOthersAreMet) {
+    start();
+    const auto robot = looking_around("r");
+    auto go_on = hold_searches();
+    for (std::uint64_t id = 1; id <= 5; ++id) robot->send(plan_to({2.5, 0.2}, id));
+    const auto refused = robot->receive_kind<wire::PlanReply>();
+    EXPECT_EQ(refused.id, 5U);
+    EXPECT_EQ(refused.path.error().code, Errc::kOverloaded);
+    EXPECT_THAT(refused.path.error().message, testing::StartsWith("4 requests are under way"));
+    go_on.set_value();
+    for (std::uint64_t id = 1; id <= 4; ++id) {
+        const auto reply = robot->receive_kind<wire::PlanReply>();
+        EXPECT_EQ(reply.id, id);
+        EXPECT_TRUE(reply.path);
+    }
+    robot->send(plan_to({2.5, 0.2}, 6));
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+}
+
+TEST_F(RequestsTest, OneRequestTooManyOfAllLinksIsRefused) {
+    running_ = std::make_unique<RunningIngest>(log_, IngestConfig{}, 2);
+    const auto first = looking_around("a");
+    const auto second = looking_around("b");
+    auto go_on = hold_searches();
+    first->send(plan_to({2.5, 0.2}, 1));
+    first->send(plan_to({2.5, 0.2}, 2));
+    first->send(wire::Ping{1});
+    first->receive_kind<wire::Pong>();
+    second->send(wire::GoalRequest{.id = 3});
+    const auto refused = second->receive_kind<wire::GoalReply>();
+    EXPECT_EQ(refused.id, 3U);
+    EXPECT_EQ(refused.goal.error().code, Errc::kOverloaded);
+    go_on.set_value();
+    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(first->receive_kind<wire::PlanReply>().path);
+}
+
+TEST_F(RequestsTest, AGoodbyeWaitsForTheReplies) {
+    start();
+    const auto robot = looking_around("r");
+    auto go_on = hold_searches();
+    robot->send_bytes(frame_of(plan_to({2.5, 0.2}, 8)) + frame_of(wire::Goodbye{"done"}));
+    go_on.set_value();
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_FALSE(robot->receive().has_value());
+}
+
+TEST_F(RequestsTest, ARobotThatLeavesBeforeItsReplyDisturbsNobody) {
+    start();
+    const auto other = looking_around("other");
+    auto go_on = hold_searches();
+    {
+        const auto robot = looking_around("r");
+        robot->send(plan_to({2.5, 0.2}));
+        robot->send(wire::Ping{1});
+        robot->receive_kind<wire::Pong>();
+        robot->reset();
+    }
+    other->send(plan_to({2.5, 0.2}));
+    go_on.set_value();
+    EXPECT_TRUE(other->receive_kind<wire::PlanReply>().path);
+}
+
+TEST_F(RequestsTest, RefusalsThatNobodyReadsEndTheLink) {
+    start();
+    const auto robot = looking_around("r");
+    auto go_on = hold_searches();
+    std::string many;
+    while (many.size() < std::size_t{16} << 20) wire::encode(plan_to({2.5, 0.2}), many);
+    std::thread sending([&] {
+        try {
+            robot->send_bytes(many);
+        } catch (const boost::system::system_error&) { // cut off meanwhile
+        }
+    });
+    sending.join();
+    go_on.set_value();
+    bool ended = false;
+    try {
+        while (const auto message = robot->receive()) {
+            if (const auto* error = std::get_if<wire::LinkError>(&*message)) {
+                EXPECT_EQ(error->error.code, Errc::kCreditExceeded) << error->error.message;
+                ended = true;
+            }
+        }
+    } catch (const boost::system::system_error&) {
+        ended = true;
+    }
+    EXPECT_TRUE(ended);
+}
+
+TEST_F(RequestsTest, ARequestInThePlaceOfTheHelloIsRefused) {
+    start();
+    RobotSocket robot(port());
+    robot.send(plan_to({1.0, 1.0}));
+    expect_refused(robot, Errc::kMalformed, false, "the first frame is a plan_request; a hello is expected");
+}
+
+TEST_F(RequestsTest, AMalformedRequestEndsTheLinkByTheNameOfItsField) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(plan_to({std::nan(""), 1.0}));
+    expect_refused(*robot, Errc::kInvalidField, false, "plan_request.goal.x is nan;");
+}
+
+TEST_F(RequestsTest, AReplyIsNotForTheServer) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(wire::PlanReply{1, 2, Error{Errc::kNoPath, "why"}});
+    expect_refused(*robot, Errc::kMalformed, false, "a plan_reply frame is not for the server");
+}
+
+TEST_F(RequestsTest, NoSearchIsBegunWhileTheServerShutsDown) {
+    auto& ingest = start();
+    const auto robot = looking_around("r");
+    const auto session = ingest.sessions().find("lab");
+    auto go_on = hold_searches();
+    std::promise<std::string> told;
+    guide::GoalBook goals;
+    RequestDesk desk(ingest.planning(), goals, ingest.sessions());
+    ASSERT_FALSE(desk.ask({session, 0}, plan_to({2.5, 0.2}),
+                          [&](std::string frame, const std::shared_ptr<const void>&) { told.set_value(frame); }));
+    std::thread draining([&] { ingest.sessions().drain(); });
+    draining.join();
+    go_on.set_value();
+    const auto frame = told.get_future().get();
+    const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
+    EXPECT_EQ(std::get<wire::PlanReply>(reply).path.error().code, Errc::kShuttingDown);
+}
+
+} // namespace
+} // namespace scanloom::ingest
