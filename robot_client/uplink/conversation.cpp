@@ -73,6 +73,7 @@ std::optional<wire::LinkError> Conversation::receive(const wire::Message& messag
         if (const auto* ack = std::get_if<wire::Ack>(&message)) return on_ack(*ack, now);
         if (std::holds_alternative<wire::Correction>(message))
             return std::nullopt; // poses are sent as the source has them
+        if (requests_.answer(message)) return std::nullopt;
     }
     return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));
 }
@@ -94,6 +95,7 @@ std::optional<wire::LinkError> Conversation::on_welcome(const wire::Welcome& wel
         if (buffer_.acknowledged() > acknowledged_before) progress_ = now;
     }
     session_id_ = welcome.session_id;
+    requests_.rewind();
     link_->welcomed = true;
     link_->limits = with_defaults(welcome.limits);
     link_->credit.reset(welcome.credit_bytes);
@@ -147,6 +149,7 @@ std::optional<wire::Message> Conversation::next_message(Time now) {
         link_->said_goodbye = true;
         return wire::Goodbye{"every scan is acknowledged"};
     }
+    if (auto request = requests_.next()) return request; // somebody waits for the reply
     return next_about_scans();
 }
 

@@ -2,6 +2,7 @@
 
 #include "common/wire/messages.hpp"
 #include "robot_client/uplink/credit_window.hpp"
+#include "robot_client/uplink/open_requests.hpp"
 #include "robot_client/uplink/send_buffer.hpp"
 
 #include <chrono>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace scanloom::robot {
 
@@ -56,6 +58,15 @@ public:
     void add(Observation observation, Time now);
     void end() noexcept { ended_ = true; }
 
+    // Questions
+    /// Asks the server; `answered` is called once, from receive(), with the reply, which may be a refusal. What was
+    /// asked on a link that breaks is asked again on the next; what is not answered when all scans are durable and
+    /// there will be no more, never is.
+    /// @return false when OpenRequests::kMax are not answered yet; nothing is asked then.
+    [[nodiscard]] bool ask(Request request, Answered answered) {
+        return requests_.add(std::move(request), std::move(answered));
+    }
+
     // How far it is
     /// Every scan there will be is durable.
     [[nodiscard]] bool is_done() const noexcept { return ended_ && buffer_.empty(); }
@@ -94,6 +105,7 @@ private:
 
     ConversationOptions options_;
     SendBuffer buffer_;
+    OpenRequests requests_;
     std::optional<Link> link_;
     std::optional<std::uint64_t> resumed_after_;
     std::string session_id_;

@@ -77,6 +77,12 @@ void Uplink::stop() {
     wake_all();
 }
 
+bool Uplink::ask(Request request, Answered answered) {
+    if (!conversation_.ask(std::move(request), std::move(answered))) return false;
+    write_wake_.cancel();
+    return true;
+}
+
 UplinkStatus Uplink::status() const {
     const std::uint64_t welcomes = conversation_.welcomes();
     return {conversation_.resumed_after().value_or(0),

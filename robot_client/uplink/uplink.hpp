@@ -52,7 +52,7 @@ struct UplinkStatus {
 /// Carries a source's scans to the server: connects, reconnects, keeps the pace. The protocol is Conversation's;
 /// here are the sockets and timers.
 ///
-/// Thread  everything runs on the one thread of `io`; stop() is called on it, too.
+/// Thread  everything runs on the one thread of `io`; stop() and ask() are called on it, too.
 class Uplink {
 public:
     Uplink(boost::asio::io_context& io, UplinkOptions options, Source& source);
@@ -69,6 +69,9 @@ public:
     /// What it comes to when it is left now, after stop().
     /// Errors  kShuttingDown: scans were sent and not acknowledged, or the source has an end and is not there yet.
     [[nodiscard]] Result<> outcome_when_interrupted() const;
+
+    /// Conversation::ask(), sent as soon as there is a link. `answered` is called on the thread of `io`.
+    [[nodiscard]] bool ask(Request request, Answered answered);
 
     [[nodiscard]] UplinkStatus status() const;
 

@@ -31,6 +31,7 @@ struct FakeServer::Link {
     std::set<std::uint32_t> sensors;
     std::uint64_t scans = 0;
     std::uint64_t batches = 0;
+    std::uint64_t requests = 0;
     std::size_t unacknowledged_bytes = 0;
     bool is_silent = false;
 
@@ -75,7 +76,7 @@ asio::awaitable<void> FakeServer::accept() {
 }
 
 asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
-    Link link{std::move(socket), std::move(script), {}, 0, 0, 0, false};
+    Link link{std::move(socket), std::move(script), {}, 0, 0, 0, 0, false};
     wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
         const auto room = decoder.prepare(4096);
@@ -104,6 +105,7 @@ asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& messag
         ++goodbyes_;
         co_return false;
     }
+    if (const auto* plan = std::get_if<wire::PlanRequest>(&message)) co_return co_await meet(link, *plan);
     if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) co_return co_await take(link, *batch, frame_bytes);
     co_return true;
 }
@@ -125,6 +127,14 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
     const wire::Message welcome =
         wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes};
     co_return co_await link.send(welcome);
+}
+
+asio::awaitable<bool> FakeServer::meet(Link& link, const wire::PlanRequest& request) {
+    plans_.push_back(request);
+    if (link.script.hang_up_after_requests == ++link.requests) co_return false;
+    const wire::Path path{{Point2(0.0, 0.0), request.goal}, request.goal.norm(), request.goal.norm()};
+    const wire::Message reply = wire::PlanReply{request.id, 1, path};
+    co_return co_await link.send(reply);
 }
 
 asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes) {

@@ -23,13 +23,14 @@ struct LinkScript {
     std::optional<wire::LinkError> error_after_scans = {}; ///< sent where hang_up_after_scans stands
     std::optional<std::uint64_t> silent_after_scans = {};  ///< nothing is said from then on; 0: no welcome
     std::optional<std::uint64_t> stop_reading_after_scans = {};
+    std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
 };
 
 /// Enough of a server to try a robot on: welcomes, stores, acknowledges, and fails as its scripts say, one a link;
 /// the last script holds for all further links. It checks what every server would: order of scans, sensors described
-/// before their scans, credit. What it finds wrong is in faults().
+/// before their scans, credit. Any plan leads straight to its goal. What it finds wrong is in faults().
 class FakeServer {
 public:
     FakeServer(boost::asio::io_context& io, std::vector<LinkScript> scripts);
@@ -42,6 +43,7 @@ public:
     [[nodiscard]] const std::vector<Scan>& stored() const noexcept { return stored_; }
     [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
     [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
+    [[nodiscard]] const std::vector<wire::PlanRequest>& plans() const noexcept { return plans_; }
     [[nodiscard]] int goodbyes() const noexcept { return goodbyes_; }
     [[nodiscard]] std::size_t largest_batch() const noexcept { return largest_batch_; }
     /// Called after every scan stored, with their number.
@@ -57,6 +59,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> greet(Link& link, const wire::Hello& hello);
     [[nodiscard]] boost::asio::awaitable<bool> answer(Link& link, const wire::Message& message,
                                                       std::size_t frame_bytes);
+    [[nodiscard]] boost::asio::awaitable<bool> meet(Link& link, const wire::PlanRequest& request);
     [[nodiscard]] boost::asio::awaitable<bool> take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes);
 
     boost::asio::io_context& io_;
@@ -68,6 +71,7 @@ private:
     std::uint64_t durable_ = 0;
     std::vector<std::string> faults_;
     std::vector<wire::Hello> hellos_;
+    std::vector<wire::PlanRequest> plans_;
     int goodbyes_ = 0;
     std::size_t largest_batch_ = 0;
 };

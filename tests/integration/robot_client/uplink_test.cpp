@@ -90,6 +90,36 @@ TEST_F(UplinkTest, StreamsEverythingAndSaysGoodbye) {
     EXPECT_GT(server_->largest_batch(), 1U) << "as fast as it goes, scans share frames";
 }
 
+TEST_F(UplinkTest, WhatIsAskedIsAnsweredAmongTheScans) {
+    serve({{}});
+    std::vector<Point2> ends;
+    const auto answered = [&](const Reply& reply) {
+        ends.push_back(std::get<wire::PlanReply>(reply).path.value().points.back());
+    };
+    server_->on_stored = [&](std::size_t stored) {
+        if (stored != 100 && stored != 200) return;
+        const double x = static_cast<double>(stored);
+        EXPECT_TRUE(uplink_->ask(wire::PlanRequest{.goal = {x, 4.0}}, answered));
+    };
+    EXPECT_TRUE(run(options()));
+    expect_all_stored_once();
+    EXPECT_THAT(ends, ElementsAre(Point2(100.0, 4.0), Point2(200.0, 4.0)));
+}
+
+TEST_F(UplinkTest, WhatWasAskedOnALinkThatBrokeIsAskedAgain) {
+    serve({{.hang_up_after_requests = 1}, {}});
+    int answers = 0;
+    server_->on_stored = [&](std::size_t stored) {
+        if (stored != 100 || !server_->plans().empty()) return;
+        EXPECT_TRUE(uplink_->ask(wire::PlanRequest{.goal = {3.0, 4.0}}, [&](const Reply&) { ++answers; }));
+    };
+    EXPECT_TRUE(run(options()));
+    expect_all_stored_once();
+    EXPECT_EQ(answers, 1);
+    EXPECT_EQ(server_->plans().size(), 2U);
+    EXPECT_EQ(uplink_->status().reconnects, 1U);
+}
+
 TEST_F(UplinkTest, ATinyCreditSlowsItButStopsNothing) {
     serve({{.credit_bytes = 700}});
     EXPECT_TRUE(run(options(), 50));

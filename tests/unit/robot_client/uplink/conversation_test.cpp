@@ -409,5 +409,46 @@ TEST_F(ConversationTest, AServerThatDoesNotSayWhyIsSpokenFor) {
     EXPECT_EQ(conversation_.receive(wire::Goodbye{}, now_)->error.message, "the server said goodbye without a reason");
 }
 
+TEST_F(ConversationTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
+    std::vector<Reply> replies;
+    EXPECT_TRUE(
+        conversation_.ask(wire::PlanRequest{.goal = {1.0, 2.0}}, [&](const Reply& one) { replies.push_back(one); }));
+    welcome();
+    add(1);
+    const auto messages = said();
+    ASSERT_EQ(messages.size(), 3U);
+    const auto request = std::get<wire::PlanRequest>(messages[0]);
+    EXPECT_EQ(request.goal, Point2(1.0, 2.0));
+    EXPECT_TRUE(replies.empty());
+    const wire::PlanReply reply{request.id, 5, Error{Errc::kNoPath, "a wall"}};
+    EXPECT_FALSE(conversation_.receive(reply, now_));
+    ASSERT_EQ(replies.size(), 1U);
+    EXPECT_EQ(std::get<wire::PlanReply>(replies[0]), reply);
+    EXPECT_EQ(said_seqs(), from_to(1, 0)) << "all is said";
+}
+
+TEST_F(ConversationTest, AsksAgainOnTheNextLinkWhatWasNotAnswered) {
+    welcome();
+    int answers = 0;
+    EXPECT_TRUE(conversation_.ask(wire::GoalRequest{}, [&](const Reply&) { ++answers; }));
+    const auto first = said();
+    conversation_.close();
+    welcome();
+    EXPECT_EQ(said(), first);
+    EXPECT_FALSE(
+        conversation_.receive(wire::GoalReply{std::get<wire::GoalRequest>(first[0]).id, 5, wire::Goal{}}, now_));
+    EXPECT_EQ(answers, 1);
+    conversation_.close();
+    welcome();
+    EXPECT_TRUE(said().empty()) << "an answer is an answer";
+}
+
+TEST_F(ConversationTest, AReplyThatNobodyAskedForIsAFaultOfTheServer) {
+    welcome();
+    const auto failure = conversation_.receive(wire::PlanReply{1, 5, Error{Errc::kNoPath, "a wall"}}, now_);
+    ASSERT_TRUE(failure);
+    EXPECT_THAT(failure->error.message, HasSubstr("unexpected plan_reply"));
+}
+
 } // namespace
 } // namespace scanloom::robot

@@ -1,0 +1,45 @@
+#include "robot_client/uplink/open_requests.hpp"
+
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+std::optional<Reply> as_reply(const wire::Message& message) {
+    if (const auto* plan = std::get_if<wire::PlanReply>(&message)) return *plan;
+    if (const auto* goal = std::get_if<wire::GoalReply>(&message)) return *goal;
+    if (const auto* coverage = std::get_if<wire::CoverageReply>(&message)) return *coverage;
+    return std::nullopt;
+}
+
+} // namespace
+
+bool OpenRequests::add(Request request, Answered answered) {
+    if (open_.size() >= kMax) return false;
+    const std::uint64_t id = ++newest_;
+    std::visit([id](auto& kind) { kind.id = id; }, request);
+    open_.emplace(id, Open{std::move(request), std::move(answered)});
+    return true;
+}
+
+std::optional<wire::Message> OpenRequests::next() {
+    const auto unsent = open_.upper_bound(sent_);
+    if (unsent == open_.end()) return std::nullopt;
+    sent_ = unsent->first;
+    return std::visit([](const auto& kind) -> wire::Message { return kind; }, unsent->second.request);
+}
+
+bool OpenRequests::answer(const wire::Message& message) {
+    const auto reply = as_reply(message);
+    if (!reply) return false;
+    const auto asked = open_.find(std::visit([](const auto& kind) { return kind.id; }, *reply));
+    const bool is_of_it =
+        asked != open_.end() && asked->first <= sent_ && asked->second.request.index() == reply->index();
+    if (!is_of_it) return false;
+    const auto answered = std::move(asked->second.answered);
+    open_.erase(asked);
+    answered(*reply);
+    return true;
+}
+
+} // namespace scanloom::robot
