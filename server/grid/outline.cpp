@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -25,6 +27,30 @@ Cell first_corner(Cell cell, std::size_t side) {
 
 bool by_rows(Cell a, Cell b) { return std::tie(a.j, a.i) < std::tie(b.j, b.i); }
 
+/// A walk that comes to a corner twice goes around two rings that touch there. The one where it began is the first.
+/// @param corners  each where the walk turned, the first not repeated
+std::vector<Ring> rings_of(const std::vector<Cell>& corners) {
+    std::vector<Ring> rings(1);
+    Ring walked;
+    std::map<Cell, std::size_t, decltype(&by_rows)> places(&by_rows); // in what was walked
+    for (const Cell corner : corners) {
+        const auto [place, is_new] = places.emplace(corner, walked.size());
+        if (is_new) {
+            walked.push_back(corner);
+            continue;
+        }
+        const auto begin = walked.begin() + static_cast<std::ptrdiff_t>(place->second);
+        Ring closed(begin, walked.end());
+        for (auto left = begin + 1; left != walked.end(); ++left) places.erase(*left);
+        walked.erase(begin + 1, walked.end());
+        closed.push_back(corner);
+        rings.push_back(std::move(closed));
+    }
+    walked.push_back(walked.front());
+    rings.front() = std::move(walked);
+    return rings;
+}
+
 class Tracer {
 public:
     explicit Tracer(std::vector<Cell> cells)
@@ -37,7 +63,8 @@ public:
             if (area_[at] == kNone) flood(at);
             for (std::size_t side = 0; side < 4; ++side) {
                 if (walked_[at][side] || find(beside(cells_[at], right_of(side)))) continue;
-                outlines_[area_[at]].push_back(walk(at, side)); // an area's first cell is at its outer ring
+                auto& outline = outlines_[area_[at]];
+                std::ranges::move(rings_of(walk(at, side)), std::back_inserter(outline)); // its first cell: the outer
             }
         }
         return std::move(outlines_);
@@ -69,12 +96,13 @@ private:
         }
     }
 
-    /// Where two cells touch in a corner only, the walk turns left and stays with its own.
-    [[nodiscard]] Ring walk(std::size_t at, std::size_t side) {
-        Ring ring;
+    /// The corners around what is on the left of a cell's side. Where two cells touch in a corner only, the walk turns
+    /// left and stays with its own.
+    [[nodiscard]] std::vector<Cell> walk(std::size_t at, std::size_t side) {
+        std::vector<Cell> corners;
         for (std::size_t before = right_of(side); !walked_[at][side];) {
             walked_[at][side] = true;
-            if (side != before) ring.push_back(first_corner(cells_[at], side));
+            if (side != before) corners.push_back(first_corner(cells_[at], side));
             before = side;
             const Cell forward = beside(cells_[at], side);
             const auto ahead = find(forward);
@@ -88,8 +116,7 @@ private:
                 side = right_of(side);
             }
         }
-        ring.push_back(ring.front());
-        return ring;
+        return corners;
     }
 
     std::vector<Cell> cells_; // by rows

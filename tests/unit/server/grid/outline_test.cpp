@@ -36,6 +36,14 @@ TEST(Outline, CellsThatTouchInACornerAreTwoAreas) {
     EXPECT_THAT(outlines[1], ElementsAre(Ring{{1, 1}, {2, 1}, {2, 2}, {1, 2}, {1, 1}}));
 }
 
+TEST(Outline, AHoleThatTouchesTheOutsideInACornerIsAHole) {
+    const auto outlines =
+        outlines_of({{0, 0}, {1, 0}, {2, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 1}}); // all around but (2, 2)
+    ASSERT_EQ(outlines.size(), 1U);
+    EXPECT_THAT(outlines[0], ElementsAre(Ring{{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 3}, {0, 3}, {0, 0}},
+                                         Ring{{2, 2}, {2, 1}, {1, 1}, {1, 2}, {2, 2}}));
+}
+
 TEST(Outline, NoCellsHaveNone) { EXPECT_TRUE(outlines_of({}).empty()); }
 
 double area_of(const Ring& ring) {
