@@ -184,7 +184,8 @@ TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
     ASSERT_TRUE(refused);
     EXPECT_EQ(refused->error.code, Errc::kCreditExceeded);
     EXPECT_FALSE(refused->retryable);
-    EXPECT_THAT(refused->error.message, testing::HasSubstr("bytes of pongs wait to be read, at most 65536 may"));
+    EXPECT_THAT(refused->error.message,
+                testing::HasSubstr("bytes of pongs and refusals wait to be read, at most 65536 may"));
 }
 
 TEST_F(IngestTest, ARobotThatFindsTheSessionFullNeedNotTryAgain) {
