@@ -1,5 +1,7 @@
 #include "server/mapping/map_config.hpp"
 
+#include "server/mapping/log_odds.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -145,6 +147,13 @@ Result<> check_occupancy(const MapConfig& c) {
     if (!(c.p_prior > c.p_free && c.p_prior < c.p_occupied)) {
         return out_of_range("p_prior", c.p_prior,
                             "more than p_free and less than p_occupied is needed, or evidence would count backwards");
+    }
+    const LogOdds prior = to_fixed(log_odds_of(c.p_prior));
+    if (to_fixed(log_odds_of(c.p_occupied)) <= prior) {
+        return out_of_range("p_occupied", c.p_occupied, "so close to p_prior a hit would count for nothing; use more");
+    }
+    if (to_fixed(log_odds_of(c.p_free)) >= prior) {
+        return out_of_range("p_free", c.p_free, "so close to p_prior a beam would free nothing; use less");
     }
     return {};
 }

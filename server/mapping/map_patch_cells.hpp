@@ -12,7 +12,8 @@ namespace scanloom::mapping {
 /// The cells of this size that a patch says something of.
 [[nodiscard]] inline grid::CellBox cells_of(const MapPatch& patch, double cell_size) noexcept {
     if (patch.cells.empty()) return {};
-    const auto floor_cell = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / cell_size)); };
+    const double per_metre = 1.0 / cell_size;
+    const auto floor_cell = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres * per_metre)); };
     const double max_x = patch.min_x + static_cast<double>(patch.width) * patch.cell_size;
     const double max_y = patch.min_y + static_cast<double>(patch.height()) * patch.cell_size;
     return {floor_cell(patch.min_x), floor_cell(patch.min_y), floor_cell(max_x) + 1, floor_cell(max_y) + 1};

@@ -28,7 +28,10 @@ Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_s
     const double body = 2.0 * options.passability.body_radius_m;
     const double spacing = options.spacing_m.value_or(body);
     const double cells = spacing / cell_size_m + 1e-9;
-    if (!(spacing >= 0.0 && cells <= body / cell_size_m + 1.0 + 1e-6)) {
+    if (!(spacing >= 0.0)) {
+        return Error{Errc::kInvalidField, fmt::format("spacing is {} m; 0 or more is needed", spacing)};
+    }
+    if (!(cells <= body / cell_size_m + 1.0 + 1e-6)) {
         return Error{Errc::kInvalidField,
                      fmt::format("spacing is {} m; rows more than {} m apart leave ground between them that a body of "
                                  "radius {} m does not reach: give a smaller spacing or a larger body_radius",

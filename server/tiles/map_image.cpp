@@ -31,7 +31,7 @@ Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer lay
     }
     if (frame.cells.empty()) {
         return Error{Errc::kNotFound,
-                     "the session has no map yet in this layer: no scan has seen anything; ask again after one has"};
+                     "there is no map yet in this layer: none of its scans has seen anything by then"};
     }
     const auto width = frame.cells.width();
     const auto height = frame.cells.height();
