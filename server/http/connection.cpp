@@ -203,10 +203,16 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
     const auto& config = service_->config;
     const auto bytes = static_cast<double>(parser.content_length().value_or(0));
     const std::chrono::duration<double> more(bytes / static_cast<double>(config.read_rate_min));
-    stream_.expires_after(config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more));
-    const auto [error, size] = co_await beast::http::async_read(stream_, buffer_, parser, kAwaitTuple);
-    if (error) co_await refuse(error);
-    co_return !error;
+    const auto end =
+        std::chrono::steady_clock::now() + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
+    while (!parser.is_done()) {
+        stream_.expires_at(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
+        const auto [error, size] = co_await beast::http::async_read_some(stream_, buffer_, parser, kAwaitTuple);
+        if (!error) continue;
+        co_await refuse(error);
+        co_return false;
+    }
+    co_return true;
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.
@@ -252,8 +258,8 @@ const net::any_io_executor& Connection::executor_of(Lane lane) const {
     case Lane::kTelling: return service_->executors.telling;
     case Lane::kSurvey: return service_->executors.survey;
     case Lane::kWeaving: return service_->executors.weaving;
-    case Lane::kImporting:
     case Lane::kPlanning: return service_->executors.planning;
+    case Lane::kImporting:
     case Lane::kChanging: return service_->executors.changing;
     default: return service_->executors.serving;
     }

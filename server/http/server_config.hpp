@@ -24,14 +24,15 @@ struct ServerConfig {
     std::uint64_t import_bytes_max = std::uint64_t{80} << 20; ///< a map of 64 million cells, and what goes with it
     std::size_t imports_max = 2;                              ///< at once; one more is answered 503
 
-    std::chrono::milliseconds idle{60'000};    ///< between requests
-    std::chrono::milliseconds header{10'000};  ///< from a request's first byte to the end of its header
-    std::chrono::milliseconds body{30'000};    ///< for all of the body, and what read_rate_min adds for a large one
-    std::uint64_t read_rate_min = 256 * 1024;  ///< bytes a second of a large body
-    std::chrono::milliseconds write{30'000};   ///< in which some of the answer must go out
-    std::uint64_t write_rate_min = 256 * 1024; ///< bytes a second that may be added to `write` for all of the answer
-    std::chrono::milliseconds linger{2'000};   ///< for the peer to read the last answer and hang up
-    std::chrono::milliseconds drain{3'000};    ///< after stop(), for requests under way
+    std::chrono::milliseconds idle{60'000};       ///< between requests
+    std::chrono::milliseconds header{10'000};     ///< from a request's first byte to the end of its header
+    std::chrono::milliseconds body{30'000};       ///< for all of the body, and what read_rate_min adds for a large one
+    std::chrono::milliseconds body_pause{10'000}; ///< in which some of the body must come
+    std::uint64_t read_rate_min = 256 * 1024;     ///< bytes a second of a large body
+    std::chrono::milliseconds write{30'000};      ///< in which some of the answer must go out
+    std::uint64_t write_rate_min = 256 * 1024;    ///< bytes a second that may be added to `write` for all of the answer
+    std::chrono::milliseconds linger{2'000};      ///< for the peer to read the last answer and hang up
+    std::chrono::milliseconds drain{3'000};       ///< after stop(), for requests under way
 
     /// Names besides localhost and addresses under which the server is asked. On a loopback address all
     /// other names are refused; elsewhere they are as soon as there is one here.

@@ -37,6 +37,20 @@ Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPa
                                           cells.width(), cells.height(), config.cell_size)};
 }
 
+/// Errors  kOverloaded: the memory ran out.
+Result<mapping::Projection> woven(const mapping::MapConfig& config, const std::vector<MapPatch>& patches) {
+    try {
+        mapping::Projection projection(config);
+        for (const auto& patch : patches) {
+            if (auto folded = projection.fold(patch); !folded) return folded.error();
+        }
+        static_cast<void>(projection.snapshot()); // the classes are made here
+        return projection;
+    } catch (const std::bad_alloc&) {
+        return Error{Errc::kOverloaded, "there is no memory left for this map; use larger cells"};
+    }
+}
+
 Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revision, const MapPatch& patch) {
     std::promise<Result<>> appended;
     log.append(id, revision, {wire::encode_entry(patch)}, [&](Result<> done) { appended.set_value(std::move(done)); });
@@ -189,6 +203,9 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
     if (auto ok = check_patches(*config, patches); !ok) return ok.error();
+    // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
+    auto projection = woven(*config, patches);
+    if (!projection) return projection.error();
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name); !is_new) return is_new.error();
@@ -196,15 +213,13 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto id = log_.create_session(wire::encode_session(
         {std::string(name), created, mapping::options_of(*config), static_cast<std::uint32_t>(patches.size())}));
     if (!id) return id.error();
-    mapping::Projection projection(*config);
     for (std::size_t n = 0; n < patches.size(); ++n) {
-        auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
-        if (imported) imported = projection.fold(patches[n]);
+        const auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
         if (imported) continue;
         static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
         return imported.error();
     }
-    return add({*id, std::string(name), created, *config}, std::move(projection));
+    return add({*id, std::string(name), created, *config}, std::move(*projection));
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

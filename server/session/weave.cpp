@@ -40,6 +40,25 @@ Result<> check_entry(const mapping::MapConfig& config, const LogEntry& entry) {
     return patch == nullptr ? Result<>{} : mapping::check_work(mapping::reach_of(config, *patch));
 }
 
+/// The sensors that a log has described so far.
+class Sensors {
+public:
+    /// Errors  kInvalidField: a scan that no session with these settings would have taken.
+    [[nodiscard]] Result<> check(const mapping::MapConfig& config, const LogEntry& entry) {
+        if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
+            known_[{described->robot, described->sensor.id}] = described->sensor;
+        }
+        const auto* taken = std::get_if<ScanTaken>(&entry);
+        if (taken == nullptr) return {};
+        const auto sensor = known_.find({taken->robot, taken->scan.sensor});
+        if (sensor == known_.end()) return {}; // which folding will tell
+        return mapping::check_work(mapping::reach_of(config, sensor->second, taken->scan));
+    }
+
+private:
+    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> known_;
+};
+
 } // namespace
 
 std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request) {
@@ -102,12 +121,14 @@ void Weave::run(store::ScanLog& log, ChunkBudget& budget) {
 }
 
 Result<> Weave::weave(store::ScanLog& log, ChunkBudget& budget, mapping::Projection& projection, std::int64_t& chunks) {
+    Sensors sensors;
     return log.read(session_, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
         if (revision > request_.end.revision) return kEnd;
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
         const auto* taken = std::get_if<ScanTaken>(&*entry);
         if (taken != nullptr && request_.end.stamp && taken->scan.stamp > *request_.end.stamp) return kEnd;
+        if (auto ok = sensors.check(request_.config, *entry); !ok) return ok;
         return fold(*entry, budget, projection, chunks);
     });
 }

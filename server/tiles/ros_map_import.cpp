@@ -99,7 +99,7 @@ std::optional<std::int64_t> take_number(std::span<const std::uint8_t>& rest) {
     }
     const auto* begin = reinterpret_cast<const char*>(rest.data());
     std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(begin, begin + std::min<std::size_t>(rest.size(), 10), value);
+    const auto [end, error] = std::from_chars(begin, begin + std::min<std::size_t>(rest.size(), 32), value);
     if (error != std::errc{}) return std::nullopt;
     rest = rest.subspan(static_cast<std::size_t>(end - begin));
     return value;

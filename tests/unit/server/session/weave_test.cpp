@@ -137,6 +137,26 @@ TEST_F(WeaveTest, WhatTheSettingsCannotTakeFailsWithTheReason) {
     EXPECT_EQ(woven(request({.cell_size = 0.1}, {kScans + 3, std::nullopt}))->progress().state, State::kDone);
 }
 
+TEST_F(WeaveTest, AScanThatNoSessionOfTheseSettingsWouldTakeFails) {
+    Sensor ring = testing_support::small_laser();
+    ring.id = 9;
+    ring.kind = SensorKind::kSonar;
+    ring.angles = UniformAngles{0.0, 0.001, 4096};
+    ring.aperture = 3.0;
+    ring.range_max = 68.0;
+    Scan scan = testing_support::random_scan(1, kScans + 1);
+    scan.sensor = 9;
+    scan.ranges.assign(4096, kNoReturn);
+    std::promise<void> appended;
+    log_.append(session_.id, kScans + 3,
+                {wire::encode_entry(SensorDescribed{0, ring}), wire::encode_entry(ScanTaken{0, scan})},
+                [&](const Result<>&) { appended.set_value(); });
+    appended.get_future().wait();
+    const auto weave = woven(request({.cell_size = 0.01}, {kScans + 4, std::nullopt}));
+    EXPECT_EQ(weave->progress().state, State::kFailed);
+    EXPECT_THAT(weave->progress().error->message, testing::HasSubstr("too many cells"));
+}
+
 TEST_F(WeaveTest, OneCancelledBeforeItsTurnIsNeverWoven) {
     ChunkBudget budget(1000);
     Weave weave(session_, request({}, {newest(), std::nullopt}));

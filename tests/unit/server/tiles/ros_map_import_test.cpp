@@ -131,7 +131,8 @@ TEST(RosMapImport, AnImageThatIsNoneIsRefused) {
     for (const char* image : {"P6 2 2 255 abcdabcdabcd", "P5 0 2 255 ", "P5 -2 2 255 abcd", "P5 x", "GIF89a"}) {
         EXPECT_EQ(read_ros_image({}, bytes_of(image)).error().code, Errc::kMalformed) << image;
     }
-    for (const char* image : {"P5 8001 8000 255 abcd", "P5 2000000000 2000000000 255 a", "P5 1000001 1 255 a"}) {
+    for (const char* image : {"P5 8001 8000 255 abcd", "P5 000000000130000 8000 255 a",
+                              "P5 2000000000 2000000000 255 a", "P5 1000001 1 255 a"}) {
         EXPECT_EQ(read_ros_image({}, bytes_of(image)).error().code, Errc::kTooLarge) << image;
     }
     Bytes png = bytes_of("\x89PNG\r\n\x1A\n");
