@@ -60,9 +60,9 @@ public:
         std::optional<Spot> fallback;
         std::optional<Spot> best;
         for (std::int32_t step = 1; step <= rings_ && !ring.empty(); ++step) {
-            best = cheapest(ring, false);
+            best = cheapest(ring, false, frontier);
             if (best) break;
-            if (!fallback) fallback = cheapest(ring, true);
+            if (!fallback) fallback = cheapest(ring, true, frontier);
             ring = around(ring);
             all_seen.insert(all_seen.end(), ring.begin(), ring.end());
         }
@@ -106,18 +106,34 @@ private:
         ring.push_back(spot);
     }
 
-    [[nodiscard]] std::optional<Spot> cheapest(const std::vector<Spot>& ring, bool in_danger) const {
+    /// Of those that see the frontier.
+    [[nodiscard]] std::optional<Spot> cheapest(const std::vector<Spot>& ring, bool in_danger,
+                                               const Frontier& frontier) const {
         std::optional<Spot> best;
         double least = std::numeric_limits<double>::infinity();
         for (const Spot spot : ring) {
             if (passability_.danger.test(spot) != in_danger) continue;
             const double cost = search_.cost(spot);
             const bool before = best && (spot.y < best->y || (spot.y == best->y && spot.x < best->x));
-            if (cost > least || (cost == least && !before)) continue;
+            if (cost > least || (cost == least && !before) || std::isinf(cost)) continue;
+            const auto target = passability_.spot_of(nearest_cell(frontier, passability_.cell_at(spot)));
+            if (target && !sees(spot, *target)) continue;
             best = spot;
             least = cost;
         }
         return best;
+    }
+
+    /// Whether no cell between two, one for each step along the longer axis of the straight line, is occupied.
+    [[nodiscard]] bool sees(Spot from, Spot to) const {
+        const std::int32_t steps = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+        for (std::int32_t n = 1; n < steps; ++n) {
+            const double part = static_cast<double>(n) / steps;
+            const Spot between{from.x + static_cast<std::int32_t>(std::lround(part * (to.x - from.x))),
+                               from.y + static_cast<std::int32_t>(std::lround(part * (to.y - from.y)))};
+            if (passability_.occupied.test(between)) return false;
+        }
+        return true;
     }
 
     [[nodiscard]] FrontierGoal goal_at(Spot spot, const Frontier& frontier, std::size_t place) const {

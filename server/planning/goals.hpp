@@ -29,9 +29,10 @@ struct FrontierGoal {
 /// One for each frontier; nothing for a frontier that the robot cannot reach.
 using FrontierGoals = std::vector<std::optional<FrontierGoal>>;
 
-/// The goals of one robot: for each frontier the cell nearest to it that can be reached and is free and not in danger;
-/// of equally near ones the one with the cheapest way from the robot. Nearness counts steps over free ground from the
-/// frontier, so that no goal is behind a wall.
+/// The goals of one robot: for each frontier the cell nearest to it that can be reached, sees it, and is free and not
+/// in danger; of equally near ones the one with the cheapest way from the robot. Nearness counts steps over free ground
+/// from the frontier. A cell sees a frontier when no occupied one is on the straight line to the frontier's cell
+/// nearest to it (one cell for each step along the longer axis): what a robot would go there for.
 /// Where all cells near a frontier are in danger, the nearest of those is taken: the way may lead through danger, so
 /// standing there is no worse, and a passage as narrow as the danger along its walls would never be explored.
 /// Pre     the frontiers are those of the classes.

@@ -40,7 +40,33 @@ std::optional<Point2> somewhere_free(std::mt19937& random, const ClassView& view
     return centre(cell, kCellSize);
 }
 
-TEST(Goals, AreTheNearestFreeCellsWithTheCheapestWay) {
+/// The nearest of some cells; of equally near ones the first.
+Cell nearest_of(const std::vector<Cell>& cells, Cell to) {
+    Cell nearest = cells.front();
+    const auto square = [&](Cell cell) {
+        return (cell.i - to.i) * (cell.i - to.i) + (cell.j - to.j) * (cell.j - to.j);
+    };
+    for (const Cell cell : cells) {
+        if (square(cell) < square(nearest)) nearest = cell;
+    }
+    return nearest;
+}
+
+/// Whether a line between two cells, drawn in whole numbers, meets no occupied one.
+bool sees(const ClassView& view, Cell from, Cell to) {
+    const int di = std::abs(to.i - from.i);
+    const int dj = std::abs(to.j - from.j);
+    const int steps = std::max(di, dj);
+    for (int n = 1; n < steps; ++n) {
+        const int i = (2 * n * di + steps) / (2 * steps);
+        const int j = (2 * n * dj + steps) / (2 * steps);
+        const Cell between{from.i + (to.i < from.i ? -i : i), from.j + (to.j < from.j ? -j : j)};
+        if (class_at(view, between) == CellClass::kOccupied) return false;
+    }
+    return true;
+}
+
+TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
     std::mt19937 random(61);
     int reached = 0;
     int in_danger = 0;
@@ -55,7 +81,7 @@ TEST(Goals, AreTheNearestFreeCellsWithTheCheapestWay) {
         const auto goals = frontier_goals(view, kCellSize, frontiers, *robot).value();
         ASSERT_EQ(goals.size(), frontiers.size());
         for (std::size_t place = 0; place < goals.size(); ++place) {
-            // Rings of free cells around the frontier: the first with a reachable free cell has the goal.
+            // Rings of free cells around the frontier: the first with a reachable free cell that sees it has the goal.
             std::set<std::pair<int, int>> seen;
             std::vector<Cell> ring;
             const auto is_free = [&](Cell cell) {
@@ -72,6 +98,7 @@ TEST(Goals, AreTheNearestFreeCellsWithTheCheapestWay) {
             for (int step = 1; step <= 20 && best == kInfinite; ++step) {
                 double in_ring = kInfinite;
                 for (const Cell cell : ring) {
+                    if (!sees(view, cell, nearest_of(frontiers[place].cells, cell))) continue;
                     const double cost = search.cost(*passability.spot_of(cell)) * kCellSize;
                     const bool danger = class_at(view, cell) == CellClass::kDanger;
                     (danger ? in_ring : best) = std::min(danger ? in_ring : best, cost);
@@ -110,6 +137,14 @@ TEST(Goals, TellTheLengthOfTheWayAndTheNearestCellOfTheFrontier) {
     EXPECT_EQ(goals[0]->target, (Cell{9, 1}));
     EXPECT_NEAR(goals[0]->length_m, 4.0, 1e-12);
     EXPECT_NEAR(goals[0]->cost, 4.0, 1e-12);
+}
+
+TEST(Goals, AreNotAroundACornerFromTheirFrontier) {
+    const auto view = drawn({"#########", "f!!#....#", "##!#.##.#", "##!!!##.#", "#########"});
+    for (const auto& goal : frontier_goals(view, 1.0, find_frontiers(view), {7.5, 1.5}, for_a_point()).value()) {
+        ASSERT_TRUE(goal);
+        EXPECT_TRUE(sees(view, goal->cell, goal->target)) << goal->cell.i << ", " << goal->cell.j;
+    }
 }
 
 TEST(Goals, OneCellMayServeSeveralFrontiers) {
