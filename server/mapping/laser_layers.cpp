@@ -35,6 +35,18 @@ classify::Hysteresis<HimmCount> hysteresis_of_himm(const MapConfig& config) {
             kUnseenHimm};
 }
 
+/// Calls row() for what the next sectors of a scan show, as many as the work allows.
+/// @param done  sectors so far. @return whether that was the last.
+template <class Row>
+bool visit_sectors(const BeamFan& fan, const LaserScan& scan, const ModelGeometry& geometry, std::size_t& done,
+                   double& work, Row&& row) {
+    const auto missing = std::span(fan).subspan(done);
+    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
+    inverse_sensor_model(sectors, scan.ranges, scan.T_map_sensor, geometry, row);
+    done += sectors.size();
+    return sectors.size() == missing.size();
+}
+
 } // namespace
 
 LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, double aperture) {
@@ -111,9 +123,7 @@ void LaserLayers::set(grid::Cell cell, MapCell to) {
 /// The inverse sensor model: cells by sectors.
 bool LaserLayers::add_sectors(const LaserScan& scan, double& work) {
     const ModelGeometry geometry{scan.readings, config_.obstacle_thickness, config_.cell_size};
-    const auto missing = std::span(*scan.fan.occupancy).subspan(done_);
-    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
-    inverse_sensor_model(sectors, scan.ranges, scan.T_map_sensor, geometry,
+    return visit_sectors(*scan.fan.occupancy, scan, geometry, done_, work,
                          [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
                              bounds_.occupancy.include_row(j, begin, end);
                              touched_.include_row(j, begin, end);
@@ -121,8 +131,6 @@ bool LaserLayers::add_sectors(const LaserScan& scan, double& work) {
                                  occupancy_.apply({&chunk.occupancy[grid::index_in_chunk({i, j})], count}, verdict);
                              });
                          });
-    done_ += sectors.size();
-    return sectors.size() == missing.size();
 }
 
 /// The models that trace rays: cells are marked first, as a hit beats all passes of a scan, or of a beam.
@@ -172,9 +180,7 @@ void LaserLayers::add_first_marks() {
 
 bool LaserLayers::count(const LaserScan& scan, double& work) {
     const ModelGeometry geometry{scan.readings, config_.himm_obstacle_thickness, config_.cell_size};
-    const auto missing = std::span(*scan.fan.himm).subspan(done_);
-    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
-    inverse_sensor_model(sectors, scan.ranges, scan.T_map_sensor, geometry,
+    return visit_sectors(*scan.fan.himm, scan, geometry, done_, work,
                          [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
                              bounds_.himm.include_row(j, begin, end);
                              touched_.include_row(j, begin, end);
@@ -182,8 +188,6 @@ bool LaserLayers::count(const LaserScan& scan, double& work) {
                                  himm_.apply({&chunk.himm[grid::index_in_chunk({i, j})], count}, verdict);
                              });
                          });
-    done_ += sectors.size();
-    return sectors.size() == missing.size();
 }
 
 bool LaserLayers::fold_classes(double& work) {
