@@ -77,7 +77,9 @@ Items definitions() {
         "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for.",
         "Tolerance: one cell (the eight around a cell count as itself), but for exact IoU, which has none.",
         "precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
-        "those with an occupied one in the map. IoU: what both agree on, of all that either claims.",
+        "those with an occupied one in the map. IoU: occupied cells that match, of all occupied cells and the solid "
+        "ones not found. Several cells may match one solid cell, and cells inside solids match though nobody could "
+        "see them, so neither IoU is one in the strict sense, and both may exceed recall.",
         "free recall: of the free cells that could be seen and do not touch a solid one, those free in the map.",
         "residue: occupied cells away from every solid where only the person was, and is not at the end of the run.",
         "occupied: the map's occupied cells. touched: its cells that any scan changed.",
