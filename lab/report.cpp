@@ -77,14 +77,17 @@ Items definitions() {
         "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for.",
         "Tolerance: one cell (the eight around a cell count as itself), but for exact IoU, which has none.",
         "precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
-        "those with an occupied one in the map. IoU: occupied cells that match, of all occupied cells and the solid "
-        "ones not found. Several cells may match one solid cell, and cells inside solids match though nobody could "
-        "see them, so neither IoU is one in the strict sense, and both may exceed recall.",
+        "those with an occupied one in the map. IoU: the Jaccard index of precision P and recall R, "
+        "P R / (P + R - P R).",
+        "exact IoU: solid cells that could be seen and are occupied in the map, of all that could be seen and all that "
+        "are occupied in the map and not solid. Cells inside solids that could not be seen count neither for nor "
+        "against it.",
         "free recall: of the free cells that could be seen and do not touch a solid one, those free in the map.",
         "residue: occupied cells away from every solid where only the person was, and is not at the end of the run.",
         "occupied: the map's occupied cells. touched: its cells that any scan changed.",
         "The inverse sensor model marks a band of 0.1 m, half of it before the surface. At 1 cm that half is five "
-        "cells, more than the tolerance, and counts against precision and free recall.",
+        "cells, more than the tolerance, and counts against precision and free recall; and all five against exact "
+        "IoU, in which a surface is one cell.",
     }};
 }
 

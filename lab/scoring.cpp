@@ -9,6 +9,12 @@ double share(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// Intersection over union of two sets that agree on shares of their own: 1 / (1 / precision + 1 / recall - 1).
+double jaccard(double precision, double recall) {
+    const double product = precision * recall;
+    return product == 0.0 ? 0.0 : product / (precision + recall - product);
+}
+
 /// The cells within the tolerance of those with the value.
 template <class Value>
 CellMask around(const CellGrid<Value>& grid, Value value) {
@@ -32,7 +38,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
     const CellMask near_occupied = around(map, CellState::kOccupied);
     Scores scores;
     std::size_t matched = 0;
-    std::size_t exact = 0;
+    std::size_t outside = 0; // of solids
     std::size_t surface = 0;
     std::size_t found = 0;
     std::size_t found_exactly = 0;
@@ -44,7 +50,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
         if (is_occupied) {
             ++scores.occupied;
             matched += near_solid.at(cell);
-            exact += is_solid;
+            outside += !is_solid;
             scores.residue += !near_solid.at(cell) && walked.at(cell);
         }
         if (!seen.at(cell)) return;
@@ -59,8 +65,8 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
     });
     scores.precision = share(matched, scores.occupied);
     scores.recall = share(found, surface);
-    scores.iou = share(matched, scores.occupied + surface - found);
-    scores.iou_exact = share(exact, scores.occupied + surface - found_exactly);
+    scores.iou = jaccard(scores.precision, scores.recall);
+    scores.iou_exact = share(found_exactly, outside + surface);
     scores.free_recall = share(open_found, open);
     return scores;
 }

@@ -21,8 +21,10 @@ inline constexpr std::int32_t kTolerance = 1; // cells
 struct Scores {
     double precision = 0.0; ///< of the map's occupied cells: a solid in the cell or next to it
     double recall = 0.0;    ///< of the solid cells that could be seen: the map has an occupied one there or next to it
-    double iou = 0.0;       ///< what both agree on, as above, of all that either claims
-    double iou_exact = 0.0; ///< the same without tolerance
+    double iou = 0.0;       ///< of precision P and recall R: P R / (P + R - P R), the Jaccard index; above neither
+    double iou_exact = 0.0; ///< without tolerance: solid cells that could be seen and are occupied in the map, of those
+                            ///< that could be seen or where the map claims one and none is. Cells within solids that
+                            ///< could not be seen are neither right nor wrong.
     double free_recall = 0.0; ///< of the free cells that could be seen and are not next to a solid: free in the map
     std::size_t occupied = 0; ///< cells occupied in the map
     std::size_t residue = 0;  ///< of them: not at a solid, and where only a walker was

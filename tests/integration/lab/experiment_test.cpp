@@ -85,8 +85,7 @@ protected:
 
     Recording recording() const { return record(matrix_.scenes[0], path_, matrix_.noises[0], cell_size_, 1); }
 
-    StateGrid map_of(const Recording& recording) const {
-        SessionOptions options;
+    StateGrid map_of(const Recording& recording, SessionOptions options = {}) const {
         options.cell_size = cell_size_;
         mapping::Snapshot end;
         const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
@@ -110,6 +109,28 @@ TEST_F(BrokenModels, SwappingFreeAndOccupiedIsNoticed) {
         if (state != CellState::kUnknown) state = state == CellState::kFree ? CellState::kOccupied : CellState::kFree;
     }
     EXPECT_FALSE(is_good(scores_of(map), true));
+}
+
+TEST_F(BrokenModels, WallsTooThickAreNoticed) {
+    SessionOptions thick;
+    thick.obstacle_thickness = 0.5;
+    EXPECT_FALSE(is_good(scores_of(map_of(recording(), thick)), true));
+    SessionOptions fat;
+    fat.ray_model = RayModel::kBresenham;
+    fat.hit_radius = 0.3;
+    EXPECT_FALSE(is_good(scores_of(map_of(recording(), fat)), true));
+}
+
+TEST_F(BrokenModels, EchoesThatHardlyCountAreNoticed) {
+    SessionOptions faint;
+    faint.p_occupied = 0.51;
+    EXPECT_FALSE(is_good(scores_of(map_of(recording(), faint)), true));
+}
+
+TEST_F(BrokenModels, FreeSpaceThatHardlyCountsIsNoticed) {
+    SessionOptions faint;
+    faint.p_free = 0.4995;
+    EXPECT_FALSE(is_good(scores_of(map_of(recording(), faint)), true));
 }
 
 TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsNoticed) {

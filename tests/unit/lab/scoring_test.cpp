@@ -61,6 +61,29 @@ TEST(Scoring, WhatIsFarFromEverySolidCountsAgainstPrecision) {
     EXPECT_EQ(scores.residue, 0U) << "nobody walked there";
 }
 
+TEST(Scoring, WhatIsClaimedInsideASolidWhereNobodyCouldLookIsNeitherRightNorWrongExactly) {
+    const Rows truth{"       ", "       ", "#######", "#######", "#######"};
+    const Rows seen{"xxxxxxx", "xxxxxxx", "xxxxxxx", "       ", "       "};
+    const Rows walked(5, "       ");
+    const auto scores_with = [&](const char* surface, const char* inside) {
+        return score(map_of({"       ", "   #   ", surface, inside, "       "}), truth_cells_of(truth), mask_of(seen),
+                     mask_of(walked));
+    };
+    EXPECT_DOUBLE_EQ(scores_with("###    ", "       ").iou_exact, 3.0 / 8.0);
+    EXPECT_DOUBLE_EQ(scores_with("###    ", "#######").iou_exact, 3.0 / 8.0);
+}
+
+TEST(Scoring, NoIouExceedsPrecisionOrRecall) {
+    Rows map = kTruth;
+    map[2] = "#..##....#";
+    map[5] = "          ";
+    const auto scores = scores_of(map);
+    EXPECT_LT(scores.recall, 1.0);
+    EXPECT_LT(scores.precision, 1.0);
+    EXPECT_DOUBLE_EQ(1.0 / scores.iou, 1.0 / scores.precision + 1.0 / scores.recall - 1.0);
+    EXPECT_LT(scores.iou, std::min(scores.precision, scores.recall));
+}
+
 TEST(Scoring, ResidueIsWhatIsLeftWhereAWalkerWasAndNoSolidIs) {
     Rows map = kTruth;
     map[2] = "#..##.#..#";
@@ -82,7 +105,7 @@ TEST(Scoring, OnlyWhatCouldBeSeenIsAskedFor) {
                                   seen);
     EXPECT_EQ(scores.precision, 1.0);
     EXPECT_DOUBLE_EQ(scores.recall, 3.0 / 6.0) << "three of five below, none of one on the left";
-    EXPECT_DOUBLE_EQ(scores.iou, 2.0 / (2.0 + 3.0));
+    EXPECT_DOUBLE_EQ(scores.iou, 0.5);
     EXPECT_DOUBLE_EQ(scores.iou_exact, 2.0 / 6.0);
     EXPECT_DOUBLE_EQ(scores.free_recall, 2.0 / 2.0);
 }
