@@ -53,9 +53,7 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
     if (!spot) return spot.error();
     places &= connected(passability->enterable, *spot);
     BitGrid free = passability->ground;
-    if (options.region.empty()) {
-        free = connected(free, *spot);
-    } else {
+    if (!options.region.empty()) {
         const auto inside = cells_inside(*passability, options.region);
         if (!inside) return inside.error();
         free &= *inside;

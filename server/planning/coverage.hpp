@@ -11,7 +11,7 @@ namespace scanloom::planning {
 struct CoverageOptions {
     PassabilityOptions passability;  ///< its allow_unknown does not matter: only free ground is covered
     std::optional<double> spacing_m; ///< between rows: at most 2 body radii and a cell; default 2 body radii
-    std::vector<Point2> region;      ///< corners of a polygon, metres; none: all free ground that the start is part of
+    std::vector<Point2> region;      ///< corners of a polygon, metres; none: all free ground of the map
 };
 
 /// A way over all of a region's free ground.

@@ -1,28 +1,19 @@
 #include "server/planning/grid_path.hpp"
 
+#include "server/planning/clearance.hpp"
 #include "server/planning/line_of_sight.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cassert>
 
 namespace scanloom::planning {
 namespace {
 
 /// Relative: sums in another order are no reason to keep a corner.
 constexpr double kRounding = 1e-12;
-
-/// Metres of the map frame to cells of the window; within the point's cell, however the difference was rounded.
-Point2 to_cells(const Passability& passability, const Point2& point, Spot cell) {
-    const auto within = [](double x, std::int32_t lowest) {
-        return std::clamp(x, static_cast<double>(lowest), std::nextafter(lowest + 1.0, 0.0));
-    };
-    const Point2 scaled = point * (1.0 / passability.cell_size_m);
-    return {within(scaled.x() - passability.window.i_begin, cell.x),
-            within(scaled.y() - passability.window.j_begin, cell.y)};
-}
 
 Point2 centre_of(Spot spot) { return {spot.x + 0.5, spot.y + 0.5}; }
 
@@ -45,16 +36,25 @@ std::vector<Point2> corners(const std::vector<Spot>& cells, const Point2& start,
     return points;
 }
 
+/// The cost from one corner to the next: both are in one cell or in two side by side that may be entered, so it has
+/// one.
+double cost_of_step(const Passability& passability, const Point2& from, const Point2& to) {
+    const auto cost = cost_of_line(passability, from, to);
+    assert(cost);
+    return *cost;
+}
+
 /// Leaves out what corners it can, going on from each as far as the straight way is no worse.
 std::vector<Point2> straightened(const Passability& passability, const std::vector<Point2>& points) {
     std::vector<Point2> kept = {points.front()};
     for (std::size_t at = 0; at + 1 < points.size();) {
         std::size_t furthest = at + 1;
-        double cost = *cost_of_line(passability, points[at], points[furthest]);
+        double cost = cost_of_step(passability, points[at], points[furthest]);
         for (std::size_t next = furthest + 1; next < points.size(); ++next) {
-            const double around = cost + *cost_of_line(passability, points[next - 1], points[next]);
+            const double around = cost + cost_of_step(passability, points[next - 1], points[next]);
             const auto straight = cost_of_line(passability, points[at], points[next]);
             if (!straight || *straight > around * (1.0 + kRounding)) break;
+            if (!keeps_clear(passability, points[at], points[next])) break;
             furthest = next;
             cost = *straight;
         }
@@ -81,7 +81,7 @@ Path to_path(const Passability& passability, const std::vector<Spot>& cells, con
     Path path;
     for (std::size_t at = 0; at + 1 < points.size(); ++at) {
         path.length_m += (points[at + 1] - points[at]).norm() * passability.cell_size_m;
-        path.cost += *cost_of_line(passability, points[at], points[at + 1]) * passability.cell_size_m;
+        path.cost += cost_of_step(passability, points[at], points[at + 1]) * passability.cell_size_m;
     }
     for (const Point2& point : points) {
         path.points.push_back((point + Point2(passability.window.i_begin, passability.window.j_begin)) *

@@ -30,18 +30,24 @@ struct Axis {
     }
 };
 
-/// Along the border of two rows or columns of cells, a line touches both.
-bool follows_a_border(const Point2& from, const Point2& to) {
-    const auto constant_integer = [](double a, double b) { return a == b && a == std::floor(a); };
-    return constant_integer(from.x(), to.x()) || constant_integer(from.y(), to.y());
+bool is_border(double a, double b) { return a == b && a == std::floor(a); }
+
+/// Along the border of two rows or columns of cells, a line touches both: it costs what the dearer one does.
+std::optional<double> cost_beside(const Passability& passability, const Point2& from, const Point2& to,
+                                  const Point2& aside) {
+    const auto one = cost_of_line(passability, from + aside, to + aside);
+    const auto other = cost_of_line(passability, from - aside, to - aside);
+    if (!one || !other) return std::nullopt;
+    return std::max(*one, *other);
 }
 
 } // namespace
 
 std::optional<double> cost_of_line(const Passability& passability, const Point2& from, const Point2& to) {
-    if (follows_a_border(from, to)) return std::nullopt;
     const double length = (to - from).norm();
     if (length == 0.0) return 0.0;
+    if (is_border(from.x(), to.x())) return cost_beside(passability, from, to, {0.5, 0.0});
+    if (is_border(from.y(), to.y())) return cost_beside(passability, from, to, {0.0, 0.5});
     const BitGrid& enterable = passability.enterable;
     Axis x(from.x(), to.x());
     Axis y(from.y(), to.y());

@@ -1,6 +1,7 @@
 #include "server/planning/passability.hpp"
 
 #include "server/classify/bit_plane.hpp"
+#include "server/planning/clearance.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 
 namespace scanloom::planning {
@@ -22,9 +24,6 @@ constexpr std::int32_t kSide = grid::kChunkSide;
 /// Chunks whose cells, and those of a chunk beside them, have int32 numbers.
 constexpr std::int64_t kChunkEnd = std::int64_t{std::numeric_limits<std::int32_t>::max()} / kSide - 1;
 constexpr grid::ChunkBox kNumberedChunks{-kChunkEnd, -kChunkEnd, kChunkEnd, kChunkEnd};
-
-/// A radius of three cells shall reach the third cell, however the quotient of two decimal fractions was rounded.
-constexpr double kRoundingCells = 1e-9;
 
 Error invalid(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
 
@@ -92,6 +91,15 @@ void read_chunk(Passability& passability, grid::ChunkKey key, const ClassChunk& 
     }
 }
 
+/// The least radius, not below a given one, that is kept on a diagonal step from one cell's centre to another's if it
+/// is kept at both. The step's middle is m sqrt(2) from the corner of the square m cells beside it, from which both
+/// centres are sqrt(2 m^2 + 1/2): no other square is nearer to the middle than to the centres. In cells.
+double radius_for_steps(double radius) {
+    const double beside = std::floor(std::numbers::sqrt2 / 2.0 * (radius + kRoundingCells));
+    const double of_centres = std::sqrt(2.0 * beside * beside + 0.5);
+    return beside >= 1.0 ? std::max(radius, of_centres) : radius;
+}
+
 void set_all(BitGrid& grid) {
     for (std::int32_t y = 0; y < grid.height(); ++y) std::ranges::fill(grid.row(y), ~std::uint64_t{0});
 }
@@ -129,6 +137,15 @@ std::optional<Spot> Passability::spot_at(const Point2& point) const noexcept {
     return Spot{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
 }
 
+Point2 to_cells(const Passability& passability, const Point2& point, Spot cell) {
+    const auto within = [](double x, std::int32_t lowest) {
+        return std::clamp(x, static_cast<double>(lowest), std::nextafter(lowest + 1.0, 0.0));
+    };
+    const Point2 scaled = point * (1.0 / passability.cell_size_m);
+    return {within(scaled.x() - passability.window.i_begin, cell.x),
+            within(scaled.y() - passability.window.j_begin, cell.y)};
+}
+
 Result<Passability> make_passability(const ClassView& classes, double cell_size_m, const PassabilityOptions& options,
                                      std::span<const Point2> held) {
     assert(cell_size_m > 0.0);
@@ -144,8 +161,8 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
         passability.ground.subtract(passability.occupied);
     }
     passability.enterable = passability.ground;
-    passability.enterable.subtract(
-        dilated(passability.occupied, disc_half_widths(options.body_radius_m / cell_size_m, true)));
+    const double radius = radius_for_steps(options.body_radius_m / cell_size_m);
+    passability.enterable.subtract(dilated(passability.occupied, disc_half_widths(radius, true)));
     return passability;
 }
 
@@ -163,7 +180,9 @@ Result<Spot> open_start(Passability& passability, const Point2& start) {
 
 Result<Spot> check_goal(const Passability& passability, const Point2& goal) {
     const auto spot = ground_at(passability, goal, "goal");
-    if (!spot || passability.enterable.test(*spot)) return spot;
+    if (!spot) return spot;
+    const Point2 in_cells = to_cells(passability, goal, *spot);
+    if (passability.enterable.test(*spot) && keeps_clear(passability, in_cells, in_cells)) return spot;
     return Error{Errc::kNoPath, fmt::format("the goal ({:g}, {:g}) is nearer to an obstacle than the body radius of {} "
                                             "m: give a point further away from it",
                                             goal.x(), goal.y(), passability.options.body_radius_m)};

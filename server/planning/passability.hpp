@@ -15,6 +15,9 @@ inline constexpr std::int64_t kWindowCellsMax = std::int64_t{1} << 26; ///< a se
 inline constexpr double kBodyRadiusMax = 5.0;                          ///< metres
 inline constexpr double kDangerCostMax = 1000.0;
 
+/// A radius of three cells shall reach the third cell, however the quotient of two decimal fractions was rounded.
+inline constexpr double kRoundingCells = 1e-9;
+
 struct PassabilityOptions {
     double body_radius_m = 0.15; ///< 0: a point
     double danger_cost = 1.0;    ///< what a metre in danger costs more than another
@@ -24,7 +27,8 @@ struct PassabilityOptions {
 /// What of a map a body may enter, and what it costs.
 ///
 /// The body is a disc; where it is, its centre is. A cell may be entered when it is free (in danger or not; with
-/// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre.
+/// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre. (Where a
+/// diagonal step between such centres would come nearer, the radius counts as up to 0.17 cells more.)
 /// A metre in a DANGER cell costs 1 + danger_cost, any other 1.
 /// The window is whole chunks around everything known; with allow_unknown, also around the points to be held, and a
 /// chunk more on every side. Spots are cells of the window.
@@ -50,6 +54,10 @@ struct Passability {
     [[nodiscard]] std::optional<Spot> spot_at(const Point2& point) const noexcept;
 };
 
+/// Metres of the map frame to cells from the window's lower-left corner; within the cell that holds the point, however
+/// the difference was rounded.
+[[nodiscard]] Point2 to_cells(const Passability& passability, const Point2& point, Spot cell);
+
 /// Errors  kInvalidField: an option out of its range, a point that is not finite.
 ///         kTooLarge: a window of more than kWindowCellsMax cells.
 [[nodiscard]] Result<Passability> make_passability(const classify::ClassView& classes, double cell_size_m,
@@ -63,7 +71,8 @@ struct Passability {
 [[nodiscard]] Result<Spot> open_start(Passability& passability, const Point2& start);
 
 /// Where a path may end: the point's cell.
-/// Errors  kNoPath: as above, or nearer to an obstacle than the body radius. kInvalidField: not finite.
+/// Errors  kNoPath: as above, or the point or its cell's centre is nearer to an obstacle than the body radius.
+/// kInvalidField: not finite.
 [[nodiscard]] Result<Spot> check_goal(const Passability& passability, const Point2& goal);
 
 /// The columns that a disc reaches to either side, in its middle row and those above: for dilated().

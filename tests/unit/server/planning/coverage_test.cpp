@@ -81,17 +81,15 @@ void expect_covers(const ClassView& view, const grid::CellBox& box, double cell_
                 1e-12);
 }
 
-/// The free cells that hang together with a cell.
-CellSet room_of(const ClassView& view, Cell start) {
-    CellSet room;
-    std::vector<std::pair<int, int>> open = {{start.j, start.i}};
-    while (!open.empty()) {
-        const auto [j, i] = open.back();
-        open.pop_back();
-        if (!is_free(view, j, i) || !room.insert({j, i}).second) continue;
-        for (const auto& [dj, di] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) open.push_back({j + dj, i + di});
+/// The free cells of a world drawn from (0, 0) on.
+CellSet free_cells(const ClassView& view, const PlanWorld& world) {
+    CellSet cells;
+    for (int j = 0; j < world.height(); ++j) {
+        for (int i = 0; i < world.width(); ++i) {
+            if (is_free(view, j, i)) cells.insert({j, i});
+        }
     }
-    return room;
+    return cells;
 }
 
 PlanWorld random_room(std::mt19937& random, std::int32_t width, std::int32_t height) {
@@ -118,7 +116,7 @@ TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
         if (!oracle.enterable(start)) continue;
         const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), options).value();
         expect_covers(view, {0, 0, world.width(), world.height()}, 0.05, centre(start, 0.05), options.passability,
-                      room_of(view, start), coverage);
+                      free_cells(view, world), coverage);
         ++planned;
         if (HasFatalFailure()) FAIL() << "in round " << round;
     }
@@ -161,27 +159,26 @@ TEST(Coverage, AnEmptyRoomIsSweptWithLittleWaste) {
 TEST(Coverage, IsTheSameEveryTime) {
     std::mt19937 random(73);
     const auto view = random_room(random, 100, 80).view();
-    const auto free = room_of(view, {50, 40});
-    ASSERT_FALSE(free.empty());
     const auto once = plan_coverage(view, 0.05, centre({50, 40}, 0.05)).value();
     const auto again = plan_coverage(view, 0.05, centre({50, 40}, 0.05)).value();
     EXPECT_EQ(once.path.points, again.path.points);
     EXPECT_EQ(once.unreachable, again.unreachable);
 }
 
-TEST(Coverage, OtherRoomsAreUnreachableOnlyWhenTheyWereAskedFor) {
+TEST(Coverage, ListsRoomsThatCannotBeEnteredWithARegionAndWithout) {
     const auto view = drawn({"#########", "#...#...#", "#...#...#", "#########"});
-    CoverageOptions options;
-    options.passability.body_radius_m = 0.0;
-    const auto own = plan_coverage(view, 1.0, {1.5, 1.5}, options).value();
-    EXPECT_EQ(own.free_cells, 6);
-    EXPECT_TRUE(own.unreachable.empty());
-    options.region = {{0.0, 0.0}, {9.0, 0.0}, {9.0, 4.0}, {0.0, 4.0}};
-    const auto both = plan_coverage(view, 1.0, {1.5, 1.5}, options).value();
-    EXPECT_EQ(both.free_cells, 12);
-    EXPECT_EQ(both.unreachable, (std::vector<Cell>{{5, 1}, {6, 1}, {7, 1}, {5, 2}, {6, 2}, {7, 2}}));
-    EXPECT_NEAR(both.unreachable_m2, 6.0, 1e-12);
-    EXPECT_NEAR(both.fraction, 0.5, 1e-12);
+    CoverageOptions all;
+    all.passability.body_radius_m = 0.0;
+    CoverageOptions lower_half = all;
+    lower_half.region = {{0.0, 0.0}, {9.0, 0.0}, {9.0, 2.0}, {0.0, 2.0}};
+    const auto everywhere = plan_coverage(view, 1.0, {1.5, 1.5}, all).value();
+    EXPECT_EQ(everywhere.free_cells, 12);
+    EXPECT_EQ(everywhere.unreachable, (std::vector<Cell>{{5, 1}, {6, 1}, {7, 1}, {5, 2}, {6, 2}, {7, 2}}));
+    EXPECT_NEAR(everywhere.unreachable_m2, 6.0, 1e-12);
+    EXPECT_NEAR(everywhere.fraction, 0.5, 1e-12);
+    const auto lower = plan_coverage(view, 1.0, {1.5, 1.5}, lower_half).value();
+    EXPECT_EQ(lower.free_cells, 6);
+    EXPECT_EQ(lower.unreachable, (std::vector<Cell>{{5, 1}, {6, 1}, {7, 1}}));
 }
 
 TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {

@@ -92,6 +92,52 @@ TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
     EXPECT_GT(shortened, 10);
 }
 
+TEST(GridPath, KeepsTheBodysRadiusFromEveryOccupiedSquare) {
+    std::mt19937 random(37);
+    int found = 0;
+    for (int round = 0; round < 400; ++round) {
+        const double cell_size = std::array{0.05, 0.1, 0.25, 0.5}[random() % 4];
+        const PassabilityOptions options{.body_radius_m = std::array{0.05, 0.12, 0.15, 0.2, 0.35}[random() % 5]};
+        const auto view = scattered(random, kBox, 2);
+        const auto anywhere = [&] {
+            std::uniform_real_distribution<double> part(0.0, 1.0);
+            const Cell cell = random_cell(random);
+            return Point2((cell.i + part(random)) * cell_size, (cell.j + part(random)) * cell_size);
+        };
+        const Point2 start = centre(random_cell(random), cell_size);
+        const Oracle oracle(view, kBox, cell_size, options);
+        if (!oracle.keeps_clear(start / cell_size, start / cell_size)) continue;
+        const auto path = plan_path(view, cell_size, start, anywhere(), options);
+        if (!path) continue;
+        ++found;
+        for (std::size_t at = 0; at + 1 < path->points.size(); ++at) {
+            const double slack = at + 2 == path->points.size() ? 0.05 : 2e-9;
+            ASSERT_TRUE(oracle.keeps_clear(path->points[at] / cell_size, path->points[at + 1] / cell_size, slack))
+                << path->points[at].transpose() << " to " << path->points[at + 1].transpose() << ", cells of "
+                << cell_size << " m, body of " << options.body_radius_m;
+        }
+        ASSERT_TRUE(oracle.keeps_clear(path->points.back() / cell_size, path->points.back() / cell_size, 2e-9));
+    }
+    EXPECT_GT(found, 100);
+}
+
+TEST(GridPath, AGoalNearerToAnObstacleThanItsCellsCentreIsRefused) {
+    const auto view = drawn({"#####", ".....", "....."});
+    const PassabilityOptions body{.body_radius_m = 0.4};
+    EXPECT_TRUE(plan_path(view, 1.0, {0.5, 0.5}, {3.5, 1.55}, body));
+    const auto refused = plan_path(view, 1.0, {0.5, 0.5}, {3.5, 1.65}, body);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kNoPath);
+    EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle than the body radius of 0.4 m"));
+}
+
+TEST(GridPath, BetweenRoundCoordinatesInTheOpenIsStraight) {
+    const std::vector<std::string_view> open(12, "............");
+    const auto path = plan_path(drawn(open), 1.0, {2.0, 9.0}, {2.0, 4.0}, {.body_radius_m = 0.4}).value();
+    EXPECT_EQ(path.points, (std::vector<Point2>{{2.0, 9.0}, {2.0, 4.0}}));
+    EXPECT_NEAR(path.cost, 5.0, 1e-12);
+}
+
 TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
     std::mt19937 random(33);
     const auto view = scattered(random, kBox, 10);
@@ -242,9 +288,11 @@ TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
 }
 
 TEST(LineOfSight, AlongABorderTouchesBothSides) {
-    const auto passability = make_passability(drawn({"...", "..."}), 1.0, {.body_radius_m = 0.0}).value();
-    EXPECT_FALSE(cost_of_line(passability, {0.2, 1.0}, {2.8, 1.0})) << "told apart only by a hair: not worth the risk";
-    EXPECT_TRUE(cost_of_line(passability, {0.2, 1.0}, {2.8, 1.1}));
+    const auto view = drawn({"....#", ".!...", "....."});
+    const auto passability = make_passability(view, 1.0, {.body_radius_m = 0.0, .danger_cost = 3.0}).value();
+    EXPECT_NEAR(cost_of_line(passability, {0.25, 1.0}, {2.75, 1.0}).value_or(-1.0), 2.5 + 3.0, 1e-12);
+    EXPECT_NEAR(cost_of_line(passability, {2.0, 0.25}, {2.0, 2.75}).value_or(-1.0), 2.5 + 3.0, 1e-12);
+    EXPECT_FALSE(cost_of_line(passability, {2.5, 2.0}, {4.5, 2.0})) << "the obstacle's lower border";
 }
 
 } // namespace

@@ -23,7 +23,13 @@ inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 class Oracle {
 public:
     Oracle(const ClassView& view, const grid::CellBox& box, double cell_size_m, const PassabilityOptions& options)
-        : view_(view), box_(box), options_(options), radius_(options.body_radius_m / cell_size_m + 1e-9) {
+        : view_(view), box_(box), options_(options), radius_(options.body_radius_m / cell_size_m + 1e-9),
+          radius_of_centres_(radius_) {
+        // A diagonal step between two centres may be nearer to a square than both: then such centres do not count.
+        for (int beside = 1; beside < radius_; ++beside) {
+            const double of_centres = std::hypot(beside + 0.5, beside - 0.5);
+            if (beside * std::sqrt(2.0) <= radius_ && of_centres > radius_) radius_of_centres_ = of_centres + 1e-9;
+        }
         for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
             for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
                 if (class_at(view, {i, j}) == CellClass::kOccupied) occupied_.push_back({i, j});
@@ -61,6 +67,14 @@ public:
         return settled;
     }
 
+    /// Whether a body going straight from one point to another is more than its radius, less some slack, away from the
+    /// squares of all occupied cells. In cells.
+    [[nodiscard]] bool keeps_clear(const Point2& from, const Point2& to, double slack = 0.0) const {
+        return std::ranges::all_of(occupied_, [&](Cell cell) {
+            return distance(from, to, {cell.i, cell.j}) > radius_ - slack;
+        });
+    }
+
     /// The cost of a straight line in cells, or nothing when it touches the square of a cell that may not be entered.
     [[nodiscard]] std::optional<double> cost_of_line(const Point2& from, const Point2& to) const {
         double cost = 0.0;
@@ -86,8 +100,25 @@ private:
         return std::ranges::none_of(occupied_, [&](Cell other) {
             const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
             const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
-            return std::hypot(dx, dy) <= radius_;
+            return std::hypot(dx, dy) <= radius_of_centres_;
         });
+    }
+
+    /// From a line to a cell's square: the distance from the square falls and then rises along the line.
+    [[nodiscard]] static double distance(const Point2& from, const Point2& to, const Point2& low) {
+        const auto at = [&](double part) {
+            const Point2 point = from + part * (to - from);
+            const Point2 nearest = point.cwiseMax(low).cwiseMin(low + Point2(1.0, 1.0));
+            return (point - nearest).norm();
+        };
+        double begin = 0.0;
+        double end = 1.0;
+        for (int halving = 0; halving < 100; ++halving) {
+            const double third = (end - begin) / 3.0;
+            (at(begin + third) <= at(end - third) ? end : begin) =
+                at(begin + third) <= at(end - third) ? end - third : begin + third;
+        }
+        return at(begin);
     }
 
     /// How much of the line is in a cell's square, 0 .. 1; negative when it does not touch it.
@@ -114,7 +145,8 @@ private:
     const ClassView& view_;
     grid::CellBox box_;
     PassabilityOptions options_;
-    double radius_;
+    double radius_; // cells
+    double radius_of_centres_;
     std::vector<Cell> occupied_;
     std::set<std::pair<int, int>> enterable_;
 };
