@@ -182,7 +182,10 @@ std::optional<Response> Connection::refusal_of(const Parser& parser) const {
     }
     const bool is_import = lane_of(head_of(message)) == Lane::kImporting;
     if (!is_import && parser.content_length().value_or(0) > service_->config.body_bytes_max) {
-        return problem(Status::payload_too_large, "the body is too large; send less", path);
+        return problem(
+            Status::payload_too_large,
+            fmt::format("the body is too large; at most {} bytes are taken here", service_->config.body_bytes_max),
+            path);
     }
     const auto host = view(message[field::host]);
     if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
@@ -201,11 +204,12 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
         if (!asked) co_return false;
     }
     const auto& config = service_->config;
-    const auto bytes = static_cast<double>(parser.content_length().value_or(0));
-    const std::chrono::duration<double> more(bytes / static_cast<double>(config.read_rate_min));
-    const auto end =
-        std::chrono::steady_clock::now() + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
+    const auto begin = std::chrono::steady_clock::now();
+    const std::uint64_t bytes = parser.content_length().value_or(0);
     while (!parser.is_done()) {
+        const auto received = static_cast<double>(bytes - parser.content_length_remaining().value_or(0));
+        const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
+        const auto end = begin + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
         stream_.expires_at(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
         const auto [error, size] = co_await beast::http::async_read_some(stream_, buffer_, parser, kAwaitTuple);
         if (!error) continue;

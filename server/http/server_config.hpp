@@ -20,15 +20,15 @@ struct ServerConfig {
     std::size_t plans_max = 16;   ///< requests for frontiers, goals and ways; one more is answered 503
 
     std::uint32_t header_bytes_max = 8 * 1024;
-    std::uint64_t body_bytes_max = 64 * 1024;
+    std::uint64_t body_bytes_max = 256 * 1024;                ///< a region of 4096 corners, every digit of them
     std::uint64_t import_bytes_max = std::uint64_t{80} << 20; ///< a map of 64 million cells, and what goes with it
     std::size_t imports_max = 2;                              ///< at once; one more is answered 503
 
     std::chrono::milliseconds idle{60'000};       ///< between requests
     std::chrono::milliseconds header{10'000};     ///< from a request's first byte to the end of its header
-    std::chrono::milliseconds body{30'000};       ///< for all of the body, and what read_rate_min adds for a large one
+    std::chrono::milliseconds body{30'000};       ///< for the body's beginning; each byte gives more, by read_rate_min
     std::chrono::milliseconds body_pause{10'000}; ///< in which some of the body must come
-    std::uint64_t read_rate_min = 256 * 1024;     ///< bytes a second of a large body
+    std::uint64_t read_rate_min = 256 * 1024;     ///< bytes a second of a body, once its beginning is over
     std::chrono::milliseconds write{30'000};      ///< in which some of the answer must go out
     std::uint64_t write_rate_min = 256 * 1024;    ///< bytes a second that may be added to `write` for all of the answer
     std::chrono::milliseconds linger{2'000};      ///< for the peer to read the last answer and hang up

@@ -1,5 +1,7 @@
 #include "server/ingest/request_desk.hpp"
 
+#include "server/guide/patience.hpp"
+
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
@@ -25,7 +27,7 @@ std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
 wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
     if (sessions_.is_draining()) return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
     try {
-        return reply_to(request, asker, goals_);
+        return reply_to(request, asker, goals_, guide::Patience(sessions_));
     } catch (const std::bad_alloc&) {
         return refusal_of(request, {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
     } catch (const std::exception& failure) {

@@ -44,6 +44,7 @@ struct Search {
     const Asker& asker;
     const mapping::Snapshot& maps;
     guide::GoalBook& goals;
+    const planning::MayGoOn& may_go_on;
     const Point2& start;
 
     [[nodiscard]] Result<wire::Path> operator()(const wire::PlanRequest& request) const {
@@ -74,7 +75,7 @@ struct Search {
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {
         const planning::CoverageOptions options{passability_of(request.body_radius), request.spacing, request.region};
-        auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options);
+        auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options, may_go_on);
         if (!coverage) return coverage.error();
         auto path = to_wire(std::move(coverage->path));
         if (!path) return path.error();
@@ -85,7 +86,8 @@ struct Search {
 };
 
 template <class Kind>
-wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBook& goals) {
+wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBook& goals,
+                         const planning::MayGoOn& may_go_on) {
     const auto maps = asker.session->snapshot();
     auto start = request.start;
     if (!start) {
@@ -93,7 +95,7 @@ wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBoo
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2(pose->x, pose->y);
     }
-    return reply(request, maps->revision, Search{asker, *maps, goals, *start}(request));
+    return reply(request, maps->revision, Search{asker, *maps, goals, may_go_on, *start}(request));
 }
 
 } // namespace
@@ -105,8 +107,9 @@ std::optional<Request> as_request(wire::Message&& message) {
     return std::nullopt;
 }
 
-wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals) {
-    return std::visit([&](const auto& kind) { return reply_from(kind, asker, goals); }, request);
+wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals,
+                       const planning::MayGoOn& may_go_on) {
+    return std::visit([&](const auto& kind) { return reply_from(kind, asker, goals, may_go_on); }, request);
 }
 
 wire::Message refusal_of(const Request& request, const Error& why) {

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/wire/messages.hpp"
 #include "server/guide/goal_book.hpp"
+#include "server/planning/coverage.hpp"
 #include "server/session/session.hpp"
 
 #include <memory>
@@ -25,7 +26,8 @@ struct Asker {
 
 /// Searches the session's newest maps: takes milliseconds, and seconds where they are huge.
 /// Post  the reply fits a frame.
-[[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals);
+[[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals,
+                                     const planning::MayGoOn& may_go_on);
 
 /// The reply to a request that is not met.
 [[nodiscard]] wire::Message refusal_of(const Request& request, const Error& why);

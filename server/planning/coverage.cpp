@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <utility>
 
 namespace scanloom::planning {
 namespace {
@@ -73,8 +75,8 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
 /// The cells gone through so far, and what is left to cover.
 class Tour {
 public:
-    explicit Tour(const Task& task)
-        : task_(task), search_(task.passability), left_(task.reachable), cells_{task.start} {
+    Tour(const Task& task, const MayGoOn& may_go_on)
+        : task_(task), may_go_on_(may_go_on), search_(task.passability), left_(task.reachable), cells_{task.start} {
         cover(task.start);
     }
 
@@ -82,15 +84,22 @@ public:
     [[nodiscard]] const BitGrid& left() const { return left_; }
     [[nodiscard]] const std::vector<Spot>& cells() const { return cells_; }
 
-    void go_to(Spot goal) {
+    [[nodiscard]] Result<> go_to(Spot goal) {
+        if (may_go_on_) {
+            if (auto may = may_go_on_(); !may) return may;
+        }
         search_.between(at(), goal);
         append(search_.path_to(goal));
+        return {};
     }
 
     /// Straight along its row, whatever that costs. Pre  all cells between are places.
     void go_along_row(Spot goal) {
         while (at().x != goal.x) step({at().x + (goal.x > at().x ? 1 : -1), goal.y});
     }
+
+    /// From now on calls `then` with each cell that is covered.
+    void when_covered(std::function<void(Spot)> then) { when_covered_ = std::move(then); }
 
     /// The nearest of some cells. Pre  one of them can be reached.
     [[nodiscard]] Spot nearest(const BitGrid& wanted) {
@@ -120,28 +129,32 @@ private:
             for (std::int32_t x = next_set(left_.row(y), std::max(centre.x - width, 0)); x < end;
                  x = next_set(left_.row(y), x + 1)) {
                 left_.clear({x, y});
+                if (when_covered_) when_covered_({x, y});
             }
         }
     }
 
     const Task& task_;
+    const MayGoOn& may_go_on_;
     CostSearch search_;
     BitGrid left_; // of task_.reachable
     std::vector<Spot> cells_;
+    std::function<void(Spot)> when_covered_;
 };
 
 /// Sweeps all rows of a block from one of the ends of its first or last row.
-void sweep(Tour& tour, const SweepBlock& block, Spot entry) {
+Result<> sweep(Tour& tour, const SweepBlock& block, Spot entry) {
     SweepBlock rows = block;
     if (entry.y != rows.front().y) std::ranges::reverse(rows);
     for (const SweepRow& row : rows) {
         const bool from_left = std::abs(tour.at().x - row.left().x) <= std::abs(tour.at().x - row.right().x);
-        tour.go_to(from_left ? row.left() : row.right());
+        if (auto gone = tour.go_to(from_left ? row.left() : row.right()); !gone) return gone;
         tour.go_along_row(from_left ? row.right() : row.left());
     }
+    return {};
 }
 
-void sweep_all(Tour& tour, const Task& task) {
+Result<> sweep_all(Tour& tour, const Task& task) {
     BitGrid ground = task.places;
     ground &= task.free;
     const auto blocks = sweep_blocks(ground, task.spacing);
@@ -163,11 +176,12 @@ void sweep_all(Tour& tour, const Task& task) {
         for (auto block = first; block != last; ++block) {
             if (swept[block->second]) continue;
             swept[block->second] = true;
-            tour.go_to(entry);
-            sweep(tour, blocks[block->second], entry);
+            if (auto gone = tour.go_to(entry); !gone) return gone;
+            if (auto swept_it = sweep(tour, blocks[block->second], entry); !swept_it) return swept_it;
             ++done;
         }
     }
+    return {};
 }
 
 /// The offsets within the body's disc, the nearest first.
@@ -183,8 +197,8 @@ std::vector<Spot> offsets_by_distance(const std::vector<std::int32_t>& reach) {
 }
 
 /// Goes to the place nearest to each cell left, from one to the nearest next; those of the cells in between are covered
-/// on the way.
-void fetch_what_is_left(Tour& tour, const Task& task) {
+/// on the way, and their places not gone to.
+Result<> fetch_what_is_left(Tour& tour, const Task& task) {
     const auto offsets = offsets_by_distance(task.reach);
     const auto place_for = [&](Spot cell) {
         for (const Spot offset : offsets) {
@@ -196,32 +210,38 @@ void fetch_what_is_left(Tour& tour, const Task& task) {
         assert(false); // the cell is reachable
         return cell;
     };
-    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Spot>> cells_of; // by the place's (y, x)
+    std::map<std::pair<std::int32_t, std::int32_t>, std::int64_t>
+        cells_left; // of which a place, (y, x), is the nearest
     BitGrid wanted(task.places.width(), task.places.height());
     for_each_set(tour.left(), [&](Spot cell) {
         const Spot place = place_for(cell);
         wanted.set(place);
-        cells_of[{place.y, place.x}].push_back(cell);
+        ++cells_left[{place.y, place.x}];
     });
-    for (std::size_t visited = 0; visited < cells_of.size(); ++visited) {
-        const Spot place = tour.nearest(wanted);
+    tour.when_covered([&](Spot cell) {
+        const Spot place = place_for(cell);
+        const auto left = cells_left.find({place.y, place.x});
+        if (--left->second > 0) return;
+        cells_left.erase(left);
         wanted.clear(place);
-        const auto& cells = cells_of.at({place.y, place.x});
-        if (std::ranges::any_of(cells, [&](Spot cell) { return tour.left().test(cell); })) tour.go_to(place);
+    });
+    while (!cells_left.empty()) {
+        if (auto gone = tour.go_to(tour.nearest(wanted)); !gone) return gone;
     }
+    return {};
 }
 
 } // namespace
 
 Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_size_m, const Point2& start,
-                               const CoverageOptions& options) {
+                               const CoverageOptions& options, const MayGoOn& may_go_on) {
     const auto task = make_task(classes, cell_size_m, start, options);
     if (!task) return task.error();
-    Tour tour(*task);
-    sweep_all(tour, *task);
-    fetch_what_is_left(tour, *task);
+    Tour tour(*task, may_go_on);
+    if (auto swept = sweep_all(tour, *task); !swept) return swept.error();
+    if (auto fetched = fetch_what_is_left(tour, *task); !fetched) return fetched.error();
     Coverage coverage;
-    const Point2 end = tour.cells().size() == 1 ? start : task->passability.centre_of(tour.at());
+    const Point2 end = task->passability.centre_of(tour.at());
     coverage.path = to_path(task->passability, tour.cells(), start, end, Shape::kSteps);
     coverage.free_cells = task->free.count();
     coverage.covered_cells = task->reachable.count() - tour.left().count();

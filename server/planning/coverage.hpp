@@ -3,6 +3,7 @@
 #include "server/planning/grid_path.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct CoverageOptions {
     std::optional<double> spacing_m; ///< between rows: at most 2 body radii and a cell; default 2 body radii
     std::vector<Point2> region;      ///< corners of a polygon, metres; none: all free ground of the map
 };
+
+/// Asked again and again during a long search, which ends with the error that it returns.
+using MayGoOn = std::function<Result<>()>;
 
 /// A way over all of a region's free ground.
 struct Coverage {
@@ -30,8 +34,9 @@ struct Coverage {
 /// Each free cell (in danger or not) of the region has its centre within a body radius of the path, or is listed as
 /// unreachable. Rows are straight; between them the way is that of plan_path(), not straightened.
 /// Errors  kNoPath: the start cannot be (see plan_path()); no cell of the region can be reached. kInvalidField: an
-///         option, a spacing out of its range, a region that is none. kTooLarge: the map.
+///         option, a spacing out of its range, a region that is none. kTooLarge: the map. Those of may_go_on.
 [[nodiscard]] Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_size_m,
-                                             const Point2& start, const CoverageOptions& options = {});
+                                             const Point2& start, const CoverageOptions& options = {},
+                                             const MayGoOn& may_go_on = {});
 
 } // namespace scanloom::planning

@@ -16,9 +16,11 @@ constexpr std::uint8_t kFree = 254;
 constexpr std::uint8_t kOccupied = 0;
 constexpr std::uint8_t kNeither = 205;
 
-std::uint8_t grey_of_percent(Percent percent) noexcept {
-    if (percent <= 25) return kFree;
-    return percent >= 65 && percent <= 100 ? kOccupied : kNeither;
+std::uint8_t grey_of_percent(Percent percent, const mapping::MapConfig& config) noexcept {
+    constexpr double kRounding = 1e-9;  // 100 * 0.29 is less than 29
+    if (percent > 100) return kNeither; // unknown
+    if (percent <= 100.0 * config.class_p_free + kRounding) return kFree;
+    return percent >= 100.0 * config.class_p_occupied - kRounding ? kOccupied : kNeither;
 }
 
 std::uint8_t grey_of_count(mapping::HimmCount count, const mapping::MapConfig& config) noexcept {
@@ -47,7 +49,7 @@ std::array<std::uint8_t, 256> greys_of(mapping::Layer layer, const mapping::MapC
             greys[code] = grey_of_class(static_cast<classify::CellClass>(value));
             break;
         case mapping::Layer::kOccupancy:
-        case mapping::Layer::kSonar: greys[code] = grey_of_percent(value); break;
+        case mapping::Layer::kSonar: greys[code] = grey_of_percent(value, config); break;
         }
     }
     return greys;

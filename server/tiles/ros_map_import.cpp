@@ -13,11 +13,14 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
 
 namespace scanloom::tiles {
 namespace {
 
 constexpr std::uint8_t kTrinaryUnknown = 205;
+constexpr std::size_t kKeyShown = 40; // characters
 
 Error bad_key(std::string_view key, std::string_view what) {
     return {Errc::kInvalidField, fmt::format("the map's yaml: {} {}", key, what)};
@@ -63,10 +66,9 @@ Result<> read_origin(const YAML::Node& yaml, RosMapDescription& map) {
 
 Result<> read_mode(const YAML::Node& yaml, RosMapDescription& map) {
     if (const auto negate = yaml["negate"]) {
-        if (!negate.IsScalar() || (negate.Scalar() != "0" && negate.Scalar() != "1")) {
-            return bad_key("negate", "is neither 0 nor 1");
-        }
-        map.negate = negate.Scalar() == "1";
+        const auto value = negate.IsScalar() ? negate.Scalar() : "";
+        map.negate = value == "1" || value == "true"; // nav2 takes the words, too
+        if (!map.negate && value != "0" && value != "false") return bad_key("negate", "is neither 0 nor 1");
     }
     const auto mode = yaml["mode"];
     if (!mode) return {};
@@ -74,6 +76,17 @@ Result<> read_mode(const YAML::Node& yaml, RosMapDescription& map) {
         return bad_key("mode", "is neither trinary nor scale, the ones that can be imported");
     }
     map.is_trinary = mode.Scalar() == "trinary";
+    return {};
+}
+
+/// YAML forbids a key given twice; yaml-cpp lets it pass.
+Result<> check_unique(const YAML::Node& yaml) {
+    std::set<std::string> keys;
+    for (const auto& entry : yaml) {
+        if (entry.first.IsScalar() && !keys.insert(entry.first.Scalar()).second) {
+            return bad_key(entry.first.Scalar().substr(0, kKeyShown), "is given twice");
+        }
+    }
     return {};
 }
 
@@ -105,13 +118,14 @@ std::optional<std::int64_t> take_number(std::span<const std::uint8_t>& rest) {
     return value;
 }
 
-struct ImageSize {
+struct ImageHead {
     std::int64_t width = 0;
     std::int64_t height = 0;
+    std::int64_t white = 255; ///< the highest grey
 };
 
 /// Of a PGM or a PNG, before anything is made of it.
-std::optional<ImageSize> size_of(std::span<const std::uint8_t> image) {
+std::optional<ImageHead> head_of(std::span<const std::uint8_t> image) {
     constexpr std::array<std::uint8_t, 8> kPng = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     constexpr std::size_t kPngSizeAt = 16;
     if (image.size() > kPngSizeAt + 8 && std::equal(kPng.begin(), kPng.end(), image.begin())) {
@@ -120,24 +134,30 @@ std::optional<ImageSize> size_of(std::span<const std::uint8_t> image) {
             for (std::size_t n = 0; n < 4; ++n) value = value << 8 | image[at + n];
             return value;
         };
-        return ImageSize{big_endian(kPngSizeAt), big_endian(kPngSizeAt + 4)};
+        return ImageHead{big_endian(kPngSizeAt), big_endian(kPngSizeAt + 4)};
     }
     if (image.size() < 3 || image[0] != 'P' || (image[1] != '2' && image[1] != '5')) return std::nullopt;
     auto rest = image.subspan(2);
     const auto width = take_number(rest);
     const auto height = width ? take_number(rest) : std::nullopt;
-    if (!height) return std::nullopt;
-    return ImageSize{*width, *height};
+    const auto white = height ? take_number(rest) : std::nullopt;
+    if (!white) return std::nullopt;
+    return ImageHead{*width, *height, *white};
 }
 
 Result<cv::Mat> decode(std::span<const std::uint8_t> image) {
-    const auto size = size_of(image);
-    if (!size || size->width <= 0 || size->height <= 0) {
+    const auto head = head_of(image);
+    if (!head || head->width <= 0 || head->height <= 0) {
         return Error{Errc::kMalformed, "the map's image is neither a PGM (P2, P5) nor a PNG, or is damaged"};
     }
-    if (size->width > kMapSideMax || size->height > kMapSideMax || size->width * size->height > kMapPixelsMax) {
-        return Error{Errc::kTooLarge, fmt::format("the map's image has {} x {} pixels, more than {}", size->width,
-                                                  size->height, kMapPixelsMax)};
+    if (head->width > kMapSideMax || head->height > kMapSideMax || head->width * head->height > kMapPixelsMax) {
+        return Error{Errc::kTooLarge, fmt::format("the map's image has {} x {} pixels, more than {}", head->width,
+                                                  head->height, kMapPixelsMax)};
+    }
+    if (head->white != 255) {
+        return Error{Errc::kInvalidField, fmt::format("the map's image has a highest grey (maxval) of {}; save it with "
+                                                      "255, as map_saver does",
+                                                      head->white)};
     }
     try {
         const cv::Mat bytes(1, static_cast<int>(image.size()), CV_8UC1, const_cast<std::uint8_t*>(image.data()));
@@ -163,10 +183,16 @@ std::array<MapCell, 256> cells_of_greys(const RosMapDescription& map) {
 } // namespace
 
 Result<RosMapDescription> parse_ros_yaml(std::string_view text) {
+    if (text.size() > kRosYamlBytesMax) {
+        return Error{Errc::kTooLarge, fmt::format("the map's yaml has {} bytes, more than {}; it needs the keys of "
+                                                  "map_saver only",
+                                                  text.size(), kRosYamlBytesMax)};
+    }
     try {
         const YAML::Node yaml = YAML::Load(std::string(text));
         if (!yaml.IsMap()) return Error{Errc::kMalformed, "the map's yaml is not a list of keys with values"};
         RosMapDescription map;
+        if (auto unique = check_unique(yaml); !unique) return unique.error();
         if (!yaml["resolution"]) return bad_key("resolution", "is missing; metres a cell are needed");
         if (auto read = read_number(yaml, "resolution", map.resolution); !read) return read.error();
         if (auto read = read_number(yaml, "occupied_thresh", map.occupied_thresh); !read) return read.error();

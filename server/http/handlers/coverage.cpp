@@ -1,5 +1,6 @@
 #include "server/http/handlers/coverage.hpp"
 
+#include "server/guide/patience.hpp"
 #include "server/guide/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/planning_request.hpp"
@@ -78,7 +79,8 @@ Result<Response> post_coverage(const MapsLookup& maps, const AnswerSlots& slots,
     const auto start = start_of(*body, snapshot);
     if (!start) return start.error();
 
-    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point(), *options);
+    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point(), *options,
+                                            guide::Patience(maps.sessions()));
     if (!coverage) return coverage.error();
     auto slot =
         slots.take(coverage->path.points.size() * kPointTextBytes + coverage->unreachable.size() * kCellTextBytes);

@@ -60,7 +60,17 @@ Result<Response> import_map(session::SessionRegistry& sessions, const Call& call
     const auto patches = tiles::read_ros_image(*description, std::span(pixels, form->image->size()));
     if (!patches) return patches.error();
 
-    if (!form->options.cell_size) form->options.cell_size = description->resolution;
+    if (!form->options.cell_size) {
+        SessionOptions as_fine_as_the_image;
+        as_fine_as_the_image.cell_size = description->resolution;
+        if (!mapping::resolve(as_fine_as_the_image)) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("the map has {:g} metres a pixel, of which no session can have "
+                                     "cells; add the field cell_size, 0.01 to 1.0 metres",
+                                     description->resolution)};
+        }
+        form->options.cell_size = description->resolution;
+    }
     const auto session = sessions.import_map(call.arguments["session"], form->options, *patches);
     if (!session) return session.error();
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));

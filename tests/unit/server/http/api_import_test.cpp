@@ -54,6 +54,8 @@ TEST_F(ApiImportTest, WhatIsWrongMakesNoSession) {
     EXPECT_THAT(refused({yaml()}, Status::bad_request), HasSubstr("image is missing"));
     EXPECT_THAT(refused({image()}, Status::bad_request), HasSubstr("yaml is missing"));
     EXPECT_THAT(refused({yaml(), image(), {"cell_size", "7"}}, Status::bad_request), HasSubstr("cell_size is 7"));
+    EXPECT_THAT(refused({{"yaml", "resolution: 2\norigin: [0, 0, 0]\n"}, image()}, Status::bad_request),
+                HasSubstr("2 metres a pixel, of which no session can have cells; add the field cell_size"));
     EXPECT_THAT(refused({yaml(), image(), {"colour", "7"}}, Status::bad_request), HasSubstr("colour"));
     EXPECT_THAT(refused({{"yaml", "x"}, image()}, Status::bad_request), HasSubstr("yaml"));
     EXPECT_THAT(refused({yaml(), {"image", "x"}}, Status::bad_request), HasSubstr("image"));

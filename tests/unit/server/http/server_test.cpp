@@ -194,18 +194,20 @@ TEST(HttpServer, HeadersUpToTheLimitAreRead) {
 TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
     RunningServer server;
     HttpClient client(server.port());
-    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 65537\r\n\r\n");
-    EXPECT_EQ(client.read().status, 413);
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262145\r\n\r\n");
+    const auto refused = client.read();
+    EXPECT_EQ(refused.status, 413);
+    EXPECT_THAT(refused.body, testing::HasSubstr("at most 262144 bytes"));
     HttpClient eager(server.port());
-    eager.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n\r\n" + std::string(200'000, 'a'));
+    eager.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 300000\r\n\r\n" + std::string(300'000, 'a'));
     EXPECT_EQ(eager.read().status, 413);
     EXPECT_TRUE(eager.ends_in_order()); // a reset might overtake the answer, as its sender went on sending
 }
 
 TEST(HttpServer, BodiesUpToTheLimitAreRead) {
     RunningServer server;
-    const std::string body(65'536, 'a');
-    const auto answer = answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 65536\r\n\r\n" + body);
+    const std::string body(262'144, 'a');
+    const auto answer = answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262144\r\n\r\n" + body);
     EXPECT_EQ(answer.body, "POST / " + body);
 }
 
@@ -249,6 +251,13 @@ TEST(HttpServer, SlowBodiesAreCutOff) {
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhel");
     EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, AnAnnouncedLengthGivesNoTimeBeforeItIsSent) {
+    RunningServer server(ServerConfig{.body = 50ms, .body_pause = 1h, .read_rate_min = 100});
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n\r\nhello");
+    EXPECT_TRUE(client.is_closed()); // after 0.1 s, not after more than half an hour
 }
 
 TEST(HttpServer, IdleConnectionsAreClosed) {

@@ -194,6 +194,42 @@ TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {
     EXPECT_GE(coverage.unreachable.size(), 27U) << "all that is behind the wall";
 }
 
+TEST(Coverage, OfOneCellGoesToItsCentre) {
+    CoverageOptions options;
+    options.passability.body_radius_m = 0.0;
+    options.region = {{1.0, 1.0}, {1.9, 1.0}, {1.9, 1.9}, {1.0, 1.9}};
+    const auto coverage = plan_coverage(drawn({"....", "....", "...."}), 1.0, {1.1, 1.1}, options).value();
+    EXPECT_EQ(coverage.path.points, (std::vector<Point2>{{1.1, 1.1}, {1.5, 1.5}}));
+    EXPECT_EQ(coverage.fraction, 1.0);
+}
+
+TEST(Coverage, IsGivenUpWhenItMayNotGoOn) {
+    PlanWorld world(100, 100, OccType::kFree);
+    int asked = 0;
+    const auto three_times = [&]() -> Result<> {
+        if (++asked <= 3) return {};
+        return Error{Errc::kTooLarge, "that is enough"};
+    };
+    const auto coverage = plan_coverage(world.view(), 0.05, {2.5, 2.5}, {}, three_times);
+    ASSERT_FALSE(coverage);
+    EXPECT_EQ(coverage.error().message, "that is enough");
+    EXPECT_EQ(asked, 4);
+}
+
+TEST(Coverage, LooksForNoPlaceWhoseCellsAreCovered) {
+    PlanWorld world(400, 300, OccType::kFree);
+    int legs = 0;
+    const auto count = [&]() -> Result<> {
+        ++legs;
+        return {};
+    };
+    CoverageOptions options;
+    options.passability.body_radius_m = 1.0;
+    const auto coverage = plan_coverage(world.view(), 0.05, {1.0, 1.0}, options, count).value();
+    EXPECT_GT(coverage.fraction, 0.99);
+    EXPECT_LT(legs, 100) << "about 15 m of rows 2 m apart, and what is left between their ends";
+}
+
 TEST(Coverage, WhatCannotBeIsRefused) {
     const auto view = drawn({"#....", "#....", "#...."});
     CoverageOptions options;

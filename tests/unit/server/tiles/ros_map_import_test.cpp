@@ -102,6 +102,8 @@ TEST(RosMapImport, ADescriptionThatIsNoneIsRefusedByKey) {
     const std::string good = "image: map.pgm\nresolution: 0.05\norigin: [1, -2.5, 0]\n";
     EXPECT_EQ(parse_ros_yaml(good).value(), (RosMapDescription{.resolution = 0.05, .origin_x = 1.0, .origin_y = -2.5}));
     EXPECT_TRUE(parse_ros_yaml("resolution: 1\norigin: [0, 0]\nnegate: 1\nmode: scale\n"));
+    EXPECT_TRUE(parse_ros_yaml(good + "negate: true\n").value().negate);
+    EXPECT_FALSE(parse_ros_yaml(good + "negate: false\n").value().negate);
     for (const auto& [yaml, why] : std::initializer_list<std::pair<std::string, std::string>>{
              {"", "not a list of keys"},
              {"[1, 2", "cannot be read"},
@@ -114,6 +116,8 @@ TEST(RosMapImport, ADescriptionThatIsNoneIsRefusedByKey) {
              {"resolution: 0.05\norigin: [1e30, 0, 0]\n", "origin is too far"},
              {"resolution: 0.05\norigin: [0, 0, 0.1]\n", "origin is turned"},
              {good + "negate: 2\n", "negate"},
+             {good + "resolution: 0.1\n", "resolution is given twice"},
+             {good + "foo: [" + std::string(70'000, ',') + "]\n", "more than 65536"},
              {good + "mode: raw\n", "mode"},
              {good + "free_thresh: 0.7\n", "free_thresh"},
              {good + "occupied_thresh: [1]\n", "occupied_thresh is not a number"}}) {
@@ -134,6 +138,11 @@ TEST(RosMapImport, AnImageThatIsNoneIsRefused) {
     for (const char* image : {"P5 8001 8000 255 abcd", "P5 000000000130000 8000 255 a",
                               "P5 2000000000 2000000000 255 a", "P5 1000001 1 255 a"}) {
         EXPECT_EQ(read_ros_image({}, bytes_of(image)).error().code, Errc::kTooLarge) << image;
+    }
+    for (const char* image : {"P5 4 1 1 abcd", "P2 2 1 100 100 0", "P5 2 1 65535 abcd"}) {
+        const auto refused = read_ros_image({}, bytes_of(image));
+        EXPECT_EQ(refused.error().code, Errc::kInvalidField) << image;
+        EXPECT_THAT(refused.error().message, HasSubstr("maxval"));
     }
     Bytes png = bytes_of("\x89PNG\r\n\x1A\n");
     png.resize(40, 0xFF);

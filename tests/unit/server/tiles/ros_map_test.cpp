@@ -107,7 +107,7 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
             const auto l = snapshot.laser.find(grid::chunk_of(cell))->occupancy[grid::index_in_chunk(cell)];
             const double percent = std::round(100.0 * mapping::probability_of(l));
             const bool unknown = l == mapping::kUnknownLogOdds;
-            const int expected = unknown ? -1 : percent >= 65 ? 100 : percent <= 25 ? 0 : -1;
+            const int expected = unknown ? -1 : percent >= 65 ? 100 : percent <= 35 ? 0 : -1;
             ASSERT_EQ(grid.data[static_cast<std::size_t>(n)], expected) << cell.i << ", " << cell.j;
             ++counts[expected == 100 ? 2 : expected + 1];
         }
@@ -116,7 +116,7 @@ TEST(RosMap, LoadsAsTheSameCellsInBothGenerationsOfMapServers) {
 }
 
 TEST(RosMap, TheGreysAreThoseOfMapSaver) {
-    const MapImage image{{{0, 0, 6, 1}, 0.05}, Layer::kOccupancy, {0, 25, 26, 64, 65, 255}};
+    const MapImage image{{{0, 0, 6, 1}, 0.05}, Layer::kOccupancy, {0, 35, 36, 64, 65, 255}};
     const auto pgm = map_pgm(image, {});
     const std::string header = "P5\n# CREATOR: Scanloom 0.050 m/pix\n6 1\n255\n";
     ASSERT_EQ(std::string(pgm.begin(), pgm.end() - 6), header);
@@ -129,12 +129,15 @@ Bytes greys_of(Layer layer, const Bytes& codes, const mapping::MapConfig& config
 }
 
 TEST(RosMap, EveryLayerIsShownInTheSameThreeGreys) {
-    EXPECT_EQ(greys_of(Layer::kSonar, {0, 25, 26, 64, 65, 100, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
+    EXPECT_EQ(greys_of(Layer::kSonar, {0, 35, 36, 64, 65, 100, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
     EXPECT_EQ(greys_of(Layer::kClassification, {0, 1, 2, 3, 4}), (Bytes{205, 254, 0, 205, 254}));
     EXPECT_EQ(greys_of(Layer::kHimm, {0, 4, 5, 7, 8, 15, 255}), (Bytes{254, 254, 205, 205, 0, 0, 205}));
     mapping::MapConfig config;
     config.class_himm_occupied = 12;
     config.class_himm_free = 1;
+    config.class_p_occupied = 0.58;
+    config.class_p_free = 0.29;
+    EXPECT_EQ(greys_of(Layer::kOccupancy, {0, 29, 30, 57, 58, 255}, config), (Bytes{254, 254, 205, 205, 0, 205}));
     EXPECT_EQ(greys_of(Layer::kHimm, {0, 1, 2, 11, 12, 255}, config), (Bytes{254, 254, 205, 205, 0, 205}));
 }
 
