@@ -65,7 +65,7 @@ Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     for (std::size_t i = 0; i < *count; ++i) {
         const auto range = to_number(tokens[1 + i]);
         if (!range) return malformed(fmt::format("range {} is '{}', not a number", i + 1, shown_token(tokens[1 + i])));
-        ranges[i] = std::isfinite(*range) ? to_range_mm(*range) : kInvalidRange;
+        ranges[i] = to_range_mm(*range);
     }
     tokens = tokens.subspan(1 + *count);
     return ranges;

@@ -21,7 +21,7 @@ namespace scanloom::robot {
 ///          scan.pose is chosen so that pose * mount is the laser pose as logged.
 /// RAWLASER1   carries no pose and is read only where the log has no other laser lines: the pose is interpolated
 ///          between the ODOM lines around it, the mount is PARAM robot_frontlaser_offset.
-/// Ranges   rounded to millimetres here, once; NaN, infinite and negative readings are invalid beams.
+/// Ranges   rounded to millimetres here, once; NaN and negative readings are invalid beams, infinite ones saw nothing.
 ///
 /// The file is read twice: open() learns the order of its scans, next() reads them as they are needed.
 /// Memory  some bytes for each laser line, and the scans that stand in the file before ones that are sent earlier.

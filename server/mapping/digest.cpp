@@ -21,7 +21,7 @@ static_assert(std::endian::native == std::endian::little, "cells are hashed as t
 } // namespace
 
 std::string digest_of(const Snapshot& snapshot, Layer layer) {
-    return with_layer(snapshot, layer, [](const auto& view, auto&& cells_of) {
+    return with_layer(snapshot, layer, [&](const auto& view, auto&& cells_of) {
         std::vector<std::pair<grid::ChunkKey, std::span<const std::byte>>> chunks;
         view.visit({}, 0, [&](grid::ChunkKey key, const auto& chunk) {
             const auto& cells = cells_of(chunk);
@@ -32,6 +32,8 @@ std::string digest_of(const Snapshot& snapshot, Layer layer) {
         std::sort(chunks.begin(), chunks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 
         Sha256 hash;
+        const boost::endian::little_float64_buf_t cell_size(snapshot.config.cell_size);
+        hash.update(std::as_bytes(std::span(&cell_size, 1)));
         for (const auto& [key, cells] : chunks) {
             const std::array<boost::endian::little_int32_buf_t, 2> at{boost::endian::little_int32_buf_t(key.ci),
                                                                       boost::endian::little_int32_buf_t(key.cj)};

@@ -157,8 +157,17 @@ TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryTheSecond) {
 }
 
 TEST_F(CarmenLogFile, RangesAreMillimetresAndFailedOnesInvalid) {
-    const auto log = read(flaser(1, "6 1.2345 0 -1 nan inf 0.0004"));
+    const auto log = read(flaser(1, "6 1.2345 0 -1 nan -inf 0.0004"));
     EXPECT_EQ(log->observations[0].scan.ranges, (std::vector<RangeMm>{1235, 0, 0, 0, 0, 0}));
+}
+
+TEST_F(CarmenLogFile, AnInfiniteReadingIsOneWithoutReturn) {
+    const std::string text = flaser(1, "2 1.0 inf");
+    EXPECT_EQ(read(text)->observations[0].scan.ranges, (std::vector<RangeMm>{1000, 0}))
+        << "dropped as in all such logs";
+    CarmenOptions free;
+    free.no_return = NoReturn::kFree;
+    EXPECT_EQ(read(text, free)->observations[0].scan.ranges, (std::vector<RangeMm>{1000, kNoReturn}));
 }
 
 TEST_F(CarmenLogFile, FlaserDropsBeamsWithoutReturnUnlessAskedToFree) {

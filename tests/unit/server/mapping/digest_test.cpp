@@ -33,13 +33,24 @@ TEST(Digest, OfTwoChunksIsTheHashOfTheirDocumentedBytes) {
     cells[4095] = -2;
     layers.restore({.cj = -1, .ci = 3}, 1).occupancy = cells;
     layers.restore({.cj = -1, .ci = -258}, 2).occupancy = cells;
-    // Computed by Python's hashlib from struct.pack('<ii4096h', ci, cj, *cells), (-258, -1) first.
-    EXPECT_EQ(digest_of_occupancy(layers), "a965e4481f9038685fc253d238380f7ce51e4bdcaaed45a95c1553de7ee282ff");
+    // Computed by Python's hashlib from struct.pack('<d', 0.05) and of each chunk struct.pack('<ii4096h', ci, cj,
+    // *cells),
+    // (-258, -1) first.
+    EXPECT_EQ(digest_of_occupancy(layers), "9bde9bfd28e31e3326fa675f9644ee1f0123ab2e39576730471dab72ff175682");
 }
 
-TEST(Digest, OfNothingIsTheHashOfNoBytes) {
+TEST(Digest, OfNothingIsTheHashOfTheCellSize) {
     LaserLayers layers{MapConfig{}};
-    EXPECT_EQ(digest_of_occupancy(layers), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    EXPECT_EQ(digest_of_occupancy(layers), "7f925b2036e92fe2f1f0697c3aedfff74d719c1ee2cb6b739d7c30484e75972c");
+}
+
+TEST(Digest, OfTheSameCellsInAnotherSizeIsAnother) {
+    LaserLayers layers{MapConfig{}};
+    layers.restore({.cj = 0, .ci = 0}, 1).occupancy.fill(100);
+    MapConfig larger;
+    larger.cell_size = 0.1;
+    EXPECT_NE(digest_of_occupancy(layers),
+              digest_of(Snapshot{.config = larger, .laser = layers.snapshot()}, Layer::kOccupancy));
 }
 
 TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
