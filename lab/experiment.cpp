@@ -75,7 +75,6 @@ Result<> Runner::run(const RunSpec& spec, const Recording& recording, const Stan
     SessionOptions options;
     options.cell_size = spec.cell_size;
     spec.ray_model.choose(options);
-    // Each snapshot makes the next scan copy what it touches, so there are no more of them than needed.
     const auto wanted = is_pictured(matrix_, spec) ? std::span(kMoments) : std::span(kMoments).last(1);
     std::vector<Moment> moments;
     const auto after_scan = [&](std::size_t scans, mapping::Projection& projection) {
@@ -86,12 +85,13 @@ Result<> Runner::run(const RunSpec& spec, const Recording& recording, const Stan
     auto seconds = weave(recording, options, surroundings_.now, after_scan);
     if (!seconds) return seconds.error();
 
-    RunResult result{spec, {}, 0, "", times_of(std::move(*seconds))};
+    RunResult result{spec, {}, 0, 0, "", times_of(std::move(*seconds))};
     const mapping::Snapshot& end = moments.back().snapshot;
     const LogOddsGrid map = occupancy_of(end, standard.truth.box);
     result.scores =
         score(states_of(map), standard.truth, standard.seen, walked_cells(recording, end.config, standard.truth.box));
     result.touched = touched_cells(map);
+    result.of_walkers = recording.of_walkers;
     if (moments.size() == kMoments.size()) {
         result.picture = name_of(spec) + ".png";
         if (auto kept = surroundings_.keep_picture(result.picture, strip_png(moments, recording, pictured_part()));

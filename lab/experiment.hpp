@@ -24,7 +24,7 @@ struct RunSpec {
 /// "static_0.05_inverse_sensor_model_none_south_west"
 [[nodiscard]] std::string name_of(const RunSpec& spec);
 
-/// Of folding one scan, milliseconds.
+/// Of one scan, see weave(); milliseconds.
 struct ScanTimes {
     double mean = 0.0;
     double median = 0.0;
@@ -33,10 +33,11 @@ struct ScanTimes {
 
 struct RunResult {
     RunSpec spec;
-    Scores scores;           ///< at the end of the run
-    std::size_t touched = 0; ///< cells that any scan changed
-    std::string picture;     ///< name of its file; empty: none
-    ScanTimes times;         ///< the only part that differs from one time to the next
+    Scores scores;              ///< at the end of the run
+    std::size_t touched = 0;    ///< cells that any scan changed
+    std::size_t of_walkers = 0; ///< readings, without their noise, that met a walker
+    std::string picture;        ///< name of its file; empty: none
+    ScanTimes times;            ///< the only part that differs from one time to the next
 };
 
 /// Shares of a run after which pictures show it.

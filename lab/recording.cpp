@@ -3,6 +3,8 @@
 #include "robot_client/drive/wall_follower.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
 namespace scanloom::lab {
 
@@ -33,11 +35,27 @@ std::vector<Pose2> drive_from(const Start& start, std::size_t scans) {
     return path;
 }
 
+namespace {
+
+/// How many beams end at a walker: those that would not be as long without.
+std::size_t readings_of_walkers(const robot::World& world, const Sensor& laser, const Pose2& pose) {
+    if (world.walkers.empty()) return 0;
+    robot::World without = world;
+    without.walkers.clear();
+    robot::Random unused(1);
+    const auto seen = robot::sweep(world, laser, pose, std::nullopt, unused);
+    const auto behind = robot::sweep(without, laser, pose, std::nullopt, unused);
+    return std::inner_product(seen.begin(), seen.end(), behind.begin(), std::size_t{0}, std::plus<>(),
+                              std::not_equal_to<>());
+}
+
+} // namespace
+
 Recording record(const Scene& scene, const std::vector<Pose2>& path, const NoiseChoice& noise, double cell_size_m,
                  std::uint64_t seed) {
     robot::World world = world_of(scene.world);
     robot::Random random(seed);
-    Recording recording{reference_laser(), {}, {}};
+    Recording recording{reference_laser(), {}, {}, 0};
     for (const Pose2& pose : path) {
         if (!recording.scans.empty()) robot::walk(world, {pose.x, pose.y}, robot::kScanPeriod);
         Scan scan;
@@ -48,6 +66,7 @@ Recording record(const Scene& scene, const std::vector<Pose2>& path, const Noise
         scan.ranges = robot::sweep(world, recording.laser, pose, noise.at(cell_size_m), random);
         if (noise.drops_no_return) std::replace(scan.ranges.begin(), scan.ranges.end(), kNoReturn, kInvalidRange);
         recording.scans.push_back(std::move(scan));
+        recording.of_walkers += readings_of_walkers(world, recording.laser, pose);
         auto& bodies = recording.walkers.emplace_back();
         for (const robot::Walker& walker : world.walkers) bodies.push_back(robot::body_of(walker));
     }

@@ -19,6 +19,7 @@ struct Recording {
     Sensor laser;
     std::vector<Scan> scans;                       ///< seq 1, 2, ...; exact poses
     std::vector<std::vector<robot::Disc>> walkers; ///< where they stood, for each scan
+    std::size_t of_walkers = 0;                    ///< readings of all scans, without their noise, that met one
 };
 
 /// The reference laser: 684 beams over -90..+90 degrees, 5 m.

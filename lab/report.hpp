@@ -3,6 +3,8 @@
 #include "lab/document.hpp"
 #include "lab/experiment.hpp"
 
+#include <string_view>
+
 namespace scanloom::lab {
 
 /// Names of the report's files, without their endings, and of its folder of pictures.
@@ -14,6 +16,8 @@ inline constexpr const char* kPicturesFolder = "pictures";
 [[nodiscard]] Document report_of(const Matrix& matrix, const std::vector<RunResult>& results);
 
 /// What differs each time: how long it took.
-[[nodiscard]] Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results);
+/// @param machine  on which, see machine_description()
+[[nodiscard]] Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results,
+                                       std::string_view machine);
 
 } // namespace scanloom::lab

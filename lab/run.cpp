@@ -4,6 +4,7 @@
 #include "lab/report.hpp"
 
 #include "common/app/console.hpp"
+#include "common/app/machine.hpp"
 #include "robot_client/sim/truth_grid.hpp"
 #include "server/tiles/occupancy_percent.hpp"
 #include "server/tiles/ros_map.hpp"
@@ -70,8 +71,9 @@ Result<std::string> run_one(const ExperimentOptions& options, Console& console) 
     const auto keep = [&](const std::string& file, const tiles::Bytes& png) { return pictures->write(file, png); };
     const auto results = run_experiment(matrix, {steady_seconds, keep, Progress(console, matrix)});
     if (!results) return results.error();
-    for (const auto& [name, document] : {std::pair{kReportFile, report_of(matrix, *results)},
-                                         std::pair{kTimesFile, times_report_of(matrix, *results)}}) {
+    for (const auto& [name, document] :
+         {std::pair{kReportFile, report_of(matrix, *results)},
+          std::pair{kTimesFile, times_report_of(matrix, *results, machine_description())}}) {
         if (auto written = write_document(*directory, name, document); !written) return written.error();
     }
     return fmt::format(R"({{"runs":{},"scans":{},"seconds":{:.3f},"report":{}}})", results->size(),

@@ -14,6 +14,7 @@ Result<std::vector<double>> weave(const Recording& recording, const SessionOptio
         const LogEntry entry = ScanTaken{0, scan};
         const double begun = now();
         const auto folded = projection.fold(entry);
+        if ((seconds.size() + 1) % kScansPerSnapshot == 0) static_cast<void>(projection.snapshot());
         seconds.push_back(now() - begun);
         if (!folded) return folded.error();
         after_scan(seconds.size(), projection);

@@ -16,7 +16,7 @@ std::vector<RunResult> results_for(const Matrix& matrix, double milliseconds) {
             for (const Scene& scene : matrix.scenes) {
                 for (const NoiseChoice& noise : matrix.noises) {
                     for (const RayModelChoice& ray_model : matrix.ray_models) {
-                        RunResult result{{scene, cell_size, ray_model, noise, start}, {}, 5, "", {}};
+                        RunResult result{{scene, cell_size, ray_model, noise, start}, {}, 5, 0, "", {}};
                         result.scores.precision = static_cast<double>(results.size()) / 1000.0;
                         result.scores.residue = results.size();
                         result.times = {milliseconds, milliseconds, milliseconds};
@@ -68,9 +68,10 @@ TEST(Report, DoesNotDependOnHowLongItTook) {
     const Matrix matrix = full_matrix();
     EXPECT_EQ(to_html(report_of(matrix, results_for(matrix, 1.0)), ""),
               to_html(report_of(matrix, results_for(matrix, 2.0)), ""));
-    const auto times = to_markdown(times_report_of(matrix, results_for(matrix, 1.25)));
+    const auto times = to_markdown(times_report_of(matrix, results_for(matrix, 1.25), "a PDP-11"));
     EXPECT_THAT(times, HasSubstr("| 0.01 m | inverse_sensor_model | 1.250 | 1.250 | 1.250 | 80 |"));
     EXPECT_THAT(times, HasSubstr("| static_0.1_inverse_sensor_model_none_south_west | 1.250 | 1.250 | 1.250 |"));
+    EXPECT_THAT(times, HasSubstr("Measured on: a PDP-11."));
     EXPECT_EQ(count_of(times, "\n| static_") + count_of(times, "\n| dynamic_"), matrix.run_count());
 }
 

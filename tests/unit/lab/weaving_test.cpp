@@ -29,7 +29,7 @@ SessionOptions cells_of(double size) {
     return options;
 }
 
-TEST(Weaving, CountsNothingButTheFoldingOfScans) {
+TEST(Weaving, CountsNothingButTheScans) {
     double clock = 0.0;
     std::vector<std::size_t> told;
     const auto seconds = weave(
