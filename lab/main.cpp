@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
     std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
     scanloom::open_missing_standard_streams();
     const auto options = scanloom::lab::parse_options(argc, argv);
-    if (const auto* leave = std::get_if<scanloom::lab::Leave>(&options)) {
+    if (const auto* leave = std::get_if<scanloom::Leave>(&options)) {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }

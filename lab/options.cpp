@@ -47,19 +47,6 @@ CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
     return truth;
 }
 
-Leave usage_error(std::string_view what) {
-    return {kExitUsage, fmt::format("scanloom-lab: {}; see scanloom-lab --help\n", what)};
-}
-
-Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
-    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
-        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
-    }
-    const std::string what = sentence_of(reason);
-    return usage_error(what == "A subcommand is required" ? "say what to do: experiment, or truth" : what);
-}
-
 } // namespace
 
 std::variant<LabOptions, Leave> parse_options(int argc, const char* const* argv) {
@@ -75,12 +62,12 @@ std::variant<LabOptions, Leave> parse_options(int argc, const char* const* argv)
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason);
+        return leave_for(app, reason, "say what to do: experiment, or truth");
     }
     // not required() by the parser: an environment meant for one command would be asked for by the other
     const bool is_experiment = experiment->parsed();
     if ((is_experiment ? experiment_options.out : truth_options.out).empty()) {
-        return usage_error(fmt::format("{}: name a directory with --out", is_experiment ? "experiment" : "truth"));
+        return usage_error(app, fmt::format("{}: name a directory with --out", is_experiment ? "experiment" : "truth"));
     }
     if (is_experiment) return LabOptions(std::move(experiment_options));
     return LabOptions(std::move(truth_options));

@@ -1,6 +1,9 @@
 #pragma once
 
+#include "common/app/program.hpp"
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
@@ -22,6 +25,22 @@ namespace scanloom {
         return "the file of --config cannot be read: " + what.substr(0, what.size() - kMissing.size());
     }
     return what;
+}
+
+[[nodiscard]] inline Leave usage_error(const CLI::App& app, std::string_view what) {
+    return {kExitUsage, fmt::format("{0}: {1}; see {0} --help\n", app.get_name(), what)};
+}
+
+/// What CLI11 throws: a request for help or the version, too.
+/// @param commands  what to do there is, said to who names none
+[[nodiscard]] inline Leave leave_for(const CLI::App& app, const CLI::ParseError& reason,
+                                     std::string_view commands = "") {
+    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
+        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+    }
+    const std::string what = sentence_of(reason);
+    return usage_error(app, what == "A subcommand is required" ? commands : what);
 }
 
 } // namespace scanloom

@@ -14,6 +14,7 @@ inline constexpr std::size_t kNameBytesMax = 64; ///< session, robot and sensor 
 inline constexpr double kCoordinateMax = 1e6;    ///< metres from the origin, each axis
 inline constexpr double kMapCellSizeMax = 100.0; ///< metres, of an imported map
 inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
+inline constexpr double kReachCellsMax = 8192.0; ///< cells of a session, a sensor's range_max
 
 /// Radians from a scan's first beam to its last: a sensor may repeat its first direction at the end of a turn, and
 /// rounding may exceed it a little.

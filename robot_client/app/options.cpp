@@ -143,22 +143,6 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     return simulate;
 }
 
-Leave usage_error(std::string_view what) {
-    return {kExitUsage, fmt::format("scanloom-robot: {}; see scanloom-robot --help\n", what)};
-}
-
-/// What CLI11 throws, as one line.
-Leave leave_for(const CLI::App& app, const CLI::ParseError& reason) {
-    if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-        const bool is_help = reason.get_name() == "CallForHelp" || reason.get_name() == "CallForAllHelp";
-        return {kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
-    }
-    const std::string what = sentence_of(reason);
-    if (what == "A subcommand is required")
-        return usage_error("say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate");
-    return usage_error(what);
-}
-
 } // namespace
 
 std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv) {
@@ -182,19 +166,25 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason);
+        return leave_for(app, reason, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate");
     }
     if (!split_server(raw.server, options)) {
-        return usage_error(fmt::format("--server: '{}' is not HOST:PORT", raw.server));
+        return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
+    }
+    if (options.cell_size && options.range_max.value_or(0.0) > kReachCellsMax * *options.cell_size) {
+        return usage_error(app,
+                           fmt::format("--max-range {} spans more than {} cells of --cell-size {}, the most that a "
+                                       "server takes; use larger cells, or a shorter range",
+                                       *options.range_max, kReachCellsMax, *options.cell_size));
     }
     if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
     options.give_up_after =
         std::chrono::milliseconds(static_cast<std::int64_t>(std::min(raw.give_up_after, 1e9) * 1e3));
     if (replay->parsed()) {
-        if (replay_options.file.empty()) return usage_error("replay: name the FILE to replay");
+        if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");
         options.source = std::move(replay_options);
     } else if (sonar->parsed()) {
-        if (sonar_options.poses.empty()) return usage_error("sonar: name two files, MEASUREMENTS and POSES");
+        if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
         options.source = std::move(sonar_options);
     } else {
         options.source = std::move(simulate_options);

@@ -49,12 +49,6 @@ struct RobotOptions {
     std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;
 };
 
-/// What is to be said instead of running: help or the version on stdout, or a usage error on stderr.
-struct Leave {
-    ExitCode code = kExitDone;
-    std::string text; ///< whole lines
-};
-
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
 /// which beats the file.
 [[nodiscard]] std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv);

@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
     try {
         open_missing_standard_streams();
         const auto options = app::read_options(argc, argv);
-        if (const auto* leave = std::get_if<app::Leave>(&options)) {
-            (leave->code == kExitDone ? std::cout : std::cerr) << leave->text << (leave->code == kExitDone ? "" : "\n");
+        if (const auto* leave = std::get_if<Leave>(&options)) {
+            (leave->code == kExitDone ? std::cout : std::cerr) << leave->text;
             return leave->code;
         }
         return run(std::get<app::ServerOptions>(options));

@@ -97,10 +97,6 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     return check_guarded(options);
 }
 
-Leave usage_error(std::string_view what) {
-    return {kExitUsage, fmt::format("scanloom-server: {}; see scanloom-server --help", what)};
-}
-
 } // namespace
 
 std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv) {
@@ -116,12 +112,9 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        if (reason.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
-            return usage_error(sentence_of(reason));
-        const bool is_help = reason.get_name() == "CallForHelp";
-        return Leave{kExitDone, is_help ? app.help() : std::string(reason.what()) + "\n"};
+        return leave_for(app, reason);
     }
-    if (auto settled = settle(raw, options); !settled) return usage_error(settled.error().message);
+    if (auto settled = settle(raw, options); !settled) return usage_error(app, settled.error().message);
     return options;
 }
 

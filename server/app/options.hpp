@@ -25,12 +25,6 @@ struct ServerOptions {
     bool insecure = false; ///< listen beyond loopback without a guard
 };
 
-/// Nothing to run: how to end, and what to say (on standard error when the code is not 0).
-struct Leave {
-    ExitCode code = kExitDone;
-    std::string text;
-};
-
 [[nodiscard]] std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv);
 
 /// "127.0.0.1:8080", "[::1]:0". Errors: kInvalidField.

@@ -1,5 +1,6 @@
 #include "server/mapping/map_config.hpp"
 
+#include "server/classify/class_layer.hpp"
 #include "server/mapping/log_odds.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ const std::array kFields = {
     field("danger_radius", &O::danger_radius, &C::danger_radius),
 };
 
-constexpr std::int32_t kDangerCellsMax = 64;
+constexpr std::int32_t kDangerCellsMax = classify::ClassLayer::kDangerCellsMax;
 
 /// The names of an enumeration's values, in their order.
 template <class Choice>
@@ -79,7 +80,7 @@ Result<Value> as(const char* name, const ConfigValue& value) {
     } else {
         if (const auto* same = std::get_if<Value>(&value)) return *same;
         if constexpr (std::is_same_v<Value, bool>) return unfit(name, "true or false");
-        if constexpr (std::is_same_v<Value, std::int32_t>) return unfit(name, "a whole number");
+        if constexpr (std::is_same_v<Value, std::int32_t>) return unfit(name, "a whole number of at most 32 bits");
         if constexpr (std::is_same_v<Value, double>) {
             if (const auto* whole = std::get_if<std::int32_t>(&value)) return static_cast<double>(*whole);
             return unfit(name, "a number");

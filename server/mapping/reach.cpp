@@ -1,5 +1,6 @@
 #include "server/mapping/reach.hpp"
 
+#include "common/scan/limits.hpp"
 #include "server/mapping/map_patch_cells.hpp"
 #include "server/mapping/work.hpp"
 
@@ -11,8 +12,6 @@
 
 namespace scanloom::mapping {
 namespace {
-
-constexpr double kReachCellsMax = 8192.0;
 
 ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) {
     return {sensor.range_min, sensor.range_max, config.drop_no_return};

@@ -164,6 +164,7 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {with({"--cell-size", "2"}), "--cell-size"},
         {with({"--max-range", "0"}), "--max-range"},
         {with({"--max-range", "1001"}), "--max-range"},
+        {with({"--max-range", "900", "--cell-size", "0.1"}), "--max-range 900 spans more than 8192 cells"},
         {with({"--speed", "-1"}), "--speed"},
         {with({"--speed", "inf"}), "--speed"},
         {with({"--scans", "0"}), "--scans"},

@@ -26,7 +26,7 @@ std::string refusal(std::vector<std::string> arguments) {
     const auto* leave = std::get_if<Leave>(&outcome);
     if (leave == nullptr) return "taken";
     EXPECT_EQ(leave->code, kExitUsage);
-    EXPECT_EQ(leave->text.find('\n'), std::string::npos) << leave->text;
+    EXPECT_EQ(leave->text.find('\n'), leave->text.size() - 1) << leave->text;
     return leave->text;
 }
 
