@@ -22,4 +22,9 @@ enum class CellClass : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2,
 using ClassChunk = grid::Chunk<CellClass>;
 using ClassView = grid::ChunkView<ClassChunk>;
 
+[[nodiscard]] inline CellClass class_at(const ClassView& view, grid::Cell cell) noexcept {
+    const auto* chunk = view.find(grid::chunk_of(cell));
+    return chunk == nullptr ? CellClass::kUnexplored : chunk->at(cell);
+}
+
 } // namespace scanloom::classify

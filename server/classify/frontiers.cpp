@@ -65,6 +65,29 @@ std::vector<Run> frontier_runs(const ClassView& classes) {
     return runs;
 }
 
+/// The runs without some cells: what is left of each.
+std::vector<Run> cut_out(const std::vector<Run>& runs, std::span<const grid::Cell> without) {
+    if (without.empty()) return runs;
+    std::vector<Run> cuts; // a cell each
+    for (const grid::Cell cell : without) cuts.push_back({cell.j, cell.i, cell.i + 1});
+    std::ranges::sort(cuts);
+    std::vector<Run> left;
+    auto cut = cuts.begin();
+    for (const Run& run : runs) {
+        std::int32_t begin = run.i_begin;
+        const auto append_up_to = [&](std::int32_t end) {
+            if (begin < end) left.push_back({run.j, begin, end});
+        };
+        while (cut != cuts.end() && *cut < Run{run.j, run.i_begin, run.i_begin}) ++cut;
+        for (; cut != cuts.end() && cut->j == run.j && cut->i_begin < run.i_end; ++cut) {
+            append_up_to(cut->i_begin);
+            begin = cut->i_end;
+        }
+        append_up_to(run.i_end);
+    }
+    return left;
+}
+
 /// Which runs hang together. Source: Tarjan, Efficiency of a Good But Not Linear Set Union Algorithm (1975).
 class Sets {
 public:
@@ -122,8 +145,9 @@ Frontier to_frontier(const std::vector<Run>& runs) {
 
 } // namespace
 
-std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_min) {
-    const std::vector<Run> runs = frontier_runs(classes);
+std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_min,
+                                     std::span<const grid::Cell> without) {
+    const std::vector<Run> runs = cut_out(frontier_runs(classes), without);
     Sets sets = connect(runs);
     std::vector<std::vector<Run>> groups(runs.size()); // by the first run, which stands for its set
     std::vector<std::size_t> sizes(runs.size());

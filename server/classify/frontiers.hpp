@@ -3,6 +3,7 @@
 #include "server/classify/cell_class.hpp"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace scanloom::classify {
@@ -18,6 +19,8 @@ struct Frontier {
 /// All frontiers of at least `size_min` cells, the largest first; those of one size by their first cell, by rows.
 /// Cost follows the chunks that have FRONTIER cells; of others it is a glance. Cells are numbered up to 64 cells from
 /// the ends of the int32 range: a frontier further out is left out.
-[[nodiscard]] std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_min = 1);
+/// @param without  cells that count as if they were no FRONTIER; in any order.
+[[nodiscard]] std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_min = 1,
+                                                   std::span<const grid::Cell> without = {});
 
 } // namespace scanloom::classify

@@ -1,6 +1,8 @@
 #include "server/guide/goal_book.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scanloom::guide {
 namespace {
@@ -13,6 +15,28 @@ grid::Cell cell_of(const Point2& point, double cell_size) {
 
 Point2 centre_of(grid::Cell cell, double cell_size) { return {(cell.i + 0.5) * cell_size, (cell.j + 0.5) * cell_size}; }
 
+/// What the maps know of a robot; nothing where it joined after their last entry.
+mapping::RobotState state_of(const mapping::Snapshot& maps, RobotIndex robot) {
+    return robot < maps.robots.size() ? maps.robots[robot] : mapping::RobotState{};
+}
+
+/// To those known already: the oldest first, no more than are kept.
+void add(const std::vector<grid::Cell>& cells, std::vector<grid::Cell>& to) {
+    const std::size_t known = to.size();
+    for (const grid::Cell cell : cells) {
+        const auto end = to.begin() + static_cast<std::ptrdiff_t>(known);
+        if (std::find(to.begin(), end, cell) == end) to.push_back(cell);
+    }
+    const std::size_t too_many = std::max(to.size(), GoalBook::kInVainCellsMax) - GoalBook::kInVainCellsMax;
+    to.erase(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(too_many));
+}
+
+Visit begin_visit(const planning::FrontierGoal& goal, const mapping::RobotState& state, double cell_size,
+                  double body_radius) {
+    return {centre_of(goal.cell, cell_size), centre_of(goal.target, cell_size), arrival_radius(body_radius, cell_size),
+            state.scan_count, std::nullopt};
+}
+
 } // namespace
 
 Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::Session>& session,
@@ -21,21 +45,75 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
     const double cell_size = maps.config.cell_size;
     const std::lock_guard lock(mutex_);
     forget_what_counts_no_longer(now);
-    std::vector<grid::Cell> of_others;
-    std::erase_if(entries_, [&](const Entry& entry) {
-        if (entry.session.lock() != session) return false;
-        if (entry.robot != robot) of_others.push_back(cell_of(entry.target, cell_size));
-        return entry.robot == robot;
-    });
-    auto found = planning::next_goal(maps.classes, cell_size, position, of_others, options);
-    if (found && found->goal) {
-        const Point2 target = centre_of(found->goal->target, cell_size);
-        entries_.push_back({session, robot, target, now, session->is_connected(robot)});
+    const mapping::RobotState state = state_of(maps, robot);
+    InVain in_vain = take_in_vain(session, maps);
+    std::optional<Visit> going_on; // at the goal, without having looked yet
+    if (auto had = take_entry(session, robot); had && had->settings == maps.config && is_there(had->visit, state)) {
+        if (has_looked(had->visit, state, cell_size)) {
+            add(planning::seen_in_vain(maps.classes, had->goal, had->around_target), in_vain.cells);
+        } else {
+            going_on = had->visit;
+        }
     }
+    auto found =
+        planning::next_goal(maps.classes, cell_size, position, targets_in(session, cell_size), options, in_vain.cells);
+    keep(std::move(in_vain));
+    if (!found || !found->goal) return found;
+    Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);
+    if (going_on && is_there(visit, state)) { // be it a better goal: it waits no longer than it has to
+        visit.scans_before = going_on->scans_before;
+        visit.asking_since = going_on->asking_since.value_or(state.stamp);
+    }
+    entries_.push_back({session, robot, now, session->is_connected(robot), maps.config, found->goal->cell,
+                        found->around_target, visit});
     return found;
 }
 
+std::optional<GoalBook::Entry> GoalBook::take_entry(const std::shared_ptr<const session::Session>& session,
+                                                    RobotIndex robot) {
+    const auto entry = std::ranges::find_if(
+        entries_, [&](const Entry& one) { return one.robot == robot && one.session.lock() == session; });
+    if (entry == entries_.end()) return std::nullopt;
+    Entry taken = std::move(*entry);
+    entries_.erase(entry);
+    return taken;
+}
+
+std::vector<grid::Cell> GoalBook::targets_in(const std::shared_ptr<const session::Session>& session,
+                                             double cell_size) const {
+    std::vector<grid::Cell> targets;
+    for (const Entry& entry : entries_) {
+        if (entry.session.lock() == session) targets.push_back(cell_of(entry.visit.target, cell_size));
+    }
+    return targets;
+}
+
+/// Without what is FRONTIER no longer; maps of an earlier time tell nothing of that.
+GoalBook::InVain GoalBook::take_in_vain(const std::shared_ptr<const session::Session>& session,
+                                        const mapping::Snapshot& maps) {
+    const auto known = std::ranges::find_if(
+        in_vain_, [&](const InVain& one) { return one.settings == maps.config && one.session.lock() == session; });
+    if (known == in_vain_.end()) return {session, maps.config, maps.revision, {}};
+    InVain taken = std::move(*known);
+    in_vain_.erase(known);
+    if (maps.revision < taken.revision) return taken;
+    taken.revision = maps.revision;
+    taken.cells = planning::still_frontier(maps.classes, taken.cells);
+    return taken;
+}
+
+void GoalBook::keep(InVain in_vain) {
+    if (in_vain.cells.empty()) return;
+    const auto session = in_vain.session.lock();
+    const auto is_of_session = [&](const InVain& one) { return one.session.lock() == session; };
+    if (std::ranges::count_if(in_vain_, is_of_session) == static_cast<std::ptrdiff_t>(kSettingsMax)) {
+        in_vain_.erase(std::ranges::find_if(in_vain_, is_of_session));
+    }
+    in_vain_.push_back(std::move(in_vain));
+}
+
 void GoalBook::forget_what_counts_no_longer(Clock::time_point now) {
+    std::erase_if(in_vain_, [](const InVain& one) { return one.session.expired(); });
     std::erase_if(entries_, [&](Entry& entry) {
         const auto session = entry.session.lock();
         if (!session) return true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/guide/visit.hpp"
 #include "server/mapping/snapshot.hpp"
 #include "server/planning/goals.hpp"
 #include "server/session/session.hpp"
@@ -7,6 +8,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace scanloom::guide {
@@ -17,12 +19,20 @@ namespace scanloom::guide {
 /// back asks again. A goal that was asked for on behalf of a robot that was not connected counts until the robot has
 /// connected and left, or for kKeptForAbsent. Nothing of it survives a restart.
 /// Goals are kept as places in the map frame: those of maps woven with other cells count, too.
-/// Thread  any; one search at a time.
+///
+/// It also remembers what robots have looked at in vain, so that exploring comes to an end where a frontier cannot be
+/// seen (glass, a crack, what is too low for the laser). When a robot that has_looked() asks again, the cells that
+/// planning::seen_in_vain() counts for nobody's goals any more, as long as they are FRONTIER: each visit changes the
+/// map or takes a cell out. A robot that has not looked yet gets the same goal, or a better one. This is kept for each
+/// session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go. Thread  any; one
+/// search at a time.
 class GoalBook {
 public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
+    static constexpr std::size_t kInVainCellsMax = std::size_t{1} << 16;
+    static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently asked for go
 
     /// The next goal of a robot at `position`, kept for it from now on.
     /// @param maps  the session's, or others woven from its log
@@ -36,15 +46,35 @@ private:
     struct Entry {
         std::weak_ptr<const session::Session> session;
         RobotIndex robot;
-        Point2 target; // centre of the frontier's cell, metres
         Clock::time_point given;
         bool was_connected;
+        mapping::MapConfig settings; // of the maps
+        grid::Cell goal;
+        std::vector<grid::Cell> around_target;
+        Visit visit;
+    };
+
+    /// FRONTIER cells looked at in vain, the oldest first.
+    struct InVain {
+        std::weak_ptr<const session::Session> session;
+        mapping::MapConfig settings;
+        Revision revision; // of the newest maps asked on
+        std::vector<grid::Cell> cells;
     };
 
     void forget_what_counts_no_longer(Clock::time_point now);
 
+    [[nodiscard]] std::optional<Entry> take_entry(const std::shared_ptr<const session::Session>& session,
+                                                  RobotIndex robot);
+    [[nodiscard]] std::vector<grid::Cell> targets_in(const std::shared_ptr<const session::Session>& session,
+                                                     double cell_size) const;
+    [[nodiscard]] InVain take_in_vain(const std::shared_ptr<const session::Session>& session,
+                                      const mapping::Snapshot& maps);
+    void keep(InVain in_vain);
+
     std::mutex mutex_;
-    std::vector<Entry> entries_; // at most one a robot
+    std::vector<Entry> entries_;  // at most one a robot
+    std::vector<InVain> in_vain_; // of each session and settings one, if it has cells; the last asked for last
 };
 
 } // namespace scanloom::guide

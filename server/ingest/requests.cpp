@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace scanloom::ingest {
@@ -59,7 +58,7 @@ struct Search {
     [[nodiscard]] Result<wire::Goal> operator()(const wire::GoalRequest& request) const {
         planning::ExplorationOptions options;
         options.passability = passability_of(request.body_radius);
-        options.frontier_size_min = std::max<std::size_t>(1, request.frontier_size_min);
+        if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
         auto next = goals.next(asker.session, maps, asker.robot, start, guide::GoalBook::Clock::now(), options);
         if (!next) return next.error();
         if (next->outcome == planning::Exploration::kTakenByOthers) {

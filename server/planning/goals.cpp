@@ -1,17 +1,22 @@
 #include "server/planning/goals.hpp"
 
+#include "server/planning/sight.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 namespace scanloom::planning {
 namespace {
 
+using classify::CellClass;
 using classify::ClassView;
 using classify::Frontier;
 
@@ -35,6 +40,15 @@ double square_of_distance(grid::Cell a, grid::Cell b) {
 /// The cell of the frontier nearest to another cell; of equally near ones the first.
 grid::Cell nearest_cell(const Frontier& frontier, grid::Cell to) {
     return *std::ranges::min_element(frontier.cells, {}, [&](grid::Cell cell) { return square_of_distance(cell, to); });
+}
+
+/// The cells of the frontier within reach of one of them.
+std::vector<grid::Cell> cells_around(grid::Cell target, const Frontier& frontier, std::int32_t reach_cells) {
+    const double reach = reach_cells;
+    std::vector<grid::Cell> near;
+    std::ranges::copy_if(frontier.cells, std::back_inserter(near),
+                         [&](grid::Cell cell) { return square_of_distance(cell, target) <= reach * reach; });
+    return near;
 }
 
 /// A robot's place, and what it costs to get from there to anywhere.
@@ -124,16 +138,10 @@ private:
         return best;
     }
 
-    /// Whether no cell between two, one for each step along the longer axis of the straight line, is occupied.
     [[nodiscard]] bool sees(Spot from, Spot to) const {
-        const std::int32_t steps = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
-        for (std::int32_t n = 1; n < steps; ++n) {
-            const double part = static_cast<double>(n) / steps;
-            const Spot between{from.x + static_cast<std::int32_t>(std::lround(part * (to.x - from.x))),
-                               from.y + static_cast<std::int32_t>(std::lround(part * (to.y - from.y)))};
-            if (passability_.occupied.test(between)) return false;
-        }
-        return true;
+        return planning::sees({from.x, from.y}, {to.x, to.y}, [&](grid::Cell at) {
+            return passability_.occupied.test({at.i, at.j});
+        });
     }
 
     [[nodiscard]] FrontierGoal goal_at(Spot spot, const Frontier& frontier, std::size_t place) const {
@@ -197,6 +205,12 @@ FrontierGoals goals_from(const Surroundings& surroundings, std::span<const Front
 
 } // namespace
 
+std::size_t frontier_size_min(const ExplorationOptions& options, double cell_size_m) {
+    if (options.frontier_size_min) return *options.frontier_size_min;
+    const double cells = 2.0 * options.passability.body_radius_m / (std::numbers::sqrt2 * cell_size_m);
+    return cells >= 1.0 ? static_cast<std::size_t>(cells) : 1;
+}
+
 Result<FrontierGoals> frontier_goals(const ClassView& classes, double cell_size_m, std::span<const Frontier> frontiers,
                                      const Point2& robot, const ExplorationOptions& options) {
     const auto rings = standoff_cells(options, cell_size_m);
@@ -232,23 +246,42 @@ std::vector<std::optional<std::size_t>> assign_frontiers(std::span<const Frontie
 }
 
 Result<NextGoal> next_goal(const ClassView& classes, double cell_size_m, const Point2& robot,
-                           std::span<const grid::Cell> targets_of_others, const ExplorationOptions& options) {
+                           std::span<const grid::Cell> targets_of_others, const ExplorationOptions& options,
+                           std::span<const grid::Cell> given_up) {
     const auto rings = standoff_cells(options, cell_size_m);
     if (!rings) return rings.error();
     const auto surroundings = survey(classes, cell_size_m, robot, options.passability);
     if (!surroundings) return surroundings.error();
     const auto& [passability, search] = **surroundings;
-    const auto frontiers = classify::find_frontiers(classes, options.frontier_size_min);
+    const auto frontiers = classify::find_frontiers(classes, frontier_size_min(options, cell_size_m), given_up);
     const FrontierGoals goals = goals_from(**surroundings, frontiers, *rings);
     const bool any = std::ranges::any_of(goals, [](const auto& goal) { return goal.has_value(); });
-    if (!any) return NextGoal{Exploration::kComplete, std::nullopt, {}};
+    NextGoal next{Exploration::kComplete, std::nullopt, {}, {}, given_up.size()};
+    if (!any) return next;
     const auto assigned = assign_frontiers({&goals, 1}, taken_frontiers(frontiers, targets_of_others, *rings)).front();
-    if (!assigned) return NextGoal{Exploration::kTakenByOthers, std::nullopt, {}};
-    const FrontierGoal& goal = *goals[*assigned];
-    const Spot spot = *passability.spot_of(goal.cell);
-    return NextGoal{
-        Exploration::kGoal, goal,
-        to_path(passability, search.path_to(spot), robot, passability.centre_of(spot), Shape::kStraightened)};
+    next.outcome = Exploration::kTakenByOthers;
+    if (!assigned) return next;
+    next.outcome = Exploration::kGoal;
+    next.goal = goals[*assigned];
+    const Spot spot = *passability.spot_of(next.goal->cell);
+    next.path = to_path(passability, search.path_to(spot), robot, passability.centre_of(spot), Shape::kStraightened);
+    next.around_target = cells_around(next.goal->target, frontiers[*assigned], *rings);
+    return next;
+}
+
+std::vector<grid::Cell> still_frontier(const ClassView& classes, std::span<const grid::Cell> cells) {
+    std::vector<grid::Cell> still;
+    std::ranges::copy_if(cells, std::back_inserter(still),
+                         [&](grid::Cell cell) { return classify::class_at(classes, cell) == CellClass::kFrontier; });
+    return still;
+}
+
+std::vector<grid::Cell> seen_in_vain(const ClassView& classes, grid::Cell goal,
+                                     std::span<const grid::Cell> around_target) {
+    auto cells = still_frontier(classes, around_target);
+    const auto is_occupied = [&](grid::Cell cell) { return classify::class_at(classes, cell) == CellClass::kOccupied; };
+    std::erase_if(cells, [&](grid::Cell cell) { return !sees(goal, cell, is_occupied); });
+    return cells;
 }
 
 } // namespace scanloom::planning

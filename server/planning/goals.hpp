@@ -11,10 +11,16 @@
 namespace scanloom::planning {
 
 struct ExplorationOptions {
-    PassabilityOptions passability;    ///< its allow_unknown does not matter: a robot explores from known ground
-    std::size_t frontier_size_min = 1; ///< cells
-    double standoff_m = 1.0;           ///< a frontier counts as reachable from so far away; at least 8 cells
+    PassabilityOptions passability; ///< its allow_unknown does not matter: a robot explores from known ground
+    std::optional<std::size_t> frontier_size_min; ///< cells; none: see frontier_size_min()
+    double standoff_m = 1.0;                      ///< a frontier counts as reachable from so far away; at least 8 cells
 };
+
+/// Of how many cells a frontier must be to be worth a goal. By default a frontier narrower than the body counts for
+/// nothing, as the body would not get through: it is as long as the body is wide when it has
+/// 2 body_radius / (sqrt(2) cell_size) cells, slanted ones being the longest. At least 1.
+/// Pre  a body radius that make_passability() would take.
+[[nodiscard]] std::size_t frontier_size_min(const ExplorationOptions& options, double cell_size_m);
 
 /// Where a robot should stand to explore a frontier.
 struct FrontierGoal {
@@ -52,13 +58,15 @@ using FrontierGoals = std::vector<std::optional<FrontierGoal>>;
 enum class Exploration {
     kGoal,          ///< there is somewhere to go
     kTakenByOthers, ///< other robots have all frontiers that this one can reach
-    kComplete,      ///< no frontier can be reached: the map is complete
+    kComplete,      ///< no frontier that counts can be reached: the map is complete
 };
 
 struct NextGoal {
     Exploration outcome = Exploration::kComplete;
-    std::optional<FrontierGoal> goal; ///< with kGoal
-    Path path;                        ///< with kGoal: to the centre of the goal's cell
+    std::optional<FrontierGoal> goal;      ///< with kGoal
+    Path path;                             ///< with kGoal: to the centre of the goal's cell
+    std::vector<grid::Cell> around_target; ///< with kGoal: the frontier's cells within standoff_m of the target
+    std::size_t given_up = 0;              ///< how many cells did not count
 };
 
 /// What a robot should explore next: the frontier with the cheapest way to its goal, of those that no other robot
@@ -66,9 +74,23 @@ struct NextGoal {
 /// @param targets_of_others  FrontierGoal::target of the goals that other robots pursue: each takes the frontier that
 ///                           the cell belongs to, or else the nearest one within standoff_m: the map may have
 ///                           changed since.
+/// @param given_up  FRONTIER cells that count for nothing, as they were looked at in vain: see seen_in_vain(). What is
+///                  left of their frontiers counts as frontiers of its own.
 /// Errors  as frontier_goals().
 [[nodiscard]] Result<NextGoal> next_goal(const classify::ClassView& classes, double cell_size_m, const Point2& robot,
                                          std::span<const grid::Cell> targets_of_others = {},
-                                         const ExplorationOptions& options = {});
+                                         const ExplorationOptions& options = {},
+                                         std::span<const grid::Cell> given_up = {});
+
+/// What a robot that has stood at a goal and looked at its target has looked at in vain: the cells around the target
+/// that are still FRONTIER and that the goal's cell sees, as above. Whoever leaves them out from now on comes to an
+/// end: unless the map around the goal changed, the target is one of them.
+/// @param around_target  NextGoal::around_target as it was given; the classes may have changed since.
+[[nodiscard]] std::vector<grid::Cell> seen_in_vain(const classify::ClassView& classes, grid::Cell goal,
+                                                   std::span<const grid::Cell> around_target);
+
+/// Those of some cells that are FRONTIER, in the same order.
+[[nodiscard]] std::vector<grid::Cell> still_frontier(const classify::ClassView& classes,
+                                                     std::span<const grid::Cell> cells);
 
 } // namespace scanloom::planning

@@ -13,6 +13,7 @@
 namespace scanloom::testing_support {
 
 using classify::CellClass;
+using classify::class_at;
 using classify::ClassView;
 using classify::OccType;
 using grid::Cell;
@@ -32,11 +33,6 @@ private:
 
     grid::ChunkTree<classify::ClassChunk> tree_{blank()};
 };
-
-[[nodiscard]] inline CellClass class_at(const ClassView& view, Cell cell) {
-    const auto* chunk = view.find(grid::chunk_of(cell));
-    return chunk == nullptr ? CellClass::kUnexplored : chunk->at(cell);
-}
 
 /// A map as drawn, the top row first, its lower left cell at `corner`: '#' occupied, '.' free, '!' danger,
 /// 'f' frontier, anything else unexplored.

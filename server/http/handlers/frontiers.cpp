@@ -108,7 +108,7 @@ Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots,
     const auto robots = robots_asked_for(snapshot, call.query);
     if (!robots) return robots.error();
 
-    const auto frontiers = classify::find_frontiers(snapshot.classes, options->frontier_size_min);
+    const auto frontiers = classify::find_frontiers(snapshot.classes, options->frontier_size_min.value_or(1));
     const auto offers = cheapest_offers(snapshot, frontiers, *robots, *options);
     if (!offers) return offers.error();
     std::size_t bytes = 0;

@@ -57,11 +57,6 @@ private:
     std::vector<ChunkKey> changed_;
 };
 
-CellClass class_at(const ClassView& view, Cell cell) {
-    const ClassChunk* chunk = view.find(grid::chunk_of(cell));
-    return chunk == nullptr ? CellClass::kUnexplored : chunk->at(cell);
-}
-
 /// The definition, word by word.
 CellClass defined_class(const Types& types, Cell cell, int danger_cells) {
     const auto any_near = [&](OccType type, int reach) {
