@@ -132,7 +132,7 @@ struct GoalRequest {
     std::uint64_t id = 0;
     std::optional<Point2> start;
     std::optional<double> body_radius;   ///< metres
-    std::uint32_t frontier_size_min = 0; ///< cells; 0 is 1
+    std::uint32_t frontier_size_min = 0; ///< cells; 0: as many as the body is wide
 
     friend bool operator==(const GoalRequest&, const GoalRequest&) = default;
 };
@@ -142,7 +142,8 @@ enum class Exploration : std::uint8_t { kGoal = 1, kTakenByOthers = 2, kComplete
 struct Goal {
     Exploration exploration = Exploration::kComplete;
     std::optional<Path> path;     ///< with kGoal: to where to stand
-    std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there
+    std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there, to look at
+    std::uint32_t given_up = 0;   ///< frontier cells that count no more, as robots looked at them in vain
 
     friend bool operator==(const Goal&, const Goal&) = default;
 };

@@ -90,6 +90,7 @@ Result<Goal> read_goal(const v1::Goal& proto) {
     if (proto.has_path() != has_goal || proto.has_target() != has_goal) {
         return invalid_field("exploration does not go with path and target; a goal has both, anything else none");
     }
+    goal.given_up = proto.given_up();
     if (!has_goal) return goal;
     auto path = read_path(proto.path());
     if (!path) return prefixed("path.", path.error());
@@ -134,6 +135,7 @@ void write(const Goal& goal, v1::Goal& out) {
     out.set_exploration(static_cast<v1::Exploration>(goal.exploration));
     if (goal.path) write(*goal.path, *out.mutable_path());
     if (goal.target) write(*goal.target, *out.mutable_target());
+    out.set_given_up(goal.given_up);
 }
 
 void write(const Coverage& coverage, v1::Coverage& out) {

@@ -61,15 +61,16 @@ struct Search {
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
         auto next = goals.next(asker.session, maps, asker.robot, start, guide::GoalBook::Clock::now(), options);
         if (!next) return next.error();
+        const auto given_up = static_cast<std::uint32_t>(next->given_up); // a book keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
-            return wire::Goal{wire::Exploration::kTakenByOthers, std::nullopt, std::nullopt};
+            return wire::Goal{wire::Exploration::kTakenByOthers, std::nullopt, std::nullopt, given_up};
         }
-        if (!next->goal) return wire::Goal{wire::Exploration::kComplete, std::nullopt, std::nullopt};
+        if (!next->goal) return wire::Goal{wire::Exploration::kComplete, std::nullopt, std::nullopt, given_up};
         auto path = to_wire(std::move(next->path));
         if (!path) return path.error();
         const grid::Cell cell = next->goal->target;
         return wire::Goal{wire::Exploration::kGoal, std::move(*path),
-                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size};
+                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size, given_up};
     }
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {

@@ -11,7 +11,7 @@
 namespace scanloom::planning {
 
 struct ExplorationOptions {
-    PassabilityOptions passability; ///< its allow_unknown does not matter: a robot explores from known ground
+    PassabilityOptions passability; ///< allow_unknown, on_known do not matter: a robot explores from known ground
     std::optional<std::size_t> frontier_size_min; ///< cells; none: see frontier_size_min()
     double standoff_m = 1.0;                      ///< a frontier counts as reachable from so far away; at least 8 cells
 };
@@ -19,7 +19,6 @@ struct ExplorationOptions {
 /// Of how many cells a frontier must be to be worth a goal. By default a frontier narrower than the body counts for
 /// nothing, as the body would not get through: it is as long as the body is wide when it has
 /// 2 body_radius / (sqrt(2) cell_size) cells, slanted ones being the longest. At least 1.
-/// Pre  a body radius that make_passability() would take.
 [[nodiscard]] std::size_t frontier_size_min(const ExplorationOptions& options, double cell_size_m);
 
 /// Where a robot should stand to explore a frontier.
@@ -41,6 +40,8 @@ using FrontierGoals = std::vector<std::optional<FrontierGoal>>;
 /// nearest to it (one cell for each step along the longer axis): what a robot would go there for.
 /// Where all cells near a frontier are in danger, the nearest of those is taken: the way may lead through danger, so
 /// standing there is no worse, and a passage as narrow as the danger along its walls would never be explored.
+/// The whole body keeps to known ground on the way and at the goal, as walls may begin wherever that ends. Only a robot
+/// that has unknown ground under its body already, and no goal otherwise, may go on over it.
 /// Pre     the frontiers are those of the classes.
 /// Errors  those of plan_path() that concern its start, its options or the map.
 [[nodiscard]] Result<FrontierGoals> frontier_goals(const classify::ClassView& classes, double cell_size_m,

@@ -120,6 +120,23 @@ Result<Spot> ground_at(const Passability& passability, const Point2& point, std:
     return *spot;
 }
 
+BitGrid disc_around(const Passability& passability, Spot centre, double radius) {
+    BitGrid disc(passability.ground.width(), passability.ground.height());
+    disc.set(centre);
+    return dilated(disc, disc_half_widths(radius, false));
+}
+
+/// What the body covers where it stands beside known ground: a sensor that looks ahead does not see its own cell.
+void take_as_ground(Passability& passability, Spot place, double radius) {
+    if (passability.ground.test(place) || passability.occupied.test(place)) return;
+    BitGrid covered = disc_around(passability, place, radius);
+    BitGrid known = covered;
+    known &= passability.ground;
+    if (known.count() == 0) return;
+    covered.subtract(passability.occupied);
+    passability.ground |= covered;
+}
+
 } // namespace
 
 std::optional<Spot> Passability::spot_of(grid::Cell cell) const noexcept {
@@ -161,18 +178,22 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
         passability.ground.subtract(passability.occupied);
     }
     passability.enterable = passability.ground;
+    BitGrid obstacles = passability.occupied;
+    if (options.on_known) { // all that is not ground
+        set_all(obstacles);
+        obstacles.subtract(passability.ground);
+    }
     const double radius = radius_for_steps(options.body_radius_m / cell_size_m);
-    passability.enterable.subtract(dilated(passability.occupied, disc_half_widths(radius, true)));
+    passability.enterable.subtract(dilated(obstacles, disc_half_widths(radius, true)));
     return passability;
 }
 
 Result<Spot> open_start(Passability& passability, const Point2& start) {
+    const double radius = passability.options.body_radius_m / passability.cell_size_m;
+    if (const auto spot = passability.spot_at(start)) take_as_ground(passability, *spot, radius);
     const auto spot = ground_at(passability, start, "start");
     if (!spot || passability.enterable.test(*spot)) return spot;
-    const auto widths = disc_half_widths(passability.options.body_radius_m / passability.cell_size_m + 1.0, false);
-    BitGrid near(passability.ground.width(), passability.ground.height());
-    near.set(*spot);
-    near = dilated(near, widths);
+    BitGrid near = disc_around(passability, *spot, radius + 1.0);
     near &= passability.ground;
     passability.enterable |= connected(near, *spot);
     return spot;

@@ -22,13 +22,15 @@ struct PassabilityOptions {
     double body_radius_m = 0.15; ///< 0: a point
     double danger_cost = 1.0;    ///< what a metre in danger costs more than another
     bool allow_unknown = false;  ///< may unexplored cells (frontiers, too) be entered? They cost what free ones do
+    bool on_known = false;       ///< must the whole body be on known ground? Unexplored cells may hide walls
 };
 
 /// What of a map a body may enter, and what it costs.
 ///
 /// The body is a disc; where it is, its centre is. A cell may be entered when it is free (in danger or not; with
-/// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre. (Where a
-/// diagonal step between such centres would come nearer, the radius counts as up to 0.17 cells more.)
+/// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre; with
+/// on_known no unexplored one either. (Where a diagonal step between such centres would come nearer, the radius counts
+/// as up to 0.17 cells more.)
 /// A metre in a DANGER cell costs 1 + danger_cost, any other 1.
 /// The window is whole chunks around everything known; with allow_unknown, also around the points to be held, and a
 /// chunk more on every side. Spots are cells of the window.
@@ -67,6 +69,8 @@ struct Passability {
 /// Where a path may begin: the point's cell. When that is free but nearer to an obstacle than the body radius (a
 /// robot got there somehow, and must be able to leave), the free cells that hang together with it within a body
 /// radius and a cell of it may be entered from now on.
+/// Known ground within the body's radius makes ground of what is unknown there, too: the body covers it. (A laser that
+/// looks ahead never sees the robot's own cell from where the robot begins.)
 /// Errors  kNoPath: outside the map, inside an obstacle, in unknown space. kInvalidField: not finite.
 [[nodiscard]] Result<Spot> open_start(Passability& passability, const Point2& start);
 

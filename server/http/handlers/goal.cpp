@@ -29,8 +29,8 @@ std::string point_text(const Point2& point) {
 }
 
 std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
-    const auto head = fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}",)", robot, maps.revision,
-                                  name_of(next.outcome)); // names are [A-Za-z0-9_-]
+    const auto head = fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}","given_up":{},)", robot, maps.revision,
+                                  name_of(next.outcome), next.given_up); // names are [A-Za-z0-9_-]
     if (!next.goal) return head + R"("goal":null,"target":null,"path":null,"length":null,"cost":null})";
     const grid::Cell target = next.goal->target;
     return head + fmt::format(R"("goal":{},"target":{},"path":{},"length":{},"cost":{}}})",

@@ -75,7 +75,7 @@ TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
         const auto robot = somewhere_free(random, view);
         if (!robot) continue;
         const auto frontiers = find_frontiers(view);
-        auto passability = make_passability(view, kCellSize, {}).value();
+        auto passability = make_passability(view, kCellSize, {.on_known = true}).value();
         CostSearch search(passability);
         search.from(open_start(passability, *robot).value());
         const auto goals = frontier_goals(view, kCellSize, frontiers, *robot).value();

@@ -1,0 +1,117 @@
+#include "server/planning/goal_seeker.hpp"
+
+#include "server/planning/sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace scanloom::planning {
+
+using classify::Frontier;
+
+double square_of_distance(grid::Cell a, grid::Cell b) noexcept {
+    const double di = static_cast<double>(a.i) - b.i;
+    const double dj = static_cast<double>(a.j) - b.j;
+    return di * di + dj * dj;
+}
+
+grid::Cell nearest_cell(const Frontier& frontier, grid::Cell to) {
+    return *std::ranges::min_element(frontier.cells, {}, [&](grid::Cell cell) { return square_of_distance(cell, to); });
+}
+
+GoalSeeker::GoalSeeker(const Passability& passability, const CostSearch& search, std::int32_t rings)
+    : passability_(passability), search_(search), rings_(rings),
+      seen_(passability_.ground.width(), passability_.ground.height()) {}
+
+std::optional<FrontierGoal> GoalSeeker::seek(const Frontier& frontier, std::size_t place) {
+    std::vector<Spot> ring = beside(frontier);
+    std::vector<Spot> all_seen = ring;
+    std::optional<Spot> fallback;
+    std::optional<Spot> best;
+    for (std::int32_t step = 1; step <= rings_ && !ring.empty(); ++step) {
+        best = cheapest(ring, false, frontier);
+        if (best) break;
+        if (!fallback) fallback = cheapest(ring, true, frontier);
+        ring = around(ring);
+        all_seen.insert(all_seen.end(), ring.begin(), ring.end());
+    }
+    for (const Spot spot : all_seen) seen_.clear(spot);
+    if (!best) best = fallback;
+    if (!best) return std::nullopt;
+    return goal_at(*best, frontier, place);
+}
+
+/// The free cells among the 8 around each cell of the frontier: they are what makes it one.
+std::vector<Spot> GoalSeeker::beside(const Frontier& frontier) {
+    std::vector<Spot> ring;
+    for (const grid::Cell cell : frontier.cells) {
+        for (std::int32_t dj = -1; dj <= 1; ++dj) {
+            for (std::int32_t di = -1; di <= 1; ++di) {
+                const auto spot = passability_.spot_of({cell.i + di, cell.j + dj});
+                if (spot) add(*spot, ring);
+            }
+        }
+    }
+    return ring;
+}
+
+/// The free cells beside a ring's, not seen yet. Straight steps: they pass no wall, be it one cell thin and
+/// slanted.
+std::vector<Spot> GoalSeeker::around(const std::vector<Spot>& ring) {
+    std::vector<Spot> next;
+    for (const Spot at : ring) {
+        for (const Spot beside :
+             {Spot{at.x + 1, at.y}, Spot{at.x - 1, at.y}, Spot{at.x, at.y + 1}, Spot{at.x, at.y - 1}}) {
+            add(beside, next);
+        }
+    }
+    return next;
+}
+
+void GoalSeeker::add(Spot spot, std::vector<Spot>& ring) {
+    if (!passability_.ground.test(spot) || seen_.test(spot)) return;
+    seen_.set(spot);
+    ring.push_back(spot);
+}
+
+/// Of those that see the frontier.
+std::optional<Spot> GoalSeeker::cheapest(const std::vector<Spot>& ring, bool in_danger,
+                                         const Frontier& frontier) const {
+    std::optional<Spot> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Spot spot : ring) {
+        if (passability_.danger.test(spot) != in_danger) continue;
+        const double cost = search_.cost(spot);
+        const bool before = best && (spot.y < best->y || (spot.y == best->y && spot.x < best->x));
+        if (cost > least || (cost == least && !before) || std::isinf(cost)) continue;
+        const auto target = passability_.spot_of(nearest_cell(frontier, passability_.cell_at(spot)));
+        if (target && !sees(spot, *target)) continue;
+        best = spot;
+        least = cost;
+    }
+    return best;
+}
+
+bool GoalSeeker::sees(Spot from, Spot to) const {
+    return planning::sees({from.x, from.y}, {to.x, to.y}, [&](grid::Cell at) {
+        return passability_.occupied.test({at.i, at.j});
+    });
+}
+
+FrontierGoal GoalSeeker::goal_at(Spot spot, const Frontier& frontier, std::size_t place) const {
+    const grid::Cell cell = passability_.cell_at(spot);
+    const auto path = search_.path_to(spot);
+    double length = 0.0; // cells
+    for (std::size_t at = 0; at + 1 < path.size(); ++at) {
+        length += std::hypot(path[at + 1].x - path[at].x, path[at + 1].y - path[at].y);
+    }
+    return {place,
+            cell,
+            nearest_cell(frontier, cell),
+            passability_.danger.test(spot),
+            search_.cost(spot) * passability_.cell_size_m,
+            length * passability_.cell_size_m};
+}
+
+} // namespace scanloom::planning

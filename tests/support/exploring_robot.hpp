@@ -1,0 +1,102 @@
+#pragma once
+
+#include "robot_client/sim/laser.hpp"
+#include "robot_client/sim/world.hpp"
+#include "server/mapping/projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace scanloom::testing_support {
+
+/// A robot of the simulator's worlds that goes where it is told and scans at each step.
+class ExploringRobot {
+public:
+    static constexpr double kStep = 0.25; // metres
+
+    ExploringRobot(RobotIndex index, const robot::World& world, Sensor laser, const Pose2& start,
+                   const std::optional<robot::Noise>& noise)
+        : index_(index), world_(&world), laser_(std::move(laser)), noise_(noise), random_(index + 1), pose_(start) {}
+
+    void join(mapping::Projection& maps) {
+        maps.fold(RobotJoined{index_, "r" + std::to_string(index_)}).value();
+        maps.fold(SensorDescribed{index_, laser_}).value();
+        scan(maps);
+    }
+
+    /// Along the path, then a turn to the target.
+    void go(std::vector<Point2> path, const Point2& target) {
+        way_ = std::move(path);
+        passed_ = 0;
+        target_ = target;
+    }
+
+    [[nodiscard]] bool has_arrived() const { return !target_; }
+    [[nodiscard]] const Pose2& pose() const { return pose_; }
+    [[nodiscard]] Point2 place() const { return {pose_.x, pose_.y}; }
+    [[nodiscard]] double least_clearance() const { return least_clearance_; }
+    [[nodiscard]] std::uint64_t scans() const { return seq_; }
+
+    /// Pre  has not arrived.
+    void step(mapping::Projection& maps) {
+        if (!advance(kStep)) {
+            if ((*target_ - place()).norm() > 0.0) pose_.yaw = direction(*target_ - place());
+            target_.reset();
+        }
+        least_clearance_ = std::min(least_clearance_, robot::clearance(*world_, place()));
+        scan(maps);
+    }
+
+private:
+    static double direction(const Point2& along) { return std::atan2(along.y(), along.x()); }
+
+    /// @return whether it was anywhere but at the end of its way.
+    bool advance(double metres) {
+        bool moved = false;
+        while (metres > 0.0 && passed_ + 1 < way_.size()) {
+            const Point2 left = way_[passed_ + 1] - place();
+            const double length = left.norm();
+            if (length > 0.0) {
+                pose_.yaw = direction(left);
+                moved = true;
+            }
+            if (length <= metres) {
+                pose_.x = way_[passed_ + 1].x();
+                pose_.y = way_[passed_ + 1].y();
+                ++passed_;
+            } else {
+                pose_.x += metres / length * left.x();
+                pose_.y += metres / length * left.y();
+            }
+            metres -= length;
+        }
+        return moved;
+    }
+
+    void scan(mapping::Projection& maps) {
+        Scan scan;
+        scan.seq = ++seq_;
+        scan.stamp = 0.5 * static_cast<double>(seq_);
+        scan.sensor = laser_.id;
+        scan.pose = pose_;
+        scan.ranges = robot::sweep(*world_, laser_, pose_, noise_, random_);
+        maps.fold(ScanTaken{index_, std::move(scan)}).value();
+    }
+
+    RobotIndex index_;
+    const robot::World* world_;
+    Sensor laser_;
+    std::optional<robot::Noise> noise_;
+    robot::Random random_;
+    Pose2 pose_;
+    std::uint64_t seq_ = 0;
+    std::vector<Point2> way_;
+    std::size_t passed_ = 0;
+    std::optional<Point2> target_; // of the way it is on
+    double least_clearance_ = HUGE_VAL;
+};
+
+} // namespace scanloom::testing_support
