@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace scanloom::guide {
@@ -22,11 +23,11 @@ mapping::RobotState state_of(const mapping::Snapshot& maps, RobotIndex robot) {
 
 /// To those known already: the oldest first, no more than are kept.
 void add(const std::vector<grid::Cell>& cells, std::vector<grid::Cell>& to) {
-    const std::size_t known = to.size();
-    for (const grid::Cell cell : cells) {
-        const auto end = to.begin() + static_cast<std::ptrdiff_t>(known);
-        if (std::find(to.begin(), end, cell) == end) to.push_back(cell);
-    }
+    const auto place = [](grid::Cell cell) { return std::pair(cell.j, cell.i); };
+    auto known = to;
+    std::ranges::sort(known, {}, place);
+    std::ranges::copy_if(cells, std::back_inserter(to),
+                         [&](grid::Cell cell) { return !std::ranges::binary_search(known, place(cell), {}, place); });
     const std::size_t too_many = std::max(to.size(), GoalBook::kInVainCellsMax) - GoalBook::kInVainCellsMax;
     to.erase(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(too_many));
 }

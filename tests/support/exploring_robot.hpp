@@ -38,7 +38,6 @@ public:
     [[nodiscard]] const Pose2& pose() const { return pose_; }
     [[nodiscard]] Point2 place() const { return {pose_.x, pose_.y}; }
     [[nodiscard]] double least_clearance() const { return least_clearance_; }
-    [[nodiscard]] std::uint64_t scans() const { return seq_; }
 
     /// Pre  has not arrived.
     void step(mapping::Projection& maps) {

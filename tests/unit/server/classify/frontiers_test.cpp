@@ -66,6 +66,29 @@ TEST(Frontiers, AreTheGroupsOfCellsThatHangTogether) {
     }
 }
 
+TEST(Frontiers, AreTheGroupsOfWhatIsLeftWithoutSomeCells) {
+    std::mt19937 random(12);
+    for (int round = 0; round < 60; ++round) {
+        const int reach = 5 + static_cast<int>(random() % 70);
+        const auto anywhere = [&] {
+            return Cell{static_cast<int>(random()) % reach, static_cast<int>(random()) % reach};
+        };
+        Cells cells;
+        for (int n = 0; n < reach * reach; ++n) cells.insert(anywhere());
+        std::vector<Cell> without;
+        Cells left = cells;
+        for (int n = 0; n < reach * reach / 3; ++n) {
+            without.push_back(anywhere()); // some more than once, some that are no frontier
+            left.erase(without.back());
+        }
+        const auto frontiers = find_frontiers(view_of(cells), 2, without);
+        auto expected = groups_of(left);
+        std::erase_if(expected, [](const auto& group) { return group.size() < 2; });
+        ASSERT_EQ(frontiers.size(), expected.size());
+        for (std::size_t f = 0; f < expected.size(); ++f) ASSERT_EQ(frontiers[f].cells, expected[f]);
+    }
+}
+
 TEST(Frontiers, HaveTheMeanAndTheBoundsOfTheirCells) {
     const auto frontiers = find_frontiers(view_of({{-3, -1}, {-2, 0}, {-1, 0}, {0, 1}, {0, 2}}));
     ASSERT_EQ(frontiers.size(), 1U);

@@ -17,6 +17,7 @@ class GoalBookTest : public session::SessionTest {
 protected:
     void SetUp() override {
         SessionTest::SetUp();
+        maps_.robots.resize(3);
         maps_.config.cell_size = 0.1;
         maps_.classes = testing_support::drawn({"##############################", //
                                                 "f............................f", //
@@ -34,6 +35,23 @@ protected:
         return goal.path.points.back().x() < 1.5 ? 'l' : 'r';
     }
 
+    planning::NextGoal ask(RobotIndex robot) {
+        return book_.next(session_, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
+    }
+
+    /// The robot takes a scan where it was sent to, turned away from its target by an angle.
+    void scan_at(const planning::NextGoal& goal, RobotIndex robot, double turned_away = 0.0) {
+        const Point2 place = goal.path.points.back();
+        const Point2 target =
+            Point2(goal.goal->target.i + 0.5, goal.goal->target.j + 0.5) * maps_.config.cell_size - place;
+        auto& state = maps_.robots[robot];
+        state.pose = Pose2{place.x(), place.y(), std::atan2(target.y(), target.x()) + turned_away};
+        state.scan_count += 1;
+        state.stamp += 1.0;
+        trajectory_.append({0, state.stamp, *state.pose});
+        state.trajectory = trajectory_.snapshot();
+    }
+
     void leave(const std::shared_ptr<session::RecordedLink>& link) {
         session_->leave(link);
         run();
@@ -43,6 +61,7 @@ protected:
         .passability = {.body_radius_m = 0.0}, .frontier_size_min = 1, .standoff_m = 1.0};
 
     mapping::Snapshot maps_;
+    mapping::Trajectory trajectory_; // of the one robot that scans
     GoalBook book_;
     GoalBook::Clock::time_point now_{};
 };
@@ -125,6 +144,147 @@ TEST_F(GoalBookTest, SessionsDoNotShareGoals) {
     start_session();
     EXPECT_EQ(next(0), 'l') << "robot 0 of another session";
     EXPECT_EQ(next(1, first), 'r');
+}
+
+// What was looked at in vain
+
+TEST_F(GoalBookTest, AFrontierLookedAtInVainIsNobodysGoalAnyMore) {
+    for (const char* robot : {"a", "b"}) join(robot);
+    const auto left = ask(0);
+    EXPECT_EQ(left.given_up, 0U);
+    scan_at(left, 0);
+    const auto right = ask(0);
+    EXPECT_GT(right.path.points.back().x(), 1.5);
+    EXPECT_EQ(right.given_up, 3U);
+    EXPECT_EQ(next(1), '-') << "the left one is none for the other robot either";
+    scan_at(right, 0);
+    const auto end = ask(0);
+    EXPECT_EQ(end.outcome, Exploration::kComplete);
+    EXPECT_EQ(end.given_up, 6U);
+    EXPECT_EQ(next(1), 'c');
+}
+
+TEST_F(GoalBookTest, WhoHasNotLookedGetsTheSameGoalAgain) {
+    join("a");
+    const auto goal = ask(0);
+    const auto expect_the_same = [&](const char* why) {
+        const auto again = ask(0);
+        EXPECT_EQ(again.goal->cell, goal.goal->cell) << why;
+        EXPECT_EQ(again.goal->target, goal.goal->target) << why;
+        EXPECT_EQ(again.given_up, 0U) << why;
+    };
+    expect_the_same("it has sent no scan");
+    scan_at(goal, 0, 3.0);
+    expect_the_same("it looks away");
+    scan_at(goal, 0);
+    maps_.robots[0].pose->x += 0.25;
+    expect_the_same("it is not there");
+}
+
+TEST_F(GoalBookTest, AScanFromBeforeTheGoalWasGivenIsNoLook) {
+    join("a");
+    scan_at(ask(0), 0);
+    EXPECT_EQ(ask(0).given_up, 3U);
+    start_session();
+    const auto goal = ask(0);
+    EXPECT_EQ(ask(0).goal->target, goal.goal->target);
+    scan_at(goal, 0);
+    EXPECT_EQ(ask(0).given_up, 3U);
+}
+
+TEST_F(GoalBookTest, WhoStandsThereForFiveSecondsHasLookedWhereverItHeads) {
+    join("a");
+    const auto goal = ask(0);
+    for (int second = 0; second < 10; ++second) scan_at(goal, 0, 3.0);
+    for (int second = 0; second < 5; ++second) {
+        EXPECT_EQ(ask(0).given_up, 0U) << "since it first asked from there";
+        scan_at(goal, 0, 3.0);
+    }
+    EXPECT_EQ(ask(0).given_up, 3U);
+}
+
+TEST_F(GoalBookTest, ACellThatIsFrontierNoLongerIsForgotten) {
+    join("a");
+    const auto before = maps_.classes;
+    scan_at(ask(0), 0);
+    EXPECT_EQ(ask(0).given_up, 3U);
+    maps_.revision = 1;
+    maps_.classes = testing_support::drawn({"##############################", //
+                                            "f............................f", //
+                                            ".............................f", //
+                                            "f............................f", //
+                                            "##############################"});
+    EXPECT_EQ(ask(0).given_up, 2U);
+    maps_.classes = before;
+    maps_.revision = 2;
+    const auto anew = ask(0);
+    EXPECT_EQ(anew.given_up, 2U);
+    EXPECT_EQ(anew.goal->target, (grid::Cell{0, 2})) << "the cell in the middle counts again";
+}
+
+TEST_F(GoalBookTest, MapsOfAnEarlierTimeMakeNothingForgotten) {
+    join("a");
+    maps_.revision = 5;
+    scan_at(ask(0), 0);
+    EXPECT_EQ(ask(0).given_up, 3U);
+    auto earlier = maps_;
+    earlier.revision = 4;
+    earlier.classes = testing_support::drawn({"....................", "....................", "...................."});
+    ASSERT_TRUE(book_.next(session_, earlier, 0, {1.2, 0.25}, now_, kPoint));
+    EXPECT_EQ(ask(0).given_up, 3U);
+}
+
+TEST_F(GoalBookTest, OfTooManyCellsTheOldestCountAgain) {
+    join("a");
+    const std::string row = "." + std::string(299, 'f');
+    maps_.classes = testing_support::drawn(std::vector<std::string_view>(300, row));
+    auto options = kPoint;
+    options.standoff_m = 100.0;
+    const auto ask_here = [&] { return book_.next(session_, maps_, 0, {0.05, 0.05}, now_, options).value(); };
+    scan_at(ask_here(), 0);
+    const auto next = ask_here();
+    EXPECT_EQ(next.given_up, GoalBook::kInVainCellsMax);
+    EXPECT_EQ(next.outcome, Exploration::kGoal);
+}
+
+TEST_F(GoalBookTest, OfTooManySettingsTheLeastRecentlyAskedForAreForgotten) {
+    join("a");
+    for (std::size_t n = 0; n <= GoalBook::kSettingsMax; ++n) {
+        maps_.config.danger_cells = static_cast<std::int32_t>(n) + 1;
+        scan_at(ask(0), 0);
+        EXPECT_EQ(ask(0).given_up, 3U);
+    }
+    EXPECT_EQ(ask(0).given_up, 3U);
+    maps_.config.danger_cells = 2;
+    EXPECT_EQ(ask(0).given_up, 3U);
+    maps_.config.danger_cells = 1;
+    EXPECT_EQ(ask(0).given_up, 0U);
+}
+
+TEST_F(GoalBookTest, WhatTheGoalDoesNotSeeOrIsFarFromTheTargetIsNotGivenUp) {
+    join("a");
+    const std::string far(14, '.');
+    maps_.classes = testing_support::drawn({far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
+                                            far + "f", far + "f", far + "f", far + "f", far + "f", far + "f", far + "f",
+                                            far + "f", far + "f"});
+    const auto goal = ask(0); // in row 2
+    scan_at(goal, 0);
+    const auto again = ask(0);
+    EXPECT_EQ(again.given_up, 13U) << "rows 0 to 12";
+    EXPECT_GT(again.goal->target.j, 12);
+}
+
+TEST_F(GoalBookTest, WhatWasGivenUpIsSharedByNeitherSessionsNorSettings) {
+    join("a");
+    scan_at(ask(0), 0);
+    EXPECT_EQ(ask(0).given_up, 3U);
+    auto other = maps_;
+    other.config.danger_cells += 1;
+    EXPECT_EQ(book_.next(session_, other, 0, {1.2, 0.25}, now_, kPoint).value().given_up, 0U);
+    EXPECT_EQ(ask(0).given_up, 3U);
+    const auto first = session_;
+    start_session();
+    EXPECT_EQ(ask(0).given_up, 0U);
 }
 
 TEST_F(GoalBookTest, RobotsThatAskAtTheSameMomentGetDifferentFrontiers) {

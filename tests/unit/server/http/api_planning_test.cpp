@@ -143,6 +143,7 @@ TEST_F(ApiPlanningTest, EachFrontierHasTheRobotThatIsNearest) {
         for (const auto& one : alone) {
             for (const auto& other : one.at("features").as_array()) {
                 if (other.at("properties").at("centroid") != best.at("centroid")) continue;
+                if (other.at("properties").at("goal").is_null()) continue;
                 EXPECT_LE(number(best.at("cost")), number(other.at("properties").at("cost")));
             }
         }
@@ -392,6 +393,23 @@ TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
 TEST_F(ApiPlanningTest, WhoCanReachNoFrontierIsToldThatTheMapIsComplete) {
     const auto answer = get_json("/api/v1/sessions/a/goal?robot=r1&size_min=100000");
     EXPECT_EQ(answer.at("outcome"), "complete");
+}
+
+TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
+    const std::string target = "/api/v1/sessions/a/goal?robot=r1";
+    const auto answer = get_json(target);
+    EXPECT_EQ(answer.at("given_up"), 0);
+    Scan blind = scan_with_a_gap();
+    blind.pose.x = number(answer.at("goal").at("x"));
+    blind.pose.y = number(answer.at("goal").at("y"));
+    blind.pose.yaw = std::atan2(number(answer.at("target").at("y")) - blind.pose.y,
+                                number(answer.at("target").at("x")) - blind.pose.x);
+    std::ranges::fill(blind.ranges, kInvalidRange);
+    blind.seq = 2;
+    stream("a", "r1", {blind});
+    const auto next = get_json(target);
+    EXPECT_GT(next.at("given_up").to_number<int>(), 0);
+    EXPECT_NE(next.at("target"), answer.at("target"));
 }
 
 TEST_F(ApiPlanningTest, ARobotWithoutAPoseHasNoGoal) {

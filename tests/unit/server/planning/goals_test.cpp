@@ -252,6 +252,79 @@ TEST(NextGoal, SmallFrontiersDoNotCountWhenAskedNotTo) {
     EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, {}, options)->outcome, Exploration::kComplete);
 }
 
+TEST(NextGoal, FrontiersNarrowerThanTheBodyDoNotCountByDefault) {
+    ExplorationOptions options;
+    EXPECT_EQ(frontier_size_min(options, 0.05), 4U); // 0.3 m are 4.2 cells, corner to corner
+    EXPECT_EQ(frontier_size_min(options, 0.01), 21U);
+    EXPECT_EQ(frontier_size_min(options, 0.5), 1U);
+    EXPECT_EQ(frontier_size_min(for_a_point(), 0.05), 1U);
+    options.frontier_size_min = 2;
+    EXPECT_EQ(frontier_size_min(options, 0.05), 2U);
+
+    const auto view = drawn({"..............", "..............", "..............", ".............f", ".............f",
+                             ".............f", "..............", "..............", ".............."});
+    options.frontier_size_min.reset();
+    EXPECT_EQ(next_goal(view, kCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kComplete);
+    options.frontier_size_min = 3;
+    EXPECT_EQ(next_goal(view, kCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kGoal);
+}
+
+TEST(NextGoal, CellsGivenUpCountForNothing) {
+    const auto view = drawn({"...f", "...f", "...f", "...f"});
+    const std::vector<Cell> lower = {{3, 1}, {3, 0}};
+    const auto next = next_goal(view, 1.0, {0.5, 0.5}, {}, for_a_point(), lower).value();
+    EXPECT_EQ(next.goal->target, (Cell{3, 2}));
+    EXPECT_EQ(next.given_up, 2U);
+    EXPECT_EQ(next.around_target, (std::vector<Cell>{{3, 2}, {3, 3}}));
+    auto options = for_a_point();
+    options.frontier_size_min = 3;
+    EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, {}, options, lower)->outcome, Exploration::kComplete)
+        << "what is left is too small";
+}
+
+TEST(NextGoal, TellsTheCellsOfItsFrontierAroundTheTarget) {
+    const auto view = drawn({"f..", "f..", "f..", "...", "f.."});
+    auto options = for_a_point();
+    options.standoff_m = 0.0;
+    const auto next = next_goal(view, 1.0, {2.5, 4.5}, {}, options).value();
+    EXPECT_EQ(next.around_target, (std::vector<Cell>{{0, 2}, {0, 3}, {0, 4}}));
+}
+
+TEST(SeenInVain, IsWhatIsStillFrontierAndNotHidden) {
+    const auto view = drawn({"..#.f", // (4, 2) is behind the wall
+                             "..#.f", //
+                             ".....", // (4, 0) was frontier
+                             "....f"});
+    const std::vector<Cell> around = {{4, 0}, {4, 1}, {4, 2}, {4, 3}};
+    EXPECT_EQ(seen_in_vain(view, {0, 2}, around), (std::vector<Cell>{{4, 0}}));
+    EXPECT_EQ(seen_in_vain(view, {3, 2}, around), (std::vector<Cell>{{4, 0}, {4, 2}, {4, 3}}));
+    EXPECT_EQ(still_frontier(view, around), (std::vector<Cell>{{4, 0}, {4, 2}, {4, 3}}));
+}
+
+/// Free ground, 24 x 24 cells, that ends in frontiers on all sides.
+ClassView clearing() {
+    return classified({0, 0, 24, 24}, 3, [](Cell) { return OccType::kFree; });
+}
+
+TEST(NextGoal, TheBodyKeepsToKnownGround) {
+    const auto next = next_goal(clearing(), kCellSize, {0.6, 0.6}).value();
+    ASSERT_TRUE(next.goal);
+    for (const Point2& point : next.path.points) {
+        EXPECT_GE(std::min({point.x(), point.y(), 1.2 - point.x(), 1.2 - point.y()}), 0.15);
+    }
+}
+
+TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
+    const auto lane = classified({0, 0, 24, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
+    const auto next = next_goal(lane, kCellSize, {0.1, 0.075}).value();
+    EXPECT_EQ(next.outcome, Exploration::kGoal);
+}
+
+TEST(NextGoal, IsKnownToARobotThatDoesNotSeeItsOwnCell) {
+    EXPECT_EQ(next_goal(clearing(), kCellSize, {-0.02, 0.6})->outcome, Exploration::kGoal);
+    EXPECT_THAT(next_goal(clearing(), kCellSize, {-0.25, 0.6}).error().message, HasSubstr("unknown space"));
+}
+
 TEST(NextGoal, WhatCannotBeIsRefused) {
     const auto view = drawn({"#..f"});
     EXPECT_THAT(next_goal(view, 1.0, {0.5, 0.5}, {}, for_a_point()).error().message, HasSubstr("inside an obstacle"));
