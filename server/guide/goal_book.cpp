@@ -62,7 +62,6 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
     if (!found || !found->goal) return found;
     Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);
     if (going_on && is_there(visit, state)) { // be it a better goal: it waits no longer than it has to
-        visit.scans_before = going_on->scans_before;
         visit.asking_since = going_on->asking_since.value_or(state.stamp);
     }
     entries_.push_back({session, robot, now, session->is_connected(robot), maps.config, found->goal->cell,

@@ -146,6 +146,26 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
     }
 }
 
+TEST_F(RequestsTest, WhatARobotLooksAtInVainIsGivenUp) {
+    start();
+    const auto robot = looking_around("r");
+    robot->send(wire::GoalRequest{.id = 1});
+    const auto goal = robot->receive_kind<wire::GoalReply>().goal.value();
+    ASSERT_TRUE(goal.path && goal.target);
+    EXPECT_EQ(goal.given_up, 0U);
+    const Point2 place = goal.path->points.back();
+    const Point2 ahead = *goal.target - place;
+    Scan blind = scan_with_a_gap(2);
+    blind.pose = {place.x(), place.y(), std::atan2(ahead.y(), ahead.x())};
+    std::ranges::fill(blind.ranges, kInvalidRange);
+    robot->send(wire::ScanBatch{{blind}});
+    robot->wait_for_ack(2);
+    robot->send(wire::GoalRequest{.id = 2});
+    const auto next = robot->receive_kind<wire::GoalReply>().goal.value();
+    EXPECT_GT(next.given_up, 0U);
+    EXPECT_NE(next.target, goal.target);
+}
+
 TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
     start();
     const auto robot = looking_around("r");

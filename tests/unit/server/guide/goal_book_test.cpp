@@ -277,7 +277,9 @@ TEST_F(GoalBookTest, WhatTheGoalDoesNotSeeOrIsFarFromTheTargetIsNotGivenUp) {
 TEST_F(GoalBookTest, WhatWasGivenUpIsSharedByNeitherSessionsNorSettings) {
     join("a");
     scan_at(ask(0), 0);
-    EXPECT_EQ(ask(0).given_up, 3U);
+    const auto right = ask(0);
+    EXPECT_EQ(right.given_up, 3U);
+    scan_at(right, 0);
     auto other = maps_;
     other.config.danger_cells += 1;
     EXPECT_EQ(book_.next(session_, other, 0, {1.2, 0.25}, now_, kPoint).value().given_up, 0U);

@@ -151,6 +151,12 @@ TEST_F(ApiPlanningTest, EachFrontierHasTheRobotThatIsNearest) {
     EXPECT_EQ(robots, (std::set<std::string>{"r1", "r2"}));
 }
 
+TEST_F(ApiPlanningTest, AllFrontiersAreListedHoweverWideTheBody) {
+    const auto wide = frontiers("body_radius=5").at("features").as_array().size();
+    EXPECT_EQ(wide, classify::find_frontiers(maps()->classes).size());
+    EXPECT_GT(wide, 1U);
+}
+
 TEST_F(ApiPlanningTest, SmallFrontiersMayBeLeftOut) {
     const std::size_t largest = classify::find_frontiers(maps()->classes).front().cells.size();
     EXPECT_EQ(frontiers("size_min=" + std::to_string(largest)).at("features").as_array().size(), 1U);

@@ -306,6 +306,24 @@ ClassView clearing() {
     return classified({0, 0, 24, 24}, 3, [](Cell) { return OccType::kFree; });
 }
 
+/// The cells of all frontiers that are left of a column.
+std::vector<Cell> frontier_up_to(std::int32_t column, const ClassView& view) {
+    std::vector<Cell> cells;
+    for (const auto& frontier : find_frontiers(view)) {
+        std::ranges::copy_if(frontier.cells, std::back_inserter(cells), [&](Cell cell) { return cell.i < column; });
+    }
+    return cells;
+}
+
+TEST(NextGoal, NobodyElseGoesWhereWallsMayBeHidden) {
+    const auto view = classified({0, 0, 100, 24}, 3, [](Cell cell) {
+        return cell.i < 24 || (cell.j >= 10 && cell.j < 13) ? OccType::kFree : OccType::kUnexplored; // a narrow lane
+    });
+    EXPECT_EQ(next_goal(view, kCellSize, {0.6, 0.6})->outcome, Exploration::kGoal);
+    EXPECT_EQ(next_goal(view, kCellSize, {0.6, 0.6}, {}, {}, frontier_up_to(60, view))->outcome,
+              Exploration::kComplete);
+}
+
 TEST(NextGoal, TheBodyKeepsToKnownGround) {
     const auto next = next_goal(clearing(), kCellSize, {0.6, 0.6}).value();
     ASSERT_TRUE(next.goal);
@@ -315,9 +333,13 @@ TEST(NextGoal, TheBodyKeepsToKnownGround) {
 }
 
 TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
-    const auto lane = classified({0, 0, 24, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
-    const auto next = next_goal(lane, kCellSize, {0.1, 0.075}).value();
-    EXPECT_EQ(next.outcome, Exploration::kGoal);
+    const auto lane = classified({0, 0, 60, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
+    const auto at_hand = next_goal(lane, kCellSize, {0.1, 0.075}).value();
+    ASSERT_EQ(at_hand.outcome, Exploration::kGoal);
+    EXPECT_LT(at_hand.path.length_m, 0.2);
+    const auto further = next_goal(lane, kCellSize, {0.1, 0.075}, {}, {}, frontier_up_to(40, lane)).value();
+    ASSERT_EQ(further.outcome, Exploration::kGoal);
+    EXPECT_GT(further.path.length_m, 1.5);
 }
 
 TEST(NextGoal, IsKnownToARobotThatDoesNotSeeItsOwnCell) {
