@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <ostream>
 #include <tuple>
 #include <vector>
 
@@ -166,6 +167,8 @@ struct Case {
     bool all_round;
     bool noisy;
     std::vector<Pose2> starts;
+
+    friend void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 };
 
 class ExploringAlone : public ExplorationTest, public testing::WithParamInterface<Case> {};
