@@ -49,6 +49,7 @@ struct Search {
     [[nodiscard]] Result<wire::Path> operator()(const wire::PlanRequest& request) const {
         auto options = passability_of(request.body_radius);
         options.allow_unknown = request.allow_unknown;
+        options.on_known = !request.allow_unknown;
         options.danger_cost = request.danger_cost.value_or(options.danger_cost);
         auto path = planning::plan_path(maps.classes, maps.config.cell_size, start, request.goal, options);
         if (!path) return path.error();
@@ -74,7 +75,8 @@ struct Search {
     }
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {
-        const planning::CoverageOptions options{passability_of(request.body_radius), request.spacing, request.region};
+        planning::CoverageOptions options{passability_of(request.body_radius), request.spacing, request.region};
+        options.passability.on_known = true;
         auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options, may_go_on);
         if (!coverage) return coverage.error();
         auto path = to_wire(std::move(coverage->path));

@@ -58,16 +58,20 @@ Point2 mirrored(const Point2& point) { return {-point.x(), point.y()}; }
 
 bool keeps_clear(const Passability& passability, const Point2& from, const Point2& to) {
     if (passability.options.body_radius_m == 0.0) return true; // a point touches nothing
-    const BitGrid& occupied = passability.occupied;
+    const BitGrid& obstacles = passability.obstacles;
     const double radius = passability.options.body_radius_m / passability.cell_size_m + kRoundingCells;
     const Capsule capsule(from, to, radius);
     const Capsule mirror(mirrored(from), mirrored(to), radius);
+    const bool beyond = capsule.bottom() < 0.0 || capsule.top() > obstacles.height() ||
+                        mirror.right(capsule.bottom(), capsule.top()) > 0.0 ||
+                        capsule.right(capsule.bottom(), capsule.top()) > obstacles.width();
+    if (beyond && passability.options.on_known) return false;
     const auto first = std::max(static_cast<std::int32_t>(std::floor(capsule.bottom())), 0);
-    const auto last = std::min(static_cast<std::int32_t>(std::floor(capsule.top())), occupied.height() - 1);
+    const auto last = std::min(static_cast<std::int32_t>(std::floor(capsule.top())), obstacles.height() - 1);
     for (std::int32_t y = first; y <= last; ++y) {
         const auto left = static_cast<std::int32_t>(std::floor(-mirror.right(y, y + 1.0)));
         const auto right = static_cast<std::int32_t>(std::floor(capsule.right(y, y + 1.0)));
-        if (next_set(occupied.row(y), std::max(left, 0)) <= std::min(right, occupied.width() - 1)) return false;
+        if (next_set(obstacles.row(y), std::max(left, 0)) <= std::min(right, obstacles.width() - 1)) return false;
     }
     return true;
 }

@@ -104,6 +104,19 @@ void set_all(BitGrid& grid) {
     for (std::int32_t y = 0; y < grid.height(); ++y) std::ranges::fill(grid.row(y), ~std::uint64_t{0});
 }
 
+/// The outermost rows and columns.
+void clear_border(BitGrid& grid, std::int32_t width) {
+    const std::int32_t right = std::max(grid.width() - width, 0);
+    for (std::int32_t y = 0; y < grid.height(); ++y) {
+        if (y < width || y >= grid.height() - width) {
+            std::ranges::fill(grid.row(y), std::uint64_t{0});
+            continue;
+        }
+        for (std::int32_t x = 0; x < std::min(width, grid.width()); ++x) grid.clear({x, y});
+        for (std::int32_t x = right; x < grid.width(); ++x) grid.clear({x, y});
+    }
+}
+
 /// The ground under a point where a path begins or ends.
 Result<Spot> ground_at(const Passability& passability, const Point2& point, std::string_view which) {
     const auto cell = cell_of(point, passability.cell_size_m);
@@ -135,6 +148,29 @@ void take_as_ground(Passability& passability, Spot place, double radius) {
     if (known.count() == 0) return;
     covered.subtract(passability.occupied);
     passability.ground |= covered;
+    if (passability.options.on_known) passability.obstacles.subtract(covered);
+}
+
+/// The cells through which a body may leave a place where it should not be: the ground that it covers, and with
+/// on_known also what is not near occupied cells, as far as it takes to get to known ground, but not further than four
+/// times as far.
+BitGrid way_out(const Passability& passability, Spot place, double radius) {
+    BitGrid near = disc_around(passability, place, radius + 1.0);
+    near &= passability.ground;
+    near = connected(near, place);
+    if (!passability.options.on_known) return near;
+    BitGrid clear = passability.ground;
+    clear.subtract(dilated(passability.occupied, disc_half_widths(radius_for_steps(radius), true)));
+    for (const double times : {1.0, 1.5, 2.0, 3.0, 4.0}) {
+        BitGrid way = disc_around(passability, place, times * (radius + 1.0));
+        way &= clear;
+        way |= near;
+        way = connected(way, place);
+        BitGrid arrived = way;
+        arrived &= passability.enterable;
+        if (arrived.count() > 0) return way;
+    }
+    return near;
 }
 
 } // namespace
@@ -170,7 +206,7 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
     const auto window = window_of(classes, cell_size_m, options.allow_unknown, held);
     if (!window) return window.error();
     const BitGrid blank(static_cast<std::int32_t>(window->width()), static_cast<std::int32_t>(window->height()));
-    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank};
+    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank, blank};
     classes.visit(grid::chunks_of(*window), 0,
                   [&](grid::ChunkKey key, const ClassChunk& chunk) { read_chunk(passability, key, chunk); });
     if (options.allow_unknown) {
@@ -178,13 +214,14 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
         passability.ground.subtract(passability.occupied);
     }
     passability.enterable = passability.ground;
-    BitGrid obstacles = passability.occupied;
-    if (options.on_known) { // all that is not ground
-        set_all(obstacles);
-        obstacles.subtract(passability.ground);
-    }
+    passability.obstacles = passability.occupied;
     const double radius = radius_for_steps(options.body_radius_m / cell_size_m);
-    passability.enterable.subtract(dilated(obstacles, disc_half_widths(radius, true)));
+    if (options.on_known) {
+        set_all(passability.obstacles);
+        passability.obstacles.subtract(passability.ground);
+        clear_border(passability.enterable, static_cast<std::int32_t>(radius + kRoundingCells + 0.5));
+    }
+    passability.enterable.subtract(dilated(passability.obstacles, disc_half_widths(radius, true)));
     return passability;
 }
 
@@ -193,9 +230,7 @@ Result<Spot> open_start(Passability& passability, const Point2& start) {
     if (const auto spot = passability.spot_at(start)) take_as_ground(passability, *spot, radius);
     const auto spot = ground_at(passability, start, "start");
     if (!spot || passability.enterable.test(*spot)) return spot;
-    BitGrid near = disc_around(passability, *spot, radius + 1.0);
-    near &= passability.ground;
-    passability.enterable |= connected(near, *spot);
+    passability.enterable |= way_out(passability, *spot, radius);
     return spot;
 }
 
@@ -204,9 +239,11 @@ Result<Spot> check_goal(const Passability& passability, const Point2& goal) {
     if (!spot) return spot;
     const Point2 in_cells = to_cells(passability, goal, *spot);
     if (passability.enterable.test(*spot) && keeps_clear(passability, in_cells, in_cells)) return spot;
-    return Error{Errc::kNoPath, fmt::format("the goal ({:g}, {:g}) is nearer to an obstacle than the body radius of {} "
-                                            "m: give a point further away from it",
-                                            goal.x(), goal.y(), passability.options.body_radius_m)};
+    return Error{Errc::kNoPath,
+                 fmt::format("the goal ({:g}, {:g}) is nearer to an obstacle {}than the body radius of {} "
+                             "m: give a point further away from it",
+                             goal.x(), goal.y(), passability.options.on_known ? "or to unknown ground " : "",
+                             passability.options.body_radius_m)};
 }
 
 std::vector<std::int32_t> disc_half_widths(double radius, bool to_square) {

@@ -29,11 +29,10 @@ struct PassabilityOptions {
 ///
 /// The body is a disc; where it is, its centre is. A cell may be entered when it is free (in danger or not; with
 /// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre; with
-/// on_known no unexplored one either. (Where a diagonal step between such centres would come nearer, the radius counts
-/// as up to 0.17 cells more.)
-/// A metre in a DANGER cell costs 1 + danger_cost, any other 1.
-/// The window is whole chunks around everything known; with allow_unknown, also around the points to be held, and a
-/// chunk more on every side. Spots are cells of the window.
+/// on_known no other cell's that is not ground, or beyond the window. (Where a diagonal step between such centres would
+/// come nearer, the radius counts as up to 0.17 cells more.) A metre in a DANGER cell costs 1 + danger_cost, any
+/// other 1. The window is whole chunks around everything known; with allow_unknown, also around the points to be held,
+/// and a chunk more on every side. Spots are cells of the window.
 struct Passability {
     grid::CellBox window;
     double cell_size_m = 0.0;
@@ -41,7 +40,8 @@ struct Passability {
     BitGrid occupied;
     BitGrid ground;    ///< where a point may be: FREE and DANGER; with allow_unknown, all that is not OCCUPIED
     BitGrid danger;    ///< DANGER
-    BitGrid enterable; ///< where the body's centre may be: the ground that is far enough from the occupied cells
+    BitGrid obstacles; ///< what the body keeps its radius from: OCCUPIED; with on_known, all that is not ground
+    BitGrid enterable; ///< where the body's centre may be: the ground that is far enough from the obstacles
 
     [[nodiscard]] grid::Cell cell_at(Spot spot) const noexcept {
         return {window.i_begin + spot.x, window.j_begin + spot.y};
@@ -68,9 +68,10 @@ struct Passability {
 
 /// Where a path may begin: the point's cell. When that is free but nearer to an obstacle than the body radius (a
 /// robot got there somehow, and must be able to leave), the free cells that hang together with it within a body
-/// radius and a cell of it may be entered from now on.
-/// Known ground within the body's radius makes ground of what is unknown there, too: the body covers it. (A laser that
-/// looks ahead never sees the robot's own cell from where the robot begins.)
+/// radius and a cell of it may be entered from now on; with on_known also those further away that lead to known ground
+/// all around, up to four times as far. (A laser that looks ahead shows a robot no ground beside itself.)
+/// Known ground within the body's radius makes ground of what is unknown there, too: the body covers it.
+///
 /// Errors  kNoPath: outside the map, inside an obstacle, in unknown space. kInvalidField: not finite.
 [[nodiscard]] Result<Spot> open_start(Passability& passability, const Point2& start);
 

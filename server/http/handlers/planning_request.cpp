@@ -84,6 +84,7 @@ Result<planning::ExplorationOptions> exploration_options(const Query& query) {
 Result<planning::PassabilityOptions> passability_options(const boost::json::object& body) {
     planning::PassabilityOptions options;
     if (auto ok = set(body, "allow_unknown", options.allow_unknown); !ok) return ok.error();
+    options.on_known = !options.allow_unknown;
     if (auto ok = set(body, "body_radius", options.body_radius_m); !ok) return ok.error();
     if (auto ok = set(body, "danger_cost", options.danger_cost); !ok) return ok.error();
     return options;

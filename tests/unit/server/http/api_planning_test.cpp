@@ -287,6 +287,7 @@ TEST_F(ApiPlanningTest, ACoverageIsThePathOverAllGroundAndWhatItCannotCover) {
     planning::CoverageOptions options;
     options.spacing_m = 0.3;
     options.passability.body_radius_m = 0.2;
+    options.passability.on_known = true;
     const auto expected = planning::plan_coverage(maps()->classes, cell_size(), {kX, kY}, options).value();
     const auto& path = answer.at("features").at(0);
     const auto points = points_of(path.at("geometry"));

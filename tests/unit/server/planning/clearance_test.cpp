@@ -15,7 +15,8 @@ TEST(Clearance, IsThatOfTheLineFromEverySquare) {
     int touching = 0;
     for (int map = 0; map < 40; ++map) {
         const auto view = scattered(random, box, 1);
-        const PassabilityOptions options{.body_radius_m = std::array{0.3, 0.5, 1.0, 1.5, 2.7, 4.2}[random() % 6]};
+        const PassabilityOptions options{.body_radius_m = std::array{0.3, 0.5, 1.0, 1.5, 2.7, 4.2}[random() % 6],
+                                         .on_known = map % 4 == 0};
         const auto passability = make_passability(view, 1.0, options).value();
         const Oracle oracle(view, box, 1.0, options);
         std::uniform_real_distribution<double> coordinate(0.0, 50.0);

@@ -97,8 +97,9 @@ TEST(GridPath, KeepsTheBodysRadiusFromEveryOccupiedSquare) {
     int found = 0;
     for (int round = 0; round < 400; ++round) {
         const double cell_size = std::array{0.05, 0.1, 0.25, 0.5}[random() % 4];
-        const PassabilityOptions options{.body_radius_m = std::array{0.05, 0.12, 0.15, 0.2, 0.35}[random() % 5]};
-        const auto view = scattered(random, kBox, 2);
+        const PassabilityOptions options{.body_radius_m = std::array{0.05, 0.12, 0.15, 0.2, 0.35}[random() % 5],
+                                         .on_known = random() % 2 == 0};
+        const auto view = scattered(random, kBox, options.on_known ? 1 : 2);
         const auto anywhere = [&] {
             std::uniform_real_distribution<double> part(0.0, 1.0);
             const Cell cell = random_cell(random);
@@ -199,6 +200,35 @@ TEST(GridPath, IsTheSameEveryTime) {
         EXPECT_EQ(once->points, again->points);
         EXPECT_EQ(once->cost, again->cost);
     }
+}
+
+/// What a sensor of 60 degrees shows of open ground ahead, or of a lane.
+ClassView ahead(int cells, double slope, int half_width) {
+    ClassMap map;
+    for (int i = 0; i < cells; ++i) {
+        for (int j = -cells; j <= cells; ++j) {
+            if (std::abs(j) <= half_width + slope * i) map.set({i, j}, CellClass::kFree);
+        }
+    }
+    return map.view();
+}
+
+TEST(GridPath, ARobotThatLooksAheadLeavesTheUnknownBesideIt) {
+    const PassabilityOptions careful{.body_radius_m = 0.15, .on_known = true};
+    const auto path = plan_path(ahead(60, 0.577, 0), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful);
+    ASSERT_TRUE(path) << path.error().message;
+    EXPECT_EQ(path->points.front(), Point2(0.025, 0.025));
+    EXPECT_NEAR(path->length_m, 1.975, 0.05);
+}
+
+TEST(GridPath, AlongALaneNarrowerThanTheBodyTheUnknownBesideItMayHideWalls) {
+    const PassabilityOptions careful{.body_radius_m = 0.15, .on_known = true};
+    EXPECT_EQ(plan_path(ahead(60, 0.0, 1), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful).error().code,
+              Errc::kNoPath);
+    EXPECT_TRUE(plan_path(ahead(60, 0.0, 1), kCellSize, {0.025, 0.025}, {2.0, 0.025}, {.body_radius_m = 0.15}));
+    EXPECT_TRUE(plan_path(ahead(60, 0.0, 4), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful));
+    const auto refused = plan_path(ahead(60, 0.0, 4), kCellSize, {0.025, 0.025}, {2.0, 0.17}, careful);
+    EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle or to unknown ground than the body radius"));
 }
 
 TEST(GridPath, CutsNoCorner) {

@@ -17,9 +17,9 @@ TEST(Passability, ABodyMayEnterTheCellsFarEnoughFromEveryOccupiedSquare) {
     std::mt19937 random(21);
     const grid::CellBox box{-40, -30, 50, 40};
     for (const double radius : {0.0, 0.02, 0.05, 0.1, 0.15, 0.26, 0.5}) {
-        for (const bool allow_unknown : {false, true}) {
+        for (const auto& [allow_unknown, on_known] : {std::pair{false, false}, {true, false}, {false, true}}) {
             const auto view = scattered(random, box, radius > 0.2 ? 1 : 4);
-            const PassabilityOptions options{radius, 1.0, allow_unknown};
+            const PassabilityOptions options{radius, 1.0, allow_unknown, on_known};
             const auto passability = make_passability(view, 0.05, options).value();
             const Oracle oracle(view, box, 0.05, options);
             for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {

@@ -32,7 +32,7 @@ public:
         }
         for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
             for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
-                if (class_at(view, {i, j}) == CellClass::kOccupied) occupied_.push_back({i, j});
+                if (is_obstacle({i, j})) obstacles_.push_back({i, j});
             }
         }
         for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
@@ -68,11 +68,11 @@ public:
     }
 
     /// Whether a body going straight from one point to another is more than its radius, less some slack, away from the
-    /// squares of all occupied cells. In cells.
+    /// squares of all obstacles. In cells.
     [[nodiscard]] bool keeps_clear(const Point2& from, const Point2& to, double slack = 0.0) const {
-        return std::ranges::all_of(occupied_, [&](Cell cell) {
-            return distance(from, to, {cell.i, cell.j}) > radius_ - slack;
-        });
+        return is_inside(from, to, slack) && std::ranges::all_of(obstacles_, [&](Cell cell) {
+                   return distance(from, to, {cell.i, cell.j}) > radius_ - slack;
+               });
     }
 
     /// The cost of a straight line in cells, or nothing when it touches the square of a cell that may not be entered.
@@ -92,16 +92,32 @@ public:
     }
 
 private:
+    [[nodiscard]] bool is_obstacle(Cell cell) const {
+        const auto value = class_at(view_, cell);
+        const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
+        return value == CellClass::kOccupied || (unknown && options_.on_known && !options_.allow_unknown);
+    }
+
+    /// Whether a body is nowhere beyond the box, where everything is unknown; where that matters.
+    [[nodiscard]] bool is_inside(const Point2& from, const Point2& to, double slack) const {
+        if (!options_.on_known || options_.body_radius_m == 0.0) return true;
+        const Point2 low = from.cwiseMin(to).array() - radius_ + slack;
+        const Point2 high = from.cwiseMax(to).array() + radius_ - slack;
+        return low.x() > box_.i_begin && low.y() > box_.j_begin && high.x() < box_.i_end && high.y() < box_.j_end;
+    }
+
     [[nodiscard]] bool may_be_entered(Cell cell) const {
+        const Point2 centre(cell.i + 0.5, cell.j + 0.5);
         const auto value = class_at(view_, cell);
         if (value == CellClass::kOccupied) return false;
         const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
         if (unknown && !options_.allow_unknown) return false;
-        return std::ranges::none_of(occupied_, [&](Cell other) {
-            const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
-            const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
-            return std::hypot(dx, dy) <= radius_of_centres_;
-        });
+        return is_inside(centre, centre, radius_ - radius_of_centres_) &&
+               std::ranges::none_of(obstacles_, [&](Cell other) {
+                   const double dx = std::max(std::abs(cell.i - other.i) - 0.5, 0.0);
+                   const double dy = std::max(std::abs(cell.j - other.j) - 0.5, 0.0);
+                   return std::hypot(dx, dy) <= radius_of_centres_;
+               });
     }
 
     /// From a line to a cell's square: the distance from the square falls and then rises along the line.
@@ -147,7 +163,7 @@ private:
     PassabilityOptions options_;
     double radius_; // cells
     double radius_of_centres_;
-    std::vector<Cell> occupied_;
+    std::vector<Cell> obstacles_;
     std::set<std::pair<int, int>> enterable_;
 };
 
