@@ -179,12 +179,16 @@ public:
     /// How many chunks it holds.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// How many chunks of the last snapshot it has copied since: so many more there are while that one is held.
+    [[nodiscard]] std::size_t copied() const noexcept { return copied_; }
+
     /// What the tree holds now, for the writer to look at until its next write.
     [[nodiscard]] ChunkView<ChunkType> peek() const { return ChunkView<ChunkType>(quadrants_); }
 
     /// What the tree holds now. Later writes do not show in it.
     [[nodiscard]] ChunkView<ChunkType> snapshot() {
         ++epoch_;
+        copied_ = 0;
         return ChunkView<ChunkType>(quadrants_);
     }
 
@@ -223,6 +227,7 @@ private:
             }
         } else if (child->epoch != epoch_) {
             child = std::make_shared<Item>(*static_cast<const Item*>(child.get()));
+            if constexpr (!std::is_same_v<Item, tree::Node>) ++copied_;
         }
         child->epoch = epoch_;
         child->revision = std::max(child->revision, revision);
@@ -232,6 +237,7 @@ private:
     tree::Quadrants quadrants_;
     std::uint64_t epoch_ = 1;
     std::size_t size_ = 0;
+    std::size_t copied_ = 0;
     std::shared_ptr<const ChunkType> blank_;
 };
 

@@ -74,6 +74,9 @@ public:
 
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 
+    /// See ChunkTree::copied().
+    [[nodiscard]] std::size_t copied() const noexcept { return tree_.copied(); }
+
     [[nodiscard]] grid::ChunkView<ChunkType> snapshot() {
         current_ = nullptr;
         return tree_.snapshot();

@@ -18,6 +18,16 @@ Error misplaced(Revision revision, std::string what) {
 Projection::Projection(const MapConfig& config)
     : config_(config), laser_(config), sonar_(config), classes_(danger_reach(config)) {}
 
+const std::string* Projection::find_robot_name(RobotIndex robot) const noexcept {
+    return robot < robots_.size() ? &robots_[robot].state.name : nullptr;
+}
+
+const Sensor* Projection::find_sensor(RobotIndex robot, std::uint32_t id) const noexcept {
+    if (robot >= robots_.size()) return nullptr;
+    const auto known = robots_[robot].sensors.find(id);
+    return known == robots_[robot].sensors.end() ? nullptr : known->second.sensor.get();
+}
+
 Result<> Projection::fold(const LogEntry& entry) {
     double unbounded = HUGE_VAL;
     if (auto folded = fold(entry, unbounded); !folded) return folded.error();

@@ -53,6 +53,14 @@ public:
     /// Of lasers and sonars.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
 
+    /// Of the chunks of the last snapshot, those that have been copied since, to be written: as long as that snapshot
+    /// is held, there are so many more than chunk_count().
+    [[nodiscard]] std::size_t copied_count() const noexcept { return laser_.copied() + sonar_.copied(); }
+
+    /// Null: no such robot has joined, or it has described no such sensor. Valid until the next fold().
+    [[nodiscard]] const std::string* find_robot_name(RobotIndex robot) const noexcept;
+    [[nodiscard]] const Sensor* find_sensor(RobotIndex robot, std::uint32_t id) const noexcept;
+
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
     ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.

@@ -29,8 +29,11 @@ struct Reach {
 /// The most work that one scan may make: more than any laser's.
 inline constexpr double kScanWorkMax = 1e9;
 
+/// How far a sensor may reach at most, cells.
+inline constexpr double kReachCellsMax = 8192.0;
+
 /// Whether a sensor's reach is possible at this cell size.
-/// Errors  kInvalidField: range_max spans more than 8192 cells.
+/// Errors  kInvalidField: range_max spans more than kReachCellsMax.
 [[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
 
 /// Errors  kInvalidField: so many cones, so wide, so far (or such a map), at such small cells, that weaving would

@@ -66,6 +66,7 @@ public:
     [[nodiscard]] Revision newest_restored() const noexcept { return grid_.newest_restored(); }
 
     [[nodiscard]] std::size_t chunk_count() const noexcept { return grid_.chunk_count(); }
+    [[nodiscard]] std::size_t copied() const noexcept { return grid_.copied(); }
 
     [[nodiscard]] SonarView snapshot() { return grid_.snapshot(); }
 

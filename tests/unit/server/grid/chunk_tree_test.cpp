@@ -62,6 +62,21 @@ TEST(ChunkTree, ExtremeKeysAreKeysLikeOthers) {
     EXPECT_EQ(visited(tree.snapshot()), keys);
 }
 
+TEST(ChunkTree, CountsTheChunksOfASnapshotThatItHasCopied) {
+    ChunkTree<TestChunk> tree(blank());
+    for (const std::int32_t ci : {0, 1, 2, 100}) (void)tree.write({0, ci}, 1);
+    EXPECT_EQ(tree.copied(), 0U) << "there is no snapshot";
+    auto view = tree.snapshot();
+    EXPECT_EQ(tree.copied(), 0U);
+    (void)tree.write({0, 1}, 2);
+    (void)tree.write({0, 1}, 3);
+    (void)tree.write({0, 100}, 3);
+    (void)tree.write({5, 5}, 3);
+    EXPECT_EQ(tree.copied(), 2U) << "each once, and none that is new";
+    view = tree.snapshot();
+    EXPECT_EQ(tree.copied(), 0U);
+}
+
 TEST(ChunkTree, ASnapshotNeverChanges) {
     ChunkTree<TestChunk> tree(blank());
     tree.write({0, 0}, 1).cells[0] = 10;
