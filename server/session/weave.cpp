@@ -1,15 +1,12 @@
 #include "server/session/weave.hpp"
 
-#include "common/hash/sha256.hpp"
 #include "common/wire/log_codec.hpp"
-#include "server/mapping/map_config.hpp"
-#include "server/mapping/reach.hpp"
+#include "server/session/weavable.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <map>
-#include <span>
+#include <algorithm>
 #include <utility>
 
 namespace scanloom::session {
@@ -31,51 +28,25 @@ Error no_room() {
 /// Linux: of this thread alone.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
-/// What no robot is told any more, since its log is what it is.
-Result<> check_entry(const mapping::MapConfig& config, const LogEntry& entry) {
-    if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
-        return mapping::check_reach(config, described->sensor);
-    }
-    const auto* patch = std::get_if<MapPatch>(&entry);
-    return patch == nullptr ? Result<>{} : mapping::check_work(mapping::reach_of(config, *patch));
+bool is_taken_after(const std::optional<double>& stamp, const LogEntry& entry) {
+    const auto* taken = std::get_if<ScanTaken>(&entry);
+    return taken != nullptr && stamp && taken->scan.stamp > *stamp;
 }
-
-/// The sensors that a log has described so far.
-class Sensors {
-public:
-    /// Errors  kInvalidField: a scan that no session with these settings would have taken.
-    [[nodiscard]] Result<> check(const mapping::MapConfig& config, const LogEntry& entry) {
-        if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
-            known_[{described->robot, described->sensor.id}] = described->sensor;
-        }
-        const auto* taken = std::get_if<ScanTaken>(&entry);
-        if (taken == nullptr) return {};
-        const auto sensor = known_.find({taken->robot, taken->scan.sensor});
-        if (sensor == known_.end()) return {}; // which folding will tell
-        return mapping::check_work(mapping::reach_of(config, sensor->second, taken->scan));
-    }
-
-private:
-    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> known_;
-};
 
 } // namespace
 
-std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request) {
-    std::string text = fmt::format("{} until {}", tag_of(session), request.end.revision);
-    if (request.end.stamp) text += fmt::format(" or {}", *request.end.stamp);
-    for (const auto& field : mapping::config_fields()) {
-        std::visit([&](const auto& value) { text += fmt::format("\n{} {}", field.name, value); },
-                   mapping::value_of(field, request.config));
-    }
-    Sha256 hash;
-    hash.update(std::as_bytes(std::span(text)));
-    return hash.hex().substr(0, 16);
+Error session_was_deleted(const SessionInfo& session) {
+    return {Errc::kNotFound,
+            fmt::format("session '{}' was deleted while maps were woven from its log; see the list of sessions",
+                        session.name)};
 }
+
+// Asking
 
 Weave::Progress Weave::progress() const {
     const std::lock_guard lock(mutex_);
-    return {state_, woven_, error_};
+    const bool follows = !request_.end.revision && !is_complete_;
+    return {state_, woven_, target_, maps_ ? std::optional(maps_->revision) : std::nullopt, follows, error_};
 }
 
 std::shared_ptr<const mapping::Snapshot> Weave::maps() const {
@@ -83,79 +54,153 @@ std::shared_ptr<const mapping::Snapshot> Weave::maps() const {
     return maps_;
 }
 
-bool Weave::wait(std::chrono::milliseconds patience) const {
+std::shared_ptr<const mapping::Snapshot> Weave::wait(Revision revision, std::chrono::milliseconds patience) const {
     std::unique_lock lock(mutex_);
-    return ended_.wait_for(lock, patience, [&] { return state_ != State::kWaiting && state_ != State::kWeaving; });
+    const auto is_there = [&] { return maps_ && (maps_->revision >= revision || state_ == State::kDone); };
+    changed_.wait_for(lock, patience, [&] { return is_there() || has_ended(state_); });
+    return is_there() ? maps_ : nullptr;
 }
 
-void Weave::cancel() {
-    cancelled_ = true;
+bool Weave::join(Revision target) {
     const std::lock_guard lock(mutex_);
-    if (state_ != State::kWaiting) return; // whoever weaves will see it
-    state_ = State::kCancelled;
-    ended_.notify_all();
+    if (state_ == State::kDone) return is_complete_ || target <= target_;
+    if (has_ended(state_) || cancelled_) return false;
+    target_ = std::max(target_, target);
+    return true;
 }
 
-void Weave::run(store::ScanLog& log, ChunkBudget& budget) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (state_ != State::kWaiting) return; // cancelled
-        state_ = State::kWeaving;
+bool Weave::resume(Revision target, ChunkBudget& budget) {
+    const std::lock_guard lock(mutex_);
+    const auto chunks = static_cast<std::int64_t>(maps_->chunk_count);
+    if (!budget.take(chunks)) return false;
+    claimed_ = chunks;
+    target_ = target;
+    state_ = State::kWaiting;
+    return true;
+}
+
+void Weave::cancel(Error reason) {
+    const std::lock_guard lock(mutex_);
+    if (has_ended(state_) || cancelled_) return;
+    cancelled_ = true; // whoever weaves will see it
+    error_ = std::move(reason);
+    if (state_ == State::kWaiting) state_ = State::kCancelled;
+    changed_.notify_all();
+}
+
+// Weaving
+
+bool Weave::run(store::ScanLog& log, ChunkBudget& budget) {
+    const auto target = begin();
+    if (!target) {
+        give_up(kCancelled, budget);
+        return false;
     }
     step_back();
-    std::int64_t chunks = 0;
     try {
-        mapping::Projection projection(request_.config);
-        const auto woven = weave(log, budget, projection, chunks);
-        if (woven || woven.error() == kEnd) {
-            end(State::kDone, std::make_shared<const mapping::Snapshot>(projection.snapshot()), std::nullopt);
-        } else if (woven.error() == kCancelled) {
-            end(State::kCancelled, nullptr, std::nullopt);
-        } else {
-            end(State::kFailed, nullptr, woven.error());
-        }
+        if (!projection_) projection_.emplace(request_.config);
+        const auto is_complete = weave_up_to(*target, log, budget);
+        if (is_complete) return publish(*target, *is_complete, budget);
+        give_up(is_complete.error(), budget);
     } catch (const std::bad_alloc&) {
-        end(State::kFailed, nullptr, no_room());
+        give_up(no_room(), budget);
     }
-    budget.give_back(chunks);
+    return false;
 }
 
-Result<> Weave::weave(store::ScanLog& log, ChunkBudget& budget, mapping::Projection& projection, std::int64_t& chunks) {
-    Sensors sensors;
-    return log.read(session_, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
-        if (revision > request_.end.revision) return kEnd;
-        const auto entry = wire::decode_entry(bytes);
-        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
-        const auto* taken = std::get_if<ScanTaken>(&*entry);
-        if (taken != nullptr && request_.end.stamp && taken->scan.stamp > *request_.end.stamp) return kEnd;
-        if (auto ok = sensors.check(request_.config, *entry); !ok) return ok;
-        return fold(*entry, budget, projection, chunks);
-    });
+/// Nothing when it was cancelled.
+std::optional<Revision> Weave::begin() {
+    const std::lock_guard lock(mutex_);
+    if (state_ != State::kWaiting) return std::nullopt;
+    state_ = State::kWeaving;
+    return target_;
 }
 
-Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget, mapping::Projection& projection,
-                     std::int64_t& chunks) {
-    if (auto ok = check_entry(request_.config, entry); !ok) return ok;
+/// @return whether nothing more can follow.
+Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget) {
+    bool is_complete = request_.end.revision.has_value();
+    const auto read =
+        log.read(session_.id, projection_->revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
+            if (revision > target) return kEnd;
+            const auto entry = wire::decode_entry(bytes);
+            if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+            if (is_taken_after(request_.end.stamp, *entry)) {
+                is_complete = true;
+                return kEnd;
+            }
+            if (auto ok = check_weavable(*projection_, *entry); !ok) return ok;
+            return fold(*entry, budget);
+        });
+    if (!read && read.error().code == Errc::kNotFound) return session_was_deleted(session_);
+    if (!read && read.error() != kEnd) return read.error();
+    return is_complete;
+}
+
+Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget) {
     for (bool in = false; !in;) {
         if (cancelled_) return kCancelled;
         double work = kSliceWork;
-        const auto folded = projection.fold(entry, work);
+        const auto folded = projection_->fold(entry, work);
         if (!folded) return folded.error();
         in = *folded;
-        const std::int64_t more = static_cast<std::int64_t>(projection.chunk_count()) - chunks;
-        chunks += more;
-        if (!budget.take(more)) return no_room();
+        if (auto claimed = claim(budget); !claimed) return claimed;
     }
-    woven_ = projection.revision();
+    woven_ = projection_->revision();
     return {};
 }
 
-void Weave::end(State state, std::shared_ptr<const mapping::Snapshot> maps, std::optional<Error> error) {
+/// Takes the chunks that there are by now from the budget.
+Result<> Weave::claim(ChunkBudget& budget) {
+    const std::size_t chunks = projection_->chunk_count();
+    const std::size_t copied = maps_ ? projection_->copied_count() : 0; // maps_ is set by this thread alone
+    if (claim(chunks + copied, budget)) return {};
+    forget_maps(); // so that a copy takes the place of what it was made of
+    return claim(chunks, budget) ? Result<>{} : no_room();
+}
+
+bool Weave::claim(std::size_t chunks, ChunkBudget& budget) {
+    const std::int64_t more = static_cast<std::int64_t>(chunks) - claimed_;
+    if (more > 0 && !budget.take(more)) return false;
+    if (more < 0) budget.give_back(-more);
+    claimed_ += more;
+    return true;
+}
+
+void Weave::forget_maps() {
+    std::shared_ptr<const mapping::Snapshot> maps;
     const std::lock_guard lock(mutex_);
-    state_ = state;
-    maps_ = std::move(maps);
-    error_ = std::move(error);
-    ended_.notify_all();
+    maps_.swap(maps);
+}
+
+/// Shows what has been woven up to `target`. @return whether more has been asked for meanwhile.
+bool Weave::publish(Revision target, bool is_complete, ChunkBudget& budget) {
+    auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
+    if (is_complete) projection_.reset();
+    const std::lock_guard lock(mutex_);
+    maps_.swap(maps);
+    is_complete_ = is_complete;
+    if (is_complete) target_ = maps_->revision;
+    if (cancelled_ || target_ <= target) {
+        end(State::kDone, budget);
+        return false;
+    }
+    state_ = State::kWaiting;
+    changed_.notify_all();
+    return true;
+}
+
+void Weave::give_up(const Error& error, ChunkBudget& budget) {
+    projection_.reset();
+    const std::lock_guard lock(mutex_);
+    if (!cancelled_) error_ = error;
+    end(State::kFailed, budget);
+}
+
+/// From here on it may be resumed. Pre: mutex_ is held.
+void Weave::end(State state, ChunkBudget& budget) {
+    budget.give_back(std::exchange(claimed_, 0));
+    state_ = cancelled_ ? State::kCancelled : state;
+    changed_.notify_all();
 }
 
 } // namespace scanloom::session

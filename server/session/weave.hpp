@@ -2,7 +2,9 @@
 
 #include "common/error/error.hpp"
 #include "server/mapping/projection.hpp"
+#include "server/session/chunk_budget.hpp"
 #include "server/session/session_info.hpp"
+#include "server/session/weave_request.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
@@ -16,91 +18,99 @@
 
 namespace scanloom::session {
 
-/// Where a weave ends. Both given: at what comes first.
-struct WeaveEnd {
-    Revision revision = 0;       ///< with this entry of the log
-    std::optional<double> stamp; ///< seconds: before the first scan that was taken later
-
-    friend bool operator==(const WeaveEnd&, const WeaveEnd&) = default;
-};
-
-/// What is to be woven of a session's log.
-struct WeaveRequest {
-    mapping::MapConfig config;
-    WeaveEnd end;
-
-    friend bool operator==(const WeaveRequest&, const WeaveRequest&) = default;
-};
-
-/// Tells a request from all others of all sessions: 16 hexadecimal digits.
-[[nodiscard]] std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request);
-
-/// The chunks that all weaves under way may have together.
-class ChunkBudget {
-public:
-    explicit ChunkBudget(std::size_t chunks_max) : free_(static_cast<std::int64_t>(chunks_max)) {}
-
-    [[nodiscard]] bool take(std::int64_t chunks) noexcept { return free_.fetch_sub(chunks) >= chunks; }
-    void give_back(std::int64_t chunks) noexcept { free_ += chunks; }
-
-private:
-    std::atomic<std::int64_t> free_;
-};
-
 /// The maps of a session made once more from its log: with other settings, or as they were at some time. They are
 /// those that a session would have which was created with these settings and given this log.
-/// Thread  any; run() on one.
+///
+/// A weave has a target, an entry of the log. One that follows its session is given a later target whenever it is asked
+/// for again, and goes on from where it is: no entry is folded twice. It works in rounds, each up to the target as it
+/// was when the round began, and shows the maps of its last round meanwhile. So whoever asks is served when his entry
+/// is in, however many ask after him.
+/// Memory  a round takes its chunks from the budget, also those of earlier maps that it has copied, to change them;
+///         where they do not fit, it shows the earlier maps no longer.
+/// Thread  any; run() and resume() as they say.
 class Weave {
 public:
     enum class State : std::uint8_t { kWaiting, kWeaving, kDone, kFailed, kCancelled };
 
     struct Progress {
         State state = State::kWaiting;
-        Revision woven = 0;         ///< entries
-        std::optional<Error> error; ///< why it failed
+        Revision woven = 0;               ///< entries
+        Revision target = 0;              ///< entries that are to be woven
+        std::optional<Revision> revision; ///< of the maps, once there are any
+        bool follows = false;             ///< the target can be raised
+        std::optional<Error> error;       ///< why it failed or was cancelled
     };
 
-    Weave(const SessionInfo& session, const WeaveRequest& request)
-        : id_(weave_id_of(session, request)), session_(session.id), request_(request) {}
+    Weave(SessionInfo session, const WeaveRequest& request, Revision target)
+        : id_(weave_id_of(session, request)), session_(std::move(session)), request_(request), target_(target) {}
 
     [[nodiscard]] const std::string& id() const noexcept { return id_; }
-    [[nodiscard]] store::SessionId session() const noexcept { return session_; }
+    [[nodiscard]] const SessionInfo& session() const noexcept { return session_; }
     [[nodiscard]] const WeaveRequest& request() const noexcept { return request_; }
 
     [[nodiscard]] Progress progress() const;
 
-    /// The maps, once they are done.
+    /// The newest that are finished; null: none yet.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> maps() const;
 
-    /// Until it is done, failed or cancelled, but no longer than `patience`. @return whether it is.
-    bool wait(std::chrono::milliseconds patience) const;
+    /// Waits for maps with this entry, but no longer than `patience`.
+    /// Pre  a target up to it has been asked for. @return null: they are not there; progress() tells why.
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> wait(Revision revision,
+                                                                std::chrono::milliseconds patience) const;
 
-    /// Ends soon, if it has not ended yet.
-    void cancel();
+    /// Asks for maps up to `target`. @return whether nothing more is to be done for that: they are there, or whoever
+    /// weaves them goes on until they are.
+    [[nodiscard]] bool join(Revision target);
 
-    /// Weaves to the end, with a priority below that of everything else. Ends early when it is cancelled, when the
-    /// budget is used up, or when what the log holds cannot be woven with these settings.
-    void run(store::ScanLog& log, ChunkBudget& budget);
+    /// The same when it is done: gets ready for another run().
+    /// Pre  join() said no, the state is kDone, and nobody else does this. @return false: the budget has no room now.
+    [[nodiscard]] bool resume(Revision target, ChunkBudget& budget);
+
+    /// Ends soon for that reason, if it has not ended yet.
+    void cancel(Error reason);
+
+    /// One round, with a priority below that of everything else. Ends early when it is cancelled, when the budget is
+    /// used up, or when what the log holds cannot be woven with these settings; what was woven is then given up.
+    /// Pre  never at the same time as itself. @return whether the target was raised meanwhile: to be run again.
+    [[nodiscard]] bool run(store::ScanLog& log, ChunkBudget& budget);
 
 private:
-    [[nodiscard]] Result<> weave(store::ScanLog& log, ChunkBudget& budget, mapping::Projection& projection,
-                                 std::int64_t& chunks);
-    [[nodiscard]] Result<> fold(const LogEntry& entry, ChunkBudget& budget, mapping::Projection& projection,
-                                std::int64_t& chunks);
-    void end(State state, std::shared_ptr<const mapping::Snapshot> maps, std::optional<Error> error);
+    [[nodiscard]] std::optional<Revision> begin();
+    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget);
+    [[nodiscard]] Result<> fold(const LogEntry& entry, ChunkBudget& budget);
+    [[nodiscard]] Result<> claim(ChunkBudget& budget);
+    [[nodiscard]] bool claim(std::size_t chunks, ChunkBudget& budget);
+    void forget_maps();
+    [[nodiscard]] bool publish(Revision target, bool is_complete, ChunkBudget& budget);
+    void give_up(const Error& error, ChunkBudget& budget);
+    void end(State state, ChunkBudget& budget);
 
     const std::string id_;
-    const store::SessionId session_;
+    const SessionInfo session_;
     const WeaveRequest request_;
 
     std::atomic<Revision> woven_ = 0;
     std::atomic<bool> cancelled_ = false;
 
+    // Whoever runs it, or resumes it, alone.
+    std::optional<mapping::Projection> projection_; // kept as long as it can go on
+    std::int64_t claimed_ = 0;                      // chunks, of the budget; none when it has ended
+
     mutable std::mutex mutex_; // guards what follows
-    mutable std::condition_variable ended_;
+    mutable std::condition_variable changed_;
     State state_ = State::kWaiting;
+    Revision target_;
+    bool is_complete_ = false; // nothing more can follow
     std::shared_ptr<const mapping::Snapshot> maps_;
     std::optional<Error> error_;
 };
+
+/// Nothing more will happen to it unless it is asked for again.
+[[nodiscard]] constexpr bool has_ended(Weave::State state) noexcept {
+    return state != Weave::State::kWaiting && state != Weave::State::kWeaving;
+}
+
+/// What whoever waits for a weave of a session that is deleted is told.
+[[nodiscard]] Error session_was_deleted(const SessionInfo& session);
 
 } // namespace scanloom::session

@@ -1,6 +1,7 @@
 #include "server/session/weaves.hpp"
 
 #include <boost/asio/post.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -8,11 +9,16 @@
 namespace scanloom::session {
 namespace {
 
-bool has_ended(Weave::State state) { return state != Weave::State::kWaiting && state != Weave::State::kWeaving; }
-
 std::size_t chunks_of(const Weave& weave) {
     const auto maps = weave.maps();
     return maps ? maps->chunk_count : 0;
+}
+
+Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
+
+Error was_removed(const Weave& weave) {
+    return {Errc::kNotFound,
+            fmt::format("weave {} was deleted before these maps were done; start it again", weave.id())};
 }
 
 } // namespace
@@ -20,40 +26,56 @@ std::size_t chunks_of(const Weave& weave) {
 Weaves::Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits)
     : log_(log), executor_(std::move(executor)), limits_(limits), budget_(limits.chunks_max) {}
 
-Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const WeaveRequest& request) {
-    const auto id = weave_id_of(session, request);
-    if (auto known = find(session.id, id)) {
-        const auto state = known->progress().state;
-        if (state != Weave::State::kFailed && state != Weave::State::kCancelled) return known;
-        remove(session.id, id);
-    }
-    auto weave = std::make_shared<Weave>(session, request);
-    {
-        const std::lock_guard lock(mutex_);
-        if (stopped_) return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
-        const auto under_way =
-            std::ranges::count_if(weaves_, [](const auto& other) { return !has_ended(other->progress().state); });
-        if (static_cast<std::size_t>(under_way) >= limits_.waiting_max) {
-            return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
+Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const WeaveRequest& request, Revision newest) {
+    const std::lock_guard lock(mutex_);
+    const Revision target = target_of(request, newest);
+    auto weave = touch(session.id, weave_id_of(session, request));
+    if (weave && weave->join(target)) return weave;
+    if (auto room = check_room(); !room) return room.error();
+    if (weave && weave->progress().state == Weave::State::kDone) {
+        if (!weave->resume(target, budget_)) {
+            return Error{Errc::kOverloaded, "the maps that are woven at this moment need all memory that there is for "
+                                            "them; try again soon"};
         }
+    } else {
+        if (weave) weaves_.pop_front();
+        weave = std::make_shared<Weave>(session, request, target);
         weaves_.push_front(weave);
-        evict();
     }
-    boost::asio::post(executor_, [this, weave] {
-        weave->run(log_, budget_);
+    evict();
+    launch(weave);
+    return weave;
+}
+
+/// Pre: mutex_ is held.
+Result<> Weaves::check_room() const {
+    if (stopped_) return shutting_down();
+    const auto under_way =
+        std::ranges::count_if(weaves_, [](const auto& other) { return !has_ended(other->progress().state); });
+    if (static_cast<std::size_t>(under_way) < limits_.waiting_max) return {};
+    return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
+}
+
+void Weaves::launch(std::shared_ptr<Weave> weave) {
+    boost::asio::post(executor_, [this, weave = std::move(weave)]() mutable {
+        if (weave->run(log_, budget_)) return launch(std::move(weave)); // behind the others that wait
         const std::lock_guard lock(mutex_);
         evict();
     });
-    return weave;
 }
 
 std::shared_ptr<Weave> Weaves::find(store::SessionId session, std::string_view id) {
     const std::lock_guard lock(mutex_);
+    return touch(session, id);
+}
+
+/// To the front with it, if there is one. Pre: mutex_ is held.
+std::shared_ptr<Weave> Weaves::touch(store::SessionId session, std::string_view id) {
+    evict();
     const auto found = std::ranges::find_if(
-        weaves_, [&](const auto& weave) { return weave->session() == session && weave->id() == id; });
+        weaves_, [&](const auto& weave) { return weave->session().id == session && weave->id() == id; });
     if (found == weaves_.end()) return nullptr;
     weaves_.splice(weaves_.begin(), weaves_, found);
-    evict();
     return weaves_.front();
 }
 
@@ -61,15 +83,15 @@ std::vector<std::shared_ptr<Weave>> Weaves::list(store::SessionId session) const
     const std::lock_guard lock(mutex_);
     std::vector<std::shared_ptr<Weave>> of_session;
     std::ranges::copy_if(weaves_, std::back_inserter(of_session),
-                         [&](const auto& weave) { return weave->session() == session; });
+                         [&](const auto& weave) { return weave->session().id == session; });
     return of_session;
 }
 
 bool Weaves::remove(store::SessionId session, std::string_view id) {
     const std::lock_guard lock(mutex_);
     return std::erase_if(weaves_, [&](const auto& weave) {
-               if (weave->session() != session || weave->id() != id) return false;
-               weave->cancel();
+               if (weave->session().id != session || weave->id() != id) return false;
+               weave->cancel(was_removed(*weave));
                return true;
            }) > 0;
 }
@@ -77,8 +99,8 @@ bool Weaves::remove(store::SessionId session, std::string_view id) {
 void Weaves::remove_all(store::SessionId session) {
     const std::lock_guard lock(mutex_);
     std::erase_if(weaves_, [&](const auto& weave) {
-        if (weave->session() != session) return false;
-        weave->cancel();
+        if (weave->session().id != session) return false;
+        weave->cancel(session_was_deleted(weave->session()));
         return true;
     });
 }
@@ -86,7 +108,7 @@ void Weaves::remove_all(store::SessionId session) {
 void Weaves::stop() {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    for (const auto& weave : weaves_) weave->cancel();
+    for (const auto& weave : weaves_) weave->cancel(shutting_down());
 }
 
 /// Pre: mutex_ is held.

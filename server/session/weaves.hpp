@@ -29,13 +29,15 @@ struct WeavesLimits {
 /// Thread  any; nothing here waits.
 class Weaves {
 public:
-    /// Weaving happens on `executor`, as many at a time as it has threads. The log and this must outlive what runs
-    /// there.
+    /// Weaving happens on `executor`, as many at a time as it has threads; one that is asked for more before its turn
+    /// is over takes another turn. The log and this must outlive what runs there.
     Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits = {});
 
-    /// Starts the weave, or finds the one that is asked for again; one that failed or was cancelled is tried again.
+    /// Starts the weave, or finds the one that is asked for again and has it go on to where the session is by now,
+    /// `newest`; one that failed or was cancelled is tried again from the start.
     /// Errors  kOverloaded, kShuttingDown.
-    [[nodiscard]] Result<std::shared_ptr<Weave>> start(const SessionInfo& session, const WeaveRequest& request);
+    [[nodiscard]] Result<std::shared_ptr<Weave>> start(const SessionInfo& session, const WeaveRequest& request,
+                                                       Revision newest);
 
     /// Null when there is none, or no longer.
     [[nodiscard]] std::shared_ptr<Weave> find(store::SessionId session, std::string_view id);
@@ -46,13 +48,16 @@ public:
     /// Cancels and forgets it. @return whether there was such a weave.
     bool remove(store::SessionId session, std::string_view id);
 
-    /// The session is gone: cancels and forgets all of its weaves.
+    /// The session is deleted: cancels and forgets all of its weaves.
     void remove_all(store::SessionId session);
 
     /// Starts nothing more, cancels all.
     void stop();
 
 private:
+    [[nodiscard]] std::shared_ptr<Weave> touch(store::SessionId session, std::string_view id);
+    [[nodiscard]] Result<> check_room() const;
+    void launch(std::shared_ptr<Weave> weave);
     void evict();
 
     store::ScanLog& log_;

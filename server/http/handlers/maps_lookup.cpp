@@ -13,21 +13,23 @@ namespace {
 
 constexpr std::string_view kWeave = "weave";
 
-/// What a weave has come to.
-Result<Maps> maps_of(std::shared_ptr<session::Session> session, const session::Weave& weave) {
-    if (auto maps = weave.maps()) {
+/// The maps of a weave, or why there are none.
+Result<Maps> maps_of(std::shared_ptr<session::Session> session, const session::Weave& weave,
+                     std::shared_ptr<const mapping::Snapshot> maps) {
+    if (maps) {
         auto tag = fmt::format("{}-{}", session_tag(session->info()), weave.id());
         return Maps{std::move(session), std::move(maps), std::move(tag)};
     }
     const auto progress = weave.progress();
     if (progress.error) return *progress.error;
-    if (progress.state == session::Weave::State::kCancelled) {
-        return Error{Errc::kNotFound, fmt::format("weave {} was cancelled; start it again", weave.id())};
-    }
-    return Error{Errc::kOverloaded,
-                 fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, or see weave/{} for "
-                             "how far it is",
-                             progress.woven, weave.request().end.revision, weave.id())};
+    const auto earlier =
+        progress.revision ? fmt::format(", or take those with {} of them as weave={}", *progress.revision, weave.id())
+                          : std::string();
+    return Error{
+        Errc::kOverloaded,
+        fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, see weave/{} for how "
+                    "far it is{}",
+                    progress.woven, progress.target, weave.id(), earlier)};
 }
 
 } // namespace
@@ -69,7 +71,7 @@ Result<Maps> MapsLookup::chosen(const Call& call) const {
     }
     const auto weave = find_weave(weaves_, **session, *id);
     if (!weave) return weave.error();
-    return maps_of(std::move(*session), **weave);
+    return maps_of(std::move(*session), **weave, (*weave)->maps());
 }
 
 Result<Maps> MapsLookup::woven(const Call& call) const {
@@ -77,10 +79,10 @@ Result<Maps> MapsLookup::woven(const Call& call) const {
     if (!session) return session.error();
     const auto request = weave_request(**session, call.query);
     if (!request) return request.error();
-    const auto weave = weaves_.start((*session)->info(), *request);
+    const Revision newest = (*session)->snapshot()->revision;
+    const auto weave = weaves_.start((*session)->info(), *request, newest);
     if (!weave) return weave.error();
-    static_cast<void>((*weave)->wait(patience_));
-    return maps_of(std::move(*session), **weave);
+    return maps_of(std::move(*session), **weave, (*weave)->wait(session::target_of(*request, newest), patience_));
 }
 
 } // namespace scanloom::http

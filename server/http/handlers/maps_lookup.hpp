@@ -33,13 +33,13 @@ public:
                std::chrono::milliseconds patience = kPatience)
         : sessions_(sessions), weaves_(weaves), patience_(patience) {}
 
-    /// Those that exist: the session's, or a weave's that is done. `known` are the other parameters that the caller
-    /// reads.
+    /// Those that exist: the session's, or the newest that a weave has finished. `known` are the other parameters that
+    /// the caller reads.
     /// Errors  those of find_session(); kInvalidField: an unknown parameter; kNotFound: no such weave; kOverloaded: it
-    ///         is not done yet; its own, where it failed.
+    ///         has none yet; its own, where it failed.
     [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// The same, and weaves them if settings are given; waits for that.
+    /// The same, and weaves them if settings are given; waits until what the session shows now is in.
     /// Errors  also those of weave_request().
     [[nodiscard]] Result<Maps> find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const;
 

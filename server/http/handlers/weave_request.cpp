@@ -2,6 +2,7 @@
 
 #include "server/http/handlers/config_json.hpp"
 #include "server/http/in_quotes.hpp"
+#include "server/http/json_text.hpp"
 #include "server/http/number.hpp"
 #include "server/mapping/map_config.hpp"
 
@@ -35,10 +36,20 @@ std::optional<double> parse_rfc3339(std::string_view text) {
     const int hours = number(11, 2);
     const int minutes = number(14, 2);
     if (!day.ok() || hours > 23 || minutes > 59 || number(17, 2) > 60) return std::nullopt;
-    const auto seconds = parse_real(text.substr(17, text.size() - 18));
+    const auto fraction = text.substr(kPattern.size(), text.size() - kPattern.size() - 1);
+    const bool is_fraction = fraction.size() > 1 && fraction.front() == '.' &&
+                             fraction.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    if (!fraction.empty() && !is_fraction) return std::nullopt;
+    const auto seconds = parse_real(text.substr(17, 2 + fraction.size()));
     if (!seconds) return std::nullopt;
     const double days = static_cast<double>(std::chrono::sys_days(day).time_since_epoch().count());
     return days * 86400.0 + hours * 3600.0 + minutes * 60.0 + *seconds;
+}
+
+Error wrong_until(std::string_view shown) {
+    return {Errc::kInvalidField, fmt::format("until is {}; a revision (912), a stamp in seconds (976052857.5s) or a "
+                                             "time (2000-12-05T22:27:37Z) is needed",
+                                             shown)};
 }
 
 /// Pre: `newest` is the session's revision.
@@ -50,20 +61,16 @@ Result<session::WeaveEnd> parse_until(std::string_view text, Revision newest) {
                                  *revision, newest)};
     }
     const auto stamp = text.ends_with('s') ? parse_real(text.substr(0, text.size() - 1)) : parse_rfc3339(text);
-    if (stamp) return session::WeaveEnd{newest, *stamp};
-    return Error{Errc::kInvalidField,
-                 fmt::format("until is {}; a revision (912), a stamp in seconds (976052857.5s) or a "
-                             "time (2000-12-05T22:27:37Z) is needed",
-                             in_quotes(text))};
+    if (stamp) return session::WeaveEnd{std::nullopt, *stamp};
+    return wrong_until(in_quotes(text));
 }
 
 Result<session::WeaveRequest> request_of(const session::Session& session, const SessionOptions& options,
                                          std::optional<std::string_view> until) {
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    const Revision newest = session.snapshot()->revision;
-    if (!until) return session::WeaveRequest{*config, {newest, std::nullopt}};
-    const auto end = parse_until(*until, newest);
+    if (!until) return session::WeaveRequest{*config, {}};
+    const auto end = parse_until(*until, session.snapshot()->revision);
     if (!end) return end.error();
     return session::WeaveRequest{*config, *end};
 }
@@ -101,7 +108,9 @@ Result<session::WeaveRequest> weave_request(const session::Session& session, con
     if (until->is_string()) return request_of(session, options, std::string_view(until->get_string()));
     boost::system::error_code not_whole;
     const auto revision = until->to_number<Revision>(not_whole);
-    return request_of(session, options, not_whole ? "?" : std::to_string(revision));
+    if (!not_whole) return request_of(session, options, std::to_string(revision));
+    const auto in_words = in_quotes(json_text(*until));
+    return wrong_until(std::string_view(in_words).substr(1, in_words.size() - 2));
 }
 
 } // namespace scanloom::http

@@ -3,7 +3,7 @@
 #include "common/error/error.hpp"
 #include "server/http/target.hpp"
 #include "server/session/session.hpp"
-#include "server/session/weave.hpp"
+#include "server/session/weave_request.hpp"
 
 #include <boost/json/object.hpp>
 
@@ -19,7 +19,7 @@ namespace scanloom::http {
 /// Whether any of them is given.
 [[nodiscard]] bool asks_for_weaving(const Query& query);
 
-/// The session's own settings with those that are given in their place; up to its newest entry, or
+/// The session's own settings with those that are given in their place; following the session, or
 ///   until=912                     with entry 912 of its log (a revision)
 ///   until=976052857.5s            before the first scan that was taken later, by the robots' clocks, in seconds
 ///   until=2000-12-05T22:27:37Z    the same, for clocks that count from 1970

@@ -28,14 +28,17 @@ std::string_view name_of(State state) {
 
 boost::json::object shown(const session::Weave& weave) {
     const auto progress = weave.progress();
-    const auto& end = weave.request().end;
-    boost::json::object until{{"revision", end.revision}, {"stamp", nullptr}};
-    if (end.stamp) until["stamp"] = *end.stamp;
+    const auto& stamp = weave.request().end.stamp;
+    boost::json::object until{{"revision", progress.target}, {"stamp", nullptr}};
+    if (stamp) until["stamp"] = *stamp;
     boost::json::object json{{"id", weave.id()},
                              {"state", name_of(progress.state)},
+                             {"revision", nullptr},
                              {"woven", progress.woven},
                              {"until", std::move(until)},
+                             {"follows", progress.follows},
                              {"config", to_json(weave.request().config)}};
+    if (progress.revision) json["revision"] = *progress.revision;
     if (progress.error) json["reason"] = progress.error->message;
     return json;
 }
@@ -51,12 +54,12 @@ Result<Response> start_weave(const MapsLookup& maps, const Call& call) {
     if (auto known = check_members(*body, weave_parameters()); !known) return known.error();
     const auto request = weave_request(**session, *body);
     if (!request) return request.error();
-    const auto weave = maps.weaves().start((*session)->info(), *request);
+    const auto weave = maps.weaves().start((*session)->info(), *request, (*session)->snapshot()->revision);
     if (!weave) return weave.error();
     auto response =
         ok(shown(**weave))
             .set("Location", fmt::format("/api/v1/sessions/{}/weave/{}", (*session)->info().name, (*weave)->id()));
-    if (!(*weave)->maps()) response.status = Status::accepted;
+    if ((*weave)->progress().state != State::kDone) response.status = Status::accepted;
     return response;
 }
 

@@ -107,14 +107,14 @@ protected:
         ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":")" + name + R"("})").status, Status::created);
     }
 
-    /// Scans 1 to `count` of robot r1, taken and woven; the link stays.
-    void stream(std::string_view name, std::uint64_t count) {
+    /// Scans `first` to `last` of robot r1, taken and woven; the link stays.
+    void stream(std::string_view name, std::uint64_t last, std::uint64_t first = 1) {
         std::vector<Scan> scans;
-        for (std::uint64_t seq = 1; seq <= count; ++seq) scans.push_back(scan(seq));
+        for (std::uint64_t seq = first; seq <= last; ++seq) scans.push_back(scan(seq));
         stream(name, "r1", std::move(scans));
     }
 
-    /// A robot's first scans, taken and woven; the link stays.
+    /// A robot's next scans, taken and woven; the link stays.
     void stream(std::string_view name, const std::string& robot, std::vector<Scan> scans) {
         const auto session = registry_.find(name);
         const auto link = join(name, robot, scans.back().seq);
@@ -130,6 +130,13 @@ protected:
         joined.get_future().wait();
         links_.push_back(link);
         return link;
+    }
+
+    /// Returns when the weave has ended.
+    void finish_weave(std::string_view name, std::string_view id) {
+        const auto weave = weaves_.find(registry_.find(name)->info().id, id);
+        ASSERT_NE(weave, nullptr);
+        static_cast<void>(weave->wait(weave->progress().target, std::chrono::minutes(2)));
     }
 
     boost::asio::thread_pool pool_{2};

@@ -429,7 +429,7 @@ TEST_F(ApiPlanningTest, ARobotWithoutAPoseHasNoGoal) {
 TEST_F(ApiPlanningTest, AWeaveIsPlannedOnAsTheSessionIs) {
     const auto started = ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})");
     const std::string id(boost::json::parse(started.body.bytes()).at("id").as_string());
-    ASSERT_TRUE(weaves_.find(registry_.find("a")->info().id, id)->wait(std::chrono::minutes(2)));
+    finish_weave("a", id);
     const auto weave = "weave=" + id;
     EXPECT_NEAR(number(frontiers(weave).at("features").at(0).at("properties").at("area")) /
                     number(frontiers(weave).at("features").at(0).at("properties").at("cells")),

@@ -1,8 +1,14 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
+#include "server/http/handlers/session_lookup.hpp"
 #include "server/mapping/digest.hpp"
 
+#include <boost/asio/post.hpp>
 #include <boost/json/array.hpp>
+
+#include <functional>
+#include <thread>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -23,7 +29,7 @@ protected:
     /// The id of a weave that is done.
     std::string woven(const std::string& body) {
         const std::string id(start(body).at("id").as_string());
-        EXPECT_TRUE(weaves_.find(registry_.find("a")->info().id, id)->wait(std::chrono::minutes(2)));
+        finish_weave("a", id);
         return id;
     }
 };
@@ -56,8 +62,10 @@ TEST_F(ApiWeavesTest, UntilIsARevisionOrATime) {
         const auto digest = get_json(fmt::format("/api/v1/sessions/a/digest?until={}", until));
         EXPECT_EQ(digest.at("revision"), revision) << until;
     }
-    for (const char* until : {"", "x", "-1", "1.5", "s", "1970-02-30T00:00:00Z", "1970-01-01 00:00:00Z", "nans",
-                              "1970-01-01T24:00:00Z", "1970-01-01T00:00:00"}) {
+    for (const char* until :
+         {"", "x", "-1", "1.5", "s", "1970-02-30T00:00:00Z", "1970-01-01 00:00:00Z", "nans", "1970-01-01T24:00:00Z",
+          "1970-01-01T00:00:00", "1970-01-01T00:00:371e5Z", "1970-01-01T00:00:37.Z", "1970-01-01T00:00:37.5e3Z",
+          "1970-01-01T00:00:3-Z", "1970-01-01T00:00:370Z"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/a/digest?until={}", until)), Status::bad_request),
                     HasSubstr("until"))
             << until;
@@ -79,8 +87,13 @@ TEST_F(ApiWeavesTest, WrongSettingsAreRefusedByName) {
     for (const auto& [body, name] : std::initializer_list<std::pair<const char*, const char*>>{
              {R"({"cell_size":2})", "cell_size is 2"},
              {R"({"accumulate":1})", "accumulate must be true or false"},
-             {R"({"until":true})", "until"},
-             {R"({"until":-1})", "until"},
+             {R"({"until":true})", "until is true; a revision (912), a stamp in seconds (976052857.5s) or a time"},
+             {R"({"until":-1})", "until is -1;"},
+             {R"({"until":1.5})", "until is 1.5;"},
+             {R"({"until":1e30})", "until is 1e+30;"},
+             {R"({"until":null})", "until is null;"},
+             {R"({"until":{"stamp":[1]}})", R"(until is {"stamp":[1]};)"},
+             {R"({"until":"soon"})", R"(until is "soon";)"},
              {R"({"name":"b"})", "name"},
              {"[]", "not an object"}}) {
         EXPECT_THAT(detail(ask("POST", "/api/v1/sessions/a/weave", body), Status::bad_request), HasSubstr(name));
@@ -110,6 +123,135 @@ TEST_F(ApiWeavesTest, AWeaveIsShownWhereverMapsAre) {
     EXPECT_NE(own.get("ETag"), other.get("ETag"));
     EXPECT_THAT(std::string(get("/api/v1/sessions/a/map.yaml?" + weave).body.bytes()), HasSubstr("resolution: 0.1"));
     EXPECT_EQ(get("/api/v1/sessions/a/map.png?until=6&" + weave).status, Status::bad_request);
+}
+
+TEST_F(ApiWeavesTest, SettingsAskedForAgainFollowTheSession) {
+    const std::string digest = "/api/v1/sessions/a/digest?cell_size=0.1";
+    EXPECT_EQ(get_json(digest).at("revision"), 7);
+    stream("a", 6, 6); // revision 8
+    EXPECT_EQ(get_json(digest).at("revision"), 8);
+    stream("a", 9, 7);
+    const auto woven = get_json(digest);
+    EXPECT_EQ(woven.at("revision"), 11);
+    ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"b","cell_size":0.1})").status, Status::created);
+    stream("b", 9);
+    EXPECT_EQ(woven, get_json("/api/v1/sessions/b/digest"));
+    const auto weaves = get_json("/api/v1/sessions/a/weave").at("weaves");
+    ASSERT_EQ(weaves.as_array().size(), 1U);
+    EXPECT_EQ(weaves.at(0).at("revision"), 11);
+    EXPECT_EQ(weaves.at(0).at("woven"), 11);
+    EXPECT_EQ(weaves.at(0).at("until"), (boost::json::value{{"revision", 11}, {"stamp", nullptr}}));
+    EXPECT_EQ(weaves.at(0).at("follows"), true);
+}
+
+TEST_F(ApiWeavesTest, ATimeThatIsPastIsOneWeaveHoweverFarTheSessionGoes) {
+    const auto past = get_json("/api/v1/sessions/a/digest?until=103.5s");
+    stream("a", 6, 6);
+    EXPECT_EQ(get_json("/api/v1/sessions/a/digest?until=103.5s"), past);
+    EXPECT_EQ(get_json("/api/v1/sessions/a/digest?until=1970-01-01T00:01:43.5Z"), past);
+    const auto weaves = get_json("/api/v1/sessions/a/weave").at("weaves");
+    ASSERT_EQ(weaves.as_array().size(), 1U);
+    EXPECT_EQ(weaves.at(0).at("until"), (boost::json::value{{"revision", 5}, {"stamp", 103.5}}));
+    EXPECT_EQ(weaves.at(0).at("follows"), false);
+}
+
+TEST_F(ApiWeavesTest, AWeaveByItsIdStaysAsItIsUntilItIsPostedAgain) {
+    const auto id = woven(R"({"cell_size":0.1})");
+    const auto by_id = "/api/v1/sessions/a/digest?weave=" + id;
+    stream("a", 6, 6);
+    EXPECT_EQ(get_json(by_id).at("revision"), 7);
+    EXPECT_EQ(woven(R"({"cell_size":0.1})"), id);
+    EXPECT_EQ(get_json(by_id).at("revision"), 8);
+    EXPECT_EQ(ask("POST", "/api/v1/sessions/a/weave", R"({"cell_size":0.1})").status, Status::ok) << "all is in";
+}
+
+TEST_F(ApiWeavesTest, EntityTagsChangeWithTheMapsOfAWeave) {
+    const std::string map = "/api/v1/sessions/a/map.png?cell_size=0.1";
+    const auto id = woven(R"({"cell_size":0.1})");
+    const std::string tile = "/api/v1/sessions/a/tiles/occupancy/9/256/255.bin";
+    const auto versioned =
+        fmt::format("{}?weave={}&v=8&id={}-{}", tile, id, session_tag(registry_.find("a")->info()), id);
+    const auto earlier_map = get(map);
+    const auto earlier_tile = get(tile + "?weave=" + id);
+    EXPECT_EQ(get(map, std::string(earlier_map.get("ETag"))).status, Status::not_modified);
+    EXPECT_EQ(get(versioned).get("Cache-Control"), kRevalidate) << "entry 8 is to come";
+
+    stream("a", 6, 6);
+    woven(R"({"cell_size":0.1})");
+    const auto map_now = get(map, std::string(earlier_map.get("ETag")));
+    EXPECT_EQ(map_now.status, Status::ok);
+    EXPECT_NE(map_now.body.bytes(), earlier_map.body.bytes());
+    const auto tile_now = get(tile + "?weave=" + id, std::string(earlier_tile.get("ETag")));
+    EXPECT_EQ(tile_now.status, Status::ok);
+    EXPECT_NE(tile_now.body.bytes(), earlier_tile.body.bytes());
+    EXPECT_EQ(get(versioned).get("Cache-Control"), kImmutable);
+}
+
+/// An API whose weaves wait until they are let go.
+class ApiHeldWeavesTest : public ApiWeavesTest {
+protected:
+    ApiHeldWeavesTest() {
+        boost::asio::post(one_, [this] { go_on_.get_future().wait(); });
+        held_api_.set_recovered();
+    }
+    ~ApiHeldWeavesTest() override {
+        held_.stop();
+        let_go();
+        one_.join();
+    }
+
+    void let_go() {
+        if (!std::exchange(gone_on_, true)) go_on_.set_value();
+    }
+
+    /// What whoever asks for the map with these settings is answered, when `meanwhile` was done while he waited.
+    Response waited_for(const std::string& settings, const std::function<void()>& meanwhile) {
+        Request request;
+        request.method = "GET";
+        request.target = "/api/v1/sessions/a/map.png?" + settings;
+        auto response = std::async(std::launch::async, [&] { return answer(held_api_, request); });
+        while (held_.list(registry_.find("a")->info().id).empty()) std::this_thread::yield();
+        meanwhile();
+        return response.get();
+    }
+
+    boost::asio::thread_pool one_{1};
+    std::promise<void> go_on_;
+    bool gone_on_ = false;
+    session::Weaves held_{log_, one_.get_executor()};
+    Api held_api_{registry_, held_, goals_, log_, metrics_, {}};
+};
+
+TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {
+    const auto response = waited_for("cell_size=0.1", [&] {
+        Request request;
+        request.method = "DELETE";
+        request.target = "/api/v1/sessions/a";
+        EXPECT_EQ(answer(held_api_, request).status, Status::no_content);
+    });
+    EXPECT_THAT(detail(response, Status::not_found), StartsWith("session 'a' was deleted"));
+}
+
+TEST_F(ApiHeldWeavesTest, WhoWaitsGetsTheMapsOfWhenHeAskedOrLaterOnes) {
+    const auto response = waited_for("cell_size=0.1", [&] { let_go(); });
+    EXPECT_EQ(response.status, Status::ok);
+    EXPECT_EQ(response.get("ETag"), get("/api/v1/sessions/a/map.png?cell_size=0.1").get("ETag"));
+}
+
+TEST_F(ApiHeldWeavesTest, WhoLosesPatienceIsToldHowFarItIsAndJoinsItTheNextTime) {
+    const MapsLookup impatient(registry_, held_, std::chrono::milliseconds(0));
+    const Request request;
+    Arguments arguments;
+    arguments.add("session", "a");
+    const Query query(std::vector<std::pair<std::string, std::string>>{{"cell_size", "0.1"}});
+    const Call call{request, arguments, query};
+    const auto first = impatient.find_or_weave(call, {});
+    EXPECT_EQ(first.error().code, Errc::kOverloaded);
+    EXPECT_THAT(first.error().message, HasSubstr("0 of 7 entries are in; ask again soon"));
+    stream("a", 6, 6);
+    const auto second = impatient.find_or_weave(call, {});
+    EXPECT_THAT(second.error().message, HasSubstr("0 of 8 entries are in"));
+    EXPECT_THAT(held_.list(registry_.find("a")->info().id), testing::SizeIs(1));
 }
 
 TEST_F(ApiWeavesTest, AWeaveThatIsGoneIsNotFound) {

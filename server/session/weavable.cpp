@@ -1,0 +1,61 @@
+#include "server/session/weavable.hpp"
+
+#include "server/mapping/reach.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+namespace scanloom::session {
+namespace {
+
+std::string named(const mapping::Projection& projection, RobotIndex robot, const Sensor& sensor) {
+    const auto* name = projection.find_robot_name(robot);
+    auto text = fmt::format("sensor {}", sensor.id);
+    if (!sensor.name.empty()) text += fmt::format(" ('{}')", sensor.name);
+    return text + fmt::format(" of robot '{}'", name == nullptr ? "" : *name);
+}
+
+/// The smallest cell size, in whole millimetres, at which the sensor's reach is possible.
+double cell_size_for(const Sensor& sensor) { return std::ceil(sensor.range_max / mapping::kReachCellsMax * 1e3) / 1e3; }
+
+Error too_many_cells(const mapping::Projection& projection, const std::string& what) {
+    return {Errc::kInvalidField, fmt::format("{} covers too many cells of {} metres to be woven at once; give a larger "
+                                             "cell_size",
+                                             what, projection.config().cell_size)};
+}
+
+Result<> check(const mapping::Projection&, const RobotJoined&) { return {}; }
+
+Result<> check(const mapping::Projection& projection, const SensorDescribed& described) {
+    const auto& config = projection.config();
+    const auto& sensor = described.sensor;
+    if (mapping::check_reach(config, sensor)) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("{} reaches {} metres, more than {} cells of {} metres; give a cell_size of {} or more",
+                             named(projection, described.robot, sensor), sensor.range_max, mapping::kReachCellsMax,
+                             config.cell_size, cell_size_for(sensor))};
+}
+
+Result<> check(const mapping::Projection& projection, const ScanTaken& taken) {
+    const auto* sensor = projection.find_sensor(taken.robot, taken.scan.sensor);
+    if (sensor == nullptr) return {};
+    if (mapping::check_work(mapping::reach_of(projection.config(), *sensor, taken.scan))) return {};
+    return too_many_cells(projection,
+                          fmt::format("scan {} by {}", taken.scan.seq, named(projection, taken.robot, *sensor)));
+}
+
+Result<> check(const mapping::Projection& projection, const MapPatch& patch) {
+    if (mapping::check_work(mapping::reach_of(projection.config(), patch))) return {};
+    return too_many_cells(projection, "a part of the imported map");
+}
+
+} // namespace
+
+Result<> check_weavable(const mapping::Projection& projection, const LogEntry& entry) {
+    return std::visit([&](const auto& body) { return check(projection, body); }, entry);
+}
+
+} // namespace scanloom::session

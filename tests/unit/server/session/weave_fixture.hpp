@@ -1,0 +1,157 @@
+#pragma once
+
+#include "common/wire/log_codec.hpp"
+#include "server/session/weaves.hpp"
+#include "tests/support/digests.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::session {
+
+using State = Weave::State;
+using testing_support::digests_of;
+
+constexpr std::chrono::minutes kLong{2}; // for what is sure to come
+
+/// A log that stops to think before an entry, and knows how often each has been taken.
+class WatchedLog final : public store::MemoryScanLog {
+public:
+    Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
+        return MemoryScanLog::read(session, after, [&](Revision revision, std::string_view bytes) -> Result<> {
+            pause_before(revision);
+            auto visited = visit(revision, bytes);
+            const std::lock_guard lock(mutex_);
+            if (visited) ++taken_[revision];
+            return visited;
+        });
+    }
+
+    /// Whoever reads stops there, once.
+    class Pause {
+    public:
+        /// Returns when somebody stands there.
+        void wait() { reached.get_future().wait(); }
+        void end() { ended.set_value(); }
+
+    private:
+        friend WatchedLog;
+        std::promise<void> reached;
+        std::promise<void> ended;
+    };
+    std::shared_ptr<Pause> pause_at(Revision revision) {
+        const std::lock_guard lock(mutex_);
+        return pauses_[revision] = std::make_shared<Pause>();
+    }
+
+    /// How often each entry was taken, from the first.
+    [[nodiscard]] std::vector<int> taken() const {
+        const std::lock_guard lock(mutex_);
+        std::vector<int> counts;
+        for (const auto& [revision, count] : taken_) counts.push_back(count);
+        return counts;
+    }
+
+private:
+    void pause_before(Revision revision) {
+        std::shared_ptr<Pause> pause;
+        {
+            const std::lock_guard lock(mutex_);
+            if (const auto found = pauses_.extract(revision)) pause = found.mapped();
+        }
+        if (!pause) return;
+        pause->reached.set_value();
+        pause->ended.get_future().wait();
+    }
+
+    mutable std::mutex mutex_; // guards what follows
+    std::map<Revision, std::shared_ptr<Pause>> pauses_;
+    std::map<Revision, int> taken_;
+};
+
+/// A log of 40 scans, taken a second apart, or as many of its entries as a test appends.
+class WeaveFixture : public testing::Test {
+protected:
+    static constexpr std::uint64_t kScans = 40;
+
+    WeaveFixture() {
+        entries_ = {RobotJoined{0, "r"}, SensorDescribed{0, testing_support::small_laser()}};
+        for (std::uint64_t seq = 1; seq <= kScans; ++seq) {
+            Scan scan = testing_support::random_scan(static_cast<unsigned>(seq), seq);
+            scan.stamp = 1000.0 + static_cast<double>(seq);
+            entries_.push_back(ScanTaken{0, std::move(scan)});
+        }
+        session_.id = log_.create_session("s").value();
+        session_.name = "s";
+    }
+    ~WeaveFixture() override {
+        weaves_.stop();
+        pool_.join();
+    }
+
+    /// The log's next entries, so that it has so many.
+    void append_up_to(Revision revision) {
+        while (appended_ < revision) append(entries_[appended_]);
+    }
+    void append_all() { append_up_to(entries_.size()); }
+    void append(const LogEntry& entry) {
+        std::promise<Result<>> done;
+        log_.append(session_.id, appended_ + 1, {wire::encode_entry(entry)},
+                    [&](Result<> appended) { done.set_value(std::move(appended)); });
+        ASSERT_TRUE(done.get_future().get());
+        ++appended_;
+    }
+
+    /// One that cells of 0.01 m are too small for.
+    static Sensor far_laser() {
+        Sensor sensor = testing_support::small_laser();
+        sensor.name = "far";
+        sensor.range_max = 500.0;
+        return sensor;
+    }
+
+    [[nodiscard]] static WeaveRequest request(const SessionOptions& options, WeaveEnd end = {}) {
+        return {mapping::resolve(options).value(), end};
+    }
+
+    /// What a session shows that was created with these options and given so many entries of this log.
+    [[nodiscard]] std::string created_so(const SessionOptions& options, std::size_t entries) const {
+        mapping::Projection projection(mapping::resolve(options).value());
+        for (std::size_t n = 0; n < entries; ++n) EXPECT_TRUE(projection.fold(entries_[n]));
+        return digests_of(projection.snapshot());
+    }
+
+    /// Asked for when the session shows all that is in its log.
+    [[nodiscard]] std::shared_ptr<Weave> ask(const WeaveRequest& wanted) {
+        return weaves_.start(session_, wanted, appended_).value();
+    }
+
+    /// Returns when it has ended.
+    static void finish(const Weave& weave) { static_cast<void>(weave.wait(weave.progress().target, kLong)); }
+
+    [[nodiscard]] std::shared_ptr<Weave> woven(const WeaveRequest& wanted) {
+        auto weave = ask(wanted);
+        finish(*weave);
+        return weave;
+    }
+
+    WatchedLog log_;
+    SessionInfo session_;
+    std::vector<LogEntry> entries_;
+    Revision appended_ = 0; // entries
+    boost::asio::thread_pool pool_{2};
+    Weaves weaves_{log_, pool_.get_executor()};
+};
+
+} // namespace scanloom::session
