@@ -65,6 +65,28 @@ TEST_F(FollowingWeaveTest, AskedAgainUnderWayItIsJoinedAndEverybodyIsServedInTur
     EXPECT_THAT(weaves_.list(session_.id), testing::SizeIs(1));
 }
 
+TEST_F(FollowingWeaveTest, BetweenTwoRoundsOthersHaveTheirTurn) {
+    boost::asio::thread_pool one(1);
+    Weaves weaves(log_, one.get_executor());
+    append_up_to(20);
+    const auto first_round = log_.pause_at(10);
+    const auto next = log_.pause_at(30);
+    const auto weave = weaves.start(session_, request({}), 20).value();
+    first_round->wait();
+    append_all();
+    const auto other = weaves.start(session_, request({.cell_size = 0.1}), 42).value();
+    EXPECT_EQ(weaves.start(session_, request({}), 42).value(), weave);
+    first_round->end();
+    next->wait();
+    EXPECT_EQ(weave->progress().state, State::kWaiting);
+    EXPECT_EQ(weave->progress().revision, 20U);
+    EXPECT_EQ(other->progress().state, State::kWeaving);
+    next->end();
+    finish(*weave);
+    EXPECT_EQ(weave->progress().revision, 42U);
+    one.join();
+}
+
 TEST_F(FollowingWeaveTest, AsksFromManyThreadsWeaveNoEntryTwice) {
     std::vector<std::thread> viewers;
     std::atomic<Revision> newest = 0;
