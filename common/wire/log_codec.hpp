@@ -14,8 +14,8 @@ namespace scanloom::wire {
 /// A session as the store lists it.
 struct SessionRecord {
     std::string name;
-    double created = 0.0;   ///< seconds since the epoch
-    SessionOptions options; ///< fully resolved when the session was created
+    double created = 0.0;          ///< seconds since the epoch
+    SessionOptions options;        ///< fully resolved when the session was created
     std::uint32_t map_patches = 0; ///< entries that an import begins its log with
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;

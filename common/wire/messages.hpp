@@ -144,6 +144,7 @@ struct Goal {
     std::optional<Path> path;     ///< with kGoal: to where to stand
     std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there, to look at
     std::uint32_t given_up = 0;   ///< frontier cells that count no more, as robots looked at them in vain
+    bool in_danger = false;       ///< where to stand is in danger: there was no other place
 
     friend bool operator==(const Goal&, const Goal&) = default;
 };

@@ -91,6 +91,7 @@ Result<Goal> read_goal(const v1::Goal& proto) {
         return invalid_field("exploration does not go with path and target; a goal has both, anything else none");
     }
     goal.given_up = proto.given_up();
+    goal.in_danger = proto.in_danger();
     if (!has_goal) return goal;
     auto path = read_path(proto.path());
     if (!path) return prefixed("path.", path.error());
@@ -136,6 +137,7 @@ void write(const Goal& goal, v1::Goal& out) {
     if (goal.path) write(*goal.path, *out.mutable_path());
     if (goal.target) write(*goal.target, *out.mutable_target());
     out.set_given_up(goal.given_up);
+    out.set_in_danger(goal.in_danger);
 }
 
 void write(const Coverage& coverage, v1::Coverage& out) {

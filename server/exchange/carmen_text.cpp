@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <optional>
 #include <variant>
@@ -13,6 +14,9 @@ namespace {
 
 /// Replay takes longer readings of a CARMEN log for no return unless it is told otherwise.
 constexpr double kBelievedRange = 50.0; // metres
+
+/// Replay keeps the order of lines whose stamps go back by no more.
+constexpr double kStampJitter = 2.0; // seconds
 
 Error beyond_carmen(const std::string& robot, const Sensor& sensor, std::string_view what) {
     return {Errc::kConflict, fmt::format("sensor {} of robot '{}' {}, which a CARMEN log cannot say; ask for the log "
@@ -86,12 +90,17 @@ Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Pose2 laser = compose(scan.pose, sensor.mount);
     const auto count = scan.ranges.size();
     const double fov = uniform.increment * static_cast<double>(count == 0 ? 0 : count - 1);
-    std::string line =
-        fmt::format("ROBOTLASER1 0 {} {} {} {} 0 0 {}", uniform.first, fov, uniform.increment, sensor.range_max, count);
+    const bool goes_back = scan.stamp < latest_ - kStampJitter;
+    const double stamp = goes_back ? latest_ : scan.stamp;
+    latest_ = std::max(latest_, stamp);
+    std::string line;
+    if (goes_back) line = fmt::format("# the next line's own stamp is {}, by another clock\n", scan.stamp);
+    fmt::format_to(std::back_inserter(line), "ROBOTLASER1 0 {} {} {} {} 0 0 {}", uniform.first, fov, uniform.increment,
+                   sensor.range_max, count);
     line.reserve(line.size() + 8 * count + 256);
     for (const RangeMm range : scan.ranges) append_range(line, range, sensor);
     fmt::format_to(std::back_inserter(line), " 0 {0} {1} {2} {0} {1} {2} 0 0 0 0 0 {3} {4} {3}\n", laser.x, laser.y,
-                   laser.yaw, scan.stamp, robot);
+                   laser.yaw, stamp, robot);
     return line;
 }
 

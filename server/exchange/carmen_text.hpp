@@ -4,6 +4,7 @@
 #include "common/scan/log_entry.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,8 +19,10 @@ namespace scanloom::exchange {
 /// Both poses of a line are the sensor's in the map, from which maps are woven; the robot's would have to be got back
 /// from it by way of the mount, and rounding would move cells. Numbers have as many digits as it takes to read the same
 /// value again; ranges are metres with three decimals. No return is written as the sensor's range_max, no valid reading
-/// as 0. The host name is the robot's name, both stamps are the scan's.
-/// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
+/// as 0. The host name is the robot's name, both stamps are the scan's; but readers put lines into the order of their
+/// stamps, so a scan that would go back further than they allow (robots with unlike clocks) has the latest stamp before
+/// it, and a comment says so. Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and
+/// turn_axis.
 class CarmenText {
 public:
     /// The lines at the head of the file.
@@ -39,6 +42,7 @@ private:
 
     std::vector<std::string> robots_;
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;
+    double latest_ = std::numeric_limits<double>::lowest(); ///< stamp written
 };
 
 } // namespace scanloom::exchange

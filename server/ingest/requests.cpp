@@ -71,7 +71,7 @@ struct Search {
         if (!path) return path.error();
         const grid::Cell cell = next->goal->target;
         return wire::Goal{wire::Exploration::kGoal, std::move(*path),
-                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size, given_up};
+                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size, given_up, next->goal->in_danger};
     }
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {

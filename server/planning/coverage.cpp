@@ -35,7 +35,7 @@ Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_s
     }
     if (!(cells <= body / cell_size_m + 1.0 + 1e-6)) {
         return Error{Errc::kInvalidField,
-                     fmt::format("spacing is {} m; rows more than {} m apart leave ground between them that a body of "
+                     fmt::format("spacing is {} m; rows more than {:g} m apart leave ground between them that a body of "
                                  "radius {} m does not reach: give a smaller spacing or a larger body_radius",
                                  spacing, body + cell_size_m, options.passability.body_radius_m)};
     }
@@ -59,6 +59,9 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
         const auto inside = cells_inside(*passability, options.region);
         if (!inside) return inside.error();
         free &= *inside;
+    }
+    if (free.count() == 0) {
+        return Error{Errc::kNoPath, "the region holds the centre of no free cell: give a larger or another region"};
     }
     auto reach = disc_half_widths(known_ground.body_radius_m / cell_size_m, false);
     BitGrid reachable = dilated(places, reach);

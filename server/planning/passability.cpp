@@ -125,10 +125,10 @@ Result<Spot> ground_at(const Passability& passability, const Point2& point, std:
         return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x(), point.y(), why)};
     };
     const auto spot = passability.spot_of(*cell);
-    if (!spot) return refusal("outside the map: give a point in explored free space");
-    if (passability.occupied.test(*spot)) return refusal("inside an obstacle: give a point in free space");
+    if (!spot) return refusal("outside the map; it must be in explored free space");
+    if (passability.occupied.test(*spot)) return refusal("inside an obstacle; it must be in free space");
     if (!passability.ground.test(*spot)) {
-        return refusal("in unknown space: give a point in free space, or allow unknown cells");
+        return refusal("in unknown space; it must be in free space, unless unknown cells are allowed");
     }
     return *spot;
 }

@@ -88,11 +88,27 @@ void SessionRegistry::recover_one(const store::StoredSession& stored) {
     }
     const std::unique_lock lock(mutex_);
     if (session && *session) {
-        sessions_[name] = std::move(*session);
+        keep_recovered(std::move(*session));
     } else if (!session) {
         spdlog::error("session '{}' cannot be recovered: {}", name, session.error().message);
         damaged_[name] = {stored.id, session.error()};
     }
+}
+
+/// Of two with one name, which only a fault can have stored, the older is served and the other kept aside.
+/// Pre  mutex_ is held.
+void SessionRegistry::keep_recovered(std::shared_ptr<Session> session) {
+    const std::string name = session->info().name;
+    auto& served = sessions_[name];
+    if (!served || session->info().id < served->info().id) std::swap(served, session);
+    if (!session) return;
+    const auto id = session->info().id;
+    const Error why{Errc::kConflict,
+                    fmt::format("the store holds a second session '{}'; delete this one, or delete the other and "
+                                "restart the server to be served this one",
+                                name)};
+    damaged_[fmt::format("{}#{}", name, id)] = {id, why};
+    spdlog::error("session '{}#{}' is not served: {}", name, id, why.message);
 }
 
 /// @return nothing when told to stop before its end.

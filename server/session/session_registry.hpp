@@ -81,6 +81,7 @@ private:
     [[nodiscard]] Result<> check_new(std::string_view name) const;
     [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
     void recover_one(const store::StoredSession& stored);
+    void keep_recovered(std::shared_ptr<Session> session);
     [[nodiscard]] Result<std::shared_ptr<Session>> weave(const store::StoredSession& stored, std::string& name);
     void keep_progress(store::SessionId id, const std::string& name, Recovered& recovered);
 

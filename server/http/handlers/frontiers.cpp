@@ -85,12 +85,14 @@ std::string feature_of(const mapping::Snapshot& maps, const classify::Frontier& 
                                    {"reachable", offer.has_value()},
                                    {"robot", nullptr},
                                    {"goal", nullptr},
+                                   {"in_danger", nullptr},
                                    {"length", nullptr},
                                    {"cost", nullptr}};
     if (offer) {
         const auto& goal = offer->goal;
         properties["robot"] = maps.robots[offer->robot].name;
         properties["goal"] = position(Point2(goal.cell.i + 0.5, goal.cell.j + 0.5) * cell_size);
+        properties["in_danger"] = goal.in_danger;
         properties["length"] = rounded_metres(goal.length_m);
         properties["cost"] = rounded_metres(goal.cost);
     }

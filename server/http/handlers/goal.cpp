@@ -31,12 +31,13 @@ std::string point_text(const Point2& point) {
 std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
     const auto head = fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}","given_up":{},)", robot, maps.revision,
                                   name_of(next.outcome), next.given_up); // names are [A-Za-z0-9_-]
-    if (!next.goal) return head + R"("goal":null,"target":null,"path":null,"length":null,"cost":null})";
+    if (!next.goal)
+        return head + R"("goal":null,"target":null,"in_danger":null,"path":null,"length":null,"cost":null})";
     const grid::Cell target = next.goal->target;
-    return head + fmt::format(R"("goal":{},"target":{},"path":{},"length":{},"cost":{}}})",
+    return head + fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{},"cost":{}}})",
                               point_text(next.path.points.back()),
                               point_text(Point2(target.i + 0.5, target.j + 0.5) * maps.config.cell_size),
-                              line_string(next.path.points), rounded_metres(next.path.length_m),
+                              next.goal->in_danger, line_string(next.path.points), rounded_metres(next.path.length_m),
                               rounded_metres(next.path.cost));
 }
 

@@ -94,7 +94,7 @@ inline GoalRequest example_goal_request() {
     return {.id = 18, .start = Point2(1.5, -2.5), .body_radius = 0.25, .frontier_size_min = 9};
 }
 
-inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2(-1e6, 1e6), 17}; }
+inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2(-1e6, 1e6), 17, true}; }
 
 inline CoverageRequest example_coverage_request() {
     return {.id = 19,

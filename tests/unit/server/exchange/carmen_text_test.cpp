@@ -52,6 +52,21 @@ TEST(CarmenText, NumbersAreReadAgainAsTheyWere) {
     EXPECT_THAT(line, HasSubstr(" 0.2857142857142857 "));
 }
 
+TEST(CarmenText, ScansOfAnotherClockKeepTheirPlace) {
+    auto carmen = after(laser());
+    const auto stamp_of = [&](double stamp) {
+        Scan taken = scan();
+        taken.stamp = stamp;
+        return carmen.lines(ScanTaken{0, taken}).value();
+    };
+    EXPECT_THAT(stamp_of(1000.0), HasSubstr(" 1000 crawler 1000\n"));
+    EXPECT_THAT(stamp_of(998.5), HasSubstr(" 998.5 crawler 998.5\n")) << "as stamps jitter";
+    const auto by_another_clock = stamp_of(7.25);
+    EXPECT_THAT(by_another_clock, testing::StartsWith("# the next line's own stamp is 7.25"));
+    EXPECT_THAT(by_another_clock, HasSubstr(" 1000 crawler 1000\n"));
+    EXPECT_THAT(stamp_of(1000.1), testing::StartsWith("ROBOTLASER1"));
+}
+
 TEST(CarmenText, ASensorBeyondWhatReadersBelieveIsRemarked) {
     CarmenText carmen;
     Sensor far = laser();

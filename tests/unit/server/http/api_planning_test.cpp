@@ -121,6 +121,7 @@ TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheRobot) {
             ASSERT_EQ(properties.at("goal").is_null(), !goals[n]);
             if (!goals[n]) continue;
             EXPECT_EQ(properties.at("robot"), "r1");
+            EXPECT_EQ(properties.at("in_danger").as_bool(), goals[n]->in_danger);
             EXPECT_NEAR(number(properties.at("goal").at(0)), (goals[n]->cell.i + 0.5) * 0.05, 1e-6);
             EXPECT_NEAR(number(properties.at("goal").at(1)), (goals[n]->cell.j + 0.5) * 0.05, 1e-6);
             EXPECT_NEAR(number(properties.at("length")), goals[n]->length_m, 1e-6);

@@ -241,7 +241,7 @@ TEST(Coverage, WhatCannotBeIsRefused) {
     options.region = {{0.0, 0.0}, {1.0, 1.0}, {kInfinite, 0.0}};
     EXPECT_THAT(message({1.5, 0.5}), HasSubstr("region[2]"));
     options.region = {{10.0, 10.0}, {12.0, 10.0}, {11.0, 12.0}};
-    EXPECT_THAT(message({1.5, 0.5}), HasSubstr("reaches no free cell of the region"));
+    EXPECT_THAT(message({1.5, 0.5}), HasSubstr("the region holds the centre of no free cell"));
     options.region.clear();
     for (const double bad : {-1.0, 1.1, std::nan("")}) {
         options.spacing_m = bad;

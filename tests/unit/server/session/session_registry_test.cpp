@@ -172,6 +172,22 @@ TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
     EXPECT_THAT(registry_->damaged(), IsEmpty());
 }
 
+TEST_F(SessionRegistryTest, OfTwoStoredSessionsOfOneNameTheOlderIsServedAndTheOtherReported) {
+    const auto first = registry_->create("twin", {}).value();
+    stream(*first, "r", 3);
+    registry_->drain();
+    ASSERT_TRUE(log_.create_session(wire::encode_session({"twin", 2000.0, {}})));
+    restart();
+    EXPECT_THAT(names_of(registry_->list()), ElementsAre("twin"));
+    EXPECT_EQ(registry_->find("twin")->info().id, first->info().id);
+    ASSERT_THAT(registry_->damaged(), SizeIs(1));
+    EXPECT_THAT(registry_->damaged().at("twin#2").message, HasSubstr("a second session 'twin'"));
+    ASSERT_TRUE(registry_->remove("twin#2"));
+    EXPECT_THAT(registry_->damaged(), IsEmpty());
+    EXPECT_THAT(log_.sessions().value(), SizeIs(1));
+    registry_->drain();
+}
+
 TEST_F(SessionRegistryTest, ARemovedSessionIsGoneFromTheStoreToo) {
     const auto session = registry_->create("a", {}).value();
     stream(*session, "r", 10);
