@@ -24,8 +24,9 @@ namespace scanloom::guide {
 /// seen (glass, a crack, what is too low for the laser). When a robot that has_looked() asks again, the cells that
 /// planning::seen_in_vain() counts for nobody's goals any more, as long as they are FRONTIER: each visit changes the
 /// map or takes a cell out. A robot that has not looked yet gets the same goal, or a better one. This is kept for each
-/// session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go. Thread  any; one
-/// search at a time.
+/// session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go.
+///
+/// Thread  any; one search at a time.
 class GoalBook {
 public:
     using Clock = std::chrono::steady_clock;

@@ -28,11 +28,9 @@ struct Visit {
 /// Whether the robot's newest scan was taken at the goal.
 [[nodiscard]] bool is_there(const Visit& visit, const mapping::RobotState& robot);
 
-/// Whether the robot has looked: its newest scan was taken at the goal, after the goal was given, and either
-///   - it heads towards the target, as seen from the goal or from where the robot stands (the two differ when the
-///   target
-///     is hardly further away than the robot is from the goal), or stands in its cell; or
-///   - its scans show that it has stood there for kLookingTakes since it first asked from there.
+/// Whether the robot has looked: its newest scan was taken at the goal, after the goal was given, and either it heads
+/// towards the target, as seen from the goal or from where it stands (which differ where the target is near), or stands
+/// in the target's cell; or its scans show that it has stood there for kLookingTakes since it first asked from there.
 /// Headings are the robot's: of a sensor that looks elsewhere, the time alone tells.
 [[nodiscard]] bool has_looked(const Visit& visit, const mapping::RobotState& robot, double cell_size_m);
 
