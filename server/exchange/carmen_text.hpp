@@ -21,8 +21,8 @@ namespace scanloom::exchange {
 /// value again; ranges are metres with three decimals. No return is written as the sensor's range_max, no valid reading
 /// as 0. The host name is the robot's name, both stamps are the scan's; but readers put lines into the order of their
 /// stamps, so a scan that would go back further than they allow (robots with unlike clocks) has the latest stamp before
-/// it, and a comment says so. Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and
-/// turn_axis.
+/// it, and a comment says so.
+/// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
 class CarmenText {
 public:
     /// The lines at the head of the file.

@@ -26,7 +26,8 @@ Result<boost::json::object> parse_json_object(std::string_view body) {
     boost::json::error_code failed;
     auto value = boost::json::parse(body, failed, {}, options);
     if (failed) return Error{Errc::kMalformed, fmt::format("the body is not JSON: {}", failed.message())};
-    if (!value.is_object()) return Error{Errc::kMalformed, "the body is JSON but not an object; send {\"field\": value, ...}"};
+    if (!value.is_object())
+        return Error{Errc::kMalformed, "the body is JSON but not an object; send {\"field\": value, ...}"};
     if (const auto twice = duplicate_key(body)) {
         return Error{Errc::kInvalidField, fmt::format("the field {} is given twice; give it once", in_quotes(*twice))};
     }

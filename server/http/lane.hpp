@@ -12,8 +12,8 @@ enum class Lane {
     kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, tiles that show much
     kWeaving,   ///< maps that are to be woven first
     kImporting, ///< as kChanging, with a large body
-    kPlanning, ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time
-    kChanging, ///< the disk, or a session's strand: creating and deleting sessions
+    kPlanning,  ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time
+    kChanging,  ///< the disk, or a session's strand: creating and deleting sessions
 };
 
 [[nodiscard]] Lane lane_of(const Request& request);

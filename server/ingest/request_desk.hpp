@@ -18,8 +18,8 @@ namespace scanloom::ingest {
 
 /// Meets the requests of all links, away from the I/O threads.
 ///
-/// Queue   "requests of links": at most kRequestsMax, from being asked until the reply was written; one more is
-/// refused. Thread  any; it must outlive the work on its executor.
+/// Queue   "requests of links": at most kRequestsMax, from being asked until the reply was written; one more is refused.
+/// Thread  any; it must outlive the work on its executor.
 class RequestDesk {
 public:
     static constexpr std::size_t kRequestsMax = 256;

@@ -43,8 +43,8 @@ struct LinkServices {
 /// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
 /// go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which what is under
 /// way is still acknowledged; an error; or the end of the connection. A fault ends this link with an Error frame and
-/// disturbs no other. Thread  run() and everything private on the socket's strand; the listener's calls from any
-/// thread.
+/// disturbs no other.
+/// Thread  run() and everything private on the socket's strand; the listener's calls from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
     /// Pre: the socket's executor is a strand.

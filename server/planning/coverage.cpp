@@ -34,10 +34,11 @@ Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_s
         return Error{Errc::kInvalidField, fmt::format("spacing is {} m; 0 or more is needed", spacing)};
     }
     if (!(cells <= body / cell_size_m + 1.0 + 1e-6)) {
-        return Error{Errc::kInvalidField,
-                     fmt::format("spacing is {} m; rows more than {:g} m apart leave ground between them that a body of "
-                                 "radius {} m does not reach: give a smaller spacing or a larger body_radius",
-                                 spacing, body + cell_size_m, options.passability.body_radius_m)};
+        return Error{
+            Errc::kInvalidField,
+            fmt::format("spacing is {} m; rows more than {:g} m apart leave ground between them that a body of "
+                        "radius {} m does not reach: give a smaller spacing or a larger body_radius",
+                        spacing, body + cell_size_m, options.passability.body_radius_m)};
     }
     return std::max(static_cast<std::int32_t>(cells), 1);
 }

@@ -207,7 +207,8 @@ TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
 TEST(HttpServer, BodiesUpToTheLimitAreRead) {
     RunningServer server;
     const std::string body(262'144, 'a');
-    const auto answer = answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262144\r\n\r\n" + body);
+    const auto answer =
+        answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262144\r\n\r\n" + body);
     EXPECT_EQ(answer.body, "POST / " + body);
 }
 
