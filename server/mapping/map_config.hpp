@@ -47,7 +47,7 @@ struct MapConfig {
     std::int32_t class_himm_occupied = 8; ///< from this counter a cell is occupied
     std::int32_t class_himm_free = 4;     ///< down from this one it is free again
     std::int32_t danger_cells = 3;        ///< free cells as near as this to an occupied one are in danger, 1..64
-    double danger_radius = 0.0;           ///< metres; more than 0: in place of danger_cells
+    double danger_radius = 0.0;           ///< metres, rounded up to cells; more than 0: in place of danger_cells
 
     friend bool operator==(const MapConfig&, const MapConfig&) = default;
 };

@@ -79,7 +79,7 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
 /// The cells gone through so far, and what is left to cover.
 class Tour {
 public:
-    Tour(const Task& task, const MayGoOn& may_go_on)
+    Tour(Task& task, const MayGoOn& may_go_on)
         : task_(task), may_go_on_(may_go_on), search_(task.passability), left_(task.reachable), cells_{task.start} {
         cover(task.start);
     }
@@ -94,6 +94,7 @@ public:
         }
         search_.between(at(), goal);
         append(search_.path_to(goal));
+        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // its way out is no way back
         return {};
     }
 
@@ -138,8 +139,9 @@ private:
         }
     }
 
-    const Task& task_;
+    Task& task_;
     const MayGoOn& may_go_on_;
+    bool has_left_ = false; // the start
     CostSearch search_;
     BitGrid left_; // of task_.reachable
     std::vector<Spot> cells_;
@@ -239,7 +241,7 @@ Result<> fetch_what_is_left(Tour& tour, const Task& task) {
 
 Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_size_m, const Point2& start,
                                const CoverageOptions& options, const MayGoOn& may_go_on) {
-    const auto task = make_task(classes, cell_size_m, start, options);
+    auto task = make_task(classes, cell_size_m, start, options);
     if (!task) return task.error();
     Tour tour(*task, may_go_on);
     if (auto swept = sweep_all(tour, *task); !swept) return swept.error();

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 namespace scanloom::planning {
 
@@ -17,7 +20,28 @@ double square_of_distance(grid::Cell a, grid::Cell b) noexcept {
 }
 
 grid::Cell nearest_cell(const Frontier& frontier, grid::Cell to) {
-    return *std::ranges::min_element(frontier.cells, {}, [&](grid::Cell cell) { return square_of_distance(cell, to); });
+    const auto& cells = frontier.cells; // by rows: what is nearest in a row is found by halving
+    const auto by_rows = [](grid::Cell cell) { return std::pair(cell.j, cell.i); };
+    grid::Cell nearest = cells.front();
+    double least = square_of_distance(nearest, to);
+    const auto consider = [&](grid::Cell cell) {
+        const double distance = square_of_distance(cell, to);
+        if (distance > least || (distance == least && by_rows(cell) >= by_rows(nearest))) return;
+        nearest = cell;
+        least = distance;
+    };
+    const auto consider_row = [&](std::int64_t j) {
+        if (j < frontier.bounds.j_begin || j >= frontier.bounds.j_end) return;
+        const auto row = static_cast<std::int32_t>(j);
+        const auto right = std::ranges::lower_bound(cells, std::pair(row, to.i), {}, by_rows);
+        if (right != cells.end() && right->j == row) consider(*right);
+        if (right != cells.begin() && std::prev(right)->j == row) consider(*std::prev(right));
+    };
+    for (std::int64_t away = 0; static_cast<double>(away * away) <= least; ++away) {
+        consider_row(to.j - away);
+        consider_row(to.j + away);
+    }
+    return nearest;
 }
 
 GoalSeeker::GoalSeeker(const Passability& passability, const CostSearch& search, std::int32_t rings)

@@ -164,7 +164,13 @@ Result<NextGoal> next_goal(const ClassView& classes, double cell_size_m, const P
                            std::span<const grid::Cell> given_up) {
     const auto rings = standoff_cells(options, cell_size_m);
     if (!rings) return rings.error();
-    const auto frontiers = classify::find_frontiers(classes, frontier_size_min(options, cell_size_m), given_up);
+    auto frontiers = classify::find_frontiers(classes, 1, given_up);
+    auto taken = taken_frontiers(frontiers, targets_of_others, *rings); // of any size: others may count smaller ones
+    const std::size_t size_min = frontier_size_min(options, cell_size_m);
+    const auto counting = std::ranges::find_if( // the largest come first
+        frontiers, [&](const Frontier& frontier) { return frontier.cells.size() < size_min; });
+    frontiers.erase(counting, frontiers.end());
+    taken.resize(frontiers.size());
     const auto found = survey_goals(classes, cell_size_m, frontiers, robot, options, *rings);
     if (!found) return found.error();
     const Surroundings& surroundings = *found->surroundings;
@@ -172,7 +178,7 @@ Result<NextGoal> next_goal(const ClassView& classes, double cell_size_m, const P
     const FrontierGoals& goals = found->goals;
     NextGoal next{Exploration::kComplete, std::nullopt, {}, {}, given_up.size()};
     if (!any_of(goals)) return next;
-    const auto assigned = assign_frontiers({&goals, 1}, taken_frontiers(frontiers, targets_of_others, *rings)).front();
+    const auto assigned = assign_frontiers({&goals, 1}, std::move(taken)).front();
     next.outcome = Exploration::kTakenByOthers;
     if (!assigned) return next;
     next.outcome = Exploration::kGoal;

@@ -20,8 +20,9 @@ enum class Shape {
 
 /// The cheapest way from one point to another: of all sequences of steps from cell to cell (CostSearch) that of least
 /// cost, and then straightened, which only makes it cheaper.
-/// Every cell that the way touches may be entered. From the first cell's centre on it keeps the body's radius from the
-/// square of every occupied cell (within the goal's cell to a twentieth of a cell).
+/// Every cell that the way touches may be entered. It keeps the body's radius from the square of every obstacle
+/// (Passability::obstacles), once it has left what open_start() opened; within the goal's cell to a twentieth of a
+/// cell.
 ///
 /// Errors  kNoPath: the start or the goal is outside the map, inside an obstacle, in unknown space (unless that is
 ///         allowed); the goal is nearer to an obstacle than the body radius (the start may be: see open_start());

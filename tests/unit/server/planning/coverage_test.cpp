@@ -110,6 +110,7 @@ TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
         const auto view = world.view(1 + random_below(random, 5));
         CoverageOptions options;
         options.passability.body_radius_m = std::array{0.0, 0.04, 0.1, 0.15, 0.22}[random() % 5];
+        options.passability.on_known = round % 2 == 0;
         if (round % 3 == 0) options.spacing_m = 0.05;
         const Cell start{2 + random_below(random, 56), 2 + random_below(random, 56)};
         const Oracle oracle(view, {0, 0, world.width(), world.height()}, 0.05, options.passability);
@@ -121,6 +122,35 @@ TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
         if (HasFatalFailure()) FAIL() << "in round " << round;
     }
     EXPECT_GT(planned, 20);
+}
+
+TEST(Coverage, KeepsClearOnceItHasLeftANarrowStart) {
+    std::mt19937 random(74);
+    int left = 0;
+    for (int round = 0; round < 300; ++round) {
+        const auto world = random_room(random, 60, 50);
+        const auto view = world.view();
+        CoverageOptions options;
+        options.passability.body_radius_m = std::array{0.1, 0.15, 0.22}[random() % 3];
+        options.passability.on_known = round % 2 == 0;
+        const grid::CellBox box{0, 0, world.width(), world.height()};
+        const Oracle oracle(view, box, 0.05, options.passability);
+        const Cell start{2 + random_below(random, 56), 2 + random_below(random, 46)};
+        if (oracle.enterable(start)) continue;
+        const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), options);
+        if (!coverage) continue;
+        const auto& points = coverage->path.points;
+        const auto fits = [&](const Point2& point) {
+            return oracle.enterable(
+                {static_cast<int>(std::floor(point.x() / 0.05)), static_cast<int>(std::floor(point.y() / 0.05))});
+        };
+        const auto out = static_cast<std::size_t>(std::ranges::find_if(points, fits) - points.begin());
+        for (std::size_t at = out; at + 1 < points.size(); ++at) {
+            ASSERT_TRUE(oracle.keeps_clear(points[at] / 0.05, points[at + 1] / 0.05, 2e-9)) << "in round " << round;
+        }
+        left += out + 1 < points.size() ? 1 : 0;
+    }
+    EXPECT_GT(left, 20);
 }
 
 TEST(Coverage, OfARegionCountsTheFreeCellsInIt) {

@@ -235,6 +235,18 @@ TEST(NextGoal, ATargetTakesTheFrontierThatIsThereNow) {
     EXPECT_EQ(gone.goal->target, (Cell{0, 1})) << "what the other robot looks for is explored already";
 }
 
+TEST(NextGoal, AnothersSmallFrontierTakesNoLargerOneNearby) {
+    const auto view = drawn({"f.ffff", "......", "......"});
+    auto options = for_a_point();
+    options.frontier_size_min = 2;
+    const auto next = next_goal(view, 1.0, {0.5, 0.5}, std::vector<Cell>{{0, 2}}, options).value();
+    ASSERT_EQ(next.outcome, Exploration::kGoal);
+    EXPECT_EQ(next.goal->target.j, 2);
+    EXPECT_GE(next.goal->target.i, 2);
+    EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, std::vector<Cell>{{3, 2}}, options).value().outcome,
+              Exploration::kTakenByOthers);
+}
+
 TEST(NextGoal, AMapWithoutReachableFrontiersIsComplete) {
     const auto closed = drawn({"#####", "#...#", "#...#", "#####"});
     EXPECT_EQ(next_goal(closed, 1.0, {2.5, 1.5}, {}, for_a_point())->outcome, Exploration::kComplete);
