@@ -133,6 +133,29 @@ TEST_F(BrokenModels, FreeSpaceThatHardlyCountsIsNoticed) {
     EXPECT_FALSE(is_good(scores_of(map_of(recording(), faint)), true));
 }
 
+TEST_F(BrokenModels, AMapThatIsNeverClearedIsNoticedByWhatTheWalkerLeaves) {
+    const Recording walked = record(matrix_.scenes[1], path_, matrix_.noises[0], cell_size_, 1);
+    const auto scores_with = [&](const SessionOptions& options) {
+        mapping::Snapshot end;
+        const auto keep = [&](std::size_t scans, mapping::Projection& projection) {
+            if (scans == walked.scans.size()) end = projection.snapshot();
+        };
+        SessionOptions sized = options;
+        sized.cell_size = cell_size_;
+        EXPECT_TRUE(weave(
+            walked, sized, [] { return 0.0; }, keep));
+        return score(states_of(occupancy_of(end, standard_.truth.box)), standard_.truth, standard_.seen,
+                     walked_cells(walked, end.config, standard_.truth.box));
+    };
+    EXPECT_TRUE(is_good(scores_with({}), false));
+    SessionOptions once_and_for_all;
+    once_and_for_all.p_free = 0.499;
+    once_and_for_all.p_occupied = 0.95;
+    const Scores scores = scores_with(once_and_for_all);
+    EXPECT_FALSE(is_good(scores, false)) << testing::PrintToString(scores);
+    EXPECT_GE(scores.residue, 15U);
+}
+
 TEST_F(BrokenModels, AShiftByOneCellInAnyDirectionIsNoticed) {
     for (const auto& [dx, dy] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) {
         Recording shifted = recording();
