@@ -68,10 +68,10 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 }
 
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
-    app.add_option(
-           "--max-range", options.range_max,
-           "Metres; readings of this length or more are no-return. Default: what the source states, for logs 50 at "
-           "most, and 5.11 for sonar")
+    app.add_option("--max-range", options.range_max,
+                   "Metres; readings of this length or more are no-return, and those of the length that a line of a "
+                   "log states. "
+                   "Default: what the source states, for logs 50 at most, and 5.11 for sonar")
         ->check(check_within(0.001, kRangeMax));
     app.add_option("--no-return", raw.no_return,
                    "What beams without a return mean: free up to the range, or nothing (drop). Default: free where the "

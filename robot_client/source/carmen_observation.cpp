@@ -34,9 +34,10 @@ Pose2 mount_of(const CarmenScan& line, double laser_offset_forward) {
 }
 
 Result<double> range_max_of(const CarmenScan& line, const CarmenOptions& options) {
-    if (options.range_max) return *options.range_max;
-    if (line.kind == CarmenKind::kFlaser) return kCarmenRangeMax;
-    if (line.range_max) return std::min(*line.range_max, kCarmenRangeMax);
+    const double believed = options.range_max.value_or(kCarmenRangeMax);
+    if (line.kind == CarmenKind::kFlaser) return believed;
+    if (line.range_max) return std::min(*line.range_max, believed);
+    if (options.range_max) return believed;
     return Error{Errc::kInvalidField, "maximum_range is not a length; give --max-range"};
 }
 

@@ -13,7 +13,8 @@ namespace scanloom::robot {
 struct CarmenOptions {
     /// Default: kFree where the log states its sensor's range (ROBOTLASER, RAWLASER), kDrop where it does not (FLASER).
     std::optional<NoReturn> no_return;
-    /// Metres; readings of this length or more are no-return. Default: what the log states, at most kCarmenRangeMax.
+    /// Metres; readings of this length or more are no-return, and so are those of the length that the log states.
+    /// Default: kCarmenRangeMax.
     std::optional<double> range_max;
     LineLimits limits;
 };

@@ -66,7 +66,7 @@ private:
     boost::asio::thread_pool serving_;
     boost::asio::thread_pool survey_{1};
     boost::asio::thread_pool reweaving_{2};
-    boost::asio::thread_pool awaiting_{4};
+    boost::asio::thread_pool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};

@@ -1,6 +1,7 @@
 #include "server/exchange/carmen_text.hpp"
 
 #include "common/geometry/pose2.hpp"
+#include "common/scan/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -66,7 +67,7 @@ Result<std::string> CarmenText::text_of(const RobotJoined& joined) {
 Result<std::string> CarmenText::text_of(const SensorDescribed& described) {
     sensors_[{described.robot, described.sensor.id}] = described.sensor;
     if (described.sensor.range_max <= kBelievedRange) return std::string();
-    return fmt::format("# replay with --max-range {}\n", described.sensor.range_max);
+    return fmt::format("# replay with --max-range {}: what each line states is then believed\n", kRangeMax);
 }
 
 Result<std::string> CarmenText::text_of(const MapPatch&) {

@@ -13,10 +13,12 @@ namespace scanloom::session {
 namespace {
 
 constexpr double kSliceWork = 5e6; // until it is looked whether to go on
+constexpr double kEntryWork = 1e4; // of any entry: reading it
 constexpr int kNiceness = 10;      // weaving again is never more urgent than what robots and viewers wait for
 
 /// Not failures, but reasons to read no further.
 const Error kEnd{Errc::kShuttingDown, "the end of what is to be woven"};
+const Error kTurnIsOver{Errc::kShuttingDown, "others have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
 
 Error no_room() {
@@ -90,16 +92,18 @@ void Weave::cancel(Error reason) {
 
 // Weaving
 
-bool Weave::run(store::ScanLog& log, ChunkBudget& budget) {
+bool Weave::run(store::ScanLog& log, ChunkBudget& budget, double turn_work) {
     const auto target = begin();
     if (!target) {
         give_up(kCancelled, budget);
         return false;
     }
     step_back();
+    turn_left_ = turn_work;
     try {
         if (!projection_) projection_.emplace(request_.config);
         const auto is_complete = weave_up_to(*target, log, budget);
+        if (!is_complete && is_complete.error() == kTurnIsOver) return wait_for_another_turn(*target);
         if (is_complete) return publish(*target, *is_complete, budget);
         give_up(is_complete.error(), budget);
     } catch (const std::bad_alloc&) {
@@ -113,7 +117,15 @@ std::optional<Revision> Weave::begin() {
     const std::lock_guard lock(mutex_);
     if (state_ != State::kWaiting) return std::nullopt;
     state_ = State::kWeaving;
-    return target_;
+    return std::exchange(round_, std::nullopt).value_or(target_);
+}
+
+/// The round goes on when the others that wait have had theirs.
+bool Weave::wait_for_another_turn(Revision target) {
+    const std::lock_guard lock(mutex_);
+    state_ = State::kWaiting;
+    round_ = target;
+    return true;
 }
 
 /// @return whether nothing more can follow.
@@ -122,6 +134,7 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, ChunkBudge
     const auto read =
         log.read(session_.id, projection_->revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
             if (revision > target) return kEnd;
+            if (turn_left_ <= 0.0) return kTurnIsOver;
             const auto entry = wire::decode_entry(bytes);
             if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
             if (is_taken_after(request_.end.stamp, *entry)) {
@@ -143,6 +156,7 @@ Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget) {
         const auto folded = projection_->fold(entry, work);
         if (!folded) return folded.error();
         in = *folded;
+        turn_left_ -= std::max(kSliceWork - work, kEntryWork);
         if (auto claimed = claim(budget); !claimed) return claimed;
     }
     woven_ = projection_->revision();

@@ -30,6 +30,8 @@ namespace scanloom::session {
 /// Thread  any; run() and resume() as they say.
 class Weave {
 public:
+    static constexpr double kTurnWork = 1e8; ///< as Reach::work: about a second, then others have theirs
+
     enum class State : std::uint8_t { kWaiting, kWeaving, kDone, kFailed, kCancelled };
 
     struct Progress {
@@ -69,14 +71,16 @@ public:
     /// Ends soon for that reason, if it has not ended yet.
     void cancel(Error reason);
 
-    /// One round, with a priority below that of everything else. Ends early when it is cancelled, when the budget is
-    /// used up, or when what the log holds cannot be woven with these settings; what was woven is then given up.
-    /// Pre  never at the same time as itself. @return whether the target was raised meanwhile: to be run again.
-    [[nodiscard]] bool run(store::ScanLog& log, ChunkBudget& budget);
+    /// One turn, with a priority below that of everything else: to the target as it was when the round began, or as far
+    /// as a turn goes. Ends early when it is cancelled, when the budget is used up, or when what the log holds cannot
+    /// be woven with these settings; what was woven is then given up.
+    /// Pre  never at the same time as itself. @return whether there is more to weave: to be run again.
+    [[nodiscard]] bool run(store::ScanLog& log, ChunkBudget& budget, double turn_work = kTurnWork);
 
 private:
     [[nodiscard]] std::optional<Revision> begin();
     [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget);
+    [[nodiscard]] bool wait_for_another_turn(Revision target);
     [[nodiscard]] Result<> fold(const LogEntry& entry, ChunkBudget& budget);
     [[nodiscard]] Result<> claim(ChunkBudget& budget);
     [[nodiscard]] bool claim(std::size_t chunks, ChunkBudget& budget);
@@ -95,12 +99,14 @@ private:
     // Whoever runs it, or resumes it, alone.
     std::optional<mapping::Projection> projection_; // kept as long as it can go on
     std::int64_t claimed_ = 0;                      // chunks, of the budget; none when it has ended
+    double turn_left_ = 0.0;                        // work, as Reach::work
 
     mutable std::mutex mutex_; // guards what follows
     mutable std::condition_variable changed_;
     State state_ = State::kWaiting;
     Revision target_;
-    bool is_complete_ = false; // nothing more can follow
+    std::optional<Revision> round_; // the target of a round that is not over yet
+    bool is_complete_ = false;      // nothing more can follow
     std::shared_ptr<const mapping::Snapshot> maps_;
     std::optional<Error> error_;
 };

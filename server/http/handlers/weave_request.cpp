@@ -62,7 +62,8 @@ Result<session::WeaveEnd> parse_until(std::string_view text, Revision newest) {
     }
     const auto stamp = text.ends_with('s') ? parse_real(text.substr(0, text.size() - 1)) : parse_rfc3339(text);
     if (stamp) return session::WeaveEnd{std::nullopt, *stamp};
-    return wrong_until(in_quotes(text));
+    if (text.find(' ') == std::string_view::npos) return wrong_until(in_quotes(text));
+    return wrong_until(in_quotes(text) + " (a + in an address is a space, and %2B a +)");
 }
 
 Result<session::WeaveRequest> request_of(const session::Session& session, const SessionOptions& options,

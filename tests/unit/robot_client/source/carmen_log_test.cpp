@@ -179,6 +179,14 @@ TEST_F(CarmenLogFile, FlaserDropsBeamsWithoutReturnUnlessAskedToFree) {
               (std::vector<RangeMm>{49999, kNoReturn, kNoReturn, kNoReturn}));
 }
 
+TEST_F(CarmenLogFile, ALaserSeesNoFurtherThanItsLineStatesHoweverMuchIsBelieved) {
+    CarmenOptions far;
+    far.range_max = 1000.0;
+    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 5.0), far)->observations[0].sensor->range_max, 5.0);
+    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 80.0), far)->observations[0].sensor->range_max, 80.0);
+    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 80.0))->observations[0].sensor->range_max, kCarmenRangeMax);
+}
+
 TEST_F(CarmenLogFile, RobotLaserFreesBeamsWithoutReturnUnlessAskedToDrop) {
     const std::string text = robot_laser("0 0 0", "0 0 0", 30.0);
     const auto log = read(text);

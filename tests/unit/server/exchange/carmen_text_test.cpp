@@ -72,7 +72,7 @@ TEST(CarmenText, ASensorBeyondWhatReadersBelieveIsRemarked) {
     Sensor far = laser();
     far.range_max = 80.0;
     ASSERT_TRUE(carmen.lines(RobotJoined{0, "crawler"}));
-    EXPECT_THAT(carmen.lines(SensorDescribed{0, far}).value(), HasSubstr("--max-range 80"));
+    EXPECT_THAT(carmen.lines(SensorDescribed{0, far}).value(), HasSubstr("replay with --max-range 1000"));
     EXPECT_EQ(carmen.lines(SensorDescribed{0, laser()}).value(), "");
 }
 

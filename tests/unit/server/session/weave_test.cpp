@@ -123,6 +123,32 @@ TEST_F(WeaveTest, OneOfASessionThatIsGoneSaysSo) {
     EXPECT_THAT(session_was_deleted(session_).message, testing::StartsWith("session 's' was deleted"));
 }
 
+TEST_F(WeaveTest, ALongOneIsWovenTurnByTurn) {
+    ChunkBudget budget(1000);
+    Weave weave(session_, request({}), newest());
+    int turns = 1;
+    while (weave.run(log_, budget, 5e4)) { // a few entries
+        EXPECT_EQ(weave.progress().state, State::kWaiting);
+        EXPECT_EQ(weave.maps(), nullptr);
+        EXPECT_LT(weave.progress().woven, newest());
+        ++turns;
+    }
+    EXPECT_GT(turns, 3);
+    EXPECT_EQ(weave.progress().state, State::kDone);
+    EXPECT_EQ(digests_of(*weave.maps()), created_so({}, newest()));
+    EXPECT_EQ(log_.taken(), std::vector<int>(newest(), 1));
+}
+
+TEST_F(WeaveTest, OneCancelledBetweenTwoTurnsGivesBackItsChunks) {
+    ChunkBudget budget(1000);
+    Weave weave(session_, request({}), newest());
+    ASSERT_TRUE(weave.run(log_, budget, 5e4));
+    weave.cancel(kEnough);
+    EXPECT_FALSE(weave.run(log_, budget, 5e4));
+    EXPECT_EQ(weave.progress().state, State::kCancelled);
+    EXPECT_TRUE(budget.take(1000));
+}
+
 TEST_F(WeaveTest, OneCancelledBeforeItsTurnIsNeverWoven) {
     ChunkBudget budget(1000);
     Weave weave(session_, request({}), newest());
