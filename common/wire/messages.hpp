@@ -167,10 +167,22 @@ struct CoverageRequest {
     friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
 };
 
+/// Cells side by side in a row of a map: (i, j), (i + 1, j) ...
+struct CellRun {
+    std::int32_t j = 0;
+    std::int32_t i = 0;
+    std::int32_t count = 0; ///< at least 1
+
+    friend bool operator==(const CellRun&, const CellRun&) = default;
+};
+
+/// The path's points and the runs are kPathPointsMax together at most.
 struct Coverage {
     Path path;
-    double free_area = 0.0;    ///< square metres
-    double covered_area = 0.0; ///< square metres
+    double free_area = 0.0;           ///< square metres
+    double covered_area = 0.0;        ///< square metres
+    std::vector<CellRun> unreachable; ///< free cells that no path reaches
+    double cell_size = 0.0;           ///< metres
 
     friend bool operator==(const Coverage&, const Coverage&) = default;
 };

@@ -101,12 +101,28 @@ Result<Goal> read_goal(const v1::Goal& proto) {
     return goal;
 }
 
+Result<std::vector<CellRun>> read_runs(const google::protobuf::RepeatedField<std::int32_t>& numbers) {
+    if (numbers.size() % 3 != 0) {
+        return invalid_field(fmt::format("unreachable has {} numbers; three for each run are needed", numbers.size()));
+    }
+    std::vector<CellRun> runs;
+    for (int n = 0; n < numbers.size(); n += 3) {
+        runs.push_back({numbers[n], numbers[n + 1], numbers[n + 2]});
+        if (runs.back().count > 0) continue;
+        return invalid_field(fmt::format("unreachable[{}] is {}; a run has at least one cell", n + 2, numbers[n + 2]));
+    }
+    return runs;
+}
+
 Result<Coverage> read_coverage(const v1::Coverage& proto) {
     auto path = read_path(proto.path());
     if (!path) return prefixed("path.", path.error());
     if (auto ok = check_size("free_area", proto.free_area()); !ok) return ok.error();
     if (auto ok = check_size("covered_area", proto.covered_area()); !ok) return ok.error();
-    return Coverage{std::move(*path), proto.free_area(), proto.covered_area()};
+    if (auto ok = check_size("cell_size", proto.cell_size()); !ok) return ok.error();
+    auto runs = read_runs(proto.unreachable());
+    if (!runs) return runs.error();
+    return Coverage{std::move(*path), proto.free_area(), proto.covered_area(), std::move(*runs), proto.cell_size()};
 }
 
 Error value_of(const v1::Refusal& refusal) { return {to_errc(refusal.code()), refusal.message()}; }
@@ -144,6 +160,12 @@ void write(const Coverage& coverage, v1::Coverage& out) {
     write(coverage.path, *out.mutable_path());
     out.set_free_area(coverage.free_area);
     out.set_covered_area(coverage.covered_area);
+    for (const CellRun& run : coverage.unreachable) {
+        out.add_unreachable(run.j);
+        out.add_unreachable(run.i);
+        out.add_unreachable(run.count);
+    }
+    out.set_cell_size(coverage.cell_size);
 }
 
 void write(const Error& refusal, v1::Refusal& out) {

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace scanloom::ingest {
 namespace {
@@ -28,12 +30,24 @@ planning::PassabilityOptions passability_of(const std::optional<double>& body_ra
     return options;
 }
 
-/// Errors  kTooLarge: it would fit no frame.
-Result<wire::Path> to_wire(planning::Path path) {
-    if (path.points.size() > wire::kPathPointsMax) {
-        return Error{Errc::kTooLarge, fmt::format("the path has {} points, at most {} fit a reply; ask for a smaller "
-                                                  "region, or rows further apart",
-                                                  path.points.size(), wire::kPathPointsMax)};
+/// Of cells by rows.
+std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
+    std::vector<wire::CellRun> runs;
+    for (const grid::Cell cell : cells) {
+        const bool goes_on = !runs.empty() && runs.back().j == cell.j && runs.back().i + runs.back().count == cell.i;
+        if (!goes_on) runs.push_back({cell.j, cell.i, 0});
+        ++runs.back().count;
+    }
+    return runs;
+}
+
+/// Errors  kTooLarge: it would fit no frame, with so much beside it.
+Result<wire::Path> to_wire(planning::Path path, std::size_t beside = 0) {
+    if (path.points.size() + beside > wire::kPathPointsMax) {
+        return Error{Errc::kTooLarge,
+                     fmt::format("the path has {} points, and what it leaves out {} runs of cells, at most {} together "
+                                 "fit a reply; ask for a smaller region, or rows further apart",
+                                 path.points.size(), beside, wire::kPathPointsMax)};
     }
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }
@@ -79,11 +93,13 @@ struct Search {
         options.passability.on_known = true;
         auto coverage = planning::plan_coverage(maps.classes, maps.config.cell_size, start, options, may_go_on);
         if (!coverage) return coverage.error();
-        auto path = to_wire(std::move(coverage->path));
+        auto unreachable = runs_of(coverage->unreachable);
+        auto path = to_wire(std::move(coverage->path), unreachable.size());
         if (!path) return path.error();
         const double cell_area = maps.config.cell_size * maps.config.cell_size;
         return wire::Coverage{std::move(*path), static_cast<double>(coverage->free_cells) * cell_area,
-                              static_cast<double>(coverage->covered_cells) * cell_area};
+                              static_cast<double>(coverage->covered_cells) * cell_area, std::move(unreachable),
+                              maps.config.cell_size};
     }
 };
 

@@ -177,6 +177,14 @@ TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
     EXPECT_NEAR(coverage.covered_area, coverage.free_area, 0.1);
     EXPECT_EQ(coverage.path.points.front(), Point2(0.5, 1.25));
     EXPECT_GT(coverage.path.length, 3.0);
+
+    robot->send(wire::CoverageRequest{.id = 6});
+    const auto everywhere = robot->receive_kind<wire::CoverageReply>().coverage.value();
+    EXPECT_EQ(everywhere.cell_size, 0.05);
+    double cells = 0.0;
+    for (const auto& run : everywhere.unreachable) cells += run.count;
+    EXPECT_GT(cells, 0.0) << "beside the walls, and beside what is unknown";
+    EXPECT_NEAR(everywhere.covered_area + cells * 0.05 * 0.05, everywhere.free_area, 1e-9);
 }
 
 TEST_F(RequestsTest, ARobotIsAnsweredOnTheMapsOfItsOwnSession) {

@@ -287,6 +287,10 @@ TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
 TEST(BadReply, IsRefusedByTheNameOfItsField) {
     expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), kNan, 1.0}}), Errc::kInvalidField,
                    "coverage_reply.coverage.free_area is nan;");
+    expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, 1.0, {{0, 0, 1}, {1, 0, 0}}, 0.05}}),
+                   Errc::kInvalidField, "coverage_reply.coverage.unreachable[5] is 0;");
+    expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, 1.0, {}, kNan}}), Errc::kInvalidField,
+                   "coverage_reply.coverage.cell_size is nan;");
     expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, -1.0}}), Errc::kInvalidField,
                    "coverage_reply.coverage.covered_area is -1;");
     expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), Point2(kNan, 0.0)}}),

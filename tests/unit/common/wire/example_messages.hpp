@@ -104,7 +104,9 @@ inline CoverageRequest example_coverage_request() {
             .region = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 5.0}}};
 }
 
-inline Coverage example_coverage() { return {example_path(), 12.5, 11.25}; }
+inline Coverage example_coverage() {
+    return {example_path(), 12.5, 11.25, {{-3, 7, 2}, {1'000'000, -1'000'000, 1}}, 0.05};
+}
 
 /// The body of the frame that holds the message, as the decoder would hand it out.
 inline std::string body_of(const Message& message) {

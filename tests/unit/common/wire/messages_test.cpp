@@ -115,10 +115,13 @@ TEST(Messages, TheLargestScanAndTheLargestBatchArePossible) {
 
 TEST(Messages, TheLongestPathFitsAFrame) {
     const Path path{std::vector<Point2>(kPathPointsMax, Point2(-1e5 / 3.0, 1e6 / 3.0)), 1e9 / 3.0, 1e10 / 3.0};
+    const Path short_path{{Point2(1.0, 2.0)}, 0.0, 0.0};
+    const std::vector<CellRun> runs(kPathPointsMax - 1, {INT32_MIN, INT32_MAX, INT32_MAX});
     for (const Message& reply :
          {Message(PlanReply{UINT64_MAX, UINT64_MAX, path}),
           Message(GoalReply{UINT64_MAX, UINT64_MAX, Goal{Exploration::kGoal, path, Point2(0.1, 0.2)}}),
-          Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{path, 0.1, 0.2}})}) {
+          Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{path, 0.1, 0.2}}),
+          Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{short_path, 0.1, 0.2, runs, 0.05}})}) {
         EXPECT_LE(body_of(reply).size(), kFrameBytesMax);
         EXPECT_EQ(decode(body_of(reply)).value(), reply);
     }
