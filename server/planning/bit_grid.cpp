@@ -94,6 +94,14 @@ BitGrid& BitGrid::subtract(const BitGrid& other) noexcept {
 std::int32_t next_set(std::span<const std::uint64_t> row, std::int32_t x) noexcept { return next<true>(row, x); }
 std::int32_t next_clear(std::span<const std::uint64_t> row, std::int32_t x) noexcept { return next<false>(row, x); }
 
+std::optional<Spot> first_set(const BitGrid& grid) noexcept {
+    for (std::int32_t y = 0; y < grid.height(); ++y) {
+        const std::int32_t x = next_set(grid.row(y), 0);
+        if (x < grid.width()) return Spot{x, y};
+    }
+    return std::nullopt;
+}
+
 BitGrid connected(const BitGrid& grid, Spot seed) {
     BitGrid found(grid.width(), grid.height());
     if (!grid.test(seed)) return found;

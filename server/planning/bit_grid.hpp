@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -92,6 +93,9 @@ void for_each_set(const BitGrid& grid, Visit&& visit) {
 /// The first column >= x whose bit is set (or clear) in a row; the row's width when there is none.
 [[nodiscard]] std::int32_t next_set(std::span<const std::uint64_t> row, std::int32_t x) noexcept;
 [[nodiscard]] std::int32_t next_clear(std::span<const std::uint64_t> row, std::int32_t x) noexcept;
+
+/// The first set cell, by rows from the bottom, then from the left.
+[[nodiscard]] std::optional<Spot> first_set(const BitGrid& grid) noexcept;
 
 /// The set cells that hang together with a set cell, from one to the next of the 4 beside it.
 /// Source  scan-line seed fill: Smith, Tint Fill (SIGGRAPH 1979).

@@ -19,6 +19,7 @@ namespace {
 struct Task {
     Passability passability;
     Spot start;
+    BitGrid way_out;                 ///< of a narrow start: to leave it by, not to come back
     BitGrid places;                  ///< where the body can be
     BitGrid free;                    ///< of the region
     BitGrid reachable;               ///< what of it is within reach of a place
@@ -43,6 +44,34 @@ Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_s
     return std::max(static_cast<std::int32_t>(cells), 1);
 }
 
+/// Places that hang together, and what of the ground is within reach of them.
+struct Room {
+    BitGrid places;
+    BitGrid reachable;
+};
+
+/// A start in a gap may lead to several rooms between which there is no way for the body: the one where it reaches
+/// most.
+/// @param everywhere  where the body can be, without the start's way out
+Room best_of_rooms(const Passability& passability, const BitGrid& everywhere, Spot start,
+                   std::span<const std::int32_t> reach, const BitGrid& free) {
+    BitGrid left = connected(passability.enterable, start);
+    left &= everywhere;
+    const BitGrid none(left.width(), left.height());
+    Room best{none, none};
+    std::int64_t most = 0;
+    while (const auto seed = first_set(left)) {
+        Room room{connected(everywhere, *seed), none};
+        left.subtract(room.places);
+        room.reachable = dilated(room.places, reach);
+        room.reachable &= free;
+        if (room.reachable.count() <= most) continue;
+        most = room.reachable.count();
+        best = std::move(room);
+    }
+    return best;
+}
+
 Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, const Point2& start,
                        const CoverageOptions& options) {
     PassabilityOptions known_ground = options.passability;
@@ -51,10 +80,9 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
     if (!passability) return passability.error();
     const auto spacing = spacing_cells(options, cell_size_m);
     if (!spacing) return spacing.error();
-    BitGrid places = passability->enterable; // without the cells that only a way out of a narrow start may use
+    BitGrid everywhere = passability->enterable; // without the cells that only a way out of a narrow start may use
     const auto spot = open_start(*passability, start);
     if (!spot) return spot.error();
-    places &= connected(passability->enterable, *spot);
     BitGrid free = passability->ground;
     if (!options.region.empty()) {
         const auto inside = cells_inside(*passability, options.region);
@@ -65,14 +93,18 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
         return Error{Errc::kNoPath, "the region holds the centre of no free cell: give a larger or another region"};
     }
     auto reach = disc_half_widths(known_ground.body_radius_m / cell_size_m, false);
-    BitGrid reachable = dilated(places, reach);
-    reachable &= free;
+    auto [places, reachable] = best_of_rooms(*passability, everywhere, *spot, reach, free);
     if (reachable.count() == 0) {
         return Error{Errc::kNoPath, fmt::format("from ({:g}, {:g}) a body of radius {} m reaches no free cell of the "
                                                 "region: give another start or region",
                                                 start.x(), start.y(), known_ground.body_radius_m)};
     }
-    return Task{std::move(*passability), *spot,   std::move(places), std::move(free), std::move(reachable),
+    BitGrid way_out = passability->enterable;
+    way_out.subtract(everywhere);
+    passability->enterable = places;
+    passability->enterable |= way_out;
+    return Task{std::move(*passability), *spot,           std::move(way_out),
+                std::move(places),       std::move(free), std::move(reachable),
                 std::move(reach),        *spacing};
 }
 
@@ -94,7 +126,7 @@ public:
         }
         search_.between(at(), goal);
         append(search_.path_to(goal));
-        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // its way out is no way back
+        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // without the way out
         return {};
     }
 
@@ -246,6 +278,7 @@ Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_s
     Tour tour(*task, may_go_on);
     if (auto swept = sweep_all(tour, *task); !swept) return swept.error();
     if (auto fetched = fetch_what_is_left(tour, *task); !fetched) return fetched.error();
+    task->passability.enterable |= task->way_out; // the path begins there
     Coverage coverage;
     const Point2 end = task->passability.centre_of(tour.at());
     coverage.path = to_path(task->passability, tour.cells(), start, end, Shape::kSteps);

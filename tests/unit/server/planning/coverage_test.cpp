@@ -124,6 +124,25 @@ TEST(Coverage, EveryFreeCellOfARoomIsWithinReachOrListed) {
     EXPECT_GT(planned, 20);
 }
 
+TEST(Coverage, FromAGapTooNarrowForTheBodyCoversTheRoomWhereItReachesMost) {
+    const auto view = drawn({"##################", //
+                             "#.....#..........#", //
+                             "#.....#..........#", //
+                             "#................#", //
+                             "#.....#..........#", //
+                             "#.....#..........#", //
+                             "##################"});
+    CoverageOptions options;
+    options.passability.body_radius_m = 1.2;
+    const auto coverage = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
+    for (const Point2& point : coverage.path.points) EXPECT_GE(point.x(), 6.5);
+    EXPECT_GE(coverage.unreachable.size(), 25U) << "the room on the left";
+    options.region = {{1.0, 1.0}, {5.0, 1.0}, {5.0, 6.0}, {1.0, 6.0}};
+    const auto left = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
+    for (const Point2& point : left.path.points) EXPECT_LE(point.x(), 6.5);
+    EXPECT_GT(left.fraction, 0.7);
+}
+
 TEST(Coverage, KeepsClearOnceItHasLeftANarrowStart) {
     std::mt19937 random(74);
     int left = 0;
@@ -139,6 +158,7 @@ TEST(Coverage, KeepsClearOnceItHasLeftANarrowStart) {
         if (oracle.enterable(start)) continue;
         const auto coverage = plan_coverage(view, 0.05, centre(start, 0.05), options);
         if (!coverage) continue;
+        ASSERT_GE(coverage->path.cost, coverage->path.length_m * (1.0 - 1e-9));
         const auto& points = coverage->path.points;
         const auto fits = [&](const Point2& point) {
             return oracle.enterable(
