@@ -52,16 +52,15 @@ struct Room {
 
 /// A start in a gap may lead to several rooms between which there is no way for the body: the one where it reaches
 /// most.
-/// @param everywhere  where the body can be, without the start's way out
-Room best_of_rooms(const Passability& passability, const BitGrid& everywhere, Spot start,
-                   std::span<const std::int32_t> reach, const BitGrid& free) {
+Room best_of_rooms(const Passability& passability, Spot start, std::span<const std::int32_t> reach,
+                   const BitGrid& free) {
     BitGrid left = connected(passability.enterable, start);
-    left &= everywhere;
+    left &= passability.fits;
     const BitGrid none(left.width(), left.height());
     Room best{none, none};
     std::int64_t most = 0;
     while (const auto seed = first_set(left)) {
-        Room room{connected(everywhere, *seed), none};
+        Room room{connected(passability.fits, *seed), none};
         left.subtract(room.places);
         room.reachable = dilated(room.places, reach);
         room.reachable &= free;
@@ -80,7 +79,6 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
     if (!passability) return passability.error();
     const auto spacing = spacing_cells(options, cell_size_m);
     if (!spacing) return spacing.error();
-    BitGrid everywhere = passability->enterable; // without the cells that only a way out of a narrow start may use
     const auto spot = open_start(*passability, start);
     if (!spot) return spot.error();
     BitGrid free = passability->ground;
@@ -93,14 +91,14 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
         return Error{Errc::kNoPath, "the region holds the centre of no free cell: give a larger or another region"};
     }
     auto reach = disc_half_widths(known_ground.body_radius_m / cell_size_m, false);
-    auto [places, reachable] = best_of_rooms(*passability, everywhere, *spot, reach, free);
+    auto [places, reachable] = best_of_rooms(*passability, *spot, reach, free);
     if (reachable.count() == 0) {
         return Error{Errc::kNoPath, fmt::format("from ({:g}, {:g}) a body of radius {} m reaches no free cell of the "
                                                 "region: give another start or region",
                                                 start.x(), start.y(), known_ground.body_radius_m)};
     }
     BitGrid way_out = passability->enterable;
-    way_out.subtract(everywhere);
+    way_out.subtract(passability->fits);
     passability->enterable = places;
     passability->enterable |= way_out;
     return Task{std::move(*passability), *spot,           std::move(way_out),

@@ -10,9 +10,10 @@
 namespace scanloom::planning {
 
 struct CoverageOptions {
-    PassabilityOptions passability;  ///< its allow_unknown does not matter: only free ground is covered
-    std::optional<double> spacing_m; ///< between rows: at most 2 body radii and a cell; default 2 body radii
-    std::vector<Point2> region;      ///< corners of a polygon, metres; none: all free ground of the map
+    PassabilityOptions passability; ///< its allow_unknown does not matter: only free ground is covered
+    std::optional<double>
+        spacing_m;              ///< between rows: at most 2 body radii and a cell; default 2 body radii; 0: every row
+    std::vector<Point2> region; ///< corners of a polygon, metres; none: all free ground of the map
 };
 
 /// Asked again and again during a long search, which ends with the error that it returns.

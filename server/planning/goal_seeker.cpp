@@ -105,7 +105,7 @@ std::optional<Spot> GoalSeeker::cheapest(const std::vector<Spot>& ring, bool in_
     std::optional<Spot> best;
     double least = std::numeric_limits<double>::infinity();
     for (const Spot spot : ring) {
-        if (passability_.danger.test(spot) != in_danger) continue;
+        if (passability_.danger.test(spot) != in_danger || !passability_.fits.test(spot)) continue;
         const double cost = search_.cost(spot);
         const bool before = best && (spot.y < best->y || (spot.y == best->y && spot.x < best->x));
         if (cost > least || (cost == least && !before) || std::isinf(cost)) continue;

@@ -54,21 +54,24 @@ struct Surroundings {
     Surroundings& operator=(const Surroundings&) = delete;
 };
 
-/// Which frontiers the others' targets take.
-std::vector<bool> taken_frontiers(std::span<const Frontier> frontiers, std::span<const grid::Cell> targets,
-                                  std::int32_t reach_cells) {
+/// Which of the frontiers that count, the first ones, the others' targets take. A target in a smaller one takes none;
+/// one that is in no frontier any more takes the nearest that counts.
+std::vector<bool> taken_frontiers(std::span<const Frontier> frontiers, std::size_t counting,
+                                  std::span<const grid::Cell> targets, std::int32_t reach_cells) {
     std::vector<bool> taken(frontiers.size());
     for (const grid::Cell target : targets) {
         std::optional<std::size_t> nearest;
         double least = static_cast<double>(reach_cells) * reach_cells;
         for (std::size_t place = 0; place < frontiers.size(); ++place) {
             const double distance = square_of_distance(nearest_cell(frontiers[place], target), target);
-            if (distance > least || (nearest && distance == least)) continue;
+            const bool may_be = place < counting || distance == 0.0;
+            if (!may_be || distance > least || (nearest && distance == least)) continue;
             nearest = place;
             least = distance;
         }
         if (nearest) taken[*nearest] = true;
     }
+    taken.resize(counting);
     return taken;
 }
 
@@ -165,12 +168,12 @@ Result<NextGoal> next_goal(const ClassView& classes, double cell_size_m, const P
     const auto rings = standoff_cells(options, cell_size_m);
     if (!rings) return rings.error();
     auto frontiers = classify::find_frontiers(classes, 1, given_up);
-    auto taken = taken_frontiers(frontiers, targets_of_others, *rings); // of any size: others may count smaller ones
     const std::size_t size_min = frontier_size_min(options, cell_size_m);
-    const auto counting = std::ranges::find_if( // the largest come first
-        frontiers, [&](const Frontier& frontier) { return frontier.cells.size() < size_min; });
+    const auto too_small = [&](const Frontier& frontier) { return frontier.cells.size() < size_min; };
+    const auto counting = std::ranges::find_if(frontiers, too_small); // the largest come first
+    auto taken =
+        taken_frontiers(frontiers, static_cast<std::size_t>(counting - frontiers.begin()), targets_of_others, *rings);
     frontiers.erase(counting, frontiers.end());
-    taken.resize(frontiers.size());
     const auto found = survey_goals(classes, cell_size_m, frontiers, robot, options, *rings);
     if (!found) return found.error();
     const Surroundings& surroundings = *found->surroundings;

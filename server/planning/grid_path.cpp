@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <optional>
 
 namespace scanloom::planning {
 namespace {
@@ -44,25 +45,57 @@ double cost_of_step(const Passability& passability, const Point2& from, const Po
     return *cost;
 }
 
-/// Leaves out what corners it can, going on from each as far as the straight way is no worse.
-std::vector<Point2> straightened(const Passability& passability, const std::vector<Point2>& points) {
-    std::vector<Point2> kept = {points.front()};
-    for (std::size_t at = 0; at + 1 < points.size();) {
+/// Leaves out corners of a way wherever the straight one is as safe and costs no more.
+class Straightener {
+public:
+    Straightener(const Passability& passability, const std::vector<Point2>& points)
+        : passability_(passability), points_(points), costs_{0.0} {
+        for (std::size_t at = 0; at + 1 < points.size(); ++at) {
+            costs_.push_back(costs_.back() + cost_of_step(passability, points[at], points[at + 1]));
+        }
+    }
+
+    [[nodiscard]] std::vector<Point2> straightened() const {
+        std::vector<Point2> kept = {points_.front()};
+        for (std::size_t at = 0; at + 1 < points_.size();) {
+            at = furthest_from(at);
+            kept.push_back(points_[at]);
+        }
+        return kept;
+    }
+
+private:
+    /// From the end backwards by halves to where there is a straight way, then on as far as that is no worse.
+    [[nodiscard]] std::size_t furthest_from(std::size_t at) const {
         std::size_t furthest = at + 1;
-        double cost = cost_of_step(passability, points[at], points[furthest]);
-        for (std::size_t next = furthest + 1; next < points.size(); ++next) {
-            const double around = cost + cost_of_step(passability, points[next - 1], points[next]);
-            const auto straight = cost_of_line(passability, points[at], points[next]);
-            if (!straight || *straight > around * (1.0 + kRounding)) break;
-            if (!keeps_clear(passability, points[at], points[next])) break;
-            furthest = next;
+        double cost = costs_[furthest] - costs_[at];
+        for (std::size_t ahead = points_.size() - 1 - at; ahead > 1; ahead /= 2) {
+            const auto straight = straight_cost(at, at + ahead, costs_[at + ahead] - costs_[at]);
+            if (!straight) continue;
+            furthest = at + ahead;
+            cost = *straight;
+            break;
+        }
+        while (furthest + 1 < points_.size()) {
+            const auto straight = straight_cost(at, furthest + 1, cost + costs_[furthest + 1] - costs_[furthest]);
+            if (!straight) break;
+            ++furthest;
             cost = *straight;
         }
-        at = furthest;
-        kept.push_back(points[at]);
+        return furthest;
     }
-    return kept;
-}
+
+    /// Nothing when it is not as safe, or costs more than the way `around`.
+    [[nodiscard]] std::optional<double> straight_cost(std::size_t from, std::size_t to, double around) const {
+        const auto straight = cost_of_line(passability_, points_[from], points_[to]);
+        if (!straight || *straight > around * (1.0 + kRounding)) return std::nullopt;
+        return keeps_clear(passability_, points_[from], points_[to]) ? straight : std::nullopt;
+    }
+
+    const Passability& passability_;
+    const std::vector<Point2>& points_;
+    std::vector<double> costs_; // from the first point
+};
 
 Path within_a_cell(const Passability& passability, Spot cell, const Point2& start, const Point2& goal) {
     const double length = (goal - start).norm();
@@ -77,7 +110,7 @@ Path to_path(const Passability& passability, const std::vector<Spot>& cells, con
     if (cells.size() == 1) return within_a_cell(passability, cells.front(), start, goal);
     auto points =
         corners(cells, to_cells(passability, start, cells.front()), to_cells(passability, goal, cells.back()));
-    if (shape == Shape::kStraightened) points = straightened(passability, points);
+    if (shape == Shape::kStraightened) points = Straightener(passability, points).straightened();
     Path path;
     for (std::size_t at = 0; at + 1 < points.size(); ++at) {
         path.length_m += (points[at + 1] - points[at]).norm() * passability.cell_size_m;

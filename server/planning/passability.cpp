@@ -124,6 +124,7 @@ Result<Spot> ground_at(const Passability& passability, const Point2& point, std:
     const auto refusal = [&](std::string_view why) {
         return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x(), point.y(), why)};
     };
+    if (passability.window.empty()) return refusal("outside the map: no laser has explored anything yet");
     const auto spot = passability.spot_of(*cell);
     if (!spot) return refusal("outside the map; it must be in explored free space");
     if (passability.occupied.test(*spot)) return refusal("inside an obstacle; it must be in free space");
@@ -151,12 +152,33 @@ void take_as_ground(Passability& passability, Spot place, double radius) {
     if (passability.options.on_known) passability.obstacles.subtract(covered);
 }
 
+/// From a cell's centre to the nearest occupied square, or `far` if there is none as near. In cells.
+double clearance_of(const Passability& passability, Spot place, double far) {
+    const auto reach = static_cast<std::int32_t>(far) + 1;
+    double least = far;
+    for (std::int32_t y = std::max(place.y - reach, 0);
+         y <= std::min(place.y + reach, passability.occupied.height() - 1); ++y) {
+        const auto row = passability.occupied.row(y);
+        for (std::int32_t x = next_set(row, std::max(place.x - reach, 0));
+             x <= std::min(place.x + reach, passability.occupied.width() - 1); x = next_set(row, x + 1)) {
+            const double dx = std::max(std::abs(x - place.x) - 0.5, 0.0);
+            const double dy = std::max(std::abs(y - place.y) - 0.5, 0.0);
+            least = std::min(least, std::hypot(dx, dy));
+        }
+    }
+    return least;
+}
+
 /// The cells through which a body may leave a place where it should not be: the ground that it covers, and with
 /// on_known also what is not near occupied cells, as far as it takes to get to known ground, but not further than four
 /// times as far.
 BitGrid way_out(const Passability& passability, Spot place, double radius) {
     BitGrid near = disc_around(passability, place, radius + 1.0);
     near &= passability.ground;
+    const double clearance = clearance_of(passability, place, radius + 1.0) - kRoundingCells;
+    if (clearance > kRoundingCells) {
+        near.subtract(dilated(passability.occupied, disc_half_widths(clearance - 2.0 * kRoundingCells, true)));
+    }
     near = connected(near, place);
     if (!passability.options.on_known) return near;
     BitGrid clear = passability.ground;
@@ -206,7 +228,7 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
     const auto window = window_of(classes, cell_size_m, options.allow_unknown, held);
     if (!window) return window.error();
     const BitGrid blank(static_cast<std::int32_t>(window->width()), static_cast<std::int32_t>(window->height()));
-    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank, blank};
+    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank, blank, blank};
     classes.visit(grid::chunks_of(*window), 0,
                   [&](grid::ChunkKey key, const ClassChunk& chunk) { read_chunk(passability, key, chunk); });
     if (options.allow_unknown) {
@@ -222,6 +244,7 @@ Result<Passability> make_passability(const ClassView& classes, double cell_size_
         clear_border(passability.enterable, static_cast<std::int32_t>(radius + kRoundingCells + 0.5));
     }
     passability.enterable.subtract(dilated(passability.obstacles, disc_half_widths(radius, true)));
+    passability.fits = passability.enterable;
     return passability;
 }
 

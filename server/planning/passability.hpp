@@ -41,7 +41,8 @@ struct Passability {
     BitGrid ground;    ///< where a point may be: FREE and DANGER; with allow_unknown, all that is not OCCUPIED
     BitGrid danger;    ///< DANGER
     BitGrid obstacles; ///< what the body keeps its radius from: OCCUPIED; with on_known, all that is not ground
-    BitGrid enterable; ///< where the body's centre may be: the ground that is far enough from the obstacles
+    BitGrid fits;      ///< where the body's centre may be: the ground that is far enough from the obstacles
+    BitGrid enterable; ///< those, and the way out that open_start() allows
 
     [[nodiscard]] grid::Cell cell_at(Spot spot) const noexcept {
         return {window.i_begin + spot.x, window.j_begin + spot.y};
@@ -68,9 +69,10 @@ struct Passability {
 
 /// Where a path may begin: the point's cell. When that is free but nearer to an obstacle than the body radius (a
 /// robot got there somehow, and must be able to leave), the free cells that hang together with it within a body
-/// radius and a cell of it may be entered from now on; with on_known also those further away that lead to known ground
-/// all around, up to four times as far. (A laser that looks ahead shows a robot no ground beside itself.)
-/// Known ground within the body's radius makes ground of what is unknown there, too: the body covers it.
+/// radius and a cell of it, and are no nearer to an occupied one, may be entered from now on; with on_known also those
+/// further away that lead to known ground all around, up to four times as far. (A laser that looks ahead shows a robot
+/// no ground beside itself.) Known ground within the body's radius makes ground of what is unknown there, too: the body
+/// covers it.
 ///
 /// Errors  kNoPath: outside the map, inside an obstacle, in unknown space. kInvalidField: not finite.
 [[nodiscard]] Result<Spot> open_start(Passability& passability, const Point2& start);
