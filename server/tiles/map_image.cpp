@@ -30,7 +30,8 @@ Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer lay
         frame.cells = *cells;
     }
     if (frame.cells.empty()) {
-        return Error{Errc::kNotFound, "there is no map yet in this layer: none of its scans has seen anything by then"};
+        return Error{Errc::kNotFound, "there is no map yet in this layer: no scan that it is made of has seen anything "
+                                      "by then; layer= names others"};
     }
     const auto width = frame.cells.width();
     const auto height = frame.cells.height();

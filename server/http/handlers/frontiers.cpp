@@ -129,11 +129,10 @@ Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots,
     }
     boost::json::array names;
     for (const RobotIndex robot : offers->robots) names.emplace_back(snapshot.robots[robot].name);
-    const bool none = std::ranges::none_of(offers->of_frontiers, [](const auto& one) { return one.has_value(); });
-    const bool complete = none && !offers->robots.empty();
+    const bool any = std::ranges::any_of(offers->of_frontiers, [](const auto& one) { return one.has_value(); });
     return ok_text(
         kGeoJson, std::move(*slot),
-        collection_document(snapshot.revision, {{"complete", complete}, {"robots", std::move(names)}}, features));
+        collection_document(snapshot.revision, {{"any_reachable", any}, {"robots", std::move(names)}}, features));
 }
 
 } // namespace scanloom::http

@@ -2,6 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "server/guide/robots.hpp"
+#include "server/http/handlers/weave_request.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
@@ -60,6 +61,9 @@ Result<std::vector<Point2>> read_box(const boost::json::array& edges, std::strin
 
 Result<Maps> find_for_search(const MapsLookup& maps, const Call& call, std::initializer_list<std::string_view> known) {
     if (maps.sessions().is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
+    if (asks_for_weaving(call.query)) {
+        return invalid("settings and until are not taken here: POST them to .../weave, and give its id as weave=");
+    }
     return maps.find(call, known);
 }
 

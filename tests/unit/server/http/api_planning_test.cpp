@@ -114,7 +114,7 @@ TEST_F(ApiPlanningTest, FrontiersHaveTheGoalsOfTheRobot) {
     for (const char* query : {"", "robot=r1"}) {
         const auto answer = frontiers(query);
         EXPECT_EQ(boost::json::serialize(answer.at("robots")), R"(["r1"])");
-        EXPECT_FALSE(answer.at("complete").as_bool());
+        EXPECT_TRUE(answer.at("any_reachable").as_bool());
         for (std::size_t n = 0; n < found.size(); ++n) {
             const auto& properties = answer.at("features").at(n).at("properties");
             ASSERT_EQ(properties.at("reachable").as_bool(), goals[n].has_value());
@@ -163,18 +163,25 @@ TEST_F(ApiPlanningTest, SmallFrontiersMayBeLeftOut) {
     EXPECT_EQ(frontiers("size_min=" + std::to_string(largest)).at("features").as_array().size(), 1U);
     const auto none = frontiers("size_min=" + std::to_string(largest + 1));
     EXPECT_TRUE(none.at("features").as_array().empty());
-    EXPECT_TRUE(none.at("complete").as_bool());
+    EXPECT_FALSE(none.at("any_reachable").as_bool());
 }
 
-TEST_F(ApiPlanningTest, WithoutARobotThatIsSomewhereNothingIsReachableNorComplete) {
+TEST_F(ApiPlanningTest, SettingsAreWovenFirst) {
+    for (const char* what : {"frontiers.geojson?cell_size=0.1", "goal?robot=r1&until=3"}) {
+        EXPECT_THAT(detail(get(std::string("/api/v1/sessions/a/") + what), Status::bad_request),
+                    HasSubstr("POST them to .../weave"));
+    }
+}
+
+TEST_F(ApiPlanningTest, WithoutARobotThatIsSomewhereNothingIsReachable) {
     create("b");
     const auto empty = get_json("/api/v1/sessions/b/frontiers.geojson");
-    EXPECT_FALSE(empty.at("complete").as_bool());
+    EXPECT_FALSE(empty.at("any_reachable").as_bool());
     EXPECT_TRUE(empty.at("features").as_array().empty());
     join("a", "mute", 1);
     const auto of_mute = frontiers("robot=mute");
     EXPECT_TRUE(of_mute.at("robots").as_array().empty());
-    EXPECT_FALSE(of_mute.at("complete").as_bool());
+    EXPECT_FALSE(of_mute.at("any_reachable").as_bool());
     ASSERT_FALSE(of_mute.at("features").as_array().empty());
     EXPECT_TRUE(of_mute.at("features").at(0).at("properties").at("goal").is_null());
     EXPECT_EQ(boost::json::serialize(frontiers().at("robots")), R"(["r1"])") << "the mute one is left out";

@@ -235,6 +235,25 @@ TEST(NextGoal, ATargetTakesTheFrontierThatIsThereNow) {
     EXPECT_EQ(gone.goal->target, (Cell{0, 1})) << "what the other robot looks for is explored already";
 }
 
+TEST(NextGoal, ARobotTooNearToAWallIsNotSentNearer) {
+    std::mt19937 random(77);
+    int given = 0;
+    for (int round = 0; round < 300; ++round) {
+        const auto view = scattered(random, {0, 0, 40, 40}, 1);
+        ExplorationOptions options;
+        options.passability.body_radius_m = 0.1;
+        options.frontier_size_min = 1;
+        const Oracle oracle(view, {0, 0, 40, 40}, kCellSize, options.passability);
+        const Cell start{random_below(random, 40), random_below(random, 40)};
+        if (oracle.enterable(start)) continue;
+        const auto next = next_goal(view, kCellSize, centre(start, kCellSize), {}, options);
+        if (!next || !next->goal) continue;
+        ++given;
+        ASSERT_TRUE(oracle.enterable(next->goal->cell)) << start.i << ", " << start.j;
+    }
+    EXPECT_GT(given, 20);
+}
+
 TEST(NextGoal, AnothersSmallFrontierTakesNoLargerOneNearby) {
     const auto view = drawn({"f.ffff", "......", "......"});
     auto options = for_a_point();

@@ -132,6 +132,49 @@ TEST(GridPath, AGoalNearerToAnObstacleThanItsCellsCentreIsRefused) {
     EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle than the body radius of 0.4 m"));
 }
 
+TEST(GridPath, AStraightWayThatIsFreeIsTaken) {
+    std::mt19937 random(38);
+    int free = 0;
+    for (int round = 0; round < 400; ++round) {
+        const PassabilityOptions options{.body_radius_m = 0.1, .danger_cost = 0.0};
+        const auto view = scattered(random, kBox, round % 2);
+        const auto passability = make_passability(view, kCellSize, options).value();
+        const Cell from = random_cell(random);
+        const Cell to = random_cell(random);
+        const auto path = plan_path(view, kCellSize, centre(from, kCellSize), centre(to, kCellSize), options);
+        const Oracle oracle(view, kBox, kCellSize, options);
+        const Point2 a(from.i + 0.5, from.j + 0.5);
+        const Point2 b(to.i + 0.5, to.j + 0.5);
+        if (!path || !oracle.enterable(from) || !oracle.cost_of_line(a, b) || !oracle.keeps_clear(a, b)) continue;
+        ++free;
+        ASSERT_EQ(path->points.size(), 2U) << a.transpose() << " to " << b.transpose();
+    }
+    EXPECT_GT(free, 20);
+}
+
+TEST(GridPath, ARobotTooNearToAWallNeverComesNearer) {
+    std::mt19937 random(39);
+    int left = 0;
+    for (int round = 0; round < 300; ++round) {
+        const PassabilityOptions options{.body_radius_m = 0.2};
+        const auto view = scattered(random, kBox, 1);
+        const Oracle oracle(view, kBox, kCellSize, options);
+        const Cell from = random_cell(random);
+        const Cell to = random_cell(random);
+        if (oracle.enterable(from)) continue;
+        const Point2 start(from.i + 0.5, from.j + 0.5);
+        double slack = 0.0; // what the start itself lacks
+        while (slack < 4.0 && !oracle.keeps_clear(start, start, slack)) slack += 0.125;
+        const auto path = plan_path(view, kCellSize, centre(from, kCellSize), centre(to, kCellSize), options);
+        if (!path) continue;
+        ++left;
+        for (const Point2& point : path->points) {
+            ASSERT_TRUE(oracle.keeps_clear(point / kCellSize, point / kCellSize, slack)) << point.transpose();
+        }
+    }
+    EXPECT_GT(left, 20);
+}
+
 TEST(GridPath, BetweenRoundCoordinatesInTheOpenIsStraight) {
     const std::vector<std::string_view> open(12, "............");
     const auto path = plan_path(drawn(open), 1.0, {2.0, 9.0}, {2.0, 4.0}, {.body_radius_m = 0.4}).value();
