@@ -14,7 +14,8 @@ TEST_F(LogExport, AsCarmenReplaysToTheSameMaps) {
 
 TEST_F(LogExport, OfARealLogReplaysToTheSameMaps) {
     const auto intel = kRealData / "logs/intel-corrected.log.gz";
-    if (!std::filesystem::exists(intel)) GTEST_SKIP() << intel << " is not there";
+    if (!std::filesystem::exists(intel))
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << intel;
     stream("intel", "0.1", {"replay", intel.string()});
     const auto log = save("/api/v1/sessions/intel/log?format=clf", "intel.clf");
     stream("again", "0.1", {"replay", log.string()});

@@ -22,7 +22,8 @@ TEST_F(Reweaving, GivesTheDigestsOfASessionCreatedWithTheSettings) {
 
 TEST_F(Reweaving, OfARealLogGivesThemToo) {
     const auto intel = kRealData / "logs/intel-corrected.log.gz";
-    if (!std::filesystem::exists(intel)) GTEST_SKIP() << intel << " is not there";
+    if (!std::filesystem::exists(intel))
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << intel;
     stream("intel", "0.05", {"replay", intel.string()});
     stream("coarse", "0.1", {"replay", intel.string()});
     EXPECT_EQ(layers("intel", "?cell_size=0.1"), layers("coarse"));

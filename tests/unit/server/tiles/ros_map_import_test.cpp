@@ -160,7 +160,8 @@ TEST_P(RealMap, IsImportedWithFreeOccupiedAndUnknownCells) {
         std::ifstream in(base.string() + extension, std::ios::binary);
         return std::string(std::istreambuf_iterator<char>(in), {});
     };
-    if (!std::filesystem::exists(base.string() + ".pgm")) GTEST_SKIP() << base << " is not there";
+    if (!std::filesystem::exists(base.string() + ".pgm"))
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << base;
     const auto description = parse_ros_yaml(file(".yaml"));
     ASSERT_TRUE(description) << description.error().message;
     const auto patches = read_ros_image(*description, bytes_of(file(".pgm")));
