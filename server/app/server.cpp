@@ -54,6 +54,7 @@ Server::~Server() {
 void Server::join_pools() {
     weaves_.stop(); // nobody waits for them any more
     telling_.join();
+    showing_.join();
     awaiting_.join();
     planning_.join();
     reweaving_.join();
@@ -102,7 +103,7 @@ Result<> Server::listen() {
     auto http = http::Server::listen(
         io_,
         {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
-         planning_.get_executor(), changing_.get_executor()},
+         planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
         config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);

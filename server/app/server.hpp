@@ -33,6 +33,7 @@ namespace scanloom::app {
 ///   changing       creating and deleting sessions: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   telling        metrics
+///   showing        what viewers are told live: one event at a time, as snapshots are read for it
 ///
 /// Thread  open() and run() from the main thread.
 class Server {
@@ -71,6 +72,7 @@ private:
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool telling_{1};
+    boost::asio::thread_pool showing_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     session::Weaves weaves_;

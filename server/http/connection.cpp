@@ -3,6 +3,7 @@
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/problem.hpp"
+#include "server/live/invitation.hpp"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -11,6 +12,7 @@
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
@@ -61,10 +63,21 @@ Request head_of(const beast::http::request<beast::http::string_body>& message) {
     return request;
 }
 
-Request request_of(beast::http::request<beast::http::string_body>&& message) {
+std::optional<WebSocketUpgrade> upgrade_of(const beast::http::request<beast::http::string_body>& message) {
+    using beast::http::field;
+    if (!beast::websocket::is_upgrade(message)) return std::nullopt;
+    return WebSocketUpgrade{std::string(view(message[field::sec_websocket_version])),
+                            std::string(view(message[field::sec_websocket_key])),
+                            std::string(view(message[field::origin]))};
+}
+
+/// Takes the body out of the message.
+Request request_of(beast::http::request<beast::http::string_body>& message) {
     Request request;
     request.method = view(message.method_string());
     request.target = view(message.target());
+    request.host = view(message[beast::http::field::host]);
+    request.upgrade = upgrade_of(message);
     request.content_type = view(message[beast::http::field::content_type]);
     const auto [begin, end] = message.equal_range(beast::http::field::if_none_match);
     for (auto field = begin; field != end; ++field) {
@@ -115,12 +128,16 @@ net::awaitable<void> Connection::run() {
 void Connection::stop() {
     net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->stopping_ = true;
+        if (self->viewer_) self->viewer_->stop();
         if (self->idle_) self->stream_.cancel();
     });
 }
 
 void Connection::abort() {
-    net::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->stream_.close(); });
+    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+        self->stream_.close();
+        if (self->viewer_) self->viewer_->abort();
+    });
 }
 
 net::awaitable<bool> Connection::wait_for_request() {
@@ -161,10 +178,15 @@ net::awaitable<bool> Connection::serve_request() {
     Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
                   .keep_alive = parser.get().keep_alive(),
                   .takes_chunks = parser.get().version() >= 11};
+    Message message = parser.release();
     const auto begin = std::chrono::steady_clock::now();
-    const Response response = co_await compute(lane, request_of(parser.release()));
+    const Response response = co_await compute(lane, request_of(message));
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     service_->counters.request_seconds.Observe(seconds.count());
+    if (response.invitation) {
+        co_await show(*response.invitation, message);
+        co_return false;
+    }
     if (stopping_) manner.keep_alive = false;
     co_return co_await write(response, manner);
 }
@@ -217,6 +239,29 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
         co_return false;
     }
     co_return true;
+}
+
+/// Hands the socket over to a viewer, until that ends.
+net::awaitable<void> Connection::show(const live::Invitation& invitation, const Message& upgrade) {
+    const auto path = instance_of(view(upgrade.target()));
+    auto seat = service_->seats.try_take(invitation.session_id);
+    std::optional<Response> refusal;
+    if (!seat) {
+        service_->counters.live.refused.Increment();
+        refusal = problem(Error{Errc::kOverloaded, "too many viewers watch at this moment; try again later"}, path);
+    } else if (buffer_.size() > 0) {
+        refusal = problem(Status::bad_request, "a WebSocket sends nothing before its upgrade is answered", path);
+    }
+    if (refusal) {
+        co_await write(*refusal, {});
+        co_return;
+    }
+    service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
+    viewer_ = std::make_shared<live::Viewer>(
+        stream_.release_socket(), invitation, std::move(seat),
+        live::Viewer::Services{service_->config.live, service_->executors.showing, service_->counters.live});
+    if (stopping_) viewer_->stop();
+    co_await viewer_->run(upgrade);
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.

@@ -4,6 +4,8 @@
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/server_config.hpp"
+#include "server/live/seats.hpp"
+#include "server/live/viewer.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/sockets/slots.hpp"
 
@@ -33,6 +35,7 @@ struct Executors {
     boost::asio::any_io_executor weaving;
     boost::asio::any_io_executor planning;
     boost::asio::any_io_executor changing;
+    boost::asio::any_io_executor showing; ///< not a lane: what viewers are told live is made here
 };
 
 /// What all connections of a server share.
@@ -46,9 +49,11 @@ struct Service {
     sockets::Slots imports; ///< requests in Lane::kImporting
     sockets::Slots weaves;  ///< requests in Lane::kWeaving
     sockets::Slots plans;   ///< requests in Lane::kPlanning
+    live::Seats seats;      ///< connections that are viewers'
 };
 
-/// One connection: reads a request, has it answered, writes the answer, and again, in order.
+/// One connection: reads a request, has it answered, writes the answer, and again, in order. A request that is invited
+/// to watch a session is the last: the connection becomes a live::Viewer's.
 ///
 /// No request with Transfer-Encoding is read. Nothing here needs one, and Beast 1.81 throws
 /// std::length_error at long chunked trailers.
@@ -67,12 +72,14 @@ public:
     void abort();
 
 private:
+    using Message = boost::beast::http::request<boost::beast::http::string_body>;
     using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
+    [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Message& upgrade);
     [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request);
     [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(Lane lane) const;
     [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
@@ -92,6 +99,7 @@ private:
     boost::beast::tcp_stream stream_;
     boost::beast::flat_buffer buffer_;
     std::shared_ptr<const Service> service_;
+    std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
     bool idle_ = false;
     bool stopping_ = false;
     bool must_linger_ = false; // the peer may still have the last answer to read

@@ -19,4 +19,42 @@ bool is_known_host(std::string_view host_field, const std::vector<std::string>& 
            std::ranges::any_of(names, [&](const auto& name) { return boost::urls::grammar::ci_is_equal(host, name); });
 }
 
+namespace {
+
+bool is_loopback(const boost::urls::authority_view& authority) {
+    if (authority.host_type() == boost::urls::host_type::ipv4) return authority.host_ipv4_address().is_loopback();
+    if (authority.host_type() == boost::urls::host_type::ipv6) return authority.host_ipv6_address().is_loopback();
+    return boost::urls::grammar::ci_is_equal(authority.host(), "localhost");
+}
+
+} // namespace
+
+bool is_own_page(std::string_view origin, std::string_view host_field) {
+    const auto colon = origin.find("://");
+    if (colon == std::string_view::npos) return false; // "null"
+    const auto scheme = origin.substr(0, colon);
+    if (scheme != "http" && scheme != "https") return false;
+    const auto page = boost::urls::parse_authority(origin.substr(colon + 3));
+    const auto host = boost::urls::parse_authority(host_field);
+    if (!page || !host || page->has_userinfo() || page->host_type() == boost::urls::host_type::none) return false;
+    return is_loopback(*page) || boost::urls::grammar::ci_is_equal(page->host(), host->host());
+}
+
+bool is_websocket_key(std::string_view key) noexcept {
+    constexpr std::size_t kSize = 24;
+    if (key.size() != kSize || !key.ends_with("==")) return false;
+    return std::ranges::all_of(key.substr(0, kSize - 2), [](char c) {
+        return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '/';
+    });
+}
+
+std::string websocket_sources(std::string_view host_field) {
+    const bool is_plain = !host_field.empty() && std::ranges::all_of(host_field, [](char c) {
+        return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
+               c == ':';
+    });
+    const std::string host(host_field);
+    return is_plain ? "ws://" + host + " wss://" + host : std::string();
+}
+
 } // namespace scanloom::http

@@ -1,16 +1,26 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace scanloom::http {
+
+/// What whoever wants to go on with a WebSocket says (RFC 6455, section 4.1), unchecked; empty: not said.
+struct WebSocketUpgrade {
+    std::string version;
+    std::string key;
+    std::string origin;
+};
 
 /// A request as it arrived: nothing in it has been checked but that it is HTTP.
 struct Request {
     std::string method = "GET";
     std::string target = "/";
+    std::string host;          ///< empty when absent
     std::string content_type;  ///< empty when absent
     std::string if_none_match; ///< all such fields, joined with commas; empty when absent
     std::string body;
+    std::optional<WebSocketUpgrade> upgrade; ///< when it asks for one
 };
 
 } // namespace scanloom::http

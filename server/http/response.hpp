@@ -11,6 +11,10 @@
 #include <utility>
 #include <vector>
 
+namespace scanloom::live {
+struct Invitation;
+}
+
 namespace scanloom::http {
 
 using Status = boost::beast::http::status;
@@ -48,7 +52,8 @@ struct Response {
     Status status = Status::ok;
     std::vector<std::pair<std::string_view, std::string>> fields; ///< names are literals, "ETag"
     Body body;
-    std::shared_ptr<BodyStream> stream = nullptr; ///< in place of `body`
+    std::shared_ptr<BodyStream> stream = nullptr;                 ///< in place of `body`
+    std::shared_ptr<const live::Invitation> invitation = nullptr; ///< with 101: the connection becomes a viewer's
 
     Response& set(std::string_view field, std::string_view value) &;
     Response&& set(std::string_view field, std::string_view value) &&;

@@ -38,6 +38,7 @@ enum class Operation {
     kCoverage,
     kGoal,
     kLog,
+    kLive,
     kStartWeave,
     kListWeaves,
     kGetWeave,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "server/live/live_config.hpp"
+
 #include <boost/asio/ip/tcp.hpp>
 
 #include <chrono>
@@ -23,6 +25,8 @@ struct ServerConfig {
     std::uint64_t body_bytes_max = 256 * 1024;                ///< a region of 4096 corners, every digit of them
     std::uint64_t import_bytes_max = std::uint64_t{80} << 20; ///< a map of 64 million cells, and what goes with it
     std::size_t imports_max = 2;                              ///< at once; one more is answered 503
+
+    live::LiveConfig live; ///< each viewer is one of the connections
 
     std::chrono::milliseconds idle{60'000};       ///< between requests
     std::chrono::milliseconds header{10'000};     ///< from a request's first byte to the end of its header

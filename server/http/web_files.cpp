@@ -1,6 +1,7 @@
 #include "server/http/web_files.hpp"
 
 #include "server/http/conditional.hpp"
+#include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
 
 #include <fmt/format.h>
@@ -18,9 +19,12 @@ namespace {
 
 constexpr std::size_t kBytesMax = std::size_t{64} << 20;
 
-constexpr std::string_view kViewerPolicy =
-    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
-    "frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+std::string viewer_policy(std::string_view host) {
+    const auto websockets = websocket_sources(host);
+    return fmt::format("default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+                       "connect-src 'self'{}{}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+                       websockets.empty() ? "" : " ", websockets);
+}
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kTypes = {{
     {".html", "text/html; charset=utf-8"},
@@ -118,7 +122,8 @@ Result<WebFiles> load_web_files(const std::filesystem::path& folder) {
     return files;
 }
 
-Result<Response> serve_web_file(const WebFiles& files, std::string_view name, std::string_view if_none_match) {
+Result<Response> serve_web_file(const WebFiles& files, std::string_view name, std::string_view if_none_match,
+                                std::string_view host) {
     const auto found = files.find(name);
     if (found == files.end()) {
         if (name == "index.html") return not_built();
@@ -131,7 +136,7 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
             ? not_modified(file.etag, cache_control)
             : ok(file.content_type, Body(file.content)).set("ETag", file.etag).set("Cache-Control", cache_control);
     // Of a 304, too: a browser applies its fields to the page it has (RFC 9111, section 3.2).
-    response.set("Content-Security-Policy", kViewerPolicy);
+    response.set("Content-Security-Policy", viewer_policy(host));
     return response;
 }
 

@@ -28,9 +28,11 @@ using WebFiles = std::map<std::string, WebFile, std::less<>>;
 /// Errors  kUnreachable: a file cannot be read; kTooLarge: more than 64 MiB.
 [[nodiscard]] Result<WebFiles> load_web_files(const std::filesystem::path& folder);
 
-/// Answers with the file of that name; with a page that explains, when there are none at all.
+/// Answers with the file of that name; with a page that explains, when there are none at all. A page may ask this
+/// server alone, under the name of `host`, the request's Host field: older browsers do not count ws: as the same
+/// origin.
 /// Errors  kNotFound.
 [[nodiscard]] Result<Response> serve_web_file(const WebFiles& files, std::string_view name,
-                                              std::string_view if_none_match);
+                                              std::string_view if_none_match, std::string_view host);
 
 } // namespace scanloom::http

@@ -28,6 +28,12 @@ const Sensor* Projection::find_sensor(RobotIndex robot, std::uint32_t id) const 
     return known == robots_[robot].sensors.end() ? nullptr : known->second.sensor.get();
 }
 
+std::shared_ptr<const Sensor> Projection::sensor_of(RobotIndex robot, std::uint32_t id) const {
+    if (robot >= robots_.size()) return nullptr;
+    const auto known = robots_[robot].sensors.find(id);
+    return known == robots_[robot].sensors.end() ? nullptr : known->second.sensor;
+}
+
 Result<> Projection::fold(const LogEntry& entry) {
     double unbounded = HUGE_VAL;
     if (auto folded = fold(entry, unbounded); !folded) return folded.error();

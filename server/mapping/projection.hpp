@@ -61,6 +61,9 @@ public:
     [[nodiscard]] const std::string* find_robot_name(RobotIndex robot) const noexcept;
     [[nodiscard]] const Sensor* find_sensor(RobotIndex robot, std::uint32_t id) const noexcept;
 
+    /// The same description, for as long as it is held.
+    [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
+
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
     ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.

@@ -10,11 +10,19 @@
 #include "server/mapping/trajectory.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace scanloom::mapping {
+
+/// A scan as it was folded, with the description that its sensor had then.
+struct FoldedScan {
+    Revision revision = 0; ///< of its log entry
+    std::shared_ptr<const Sensor> sensor;
+    Scan scan;
+};
 
 /// What a session knows of one robot. Its place in Snapshot::robots is its RobotIndex.
 struct RobotState {
@@ -24,6 +32,10 @@ struct RobotState {
     double stamp = 0.0;        ///< seconds, of the newest scan
     std::optional<Pose2> pose; ///< T_map_robot of the newest scan
     TrajectoryView trajectory;
+
+    /// To be looked at, no part of the maps: only a session that takes scans has it, of scans taken since it was
+    /// loaded.
+    std::shared_ptr<const FoldedScan> newest_scan;
 };
 
 /// The cells of each layer that any scan changed.

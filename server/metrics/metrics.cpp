@@ -31,6 +31,12 @@ IngestCounters::IngestCounters(prometheus::Registry& registry)
     }
 }
 
+LiveCounters::LiveCounters(prometheus::Registry& registry)
+    : viewers(gauge(registry, "scanloom_live_viewers", "Viewers that watch a session over a WebSocket.")),
+      refused(counter(registry, "scanloom_live_viewers_refused_total", "Viewers refused because too many watched.")),
+      events(counter(registry, "scanloom_live_events_total", "Events sent to viewers.")),
+      bytes(counter(registry, "scanloom_live_bytes_total", "Bytes of the events sent to viewers.")) {}
+
 HttpCounters::HttpCounters(prometheus::Registry& registry)
     : connections_open(gauge(registry, "scanloom_http_connections_open", "HTTP connections that are open.")),
       connections_refused(counter(registry, "scanloom_http_connections_refused_total",
@@ -39,7 +45,8 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
                           .Name("scanloom_http_request_seconds")
                           .Help("Time from a whole request to the start of its answer.")
                           .Register(registry)
-                          .Add({}, kSecondsBuckets)) {
+                          .Add({}, kSecondsBuckets)),
+      live(registry) {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_http_requests_total")
                        .Help("HTTP requests answered, by class of status.")

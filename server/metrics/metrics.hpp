@@ -29,6 +29,17 @@ private:
     std::vector<prometheus::Counter*> failed_; // by Errc
 };
 
+/// What is counted of viewers that watch sessions live. Thread: any.
+class LiveCounters {
+public:
+    explicit LiveCounters(prometheus::Registry& registry);
+
+    prometheus::Gauge& viewers;
+    prometheus::Counter& refused; ///< because too many watched
+    prometheus::Counter& events;  ///< sent
+    prometheus::Counter& bytes;   ///< of those, without the frames of the WebSocket
+};
+
 /// What the HTTP server counts. Thread: any.
 class HttpCounters {
 public:
@@ -37,6 +48,7 @@ public:
     prometheus::Gauge& connections_open;
     prometheus::Counter& connections_refused; ///< because too many were open
     prometheus::Histogram& request_seconds;   ///< from the whole request to the start of its answer
+    LiveCounters live;
 
     /// Answers by class of status. Pre: 100 <= status < 600.
     [[nodiscard]] prometheus::Counter& answered(unsigned status) const { return *by_class_[status / 100 - 1]; }

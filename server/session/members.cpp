@@ -120,7 +120,13 @@ bool Members::is_connected(RobotIndex robot) const {
     return robot < connected_.size() && connected_[robot];
 }
 
+std::vector<bool> Members::connected() const {
+    const std::lock_guard lock(connected_mutex_);
+    return connected_;
+}
+
 void Members::set_connected(const Member& member, bool connected) {
+    ++connection_changes_;
     const std::lock_guard lock(connected_mutex_);
     connected_.resize(std::max(connected_.size(), members_.size()));
     connected_[index_of(member)] = connected;

@@ -27,7 +27,7 @@ struct Joining {
 
 /// The robots of a session, their links, and what each of them has sent: only entries that can follow
 /// in the log come out of here.
-/// Thread  the session's strand; is_connected() any.
+/// Thread  the session's strand; is_connected() and connected() any.
 class Members {
 public:
     /// Both must outlive this.
@@ -37,6 +37,12 @@ public:
     void restore(const mapping::ProjectionState& state);
 
     [[nodiscard]] bool is_connected(RobotIndex robot) const;
+
+    /// By RobotIndex; those beyond the end are not connected.
+    [[nodiscard]] std::vector<bool> connected() const;
+
+    /// Rises whenever a robot's link comes or goes.
+    [[nodiscard]] std::uint64_t connection_changes() const noexcept { return connection_changes_; }
 
     /// Lets the link in as soon as nothing of the robot's earlier ones is under way; these fail.
     /// @return the entry that makes the robot known, if it is not.
@@ -83,6 +89,7 @@ private:
     const SessionInfo& info_;
     SessionCounters& counters_;
     std::vector<Member> members_; // by RobotIndex
+    std::uint64_t connection_changes_ = 0;
 
     mutable std::mutex connected_mutex_;
     std::vector<bool> connected_;

@@ -44,9 +44,23 @@ std::optional<Error> Session::failure() const {
     return failure_;
 }
 
+std::optional<Error> Session::closing() const {
+    const std::lock_guard lock(published_mutex_);
+    return closing_;
+}
+
 template <class Work>
 void Session::on_strand(Work work) {
-    boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable { work(*self); });
+    boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
+        work(*self);
+        self->tell_watchers(); // last: robots have their acks already
+    });
+}
+
+void Session::tell_watchers() {
+    const auto told_before = std::exchange(connections_told_, members_.connection_changes());
+    const bool has_news = std::exchange(has_news_, false);
+    if (has_news || told_before != connections_told_) watchers_.tell();
 }
 
 // Down: from a link to the log
@@ -150,9 +164,9 @@ void Session::fold_slice() {
 /// which must not end the other sessions.
 Result<> Session::fold_some(double work) {
     try {
-        const auto& entries = durable_.front().entries;
+        auto& entries = durable_.front().entries;
         for (; folded_ < entries.size() && work > 0.0 && !hurried_; ++folded_) {
-            const Submitted& next = entries[folded_];
+            Submitted& next = entries[folded_];
             if (!next.entry) continue;
             const auto folded = projection_.fold(*next.entry, work);
             if (!folded) return folded.error();
@@ -160,11 +174,21 @@ Result<> Session::fold_some(double work) {
             work_since_checkpoint_ += next.reach.work;
             if (std::holds_alternative<ScanTaken>(*next.entry)) ++counters_->scans_applied;
             if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
+            keep_newest(*next.entry);
         }
         return {};
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
     }
+}
+
+/// Takes the readings out of a scan that has been folded: of what is left, Members reads the seq.
+void Session::keep_newest(LogEntry& folded) {
+    auto* taken = std::get_if<ScanTaken>(&folded);
+    if (taken == nullptr) return;
+    if (newest_scans_.size() <= taken->robot) newest_scans_.resize(taken->robot + 1);
+    newest_scans_[taken->robot] = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{
+        projection_.revision(), projection_.sensor_of(taken->robot, taken->scan.sensor), std::move(taken->scan)});
 }
 
 void Session::finish_group() {
@@ -179,7 +203,10 @@ void Session::finish_group() {
 }
 
 void Session::publish() {
-    auto snapshot = std::make_shared<const mapping::Snapshot>(projection_.snapshot());
+    auto maps = projection_.snapshot();
+    for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
+    auto snapshot = std::make_shared<const mapping::Snapshot>(std::move(maps));
+    has_news_ = true;
     const std::lock_guard lock(published_mutex_);
     published_.swap(snapshot);
 }
@@ -221,6 +248,7 @@ void Session::stop_writing(const Error& error) {
         const std::lock_guard lock(published_mutex_);
         failure_ = error;
     }
+    has_news_ = true;
     members_.fail_all(error);
     drop_what_is_under_way();
     finish_closing();
@@ -235,6 +263,11 @@ void Session::drop_what_is_under_way() {
 
 void Session::close(Error reason, std::function<void()> done) {
     on_strand([reason = std::move(reason), done = std::move(done)](Session& self) mutable {
+        {
+            const std::lock_guard lock(self.published_mutex_);
+            self.closing_ = reason;
+        }
+        self.has_news_ = true;
         if (!self.refusing_) self.refusing_ = std::move(reason);
         self.closed_ = std::move(done);
         self.finish_closing();

@@ -7,6 +7,7 @@
 #include "server/session/members.hpp"
 #include "server/session/robot_listener.hpp"
 #include "server/session/session_info.hpp"
+#include "server/session/watchers.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -50,8 +51,19 @@ public:
     /// could not be written, or the memory ran out. Nothing while all is well.
     [[nodiscard]] std::optional<Error> failure() const;
 
+    /// Why the session takes nothing more, since it is being closed: kGone, it is deleted, or kShuttingDown. Nothing
+    /// before that.
+    [[nodiscard]] std::optional<Error> closing() const;
+
+    /// From now on tells `watcher` when any of what can be asked for here has changed. Whoever watches first and then
+    /// looks misses nothing.
+    void watch(std::weak_ptr<Watcher> watcher) { watchers_.add(std::move(watcher)); }
+
     /// Whether the robot has a link at present.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return members_.is_connected(robot); }
+
+    /// The same of all, by RobotIndex; those beyond the end have none.
+    [[nodiscard]] std::vector<bool> connected() const { return members_.connected(); }
 
     /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
     /// `source` identifies what the robot streams when the same can be streamed again; empty for a live robot.
@@ -96,8 +108,10 @@ private:
     void on_appended(Group group, const Result<>& appended);
     void fold_slice();
     [[nodiscard]] Result<> fold_some(double work);
+    void keep_newest(LogEntry& folded);
     void finish_group();
     void publish();
+    void tell_watchers();
     void stop_writing(const Error& error);
     void drop_what_is_under_way();
     [[nodiscard]] bool is_checkpoint_due() const;
@@ -117,7 +131,8 @@ private:
     Backlog waiting_;
     std::deque<Group> durable_; // not folded yet; the first one may be in part
     std::size_t folded_ = 0;    // entries of the first
-    Revision appended_ = 0;     // newest entry handed to the log
+    std::vector<std::shared_ptr<const mapping::FoldedScan>> newest_scans_; // by RobotIndex; null: none yet
+    Revision appended_ = 0;                                                // newest entry handed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended and folded may add
     std::optional<Revision> checkpointed_;
@@ -129,11 +144,16 @@ private:
     bool broken_ = false;           // the log or the memory failed: nothing more is appended, folded or written
     std::function<void()> closed_;  // to be called when closing is done
 
+    bool has_news_ = false;              // for the watchers, besides links that came or went
+    std::uint64_t connections_told_ = 0; // Members::connection_changes() that the watchers know of
+
+    Watchers watchers_;
     std::atomic<bool> hurried_ = false; // set from any thread, as the strand may be busy
 
     mutable std::mutex published_mutex_; // guards what follows, held for a copy only
     std::shared_ptr<const mapping::Snapshot> published_;
     std::optional<Error> failure_;
+    std::optional<Error> closing_;
 };
 
 } // namespace scanloom::session

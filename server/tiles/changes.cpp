@@ -20,7 +20,7 @@ void merge_equal_tiles(std::vector<ChangedTile>& tiles) {
 
 } // namespace
 
-std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer, Revision since) {
+std::vector<ChangedTile> changed_native_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer, Revision since) {
     std::vector<ChangedTile> level;
     mapping::with_layer(snapshot, layer, [&](const auto& view, auto&&) {
         view.visit(grid::chunks_of(kTiledCells), since, [&](grid::ChunkKey at, const auto& chunk) {
@@ -29,7 +29,11 @@ std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mappin
         });
     });
     merge_equal_tiles(level);
+    return level;
+}
 
+std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer, Revision since) {
+    std::vector<ChangedTile> level = changed_native_tiles(snapshot, layer, since);
     std::vector<ChangedTile> all = level;
     for (std::uint32_t zoom = kZoomNative; zoom-- > 0;) {
         for (auto& [key, revision] : level) key = {zoom, key.x / 2, key.y / 2};

@@ -20,4 +20,8 @@ struct ChangedTile {
 [[nodiscard]] std::vector<ChangedTile> changed_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer,
                                                      Revision since);
 
+/// Those of kZoomNative among them. Ordered by y, then x.
+[[nodiscard]] std::vector<ChangedTile> changed_native_tiles(const mapping::Snapshot& snapshot, mapping::Layer layer,
+                                                            Revision since);
+
 } // namespace scanloom::tiles

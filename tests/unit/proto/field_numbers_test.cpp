@@ -1,6 +1,7 @@
 #include "tests/unit/proto/field_numbers.hpp"
 
 #include "scanloom/v1/frame.pb.h"
+#include "scanloom/v1/live.pb.h"
 #include "scanloom/v1/log.pb.h"
 #include "scanloom/v1/scan.pb.h"
 #include "scanloom/v1/session.pb.h"
@@ -29,7 +30,7 @@ std::string field_numbers_file() {
 TEST(FieldNumbers, NoneIsEverReusedOrChangesItsType) {
     const std::vector<const pb::FileDescriptor*> files = {
         v1::Frame::descriptor()->file(), v1::LogEntry::descriptor()->file(), v1::Scan::descriptor()->file(),
-        v1::SessionConfig::descriptor()->file()};
+        v1::SessionConfig::descriptor()->file(), v1::LiveEvent::descriptor()->file()};
     for (const auto& complaint : complaints_about(files, field_numbers_file())) {
         ADD_FAILURE() << complaint << "\n(the list is " FIELD_NUMBERS_FILE ")";
     }

@@ -67,6 +67,8 @@ TEST(SourceRules, PureFoldersKnowNothingOfTheOutsideWorld) {
     }
     EXPECT_THAT(including("server/mapping/cell.cpp", "<vector>"), IsEmpty());
     EXPECT_THAT(including("server/session/session.cpp", "<thread>"), IsEmpty());
+    EXPECT_THAT(including("server/live/core/narrator.cpp", "<chrono>"), testing::SizeIs(1));
+    EXPECT_THAT(including("server/live/viewer.cpp", "<chrono>"), IsEmpty());
 }
 
 TEST(SourceRules, ANewFolderNeedsARow) {

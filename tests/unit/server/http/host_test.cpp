@@ -24,5 +24,30 @@ TEST(KnownHost, ConfiguredNamesAreKnown) {
     EXPECT_FALSE(is_known_host("xmaps.example", {"maps.example"}));
 }
 
+TEST(OwnPage, IsOfTheHostThatWasAskedOrOfThisMachine) {
+    EXPECT_TRUE(is_own_page("http://10.0.0.7:8080", "10.0.0.7:8080"));
+    EXPECT_TRUE(is_own_page("https://Maps.example", "maps.example:8443")) << "a proxy has ports of its own";
+    for (const auto* origin : {"http://localhost:5173", "http://LOCALHOST", "http://127.0.0.1:1", "https://[::1]:80"}) {
+        EXPECT_TRUE(is_own_page(origin, "maps.example")) << origin;
+    }
+}
+
+TEST(OwnPage, IsNoneOfAStrangersPages) {
+    for (const auto* origin :
+         {"http://evil.example", "http://maps.example.evil.example", "http://localhost.evil.example", "null", "",
+          "maps.example", "file://", "http://", "http://:80", "ftp://maps.example", "http://evil@localhost",
+          "chrome-extension://localhost", "http://10.0.0.7", "http://maps.example http://evil.example"}) {
+        EXPECT_FALSE(is_own_page(origin, "maps.example:8080")) << origin;
+    }
+}
+
+TEST(WebSocketKey, IsSixteenBytesInBase64) {
+    EXPECT_TRUE(is_websocket_key("dGhlIHNhbXBsZSBub25jZQ==")); // RFC 6455's own
+    for (const auto* key : {"", "dGhlIHNhbXBsZSBub25jZQ", "dGhlIHNhbXBsZSBub25jZQ=", "dGhlIHNhbXBsZSBub25j Q==",
+                            "dGhlIHNhbXBsZSBub25jZQA==", "========================"}) {
+        EXPECT_FALSE(is_websocket_key(key)) << key;
+    }
+}
+
 } // namespace
 } // namespace scanloom::http

@@ -57,8 +57,8 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(), serving_.get_executor(),  survey_.get_executor(),
-                weaving_.get_executor(), planning_.get_executor(), changing_.get_executor()};
+        return {telling_.get_executor(),  serving_.get_executor(),  survey_.get_executor(), weaving_.get_executor(),
+                planning_.get_executor(), changing_.get_executor(), showing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
@@ -71,6 +71,7 @@ private:
     boost::asio::thread_pool weaving_{1};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{1};
+    boost::asio::thread_pool showing_{1};
     boost::asio::io_context io_;
     std::shared_ptr<Server> server_;
     std::array<std::thread, 2> threads_;

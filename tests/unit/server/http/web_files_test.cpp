@@ -27,7 +27,7 @@ protected:
 
 TEST_F(WebFilesTest, PageIsServedWithTheViewersPolicy) {
     write("index.html", "<p>hello");
-    const auto response = serve_web_file(load(), "index.html", "").value();
+    const auto response = serve_web_file(load(), "index.html", "", "").value();
     EXPECT_EQ(response.status, Status::ok);
     EXPECT_EQ(response.body.bytes(), "<p>hello");
     EXPECT_EQ(response.get("Content-Type"), "text/html; charset=utf-8");
@@ -37,25 +37,37 @@ TEST_F(WebFilesTest, PageIsServedWithTheViewersPolicy) {
                       HasSubstr("frame-ancestors 'none'")));
 }
 
+TEST_F(WebFilesTest, ThePageMayOpenWebSocketsOfThisServerAlone) {
+    write("index.html", "");
+    const auto policy_for = [&](std::string_view host) {
+        return std::string(serve_web_file(load(), "index.html", "", host).value().get("Content-Security-Policy"));
+    };
+    EXPECT_THAT(policy_for("localhost:8080"),
+                HasSubstr("connect-src 'self' ws://localhost:8080 wss://localhost:8080;"));
+    for (const auto* hostile : {"", "a;script-src *", "a b", "[::1]:80", "*", "a/b"}) {
+        EXPECT_THAT(policy_for(hostile), HasSubstr("connect-src 'self';")) << hostile;
+    }
+}
+
 TEST_F(WebFilesTest, HashedAssetsAreKeptForGood) {
     write("index.html", "");
     write("assets/index-BvC3kD9x.js", "1");
     write("assets/icon.svg", "<svg/>");
     const auto files = load();
-    const auto script = serve_web_file(files, "assets/index-BvC3kD9x.js", "").value();
+    const auto script = serve_web_file(files, "assets/index-BvC3kD9x.js", "", "").value();
     EXPECT_EQ(script.get("Content-Type"), "text/javascript; charset=utf-8");
     EXPECT_THAT(std::string(script.get("Cache-Control")), HasSubstr("immutable"));
-    const auto icon = serve_web_file(files, "assets/icon.svg", "").value();
+    const auto icon = serve_web_file(files, "assets/icon.svg", "", "").value();
     EXPECT_EQ(icon.get("Content-Type"), "image/svg+xml");
     EXPECT_EQ(icon.get("Cache-Control"), "no-cache");
 }
 
 TEST_F(WebFilesTest, EntityTagFollowsTheContent) {
     write("index.html", "one");
-    const std::string etag(serve_web_file(load(), "index.html", "").value().get("ETag"));
-    EXPECT_EQ(serve_web_file(load(), "index.html", etag).value().status, Status::not_modified);
+    const std::string etag(serve_web_file(load(), "index.html", "", "").value().get("ETag"));
+    EXPECT_EQ(serve_web_file(load(), "index.html", etag, "").value().status, Status::not_modified);
     write("index.html", "two");
-    EXPECT_EQ(serve_web_file(load(), "index.html", etag).value().status, Status::ok);
+    EXPECT_EQ(serve_web_file(load(), "index.html", etag, "").value().status, Status::ok);
 }
 
 TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
@@ -69,8 +81,8 @@ TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
         return head.substr(begin, head.find("\r\n", begin) - begin);
     };
     for (const auto* name : {"index.html", "assets/index-BvC3kD9x.js"}) {
-        const auto whole = serve_web_file(files, name, "").value();
-        const auto again = serve_web_file(files, name, whole.get("ETag")).value();
+        const auto whole = serve_web_file(files, name, "", "").value();
+        const auto again = serve_web_file(files, name, whole.get("ETag"), "").value();
         EXPECT_EQ(again.status, Status::not_modified);
         EXPECT_EQ(policies(again), policies(whole)) << name;
         EXPECT_THAT(policies(again), HasSubstr("default-src 'self'"));
@@ -84,7 +96,7 @@ TEST_F(WebFilesTest, OnlyWhatWasReadAtTheStartIsServed) {
     write("assets/deeper/a.js", "1");
     const auto files = load();
     for (const auto* name : {"secret.txt", "assets/deeper/a.js", "assets/../secret.txt", "/etc/passwd", "", "assets"}) {
-        const auto response = serve_web_file(files, name, "");
+        const auto response = serve_web_file(files, name, "", "");
         ASSERT_FALSE(response) << name;
         EXPECT_EQ(response.error().code, Errc::kNotFound) << name;
     }
@@ -93,7 +105,7 @@ TEST_F(WebFilesTest, OnlyWhatWasReadAtTheStartIsServed) {
 TEST_F(WebFilesTest, WithoutAViewerThePageSaysWhatToDo) {
     const auto files = load_web_files(folder_.path() / "missing").value();
     EXPECT_TRUE(files.empty());
-    const auto response = serve_web_file(files, "index.html", "").value();
+    const auto response = serve_web_file(files, "index.html", "", "").value();
     EXPECT_EQ(response.status, Status::not_found);
     EXPECT_THAT(std::string(response.body.bytes()), HasSubstr("./scanloom build"));
 }

@@ -1,0 +1,104 @@
+#include "common/wire/live.hpp"
+
+#include "common/wire/proto_convert.hpp"
+
+#include "scanloom/v1/live.pb.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/arena.h>
+#include <google/protobuf/unknown_field_set.h>
+
+namespace scanloom::wire {
+namespace {
+
+constexpr int kLayersMax = 16; // four, and some more of a viewer that says one twice
+
+using Differences = google::protobuf::RepeatedField<std::int32_t>;
+
+/// Neighbours are near one another: their differences take a byte or two each.
+void append_differences(const std::vector<PointMm>& points, Differences& out) {
+    out.Reserve(static_cast<int>(2 * points.size()));
+    PointMm before;
+    for (const PointMm& point : points) {
+        out.AddAlreadyReserved(point.x - before.x);
+        out.AddAlreadyReserved(point.y - before.y);
+        before = point;
+    }
+}
+
+void write(const TileChanges& changes, v1::TileChanges& out) {
+    out.set_layer(static_cast<v1::Layer>(changes.layer));
+    out.set_everything(changes.everything);
+    out.mutable_tiles()->Add(changes.tiles.begin(), changes.tiles.end());
+    out.mutable_revisions()->Add(changes.revisions.begin(), changes.revisions.end());
+}
+
+void write(const ScanPoints& scan, v1::ScanPoints& out) {
+    out.set_sensor(scan.sensor);
+    out.set_kind(scan.kind == SensorKind::kSonar ? v1::SENSOR_KIND_SONAR : v1::SENSOR_KIND_LASER);
+    out.set_stamp(scan.stamp);
+    to_proto(scan.origin, *out.mutable_origin());
+    append_differences(scan.points, *out.mutable_points());
+}
+
+void write(const RobotUpdate& robot, v1::RobotUpdate& out) {
+    out.set_robot(robot.robot);
+    out.set_name(robot.name);
+    out.set_connected(robot.connected);
+    if (robot.pose) to_proto(*robot.pose, *out.mutable_pose());
+    out.set_stamp(robot.stamp);
+    out.set_scan_count(robot.scan_count);
+    out.set_last_seq(robot.last_seq);
+    append_differences(robot.trail, *out.mutable_trail());
+    out.set_trail_from(robot.trail_from);
+    if (robot.scan) write(*robot.scan, *out.mutable_scan());
+}
+
+} // namespace
+
+std::string encode(const LiveEvent& event) {
+    google::protobuf::Arena arena;
+    auto& out = *google::protobuf::Arena::CreateMessage<v1::LiveEvent>(&arena);
+    out.set_session(event.session);
+    out.set_revision(event.revision);
+    out.set_state(static_cast<v1::SessionState>(event.state));
+    out.set_reason(event.reason);
+    auto& counters = *out.mutable_counters();
+    counters.set_scans(event.counters.scans);
+    counters.set_robots(event.counters.robots);
+    counters.set_connected(event.counters.connected);
+    counters.set_chunks(event.counters.chunks);
+    out.set_frontiers_revision(event.frontiers_revision);
+    for (const auto& changes : event.tiles) write(changes, *out.add_tiles());
+    for (const auto& robot : event.robots) write(robot, *out.add_robots());
+    return out.SerializeAsString();
+}
+
+Result<LiveRequest> decode_live_request(std::string_view body) {
+    google::protobuf::Arena arena;
+    auto& proto = *google::protobuf::Arena::CreateMessage<v1::LiveRequest>(&arena);
+    if (!proto.ParseFromArray(body.data(), static_cast<int>(body.size()))) {
+        return Error{Errc::kMalformed, "this is no LiveRequest; see live.proto"};
+    }
+    const auto& unknown = v1::LiveRequest::GetReflection()->GetUnknownFields(proto);
+    if (!unknown.empty()) {
+        return invalid_field(fmt::format("live_request has a field {}, which is not known here; see live.proto",
+                                         unknown.field(0).number()));
+    }
+    if (proto.layers_size() > kLayersMax) {
+        return Error{Errc::kTooLarge, fmt::format("live_request.layers has {} entries, at most {} are read",
+                                                  proto.layers_size(), kLayersMax)};
+    }
+    LiveRequest request;
+    request.points = proto.points();
+    for (const int layer : proto.layers()) {
+        if (layer < v1::LAYER_OCCUPANCY || layer > v1::LAYER_CLASSIFICATION) {
+            return invalid_field(
+                fmt::format("live_request.layers[{}] is {}, which is no layer", request.layers.size(), layer));
+        }
+        request.layers.push_back(static_cast<LiveLayer>(layer));
+    }
+    return request;
+}
+
+} // namespace scanloom::wire

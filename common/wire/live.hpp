@@ -1,0 +1,90 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
+#include "common/scan/sensor.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The messages of the viewers' WebSocket (proto/scanloom/v1/live.proto, where each field is explained) as plain
+/// values.
+namespace scanloom::wire {
+
+/// As proto/ numbers them.
+enum class LiveLayer : std::uint8_t { kOccupancy = 1, kHimm = 2, kSonar = 3, kClassification = 4 };
+enum class LiveState : std::uint8_t { kOk = 1, kFailed = 2, kDraining = 3 };
+
+struct LiveRequest {
+    std::vector<LiveLayer> layers; ///< as they were sent, perhaps more than once
+    bool points = false;
+
+    friend bool operator==(const LiveRequest&, const LiveRequest&) = default;
+};
+
+/// Millimetres.
+struct PointMm {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+
+    friend bool operator==(const PointMm&, const PointMm&) = default;
+};
+
+struct TileChanges {
+    LiveLayer layer = LiveLayer::kOccupancy;
+    bool everything = false;
+    std::vector<std::uint32_t> tiles;
+    std::vector<std::uint64_t> revisions;
+};
+
+struct ScanPoints {
+    std::uint32_t sensor = 0;
+    SensorKind kind = SensorKind::kLaser;
+    double stamp = 0.0;
+    Pose2 origin;                ///< T_map_sensor
+    std::vector<PointMm> points; ///< less the origin, along the map's axes; up to kRangeMax away
+};
+
+struct RobotUpdate {
+    std::uint32_t robot = 0;
+    std::string name;
+    bool connected = false;
+    std::optional<Pose2> pose;
+    double stamp = 0.0;
+    std::uint64_t scan_count = 0;
+    std::uint64_t last_seq = 0;
+    std::vector<PointMm> trail; ///< in the map frame; up to kCoordinateMax, so that differences fit, too
+    std::uint64_t trail_from = 0;
+    std::optional<ScanPoints> scan;
+};
+
+struct LiveCounters {
+    std::uint64_t scans = 0;
+    std::uint32_t robots = 0;
+    std::uint32_t connected = 0;
+    std::uint64_t chunks = 0;
+};
+
+struct LiveEvent {
+    std::string session;
+    std::uint64_t revision = 0;
+    LiveState state = LiveState::kOk;
+    std::string reason;
+    LiveCounters counters;
+    std::uint64_t frontiers_revision = 0;
+    std::vector<TileChanges> tiles;
+    std::vector<RobotUpdate> robots;
+};
+
+[[nodiscard]] std::string encode(const LiveEvent& event);
+
+/// Reads what a viewer sent, and checks all of it.
+/// Errors  kMalformed: no LiveRequest; kInvalidField: a field or layer of no version that this program knows;
+///         kTooLarge: more than 16 layers. The sentence fits into a close frame: 123 bytes.
+/// Thread  any.
+[[nodiscard]] Result<LiveRequest> decode_live_request(std::string_view body);
+
+} // namespace scanloom::wire

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "common/wire/live.hpp"
+#include "server/mapping/layer.hpp"
+#include "server/mapping/snapshot.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace scanloom::live {
+
+/// All that an event is made from: a session as it is now.
+struct Moment {
+    std::shared_ptr<const mapping::Snapshot> maps;
+    std::vector<bool> connected; ///< by RobotIndex; those beyond the end have no link
+    wire::LiveState state = wire::LiveState::kOk;
+    std::string reason; ///< when the state is not kOk
+};
+
+/// What a viewer wants to be told.
+struct Wishes {
+    std::array<bool, mapping::kLayers.size()> layers = {true, true, true, true}; ///< by mapping::Layer
+    bool points = true;
+};
+
+[[nodiscard]] Wishes wishes_of(const wire::LiveRequest& request) noexcept;
+
+} // namespace scanloom::live

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "common/wire/live.hpp"
+#include "server/live/core/moment.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::live {
+
+/// What one event holds at most: some 400 KiB, whatever the session is.
+inline constexpr std::size_t kTilesMax = 2048;        ///< of a layer; of more it is said that everything changed
+inline constexpr std::size_t kScanPointsMax = 16'384; ///< of all robots; more scans are thinned out alike
+inline constexpr std::size_t kTrailMax = 256;         ///< points of a robot
+inline constexpr std::size_t kTrailsMax = 8'192;      ///< of all robots, but for one each
+
+/// Tells one viewer what is new to it, each time from the newest state: what came in between is skipped, and whoever
+/// takes in every event knows all the same what the newest snapshot shows.
+///
+/// Remembers what the viewer was told: for each layer up to which revision, for each robot up to which scan and which
+/// point of its trail. That follows the number of robots, not what happens.
+/// Cost    of an event: the chunks and robots that changed since the last.
+class Narrator {
+public:
+    /// `session` as LiveEvent::session.
+    explicit Narrator(std::string session) : session_(std::move(session)) {}
+
+    /// What is told from now on. A layer that was told before goes on from there; scans are told anew.
+    void set_wishes(const Wishes& wishes);
+
+    /// Nothing when there is nothing new.
+    /// Pre  every moment is of the same session, and no older than the one before.
+    [[nodiscard]] std::optional<wire::LiveEvent> next(const Moment& moment);
+
+private:
+    struct ToldRobot {
+        bool known = false;
+        bool connected = false;
+        std::uint64_t scan_count = 0;
+        std::size_t trail = 0; // points
+        Revision scan = 0;     // shown as points
+    };
+
+    struct ToldSession {
+        Revision revision = 0;
+        wire::LiveState state = wire::LiveState::kOk;
+    };
+
+    void tell_tiles(const mapping::Snapshot& maps, wire::LiveEvent& event);
+    void tell_robots(const Moment& moment, wire::LiveEvent& event);
+    [[nodiscard]] bool is_news(const mapping::RobotState& robot, bool connected, const ToldRobot& told) const;
+    [[nodiscard]] bool shows_scan(const mapping::RobotState& robot, const ToldRobot& told) const;
+    [[nodiscard]] std::size_t stride_for(const mapping::Snapshot& maps) const;
+
+    std::string session_;
+    Wishes wishes_;
+    std::optional<ToldSession> told_;
+    std::array<Revision, mapping::kLayers.size()> told_layers_{};
+    std::vector<ToldRobot> told_robots_;
+};
+
+} // namespace scanloom::live

@@ -1,0 +1,32 @@
+#include "server/live/core/scan_points.hpp"
+
+#include "common/scan/beam_angles.hpp"
+#include "server/mapping/reading.hpp"
+
+#include <cmath>
+
+namespace scanloom::live {
+namespace {
+
+std::int32_t millimetres(double metres) { return static_cast<std::int32_t>(std::lround(metres * 1000.0)); }
+
+} // namespace
+
+wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride) {
+    const Scan& scan = folded.scan;
+    const Sensor& sensor = *folded.sensor;
+    wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(scan.pose, sensor.mount), {}};
+    const BeamAngles angles = angles_of(scan, sensor);
+    const mapping::ReadingRules rules{sensor.range_min, sensor.range_max, false};
+    std::size_t hits = 0;
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+        const auto reading = mapping::reading_of(scan.ranges[beam], rules);
+        if (!reading || !reading->is_hit || hits++ % stride != 0) continue;
+        const double direction = out.origin.yaw + beam_angle(angles, beam);
+        out.points.push_back(
+            {millimetres(reading->metres * std::cos(direction)), millimetres(reading->metres * std::sin(direction))});
+    }
+    return out;
+}
+
+} // namespace scanloom::live

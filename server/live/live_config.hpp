@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+
+namespace scanloom::live {
+
+/// What bounds viewers: numbers, sizes, deadlines.
+struct LiveConfig {
+    std::size_t viewers_max = 1000;            ///< in all; one more is answered 503
+    std::size_t viewers_per_session_max = 512; ///< likewise
+    std::size_t request_bytes_max = 64 * 1024; ///< a longer message closes the connection
+
+    std::chrono::milliseconds interval{50};      ///< from one event to the next, at least
+    std::chrono::milliseconds handshake{30'000}; ///< for a handshake of the WebSocket
+    std::chrono::milliseconds idle{300'000};     ///< without a sign of life; a ping asks for one after half of it
+    std::chrono::milliseconds write{30'000};     ///< in which an event must have gone out
+    std::chrono::milliseconds farewell{1'000};   ///< for the event under way, and for the viewer to hang up
+};
+
+} // namespace scanloom::live

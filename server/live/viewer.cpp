@@ -1,0 +1,229 @@
+#include "server/live/viewer.hpp"
+
+#include "common/wire/live.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/dispatch.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/http/field.hpp>
+#include <spdlog/spdlog.h>
+
+#include <string_view>
+#include <utility>
+
+namespace scanloom::live {
+namespace {
+
+namespace beast = boost::beast;
+namespace net = boost::asio;
+namespace websocket = boost::beast::websocket;
+
+constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
+
+/// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 404.
+constexpr websocket::close_code kSessionDeleted{4404};
+
+websocket::close_reason close_with(websocket::close_code code, std::string_view reason) {
+    constexpr std::size_t kReasonBytesMax = 123; // so that it fits a control frame
+    const auto cut = reason.substr(0, kReasonBytesMax);
+    return {code, beast::string_view(cut.data(), cut.size())};
+}
+
+/// A session's state as it is now. Pre: it is not deleted.
+Moment moment_of(const session::Session& session) {
+    Moment moment{session.snapshot(), session.connected(), wire::LiveState::kOk, {}};
+    const auto closing = session.closing();
+    const auto failure = session.failure();
+    if (closing || failure) {
+        moment.state = closing ? wire::LiveState::kDraining : wire::LiveState::kFailed;
+        moment.reason = closing ? closing->message : failure->message;
+    }
+    return moment;
+}
+
+/// Counts itself as long as it exists.
+class Counted {
+public:
+    explicit Counted(prometheus::Gauge& gauge) : gauge_(gauge) { gauge_.Increment(); }
+    ~Counted() { gauge_.Decrement(); }
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
+
+private:
+    prometheus::Gauge& gauge_;
+};
+
+} // namespace
+
+Viewer::Viewer(net::ip::tcp::socket socket, Invitation invitation, std::shared_ptr<const void> seat, Services services)
+    : stream_(std::move(socket)), buffer_(services.config.request_bytes_max), invitation_(std::move(invitation)),
+      seat_(std::move(seat)), services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
+      deadline_(stream_.get_executor()) {
+    const auto& config = services_.config;
+    stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
+    stream_.set_option(websocket::stream_base::decorator(
+        [](websocket::response_type& response) { response.erase(beast::http::field::server); }));
+    stream_.read_message_max(config.request_bytes_max);
+    stream_.auto_fragment(false);
+    stream_.binary(true);
+}
+
+// From any thread
+
+void Viewer::on_changed() noexcept {
+    if (told_.exchange(true)) return;
+    try {
+        net::post(stream_.get_executor(), [weak = weak_from_this()] {
+            if (const auto self = weak.lock()) {
+                self->changed_ = true;
+                self->wake();
+            }
+        });
+    } catch (...) { // no memory: the next change tries again
+        told_ = false;
+    }
+}
+
+void Viewer::stop() {
+    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+        self->end(close_with(websocket::close_code::going_away,
+                             "the server is shutting down; connect again when it is back"));
+    });
+}
+
+void Viewer::abort() {
+    net::dispatch(stream_.get_executor(),
+                  [self = shared_from_this()] { beast::get_lowest_layer(self->stream_).close(); });
+}
+
+// On the strand
+
+net::awaitable<void> Viewer::run(const Upgrade& upgrade) {
+    const bool accepted = co_await accept(upgrade);
+    if (!accepted) co_return;
+    const Counted counted(services_.counters.viewers);
+    if (const auto session = invitation_.session.lock()) session->watch(weak_from_this());
+    reading_ = true;
+    net::co_spawn(stream_.get_executor(), read_requests(), [self = shared_from_this()](std::exception_ptr) {
+        self->reading_ = false;
+        self->wake();
+    });
+    try {
+        co_await tell_events();
+    } catch (const std::exception& failure) {
+        spdlog::error("a viewer's connection failed and was closed: {}", failure.what());
+        end(close_with(websocket::close_code::internal_error, "the server failed; its log says why"));
+    }
+    co_await close();
+    while (reading_) {
+        turn_.expires_at(Clock::time_point::max());
+        co_await turn_.async_wait(kAwaitTuple);
+    }
+}
+
+net::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
+    const auto [error] = co_await stream_.async_accept(upgrade, kAwaitTuple);
+    co_return !error;
+}
+
+/// Ends when the viewer hangs up, when it breaks a rule, and with the connection.
+net::awaitable<void> Viewer::read_requests() {
+    const auto self = shared_from_this();
+    for (;;) {
+        buffer_.clear();
+        const auto [error, size] = co_await stream_.async_read(buffer_, kAwaitTuple);
+        if (error) co_return;
+        if (auto fault = fault_of_message()) {
+            end(*fault);
+            co_return;
+        }
+        changed_ = true;
+        wake();
+    }
+}
+
+/// Takes in what was read. @return why the connection ends, if it does.
+std::optional<Viewer::Close> Viewer::fault_of_message() {
+    if (!stream_.got_binary()) {
+        return close_with(websocket::close_code::unknown_data, "messages are binary: a LiveRequest; see live.proto");
+    }
+    const auto bytes = buffer_.data();
+    const auto request = wire::decode_live_request({static_cast<const char*>(bytes.data()), bytes.size()});
+    if (!request) return close_with(websocket::close_code::bad_payload, request.error().message);
+    wishes_ = wishes_of(*request);
+    return std::nullopt;
+}
+
+net::awaitable<void> Viewer::tell_events() {
+    for (;;) {
+        co_await wait_for_turn();
+        if (ending_ || !reading_) co_return;
+        changed_ = false;
+        if (wishes_) narrator_.set_wishes(*std::exchange(wishes_, std::nullopt));
+        auto work = [self = shared_from_this()]() -> net::awaitable<Narration> { co_return self->narrate(); };
+        const Narration narration = co_await net::co_spawn(services_.showing, std::move(work), net::use_awaitable);
+        if (narration.end) end(*narration.end);
+        if (!narration.event) continue;
+        due_ = Clock::now() + services_.config.interval;
+        const bool sent = co_await send(*narration.event);
+        if (!sent) co_return;
+    }
+}
+
+/// Until there may be something to tell, and it may be told; or the end.
+net::awaitable<void> Viewer::wait_for_turn() {
+    while (!ending_ && reading_) {
+        if (changed_ && Clock::now() >= due_) co_return;
+        turn_.expires_at(changed_ ? due_ : Clock::time_point::max());
+        co_await turn_.async_wait(kAwaitTuple);
+    }
+}
+
+/// On `showing`.
+Viewer::Narration Viewer::narrate() {
+    told_ = false; // before looking: what changes from now on is told again
+    const auto session = invitation_.session.lock();
+    const auto closing = session ? session->closing() : Error{Errc::kGone, "the session was deleted"};
+    if (closing && closing->code == Errc::kGone) return {{}, close_with(kSessionDeleted, closing->message)};
+    const auto event = narrator_.next(moment_of(*session));
+    if (!event) return {};
+    return {wire::encode(*event), {}};
+}
+
+/// @return false when the connection cannot be used any more.
+net::awaitable<bool> Viewer::send(const std::string& event) {
+    if (!ending_) cut_off_after(services_.config.write);
+    const auto [error, size] = co_await stream_.async_write(net::buffer(event), kAwaitTuple);
+    if (!ending_) deadline_.cancel();
+    if (error) co_return false;
+    services_.counters.events.Increment();
+    services_.counters.bytes.Increment(static_cast<double>(size));
+    co_return true;
+}
+
+net::awaitable<void> Viewer::close() {
+    if (ending_ && stream_.is_open()) co_await stream_.async_close(*ending_, kAwaitTuple);
+    deadline_.cancel();
+    beast::get_lowest_layer(stream_).close(); // what is still being read ends, too
+}
+
+void Viewer::end(Close why) {
+    if (ending_) return;
+    ending_ = std::move(why);
+    cut_off_after(services_.config.farewell);
+    wake();
+}
+
+void Viewer::wake() { turn_.cancel(); }
+
+void Viewer::cut_off_after(std::chrono::milliseconds time) {
+    deadline_.expires_after(time);
+    deadline_.async_wait([weak = weak_from_this()](boost::system::error_code cancelled) {
+        const auto self = weak.lock();
+        if (!cancelled && self) beast::get_lowest_layer(self->stream_).close();
+    });
+}
+
+} // namespace scanloom::live

@@ -1,0 +1,62 @@
+#include "server/live/invitation.hpp"
+#include "tests/unit/server/http/api_fixture.hpp"
+
+namespace scanloom::http {
+namespace {
+
+class ApiLiveTest : public ApiTest {
+protected:
+    Response upgrade(const WebSocketUpgrade& wanted, std::string target = "/api/v1/sessions/lab/live") {
+        Request request;
+        request.target = std::move(target);
+        request.host = "localhost:8080";
+        request.upgrade = wanted;
+        return answer(api_, request);
+    }
+
+    const WebSocketUpgrade wanted_{.version = "13", .key = "dGhlIHNhbXBsZSBub25jZQ==", .origin = ""};
+};
+
+TEST_F(ApiLiveTest, AWebSocketIsInvitedToWatchTheSession) {
+    create("lab");
+    const auto response = upgrade(wanted_);
+    EXPECT_EQ(response.status, Status::switching_protocols);
+    ASSERT_NE(response.invitation, nullptr);
+    EXPECT_EQ(response.invitation->session.lock(), registry_.find("lab"));
+    EXPECT_EQ(response.invitation->tag, get_json("/api/v1/sessions/lab").at("id").as_string());
+}
+
+TEST_F(ApiLiveTest, WhatIsNoWebSocketIsToldToUpgrade) {
+    create("lab");
+    for (const auto& response : {get("/api/v1/sessions/lab/live"), ask("HEAD", "/api/v1/sessions/lab/live"),
+                                 upgrade({.version = "8", .key = wanted_.key, .origin = ""}),
+                                 upgrade({.version = "", .key = wanted_.key, .origin = ""})}) {
+        EXPECT_THAT(detail(response, Status::upgrade_required), HasSubstr("version 13"));
+        EXPECT_EQ(response.get("Upgrade"), "websocket");
+        EXPECT_EQ(response.get("Sec-WebSocket-Version"), "13");
+        EXPECT_EQ(response.invitation, nullptr);
+    }
+}
+
+TEST_F(ApiLiveTest, PagesOfStrangersAreForbidden) {
+    create("lab");
+    for (const auto* origin : {"http://evil.example", "null", "http://localhost.evil.example:8080"}) {
+        const auto response = upgrade({.version = "13", .key = wanted_.key, .origin = origin});
+        EXPECT_THAT(detail(response, Status::forbidden), HasSubstr(origin));
+        EXPECT_EQ(response.invitation, nullptr);
+    }
+    const auto own = upgrade({.version = "13", .key = wanted_.key, .origin = "http://localhost:8080"});
+    EXPECT_EQ(own.status, Status::switching_protocols);
+}
+
+TEST_F(ApiLiveTest, WhatCannotBeWatchedIsRefused) {
+    create("lab");
+    EXPECT_THAT(detail(upgrade(wanted_, "/api/v1/sessions/hall/live"), Status::not_found), HasSubstr("hall"));
+    EXPECT_THAT(detail(upgrade(wanted_, "/api/v1/sessions/lab/live?weave=x"), Status::bad_request), HasSubstr("weave"));
+    EXPECT_THAT(detail(upgrade({.version = "13", .key = "short", .origin = ""}), Status::bad_request),
+                HasSubstr("Sec-WebSocket-Key"));
+    EXPECT_EQ(ask("POST", "/api/v1/sessions/lab/live").status, Status::method_not_allowed);
+}
+
+} // namespace
+} // namespace scanloom::http
