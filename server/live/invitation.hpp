@@ -11,7 +11,8 @@ namespace scanloom::live {
 struct Invitation {
     std::weak_ptr<session::Session> session;
     store::SessionId session_id = 0;
-    std::string tag; ///< LiveEvent::session
+    std::string name; ///< of the session, as its end is told after it is gone
+    std::string tag;  ///< LiveEvent::session
 };
 
 } // namespace scanloom::live

@@ -8,6 +8,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/field.hpp>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <string_view>
@@ -58,13 +59,13 @@ private:
 } // namespace
 
 Viewer::Viewer(net::ip::tcp::socket socket, Invitation invitation, std::shared_ptr<const void> seat, Services services)
-    : stream_(std::move(socket)), buffer_(services.config.request_bytes_max), invitation_(std::move(invitation)),
-      seat_(std::move(seat)), services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
+    : stream_(std::move(socket)), invitation_(std::move(invitation)), seat_(std::move(seat)),
+      services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
       deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
-    stream_.set_option(websocket::stream_base::decorator(
-        [](websocket::response_type& response) { response.erase(beast::http::field::server); }));
+    stream_.set_option(websocket::stream_base::decorator( // or Beast would tell its version
+        [](websocket::response_type& response) { response.set(beast::http::field::server, "Scanloom"); }));
     stream_.read_message_max(config.request_bytes_max);
     stream_.auto_fragment(false);
     stream_.binary(true);
@@ -185,8 +186,10 @@ net::awaitable<void> Viewer::wait_for_turn() {
 Viewer::Narration Viewer::narrate() {
     told_ = false; // before looking: what changes from now on is told again
     const auto session = invitation_.session.lock();
-    const auto closing = session ? session->closing() : Error{Errc::kGone, "the session was deleted"};
-    if (closing && closing->code == Errc::kGone) return {{}, close_with(kSessionDeleted, closing->message)};
+    const auto closing = session ? session->closing() : std::nullopt;
+    if (!session || (closing && closing->code == Errc::kGone)) {
+        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name))};
+    }
     const auto event = narrator_.next(moment_of(*session));
     if (!event) return {};
     return {wire::encode(*event), {}};

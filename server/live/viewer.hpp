@@ -85,7 +85,7 @@ private:
     void cut_off_after(std::chrono::milliseconds time);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream, false> stream_; // false: nothing is ever compressed
-    boost::beast::flat_buffer buffer_;
+    boost::beast::flat_buffer buffer_;                                        // as long as a message may be
     Invitation invitation_;
     std::shared_ptr<const void> seat_;
     Services services_;

@@ -43,7 +43,7 @@ Result<Response> get_live(const session::SessionRegistry& sessions, const Call& 
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, (*session)->info().id, session_tag((*session)->info())});
+        live::Invitation{*session, (*session)->info().id, (*session)->info().name, session_tag((*session)->info())});
     return response;
 }
 

@@ -199,5 +199,59 @@ TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
     EXPECT_THAT(joins[1024].answer->value().error().message, HasSubstr("1024 robots already"));
 }
 
+/// Counts how often it is told.
+struct CountingWatcher : Watcher {
+    void on_changed() noexcept override { ++count; }
+    int count = 0;
+};
+
+TEST_F(SessionTest, WatchersAreToldOfMapsLinksAndTheEndAndOfNothingElse) {
+    const auto watcher = std::make_shared<CountingWatcher>();
+    session_->watch(watcher);
+    const auto told = [&] { return std::exchange(watcher->count, 0); };
+    const auto link = join("r1");
+    EXPECT_GT(told(), 0) << "a link came";
+    session_->submit(link, random_scans(1, 1, 10), 1);
+    run();
+    EXPECT_GT(told(), 0) << "there are new maps";
+    session_->submit(link, random_scans(1, 1, 10), 1); // known already
+    run();
+    EXPECT_EQ(told(), 0);
+    session_->leave(link);
+    run();
+    EXPECT_EQ(told(), 1) << "a link went";
+    session_->close({Errc::kGone, "session 'lab' was deleted"}, [] {});
+    run();
+    EXPECT_GT(told(), 0) << "it is closed";
+    EXPECT_EQ(session_->closing()->code, Errc::kGone);
+}
+
+TEST_F(SessionTest, WatchersAreNotKeptAlive) {
+    auto watcher = std::make_shared<CountingWatcher>();
+    const std::weak_ptr<CountingWatcher> weak = watcher;
+    session_->watch(watcher);
+    watcher.reset();
+    EXPECT_TRUE(weak.expired());
+    join("r1"); // tells whoever is left
+}
+
+TEST_F(SessionTest, SnapshotsHoldTheNewestScanOfEachRobotAsItWasTaken) {
+    const auto first = join("r1");
+    const auto second = join("r2");
+    EXPECT_EQ(session_->snapshot()->robots.at(0).newest_scan, nullptr);
+    session_->submit(first, random_scans(1, 1, 10), 1);
+    session_->submit(second, random_scans(2, 1, 3), 1);
+    run();
+    const auto snapshot = session_->snapshot();
+    EXPECT_EQ(snapshot->robots.at(0).newest_scan->scan, random_scan(1, 10));
+    EXPECT_EQ(snapshot->robots.at(1).newest_scan->scan, random_scan(2, 3));
+    EXPECT_EQ(*snapshot->robots.at(0).newest_scan->sensor, small_laser());
+    EXPECT_EQ(snapshot->robots.at(1).newest_scan->revision, snapshot->revision);
+    EXPECT_EQ(digest(), digest_of_log());
+
+    start_session();
+    EXPECT_EQ(session_->snapshot()->robots.at(0).newest_scan, nullptr) << "no part of the log's projection";
+}
+
 } // namespace
 } // namespace scanloom::session

@@ -69,6 +69,11 @@ TEST(Changes, EqualBruteForceAfterAnyRevision) {
             ++n;
         }
     }
+    const auto all = changed_tiles(snapshot, Layer::kOccupancy, revision / 2);
+    const auto native = changed_native_tiles(snapshot, Layer::kOccupancy, revision / 2);
+    ASSERT_LT(native.size(), all.size());
+    EXPECT_TRUE(std::equal(native.begin(), native.end(), all.begin())) << "the finest come first";
+    EXPECT_NE(all[native.size()].key.zoom, kZoomNative);
     EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision), testing::IsEmpty());
     EXPECT_THAT(changed_tiles(snapshot, Layer::kOccupancy, revision + 1), testing::IsEmpty());
     EXPECT_THAT(changed_tiles(mapping::Snapshot{}, Layer::kOccupancy, 0), testing::IsEmpty());

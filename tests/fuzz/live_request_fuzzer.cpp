@@ -1,0 +1,26 @@
+#include "common/wire/live.hpp"
+#include "server/live/core/moment.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+/// Input: a message of a viewer's.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const auto request = wire::decode_live_request({reinterpret_cast<const char*>(data), size});
+    if (!request) {
+        const auto& message = request.error().message;
+        fuzz::check(!message.empty() && message.size() <= 123, "every error is a sentence that fits a close frame");
+        return 0;
+    }
+    fuzz::check(request->layers.size() <= 16, "no more layers than are read");
+    const auto wishes = live::wishes_of(*request);
+    for (const auto layer : request->layers) {
+        fuzz::check(layer >= wire::LiveLayer::kOccupancy && layer <= wire::LiveLayer::kClassification,
+                    "each layer is one that there is");
+    }
+    fuzz::check(std::ranges::find(wishes.layers, true) != wishes.layers.end() || request->layers.empty(),
+                "what is asked for is wished for");
+    return 0;
+}

@@ -1,0 +1,119 @@
+#pragma once
+
+#include "server/http/api.hpp"
+#include "server/http/server.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+
+#include <array>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace scanloom::live {
+
+/// A robot's link that waits for its acks.
+class StreamingRobot final : public session::RobotListener, public std::enable_shared_from_this<StreamingRobot> {
+public:
+    void join(session::Session& session, const std::string& name) {
+        std::promise<void> joined;
+        session.join(name, "", shared_from_this(), [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        joined.get_future().wait();
+    }
+
+    /// Returns when the scan is durable and in the maps.
+    void stream(session::Session& session, Scan scan) {
+        std::promise<void> acked;
+        acked_ = &acked;
+        session.submit(shared_from_this(), {std::move(scan)}, 1);
+        acked.get_future().wait();
+    }
+
+    void on_durable(std::uint64_t, std::size_t bytes) override {
+        if (bytes > 0) acked_->set_value();
+    }
+    void on_failed(const Error&) override {}
+
+private:
+    std::promise<void>* acked_ = nullptr;
+};
+
+/// Sessions in memory, behind the HTTP server: real sockets on the loopback, real threads.
+class LiveServer {
+public:
+    explicit LiveServer(const LiveConfig& live = {.interval = std::chrono::milliseconds(0)}) {
+        api_.set_recovered();
+        create("lab");
+        http::ServerConfig config;
+        config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
+        config.live = live;
+        const auto pool = pool_.get_executor();
+        server_ = http::Server::listen(
+                      io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,
+                      [this](const http::Request& request) { return api_.answer(request); }, metrics_.http())
+                      .value();
+        server_->start();
+        for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
+    }
+
+    ~LiveServer() {
+        sessions_.drain();
+        stop();
+        for (auto& thread : threads_) thread.join();
+        weaves_.stop();
+        showing_.join();
+        pool_.join();
+        compute_.join();
+    }
+
+    /// Returns when the last connection is closed.
+    void stop() {
+        if (!server_) return;
+        std::promise<void> done;
+        server_->stop([&done] { done.set_value(); });
+        done.get_future().wait();
+        server_.reset();
+    }
+
+    void create(const std::string& name) { sessions_.create(name, {}).value(); }
+
+    /// Scans of robot `name`, by number, each when the last is acknowledged.
+    void stream(const std::string& name, std::uint64_t first, std::uint64_t last) {
+        const auto session = sessions_.find("lab");
+        auto& robot = robots_[name];
+        if (!robot) {
+            robot = std::make_shared<StreamingRobot>();
+            robot->join(*session, name);
+            session->submit(robot, testing_support::small_laser(), 0);
+        }
+        for (auto seq = first; seq <= last; ++seq) robot->stream(*session, testing_support::random_scan(7, seq));
+    }
+
+    void leave(const std::string& name) { sessions_.find("lab")->leave(robots_.at(name)); }
+
+    [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
+    [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
+    [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+
+private:
+    boost::asio::thread_pool compute_{2};
+    boost::asio::thread_pool pool_{2};
+    boost::asio::thread_pool showing_{1};
+    store::MemoryScanLog log_;
+    metrics::Metrics metrics_{"test"};
+    boost::asio::io_context io_;
+    session::SessionRegistry sessions_{log_, compute_.get_executor(), [] { return 1'000.0; }};
+    session::Weaves weaves_{log_, compute_.get_executor()};
+    guide::GoalBook goals_;
+    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {}};
+    std::shared_ptr<http::Server> server_;
+    std::array<std::thread, 2> threads_;
+    std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;
+};
+
+} // namespace scanloom::live
