@@ -247,6 +247,7 @@ TEST(LiveViewer, WhoeverGivesNoSignOfLifeIsCutOff) {
 TEST(LiveViewer, WhoeverTakesNoEventInTimeIsCutOff) {
     LiveServer server({.interval = 0ms, .write = 50ms});
     LiveClient client(server.port(), "lab", 4096);
+    ASSERT_TRUE(client.read()); // it is a viewer by now
     for (std::uint64_t seq = 0; server.counters().viewers.Value() > 0.0; seq += 50)
         server.stream("r1", seq + 1, seq + 50);
     client.read_to_the_end();
