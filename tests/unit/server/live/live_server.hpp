@@ -9,12 +9,30 @@
 
 #include <array>
 #include <future>
+#include <map>
 #include <memory>
+#include <numbers>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace scanloom::live {
+
+/// Sees all around in so many directions that a few hundred events fill what lies between two sockets.
+inline Sensor wide_laser() {
+    Sensor sensor = testing_support::small_laser();
+    sensor.angles = UniformAngles{-std::numbers::pi, std::numbers::pi / 720, 1440};
+    return sensor;
+}
+
+inline Scan wide_scan(std::uint64_t seq) {
+    Scan scan = testing_support::random_scan(7, seq);
+    std::mt19937 random(static_cast<unsigned>(seq));
+    scan.ranges.clear();
+    for (int beam = 0; beam < 1440; ++beam) scan.ranges.push_back(static_cast<RangeMm>(500 + random() % 3000));
+    return scan;
+}
 
 /// A robot's link that waits for its acks.
 class StreamingRobot final : public session::RobotListener, public std::enable_shared_from_this<StreamingRobot> {
@@ -88,9 +106,9 @@ public:
         if (!robot) {
             robot = std::make_shared<StreamingRobot>();
             robot->join(*session, name);
-            session->submit(robot, testing_support::small_laser(), 0);
+            session->submit(robot, wide_laser(), 0);
         }
-        for (auto seq = first; seq <= last; ++seq) robot->stream(*session, testing_support::random_scan(7, seq));
+        for (auto seq = first; seq <= last; ++seq) robot->stream(*session, wide_scan(seq));
     }
 
     void leave(const std::string& name) { sessions_.find("lab")->leave(robots_.at(name)); }

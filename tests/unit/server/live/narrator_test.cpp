@@ -153,8 +153,14 @@ TEST(Narrator, AScanIsToldAnewWhenPointsAreWishedForLater) {
     Narrator narrator("tag");
     narrator.set_wishes({{}, false});
     EXPECT_FALSE(narrator.next(session.moment())->robots.at(0).scan);
-    narrator.set_wishes({{}, true});
-    EXPECT_TRUE(narrator.next(session.moment())->robots.at(0).scan);
+    for (int n = 0; n < 2; ++n) {
+        narrator.set_wishes({{}, false});
+        EXPECT_FALSE(narrator.next(session.moment()));
+        narrator.set_wishes({{}, true});
+        const auto event = narrator.next(session.moment());
+        ASSERT_TRUE(event);
+        EXPECT_TRUE(event->robots.at(0).scan);
+    }
 }
 
 TEST(Narrator, AnotherStateIsNewsWithItsReason) {
