@@ -69,6 +69,7 @@ public:
         http::ServerConfig config;
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
         config.live = live;
+        config.drain = std::chrono::hours(1); // so that viewers end by themselves
         const auto pool = pool_.get_executor();
         server_ = http::Server::listen(
                       io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,
