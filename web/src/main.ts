@@ -16,7 +16,7 @@ import { Status } from './panel/status';
 import { poll, type Pace } from './poll';
 import { onThemeChange, readTheme } from './theme';
 import { Viewer } from './viewer';
-import './style.css';
+import './style/index.css';
 
 const kSessionsPace: Pace = { visibleMs: 2_000, hiddenMs: 15_000 };
 
