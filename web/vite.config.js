@@ -1,8 +1,10 @@
 import { defineConfig } from 'vite';
+import { liveProtocolPlugin } from './protocol.js';
 
 export default defineConfig({
   // Relative addresses: the viewer also works below a path of a reverse proxy.
   base: './',
+  plugins: [liveProtocolPlugin()],
   build: {
     target: 'es2022',
     outDir: 'dist',
@@ -11,5 +13,5 @@ export default defineConfig({
     assetsInlineLimit: 0,
   },
   // `npm run dev` shows a server that runs on its usual port.
-  server: { proxy: { '/api': 'http://127.0.0.1:8080', '/readyz': 'http://127.0.0.1:8080' } },
+  server: { proxy: { '/api': { target: 'http://127.0.0.1:8080', ws: true }, '/readyz': 'http://127.0.0.1:8080' } },
 });

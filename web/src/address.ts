@@ -1,11 +1,31 @@
-/** The chosen session in the page's address, after '#': it survives a reload and can be sent to others. */
+/** The chosen session and layer in the page's address, after '#': they survive a reload and can be sent to others. */
+import { isLayerName, type LayerName } from './layers/layers';
 
-const kKey = 'session';
+const kSession = 'session';
+const kLayer = 'layer';
 
 export function sessionOfHash(hash: string): string | null {
-  return new URLSearchParams(hash.replace(/^#/, '')).get(kKey) || null;
+  return parametersOf(hash).get(kSession) || null;
+}
+
+/** Null when the address leaves it open. */
+export function layerOfHash(hash: string): LayerName | null {
+  const layer = parametersOf(hash).get(kLayer);
+  return isLayerName(layer) ? layer : null;
 }
 
 export function hashOfSession(name: string): string {
-  return `#${new URLSearchParams({ [kKey]: name })}`;
+  return `#${new URLSearchParams({ [kSession]: name })}`;
+}
+
+/** The same address with this layer in it; occupancy needs no mention. */
+export function hashWithLayer(hash: string, layer: LayerName): string {
+  const parameters = parametersOf(hash);
+  if (layer === 'occupancy') parameters.delete(kLayer);
+  else parameters.set(kLayer, layer);
+  return `#${parameters}`;
+}
+
+function parametersOf(hash: string): URLSearchParams {
+  return new URLSearchParams(hash.replace(/^#/, ''));
 }

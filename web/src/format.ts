@@ -1,6 +1,6 @@
 /** Numbers and times as people read them. */
 import type { Bounds, Pose } from './api/types';
-import type { CellValue } from './map/cell_reader';
+import type { CellValue } from './layers/cell_value';
 
 const kMinus = '\u2212';
 const kThinSpace = '\u202f';
@@ -32,6 +32,11 @@ export function length(metres: number): string {
   return `${decimal(metres, metres >= 100 ? 0 : 1)} m`;
 }
 
+/** "1.23 m", "123.4 m", "1.234 km". */
+export function distance(metres: number): string {
+  return metres >= 1000 ? `${decimal(metres / 1000, 3)} km` : `${decimal(metres, metres >= 100 ? 1 : 2)} m`;
+}
+
 /** A length with no more digits than it needs: "0.5 m", "20 m", "2 km". */
 export function roundLength(metres: number): string {
   return metres >= 1000 ? `${metres / 1000} km` : `${Number(metres.toPrecision(3))} m`;
@@ -61,6 +66,10 @@ export function cellValue(value: CellValue): string {
   switch (value.kind) {
     case 'percent':
       return `${value.percent} % occupied`;
+    case 'counter':
+      return `counter ${value.count}`;
+    case 'class':
+      return value.name;
     case 'unknown':
       return 'unknown';
     case 'loading':

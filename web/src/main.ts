@@ -1,34 +1,49 @@
 /** Builds the page's parts and connects them; what each does is its own file's matter. */
 import { fetchRobotPort, fetchSessions } from './api/api';
 import type { DamagedSession, RobotPort, Session } from './api/types';
-import { hashOfSession, sessionOfHash } from './address';
+import { hashOfSession, hashWithLayer, layerOfHash, sessionOfHash } from './address';
 import { byId, setText } from './dom';
 import { Camera } from './map/camera';
 import { createMap, MapView } from './map/map_view';
+import { Keys } from './keys';
 import { NewestSessions } from './newest_sessions';
 import { Cursor } from './panel/cursor';
+import { DisplayPanel } from './panel/display_panel';
 import { Facts } from './panel/facts';
+import { LayersPanel } from './panel/layers_panel';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
 import { showScale } from './panel/scale_bar';
 import { SessionList } from './panel/session_list';
 import { Status } from './panel/status';
+import { SwipeHandle } from './panel/swipe_handle';
+import { Picture } from './picture';
 import { poll, type Pace } from './poll';
-import { onThemeChange, readTheme } from './theme';
+import { SettingsStore } from './settings';
+import { readTheme } from './theme';
+import { measureTool } from './tools/measure';
+import { Toolbox } from './tools/toolbox';
 import { Viewer } from './viewer';
 import './style/index.css';
 
 const kSessionsPace: Pace = { visibleMs: 2_000, hiddenMs: 15_000 };
 
+const settings = new SettingsStore();
+const keys = new Keys();
 const panelToggle = byId('panel-toggle', HTMLButtonElement);
 const target = byId('map', HTMLElement);
 const map = createMap(target);
 const mapView = new MapView(map, readTheme());
+const picture = new Picture(mapView);
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
 const sessionList = new SessionList(byId('sessions', HTMLElement), byId('damaged', HTMLElement));
 const newest = new NewestSessions();
-const robotList = new RobotList(byId('robots', HTMLElement), mapView, (robot) => follow(robot));
+const robotList = new RobotList(
+  byId('robots', HTMLElement),
+  { pathLength: (robot) => viewer.pathLength(robot) },
+  (robot) => follow(robot),
+);
 const camera = new Camera(map, target, (robot) => robotList.setFollowed(robot));
 const cursor = new Cursor(map, target, {
   box: byId('cursor', HTMLElement),
@@ -36,16 +51,19 @@ const cursor = new Cursor(map, target, {
   y: byId('cursor-y', HTMLElement),
   cell: byId('cursor-cell', HTMLElement),
   value: byId('cursor-value', HTMLElement),
+  others: byId('cursor-others', HTMLElement),
   crosshair: byId('crosshair', HTMLElement),
 });
-const viewer = new Viewer({
+const viewer: Viewer = new Viewer({
   map: mapView,
+  picture,
   camera,
   cursor,
   facts: new Facts(byId('facts', HTMLElement)),
   robots: robotList,
   notice,
   status,
+  settings,
   details: byId('details', HTMLElement),
   noRobots: byId('no-robots', HTMLElement),
   newest: (session) => {
@@ -53,7 +71,19 @@ const viewer = new Viewer({
     sessionList.refresh(known);
     return known;
   },
+  refresh: () => void refreshOnce(),
 });
+const toolbox = new Toolbox(
+  {
+    bar: byId('toolbar', HTMLElement),
+    card: byId('tool', HTMLElement),
+    title: byId('tool-title', HTMLElement),
+    body: byId('tool-body', HTMLElement),
+    close: byId('tool-close', HTMLButtonElement),
+  },
+  keys,
+);
+let refreshing = false;
 let robotPort: RobotPort | null = null;
 
 function follow(robot: string | null): void {
@@ -65,6 +95,8 @@ function follow(robot: string | null): void {
 function openChosen(): void {
   const name = sessionOfHash(location.hash);
   if (name === null) return;
+  const layer = layerOfHash(location.hash);
+  if (layer !== null) picture.change({ layer });
   document.title = `${name} \u2013 Scanloom`;
   setText(byId('chosen', HTMLElement), name);
   sessionList.choose(name);
@@ -96,6 +128,14 @@ async function refreshSessions(signal: AbortSignal): Promise<void> {
   for (const session of answer.damaged) if (session.name === chosen) explain(session);
 }
 
+/** Between two rounds; what goes wrong, the next round tells. */
+async function refreshOnce(): Promise<void> {
+  if (refreshing) return;
+  refreshing = true;
+  await refreshSessions(new AbortController().signal).catch(() => {});
+  refreshing = false;
+}
+
 function explain({ name, reason }: DamagedSession): void {
   notice.show({ kind: 'damaged', name, reason });
 }
@@ -113,9 +153,59 @@ function setPanel(open: boolean): void {
   byId('panel', HTMLElement).classList.toggle('open', open);
 }
 
+/** The address tells what is seen, without another entry in the browser's history for each layer. */
+function rememberLayer(): void {
+  const hash = hashWithLayer(location.hash, picture.now.layer);
+  if (sessionOfHash(hash) !== null && hash !== location.hash) history.replaceState(null, '', hash);
+}
+
+function bindKeys(): void {
+  keys.bind({ key: 'v', does: 'shows the next layer', run: () => picture.step(1) });
+  keys.bind({ key: 'b', does: 'shows the layer before', run: () => picture.step(-1) });
+  keys.bind({ key: 'g', does: 'shows HIMM counters in the cells, when zoomed in', run: toggleCounters });
+  keys.bind({ key: 'f', does: 'fits the whole map', run: () => camera.fit() });
+}
+
+function toggleCounters(): void {
+  settings.change({ counters: !settings.get().counters });
+}
+
 showScale(map, byId('scale', HTMLElement));
 connectControls();
-onThemeChange((theme) => mapView.setTheme(theme));
+bindKeys();
+new LayersPanel(
+  {
+    layers: byId('layers', HTMLElement),
+    note: byId('layer-note', HTMLElement),
+    legend: byId('legend', HTMLElement),
+    opacity: byId('opacity', HTMLInputElement),
+    beside: byId('beside', HTMLSelectElement),
+    besideOptions: byId('beside-options', HTMLElement),
+    besideOpacity: byId('beside-opacity', HTMLInputElement),
+    besideLegend: byId('beside-legend', HTMLElement),
+    swipe: byId('mode-swipe', HTMLInputElement),
+    over: byId('mode-over', HTMLInputElement),
+    overlays: byId('overlays', HTMLElement),
+  },
+  picture,
+  settings,
+);
+new SwipeHandle(byId('swipe', HTMLElement), target, picture);
+new DisplayPanel(
+  {
+    scheme: byId('scheme', HTMLSelectElement),
+    palette: byId('palette', HTMLSelectElement),
+    keysOpen: byId('keys-open', HTMLButtonElement),
+    keys: byId('keys', HTMLDialogElement),
+    keysBody: byId('keys-body', HTMLElement),
+  },
+  settings,
+  keys,
+);
+toolbox.add(measureTool(map, target, readTheme));
+settings.listen(() => mapView.setTheme(readTheme()));
+viewer.listen((session) => session ?? toolbox.close());
+picture.listen(rememberLayer);
 window.addEventListener('hashchange', () => {
   setPanel(false);
   openChosen();

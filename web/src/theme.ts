@@ -1,5 +1,5 @@
 /** The colours of the style sheet, for what is drawn on canvases. */
-import type { Palette, Rgb } from './map/palette';
+import type { Palette, Rgb } from './layers/palette';
 
 export const kRobotColours = 6;
 
@@ -8,22 +8,32 @@ export interface Theme {
   robots: string[];
   halo: string;
   ink: string;
+  accent: string;
+  frontier: string;
 }
 
 export function readTheme(): Theme {
   const style = getComputedStyle(document.documentElement);
   const colour = (name: string): string => style.getPropertyValue(name).trim();
+  const rgb = (name: string): Rgb => parseHex(colour(name));
   return {
-    cells: { free: parseHex(colour('--cell-free')), occupied: parseHex(colour('--cell-occupied')) },
+    cells: {
+      free: rgb('--cell-free'),
+      occupied: rgb('--cell-occupied'),
+      counters: [rgb('--counter-0'), rgb('--counter-5'), rgb('--counter-10'), rgb('--counter-15')],
+      classes: {
+        free: rgb('--class-free'),
+        occupied: rgb('--class-occupied'),
+        frontier: rgb('--class-frontier'),
+        danger: rgb('--class-danger'),
+      },
+    },
     robots: Array.from({ length: kRobotColours }, (_, index) => colour(`--robot-${index}`)),
     halo: colour('--map-background'),
     ink: colour('--ink'),
+    accent: colour('--accent'),
+    frontier: colour('--class-frontier'),
   };
-}
-
-/** Calls back whenever the person's preference turns from light to dark or back. */
-export function onThemeChange(changed: (theme: Theme) => void): void {
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => changed(readTheme()));
 }
 
 /** @param hex #rrggbb */

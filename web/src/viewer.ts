@@ -1,42 +1,90 @@
 /** One chosen session, from the server's events to everything that shows it. */
-import type { Session } from './api/types';
-import { followSession } from './feed';
+import type { LiveEvent, LiveRobot } from './api/live';
+import type { Point, Robot, Session, TileChange } from './api/types';
+import { FrontierWatch } from './frontier_watch';
+import type { LayerName } from './layers/layers';
+import { Feed } from './live/feed';
+import type { Trails } from './live/trails';
 import type { Camera } from './map/camera';
-import { CellReader } from './map/cell_reader';
+import { CellReaders } from './map/cell_readers';
+import { LiveSource, type MapSource } from './map/map_source';
 import type { MapView } from './map/map_view';
-import { TileVersions } from './map/versions';
 import type { Cursor } from './panel/cursor';
 import type { Facts } from './panel/facts';
 import type { Notice } from './panel/notice';
 import type { RobotList } from './panel/robot_list';
 import type { Status } from './panel/status';
+import type { Picture } from './picture';
 import { RobotColours } from './robot_colours';
+import type { SettingsStore } from './settings';
 import { kRobotColours } from './theme';
 
 export interface ViewerParts {
   map: MapView;
+  picture: Picture;
   camera: Camera;
   cursor: Cursor;
   facts: Facts;
   robots: RobotList;
   notice: Notice;
   status: Status;
+  settings: SettingsStore;
   details: HTMLElement;
   noRobots: HTMLElement;
   /** Tells the rest of the page what was heard of a session; returns the newest that anybody heard. */
   newest: (session: Session) => Session;
+  /** Asks about all sessions soon: something came that the live connection does not tell. */
+  refresh: () => void;
+}
+
+/** A session as it was at some time. */
+export interface Moment {
+  source: MapSource;
+  robots: Robot[];
+  /** By robot. */
+  trails: Map<string, Point[]>;
+}
+
+/** What is known of the session that is open. */
+interface Open {
+  session: Session;
+  source: LiveSource;
+  trails: Trails;
+  /** By number. */
+  robots: Map<number, Robot>;
+  frontiers: FrontierWatch;
+  readers: CellReaders;
 }
 
 const kSource = 'session';
 
 export class Viewer {
   private leave = new AbortController();
-  private colours = new RobotColours(kRobotColours);
   private reading = new AbortController();
-  /** Of the session that is shown. */
-  private id: string | null = null;
+  private colours = new RobotColours(kRobotColours);
+  private feed: Feed | null = null;
+  private open: Open | null = null;
+  private moment: Moment | null = null;
+  private readonly listeners: ((session: Session | null) => void)[] = [];
 
-  constructor(private readonly parts: ViewerParts) {}
+  constructor(private readonly parts: ViewerParts) {
+    parts.settings.listen(() => this.choose());
+    parts.picture.listen(() => this.showCounters());
+  }
+
+  /** The one that is open, as it was heard of last. */
+  get session(): Session | null {
+    return this.open?.session ?? null;
+  }
+
+  get robots(): Robot[] {
+    return [...(this.open?.robots.values() ?? [])];
+  }
+
+  /** Called when a session is opened, and with null when it is left. */
+  listen(listener: (session: Session | null) => void): void {
+    this.listeners.push(listener);
+  }
 
   /** Leaves the session that is shown, and follows this one. */
   watch(name: string): void {
@@ -46,69 +94,150 @@ export class Viewer {
     this.clear();
     this.parts.notice.show({ kind: 'loading' });
     let seen = false;
-    followSession(
+    const { status, notice } = this.parts;
+    this.feed = new Feed(
       name,
       {
-        started: (session) => {
+        started: (session, trails) => {
           seen = true;
-          this.start(session);
+          this.start(session, trails);
         },
-        session: (session) => this.show(this.parts.newest(session)),
-        tiles: (tiles) => {
-          this.parts.map.showTiles(tiles);
-          this.parts.cursor.update();
-        },
-        tracks: (tracks) => {
-          this.parts.map.showTracks(tracks);
-          this.parts.robots.refresh();
-        },
+        event: (event) => this.hear(event),
+        tiles: (layer, tiles) => this.showTiles(layer, tiles),
+        trails: () => this.showTrails(),
         gone: () => {
           this.clear();
-          this.parts.notice.show({ kind: seen ? 'deleted' : 'missing', name });
+          notice.show({ kind: seen ? 'deleted' : 'missing', name });
         },
         settled: (error) => {
-          this.parts.status.settle(kSource, error);
+          status.settle(kSource, error);
           if (error === null) this.parts.map.retry();
         },
       },
       this.leave.signal,
     );
+    this.feed.showPoints(this.parts.settings.get().points);
+    this.feed.run();
   }
 
   /** Something newer was heard of a session, which may be the one that is shown. */
   refresh(session: Session): void {
-    if (session.id === this.id) this.show(session);
+    if (!this.open || session.id !== this.open.session.id) return;
+    this.open.session = session;
+    this.showSession();
   }
 
-  private start(session: Session): void {
+  /** Shows the session as it was; null: as it is. */
+  showMoment(moment: Moment | null): void {
+    this.moment = moment;
+    this.parts.map.clearScans();
+    this.parts.picture.showMoment(moment?.source ?? null);
+    this.showRobots();
+    this.showTrails();
+  }
+
+  private start(session: Session, trails: Trails): void {
     this.clear();
-    this.id = session.id;
-    const versions = new TileVersions();
+    const { map, picture, cursor, details, settings, newest } = this.parts;
     this.colours = new RobotColours(kRobotColours);
-    this.parts.map.open(session, versions, this.colours);
-    const reader = new CellReader(session, versions, this.reading.signal, () => this.parts.cursor.update());
-    this.parts.cursor.show({ cellSize: session.cellSize, reader });
-    this.parts.details.hidden = false;
-    this.show(this.parts.newest(session));
+    const source = new LiveSource(session, session.cellSize);
+    const readers = new CellReaders(this.reading.signal, () => {
+      cursor.update();
+      map.updateCounters();
+    });
+    const frontiers = new FrontierWatch(session.name, (all) => map.showFrontiers(all), this.reading.signal);
+    this.open = { session: newest(session), source, trails, robots: new Map(), frontiers, readers };
+    map.open(session.cellSize, this.colours, settings.get());
+    picture.open(source);
+    cursor.show({ readers, picture });
+    details.hidden = false;
+    this.choose();
+    session.robots.forEach((robot, index) => this.open?.robots.set(index, robot));
+    this.showRobots();
+    this.showSession();
+    for (const listener of this.listeners) listener(session);
   }
 
-  private show(session: Session): void {
-    this.parts.map.showRobots(session);
-    this.parts.camera.see(session.bounds, session.robots);
+  private hear(event: LiveEvent): void {
+    if (!this.open) return;
+    const { robots, frontiers, session } = this.open;
+    for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
+    frontiers.hear(event.frontiersRevision);
+    this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
+    this.parts.newest(this.open.session);
+    if (!session.bounds && event.scans > 0) this.parts.refresh();
+    if (this.moment) return this.showSession();
+    for (const { name, scan } of event.robots) if (scan) this.parts.map.showScan(name, scan.points);
+    this.showRobots();
+    this.showTrails();
+    this.showSession();
+  }
+
+  private showTiles(layer: LayerName, tiles: TileChange[]): void {
+    this.open?.source.apply(layer, tiles);
+    this.parts.cursor.update();
+  }
+
+  private showSession(): void {
+    if (!this.open) return;
+    const { session } = this.open;
     this.parts.facts.show(session);
-    this.parts.robots.show(session.robots, this.colours);
-    this.parts.noRobots.hidden = session.robots.length > 0;
+    this.parts.noRobots.hidden = this.open.robots.size > 0;
+    this.parts.camera.see(session.bounds, this.moment?.robots ?? this.robots);
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });
   }
 
+  private showRobots(): void {
+    const robots = this.moment?.robots ?? this.robots;
+    this.parts.map.showRobots(robots);
+    this.parts.robots.show(robots, this.colours);
+  }
+
+  private showTrails(): void {
+    for (const { name } of this.robots) {
+      const live = this.open?.trails.get(name).points ?? [];
+      this.parts.map.showTrail(name, this.moment ? (this.moment.trails.get(name) ?? []) : live);
+    }
+    this.parts.robots.refresh();
+  }
+
+  /** Metres travelled. */
+  pathLength(robot: string): number {
+    return this.open?.trails.get(robot).length ?? 0;
+  }
+
+  private choose(): void {
+    const settings = this.parts.settings.get();
+    this.parts.map.choose(settings);
+    this.feed?.showPoints(settings.points);
+    if (!settings.points) this.parts.map.clearScans();
+    this.open?.frontiers.enable(settings.frontiers);
+    this.showCounters();
+  }
+
+  private showCounters(): void {
+    const { map, picture, settings } = this.parts;
+    const main = picture.main;
+    const wanted = settings.get().counters && main !== null && this.open !== null;
+    map.showCounters(wanted ? (this.open?.readers.of(main.source, 'himm') ?? null) : null);
+  }
+
   private clear(): void {
-    this.id = null;
+    const wasOpen = this.open !== null;
+    this.open = null;
+    this.moment = null;
     this.reading.abort();
     this.reading = new AbortController();
+    this.parts.picture.open(null);
     this.parts.map.close();
     this.parts.camera.reset();
     this.parts.cursor.show(null);
     this.parts.robots.clear();
     this.parts.details.hidden = true;
+    if (wasOpen) for (const listener of this.listeners) listener(null);
   }
+}
+
+function robotOf({ name, connected, scans, pose, bodyRadius }: LiveRobot): Robot {
+  return { name, connected, scans, pose, bodyRadius };
 }

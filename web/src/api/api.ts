@@ -1,10 +1,10 @@
 /** The server's resources that the viewer reads, one function each. */
 import { decodeChanges, decodeRobotPort, decodeSession, decodeSessionPage, decodeTrajectory } from './decode';
 import { get, getJson, readBody } from './http';
+import type { LayerName } from '../layers/layers';
 import type { Changes, RobotPort, Session, Sessions, TileChange, Trajectory } from './types';
 
 const kRoot = 'api/v1/sessions';
-const kLayer = 'occupancy';
 const kPageSize = 100;
 const kPagesMax = 20;
 
@@ -32,8 +32,20 @@ export async function fetchSession(name: string, signal: AbortSignal): Promise<S
   return decodeSession(await getJson(sessionPath(name), signal));
 }
 
-export async function fetchChanges(name: string, since: number, signal: AbortSignal): Promise<Changes> {
-  return decodeChanges(await getJson(`${sessionPath(name)}/changes?layer=${kLayer}&since=${since}`, signal));
+export interface ChangesQuery {
+  layer: LayerName;
+  since: number;
+  /** Of a weave's maps; null: of the session's own. */
+  weave: string | null;
+}
+
+export async function fetchChanges(
+  name: string,
+  { layer, since, weave }: ChangesQuery,
+  signal: AbortSignal,
+): Promise<Changes> {
+  const query = new URLSearchParams({ layer, since: String(since), ...(weave !== null && { weave }) });
+  return decodeChanges(await getJson(`${sessionPath(name)}/changes?${query}`, signal));
 }
 
 export async function fetchTrajectory(name: string, since: number, signal: AbortSignal): Promise<Trajectory> {
@@ -42,26 +54,38 @@ export async function fetchTrajectory(name: string, since: number, signal: Abort
 
 export type SessionKey = Pick<Session, 'name' | 'id'>;
 
-/** 8-bit grey: 0 occupied, 255 free, 128 unknown. */
-export async function fetchTileImage(session: SessionKey, tile: TileChange, signal: AbortSignal): Promise<ImageBitmap> {
-  const response = await get(tilePath(session, tile, 'png'), signal);
+/** Maps that tiles are asked of: those of a layer of a session, or of a weave of it. */
+export interface TileSource {
+  session: SessionKey;
+  layer: LayerName;
+  weave: string | null;
+}
+
+/** The colours that server/tiles gives the layer's codes; layers/palette.ts tells what they mean. */
+export async function fetchTileImage(source: TileSource, tile: TileChange, signal: AbortSignal): Promise<ImageBitmap> {
+  const response = await get(tilePath(source, tile, 'png'), signal);
   const blob = await readBody(response, signal, (answer) => answer.blob());
   return createImageBitmap(blob, { colorSpaceConversion: 'none' });
 }
 
-/** 256 rows of 256 cells, top row first: percent of occupation 0..100, or 255 where unknown. */
-export async function fetchTileCells(session: SessionKey, tile: TileChange, signal: AbortSignal): Promise<Uint8Array> {
-  const response = await get(tilePath(session, tile, 'bin'), signal);
+/** 256 rows of 256 cells, top row first: the layer's codes; layers/cell_value.ts tells what they mean. */
+export async function fetchTileCells(source: TileSource, tile: TileChange, signal: AbortSignal): Promise<Uint8Array> {
+  const response = await get(tilePath(source, tile, 'bin'), signal);
   return new Uint8Array(await readBody(response, signal, (answer) => answer.arrayBuffer()));
 }
 
-function sessionPath(name: string): string {
+/** Where the session is told live. */
+export function livePath(name: string): string {
+  return `${sessionPath(name)}/live`;
+}
+
+export function sessionPath(name: string): string {
   return `${kRoot}/${encodeURIComponent(name)}`;
 }
 
 /** The version makes the answer immutable; the id keeps apart sessions that had the same name one after the other. */
-function tilePath(session: SessionKey, tile: TileChange, kind: 'png' | 'bin'): string {
+function tilePath({ session, layer, weave }: TileSource, tile: TileChange, kind: 'png' | 'bin'): string {
   const place = `${tile.z}/${tile.x}/${tile.y}.${kind}`;
-  const version = new URLSearchParams({ v: String(tile.revision), id: session.id });
-  return `${sessionPath(session.name)}/tiles/${kLayer}/${place}?${version}`;
+  const version = new URLSearchParams({ v: String(tile.revision), id: session.id, ...(weave !== null && { weave }) });
+  return `${sessionPath(session.name)}/tiles/${layer}/${place}?${version}`;
 }

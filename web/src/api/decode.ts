@@ -3,6 +3,7 @@ import type {
   Bounds,
   Changes,
   DamagedSession,
+  MapConfig,
   Point,
   Pose,
   Robot,
@@ -18,7 +19,7 @@ export class MalformedAnswer extends Error {
   override name = 'MalformedAnswer';
 }
 
-type Fields = Record<string, unknown>;
+export type Fields = Record<string, unknown>;
 
 export function decodeSessionPage(json: unknown): SessionPage {
   const page = fields(json, 'sessions');
@@ -48,19 +49,36 @@ export function decodeRobotPort(json: unknown): RobotPort {
 
 export function decodeSession(json: unknown): Session {
   const session = fields(json, 'session');
-  const cellSize = number(fields(session['config'], 'config')['cell_size'], 'config.cell_size');
-  if (cellSize <= 0) throw new MalformedAnswer('config.cell_size is not positive');
+  const config = decodeConfig(session['config']);
   return {
     name: text(session['name'], 'name'),
     id: text(session['id'], 'id'),
     created: text(session['created'], 'created'),
     revision: number(session['revision'], 'revision'),
     scans: number(session['scans'], 'scans'),
-    cellSize,
+    cellSize: cellSizeOf(config),
+    config,
     bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),
     robots: list(session['robots'], 'robots').map(decodeRobot),
     failure: session['state'] === 'failed' ? text(session['reason'], 'reason') : null,
   };
+}
+
+export function decodeConfig(json: unknown): MapConfig {
+  const settings = Object.entries(fields(json, 'config'));
+  return Object.fromEntries(settings.filter((pair): pair is [string, Setting] => isSetting(pair[1])));
+}
+
+type Setting = MapConfig[string];
+
+function isSetting(value: unknown): value is Setting {
+  return ['number', 'string', 'boolean'].includes(typeof value);
+}
+
+export function cellSizeOf(config: MapConfig): number {
+  const cellSize = number(config['cell_size'], 'config.cell_size');
+  if (cellSize <= 0) throw new MalformedAnswer('config.cell_size is not positive');
+  return cellSize;
 }
 
 export function decodeChanges(json: unknown): Changes {
@@ -86,6 +104,7 @@ function decodeRobot(json: unknown): Robot {
     connected: robot['connected'] === true,
     scans: number(robot['scans'], 'robots[].scans'),
     pose: robot['pose'] == null ? null : decodePose(robot['pose']),
+    bodyRadius: robot['body_radius'] == null ? null : number(robot['body_radius'], 'robots[].body_radius'),
   };
 }
 
@@ -124,29 +143,29 @@ function decodeTrack(json: unknown): Track {
   };
 }
 
-function decodePoint(json: unknown): Point {
+export function decodePoint(json: unknown): Point {
   const [x, y] = list(json, 'coordinates[]');
   return [number(x, 'coordinates[].x'), number(y, 'coordinates[].y')];
 }
 
-function fields(value: unknown, where: string): Fields {
+export function fields(value: unknown, where: string): Fields {
   if (typeof value !== 'object' || value === null || Array.isArray(value)) {
     throw new MalformedAnswer(`${where} is not an object`);
   }
   return value as Fields;
 }
 
-function list(value: unknown, where: string): unknown[] {
+export function list(value: unknown, where: string): unknown[] {
   if (!Array.isArray(value)) throw new MalformedAnswer(`${where} is not a list`);
   return value;
 }
 
-function number(value: unknown, where: string): number {
+export function number(value: unknown, where: string): number {
   if (typeof value !== 'number' || !Number.isFinite(value)) throw new MalformedAnswer(`${where} is not a number`);
   return value;
 }
 
-function text(value: unknown, where: string): string {
+export function text(value: unknown, where: string): string {
   if (typeof value !== 'string') throw new MalformedAnswer(`${where} is not a text`);
   return value;
 }

@@ -18,7 +18,12 @@ export interface Robot {
   connected: boolean;
   scans: number;
   pose: Pose | null;
+  /** Metres; null: it has not said. */
+  bodyRadius: number | null;
 }
+
+/** How scans become maps, as the server names it: cell_size, ray_model, p_occupied, ... */
+export type MapConfig = Readonly<Record<string, number | string | boolean>>;
 
 export interface Session {
   name: string;
@@ -29,6 +34,7 @@ export interface Session {
   revision: number;
   scans: number;
   cellSize: number;
+  config: MapConfig;
   /** Null while nothing has been seen. */
   bounds: Bounds | null;
   robots: Robot[];
@@ -83,4 +89,17 @@ export interface Track {
 export interface Trajectory {
   revision: number;
   tracks: Track[];
+}
+
+/** Unexplored ground beside free ground, which hangs together. */
+export interface Frontier {
+  /** Polygons of rings. */
+  areas: Point[][][];
+  centroid: Point;
+  /** Square metres. */
+  area: number;
+  /** Whether a robot can get there. */
+  reachable: boolean;
+  /** Where to stand to see it. */
+  goal: Point | null;
 }

@@ -1,17 +1,23 @@
 /** The value of single cells, read from the native tiles as the person points at them. */
-import { fetchTileCells, type SessionKey } from '../api/api';
+import { fetchTileCells } from '../api/api';
+import { valueOf, type CellValue } from '../layers/cell_value';
+import type { LayerName } from '../layers/layers';
 import { kNativeZoom, kTileSize, placeOfCell, type Cell } from './grid';
-import { tileKey, type TileVersions } from './versions';
+import type { MapSource } from './map_source';
+import { tileKey } from './versions';
 
-const kTilesMax = 16;
-const kUnknownValue = 255;
+const kTilesMax = 24;
+/** A tile that changes all the time is read anew no more often than this. */
+const kAgeMinMs = 500;
 
-export type CellValue = { kind: 'percent'; percent: number } | { kind: 'unknown' } | { kind: 'loading' };
+/** The code of a cell that nothing ever touched. */
+const kNothing: Record<LayerName, number> = { occupancy: 255, himm: 255, sonar: 255, classification: 0 };
 
 interface TileCells {
   revision: number;
-  values: Uint8Array | null;
+  codes: Uint8Array | null;
   loading: boolean;
+  loadedAt: number;
 }
 
 export class CellReader {
@@ -19,28 +25,31 @@ export class CellReader {
   private readonly tiles = new Map<string, TileCells>();
 
   constructor(
-    private readonly session: SessionKey,
-    private readonly versions: TileVersions,
+    private readonly source: MapSource,
+    readonly layer: LayerName,
     private readonly signal: AbortSignal,
     /** Called when read() would answer better than before. */
     private readonly arrived: () => void,
-  ) {}
+  ) {
+    source.need(layer);
+  }
 
   /** Answers from what is at hand, and asks for a newer version of the tile if there is one. */
   read(cell: Cell): CellValue {
     const place = placeOfCell(cell);
-    const revision = place ? this.versions.get(kNativeZoom, place.x, place.y) : undefined;
-    if (!place || revision === undefined) return { kind: 'unknown' };
+    const revision = place ? this.source.versions(this.layer).get(kNativeZoom, place.x, place.y) : undefined;
+    if (!place || revision === undefined) return valueOf(this.layer, kNothing[this.layer]);
     const tile = this.tileAt(place.x, place.y);
-    if (tile.revision < revision && !tile.loading) void this.load(tile, place.x, place.y, revision);
-    if (!tile.values) return { kind: 'loading' };
-    const value = tile.values[place.row * kTileSize + place.column] ?? kUnknownValue;
-    return value === kUnknownValue ? { kind: 'unknown' } : { kind: 'percent', percent: value };
+    if (tile.revision < revision && !tile.loading && performance.now() - tile.loadedAt > kAgeMinMs) {
+      void this.load(tile, place.x, place.y, revision);
+    }
+    const code = tile.codes?.[place.row * kTileSize + place.column];
+    return code === undefined ? { kind: 'loading' } : valueOf(this.layer, code);
   }
 
   private tileAt(x: number, y: number): TileCells {
     const key = tileKey(kNativeZoom, x, y);
-    const tile = this.tiles.get(key) ?? { revision: -1, values: null, loading: false };
+    const tile = this.tiles.get(key) ?? { revision: -1, codes: null, loading: false, loadedAt: -Infinity };
     this.tiles.delete(key);
     this.tiles.set(key, tile);
     for (const oldest of this.tiles.keys()) {
@@ -53,12 +62,15 @@ export class CellReader {
   private async load(tile: TileCells, x: number, y: number, revision: number): Promise<void> {
     tile.loading = true;
     try {
-      tile.values = await fetchTileCells(this.session, { z: kNativeZoom, x, y, revision }, this.signal);
+      const { session, weave } = this.source;
+      const place = { z: kNativeZoom, x, y, revision };
+      tile.codes = await fetchTileCells({ session, weave, layer: this.layer }, place, this.signal);
       tile.revision = revision;
     } catch {
       // The connection's state is told elsewhere; the next look at this cell asks again.
       return;
     } finally {
+      tile.loadedAt = performance.now();
       tile.loading = false;
     }
     this.arrived();

@@ -1,29 +1,42 @@
 /** The map: its view, its layers, and what of a session is drawn on it. */
 import { defaults as defaultInteractions } from 'ol/interaction/defaults';
 import OlMap from 'ol/Map';
-import Projection from 'ol/proj/Projection';
 import View from 'ol/View';
-import type { Session, TileChange, Track } from '../api/types';
+import type { Frontier, Point, Robot } from '../api/types';
+import type { LayerName } from '../layers/layers';
 import type { RobotColours } from '../robot_colours';
+import type { Settings } from '../settings';
 import type { Theme } from '../theme';
+import { CellLabels } from './cell_labels';
+import { CellPane } from './cell_pane';
+import type { CellReader } from './cell_reader';
+import { FrontiersLayer } from './frontiers_layer';
 import { squareExtent, tileResolutions } from './grid';
+import type { MapSource } from './map_source';
+import { kOrder } from './order';
 import { PathLayer } from './path_layer';
+import { PointsLayer } from './points_layer';
+import { kProjection } from './projection';
 import { RobotsLayer } from './robots_layer';
-import { LiveTiles } from './tile_layer';
-import { TileVersions } from './versions';
 
 /** A cell may be blown up to this many pixels. */
 const kCellPxMax = 48;
 
-/** Metres on a plane of the robots' own, tied to no place on Earth. */
-const kProjection = new Projection({ code: 'LOCAL', units: 'm' });
+/** A layer of some maps. */
+export interface Shown {
+  source: MapSource;
+  layer: LayerName;
+}
 
 /** What is drawn of one session, until it is left. */
 interface Scene {
-  tiles: LiveTiles;
+  main: CellPane;
+  beside: CellPane;
+  labels: CellLabels;
+  frontiers: FrontiersLayer;
   paths: PathLayer;
+  points: PointsLayer;
   robots: RobotsLayer;
-  leave: AbortController;
 }
 
 export function createMap(target: HTMLElement): OlMap {
@@ -42,52 +55,112 @@ export class MapView {
     private theme: Theme,
   ) {}
 
-  /** Starts with an empty map on this session's grid. */
-  open(session: Session, versions: TileVersions, colours: RobotColours): void {
+  /** Starts with an empty map on this grid. */
+  open(cellSize: number, colours: RobotColours, settings: Settings): void {
     this.close();
-    this.map.setView(viewOf(session.cellSize));
-    const leave = new AbortController();
-    const resolution = (): number => this.map.getView().getResolution() ?? 0;
-    const tiles = new LiveTiles(session, versions, kProjection, resolution, this.theme.cells, leave.signal);
-    const paths = new PathLayer(colours, this.theme);
-    const robots = new RobotsLayer(colours, this.theme);
-    this.map.setLayers([tiles.layer, paths.layer, robots.layer]);
-    this.scene = { tiles, paths, robots, leave };
+    this.map.setView(viewOf(cellSize));
+    this.scene = {
+      main: new CellPane(this.map, kOrder.cells, this.theme.cells),
+      beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells),
+      labels: new CellLabels(this.map, cellSize, this.theme),
+      frontiers: new FrontiersLayer(this.theme),
+      paths: new PathLayer(colours, this.theme),
+      points: new PointsLayer(colours, this.theme),
+      robots: new RobotsLayer(colours, this.theme),
+    };
+    const { labels, frontiers, paths, points, robots } = this.scene;
+    for (const { layer } of [labels, frontiers, paths, points, robots]) this.map.addLayer(layer);
+    this.choose(settings);
   }
 
   close(): void {
-    this.scene?.leave.abort();
+    if (!this.scene) return;
+    const { main, beside, labels, frontiers, paths, points, robots } = this.scene;
+    for (const pane of [main, beside]) pane.clear();
+    for (const { layer } of [labels, frontiers, paths, points, robots]) this.map.removeLayer(layer);
     this.scene = null;
-    this.map.setLayers([]);
   }
 
-  showTiles(tiles: TileChange[]): void {
-    this.scene?.tiles.apply(tiles);
+  /** Which of the things on top of the map are to be seen. */
+  choose({ robots, trails, points, frontiers }: Settings): void {
+    this.scene?.robots.layer.setVisible(robots);
+    this.scene?.paths.layer.setVisible(trails);
+    this.scene?.points.layer.setVisible(points);
+    this.scene?.frontiers.layer.setVisible(frontiers);
   }
 
-  showTracks(tracks: Track[]): void {
-    this.scene?.paths.append(tracks);
+  show(main: Shown, beside: Shown | null): void {
+    this.scene?.main.show(main.source, main.layer);
+    if (beside) this.scene?.beside.show(beside.source, beside.layer);
+    else this.scene?.beside.clear();
   }
 
-  showRobots(session: Session): void {
-    this.scene?.robots.show(session.robots);
+  /** @param main, beside from 0 to 1 */
+  setOpacity(main: number, beside: number): void {
+    this.scene?.main.setOpacity(main);
+    this.scene?.beside.setOpacity(beside);
   }
 
-  /** Metres travelled. */
-  pathLength(robot: string): number {
-    return this.scene?.paths.lengthOf(robot) ?? 0;
+  /** Where the one ends and the other begins, from 0 on the left to 1; null: they lie on each other. */
+  setDivider(at: number | null): void {
+    this.scene?.main.setClip({ from: 0, to: at ?? 1 });
+    this.scene?.beside.setClip({ from: at ?? 0, to: 1 });
+  }
+
+  /** More is known of the maps that are shown. */
+  renew(): void {
+    this.scene?.main.renew();
+    this.scene?.beside.renew();
+    this.scene?.labels.update();
+  }
+
+  showTrail(robot: string, points: Point[]): void {
+    this.scene?.paths.show(robot, points);
+  }
+
+  showRobots(robots: Robot[]): void {
+    this.scene?.robots.show(robots);
+  }
+
+  showScan(robot: string, points: Point[]): void {
+    this.scene?.points.show(robot, points);
+  }
+
+  clearScans(): void {
+    this.scene?.points.clear();
+  }
+
+  showFrontiers(frontiers: Frontier[]): void {
+    this.scene?.frontiers.show(frontiers);
+  }
+
+  /** @param reader of HIMM counters to be written into their cells; null: none */
+  showCounters(reader: CellReader | null): void {
+    this.scene?.labels.show(reader);
+  }
+
+  /** Whether cells are large enough for counters at this zoom. */
+  get countersReadable(): boolean {
+    return this.scene?.labels.readable ?? false;
+  }
+
+  /** Cells that were asked for have come. */
+  updateCounters(): void {
+    this.scene?.labels.update();
   }
 
   /** The server answers again: ask for what could not be had meanwhile. */
   retry(): void {
-    this.scene?.tiles.retry();
+    this.scene?.main.retry();
+    this.scene?.beside.retry();
   }
 
   setTheme(theme: Theme): void {
     this.theme = theme;
-    this.scene?.tiles.setPalette(theme.cells);
-    this.scene?.paths.setTheme(theme);
-    this.scene?.robots.setTheme(theme);
+    if (!this.scene) return;
+    const { main, beside, labels, frontiers, paths, points, robots } = this.scene;
+    for (const pane of [main, beside]) pane.setPalette(theme.cells);
+    for (const overlay of [labels, frontiers, paths, points, robots]) overlay.setTheme(theme);
   }
 }
 

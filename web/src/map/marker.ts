@@ -40,3 +40,27 @@ export function drawMarker(
   context.stroke();
   context.restore();
 }
+
+/** The ground that the robot's body takes. @param radius device pixels */
+export function drawFootprint(
+  context: CanvasRenderingContext2D,
+  [x = 0, y = 0]: number[],
+  radius: number,
+  { colour, halo }: MarkerLook,
+  pixelRatio: number,
+): void {
+  context.save();
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.globalAlpha = 0.2;
+  context.fillStyle = colour;
+  context.fill();
+  context.globalAlpha = 1;
+  context.strokeStyle = halo;
+  context.lineWidth = 3 * pixelRatio;
+  context.stroke();
+  context.strokeStyle = colour;
+  context.lineWidth = 1.5 * pixelRatio;
+  context.stroke();
+  context.restore();
+}

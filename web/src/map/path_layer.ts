@@ -5,31 +5,29 @@ import VectorLayer from 'ol/layer/Vector';
 import VectorSource from 'ol/source/Vector';
 import Stroke from 'ol/style/Stroke';
 import Style from 'ol/style/Style';
-import type { Point, Track } from '../api/types';
+import type { Point } from '../api/types';
 import type { RobotColours } from '../robot_colours';
 import type { Theme } from '../theme';
+import { kOrder } from './order';
 
 export class PathLayer {
   private readonly source = new VectorSource<Feature<LineString>>();
-  readonly layer: VectorLayer;
+  readonly layer = new VectorLayer({
+    source: this.source,
+    zIndex: kOrder.trails,
+    updateWhileAnimating: true,
+    updateWhileInteracting: true,
+  });
   private readonly paths = new Map<string, Path>();
 
   constructor(
     private readonly colours: RobotColours,
     private theme: Theme,
-  ) {
-    this.layer = new VectorLayer({ source: this.source, updateWhileAnimating: true, updateWhileInteracting: true });
-  }
+  ) {}
 
-  append(tracks: Track[]): void {
-    for (const { robot, points } of tracks) {
-      if (points.length > 0) this.pathOf(robot).append(points);
-    }
-  }
-
-  /** Metres travelled so far. */
-  lengthOf(robot: string): number {
-    return this.paths.get(robot)?.length ?? 0;
+  /** @param points oldest first; an array that was shown before may have grown at its end */
+  show(robot: string, points: Point[]): void {
+    this.pathOf(robot).show(points);
   }
 
   setTheme(theme: Theme): void {
@@ -55,17 +53,15 @@ export class PathLayer {
 }
 
 class Path {
-  private readonly points: Point[] = [];
+  private shown: Point[] = [];
+  private drawn = 0;
   private readonly line = new LineString([]);
   readonly feature = new Feature(this.line);
-  length = 0;
 
-  append(points: Point[]): void {
-    for (const point of points) {
-      const last = this.points.at(-1);
-      if (last) this.length += Math.hypot(point[0] - last[0], point[1] - last[1]);
-      this.points.push(point);
-    }
-    this.line.setCoordinates(this.points);
+  show(points: Point[]): void {
+    if (points === this.shown && points.length === this.drawn) return;
+    this.shown = points;
+    this.drawn = points.length;
+    this.line.setCoordinates(points);
   }
 }

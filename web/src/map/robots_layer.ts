@@ -12,21 +12,25 @@ import type { Robot } from '../api/types';
 import { shortened } from '../format';
 import type { RobotColours } from '../robot_colours';
 import type { Theme } from '../theme';
-import { drawMarker } from './marker';
+import { drawFootprint, drawMarker } from './marker';
+import { kOrder } from './order';
 
 const kLabelLengthMax = 24;
 
 export class RobotsLayer {
   private readonly source = new VectorSource<Feature<PointGeometry>>();
-  readonly layer: VectorLayer;
+  readonly layer = new VectorLayer({
+    source: this.source,
+    zIndex: kOrder.robots,
+    updateWhileAnimating: true,
+    updateWhileInteracting: true,
+  });
   private robots: Robot[] = [];
 
   constructor(
     private readonly colours: RobotColours,
     private theme: Theme,
-  ) {
-    this.layer = new VectorLayer({ source: this.source, updateWhileAnimating: true, updateWhileInteracting: true });
-  }
+  ) {}
 
   show(robots: Robot[]): void {
     this.robots = robots;
@@ -62,7 +66,11 @@ export class RobotsLayer {
     const look = { yaw, colour, halo: this.theme.halo, filled: robot.connected };
     return [
       new Style({
-        renderer: (at, { context, pixelRatio }) => drawMarker(context, at as Coordinate, look, pixelRatio),
+        renderer: (at, { context, pixelRatio, resolution }) => {
+          const radius = ((robot.bodyRadius ?? 0) / resolution) * pixelRatio;
+          if (radius > 0) drawFootprint(context, at as Coordinate, radius, look, pixelRatio);
+          drawMarker(context, at as Coordinate, look, pixelRatio);
+        },
       }),
       new Style({
         text: new Text({

@@ -1,8 +1,10 @@
 /** Coloured tiles, fetched once per version. */
-import { fetchTileImage, type SessionKey } from '../api/api';
+import { fetchTileImage } from '../api/api';
+import type { LayerName } from '../layers/layers';
+import { colourise, colourTable, type ColourTable, type Palette } from '../layers/palette';
 import { kTileSize } from './grid';
-import { colourise, colourTable, type Palette } from './palette';
-import { tileKey, type TileVersions } from './versions';
+import type { MapSource } from './map_source';
+import { tileKey } from './versions';
 
 /** About 64 MB of pixels: several screens full, so that a change of zoom and back asks for nothing. */
 const kImagesMax = 256;
@@ -16,19 +18,24 @@ export class TileImages {
   /** Least recently used first. */
   private readonly images = new Map<string, TileImage>();
   private readonly blank = newCanvas();
-  private table: Uint32Array;
+  private table: ColourTable;
   private underWay = 0;
   private failed = false;
 
   constructor(
-    private readonly session: SessionKey,
-    private readonly versions: TileVersions,
+    private source: MapSource,
+    private readonly layer: LayerName,
     palette: Palette,
     private readonly signal: AbortSignal,
     /** Called when nothing is under way any more. */
     private readonly idle: () => void,
   ) {
-    this.table = colourTable(palette);
+    this.table = colourTable(layer, palette);
+  }
+
+  /** Other maps of the same family: what is at hand of the same version stays good. */
+  retarget(source: MapSource): void {
+    this.source = source;
   }
 
   get busy(): boolean {
@@ -43,13 +50,13 @@ export class TileImages {
   }
 
   setPalette(palette: Palette): void {
-    this.table = colourTable(palette);
+    this.table = colourTable(this.layer, palette);
     this.images.clear();
   }
 
   /** The newest version known of; a tile that was never touched is blank and asks nothing of the server. */
   load(z: number, x: number, y: number): Promise<HTMLCanvasElement> {
-    const revision = this.versions.get(z, x, y);
+    const revision = this.source.versions(this.layer).get(z, x, y);
     if (revision === undefined) return Promise.resolve(this.blank);
     const key = tileKey(z, x, y);
     const known = this.images.get(key);
@@ -63,7 +70,8 @@ export class TileImages {
   private async fetch(z: number, x: number, y: number, revision: number): Promise<HTMLCanvasElement> {
     this.underWay += 1;
     try {
-      const bitmap = await fetchTileImage(this.session, { z, x, y, revision }, this.signal);
+      const { session, weave } = this.source;
+      const bitmap = await fetchTileImage({ session, weave, layer: this.layer }, { z, x, y, revision }, this.signal);
       return paint(bitmap, this.table);
     } catch (error) {
       this.failed = true;

@@ -1,40 +1,68 @@
-/** The occupancy layer: tiles that are replaced one by one as the map grows, without a blank frame in between. */
+/** A layer of cells: tiles that are replaced one by one as the map grows, without a blank frame in between. */
 import TileLayer from 'ol/layer/Tile';
 import type Projection from 'ol/proj/Projection';
 import ImageTileSource from 'ol/source/ImageTile';
 import TileGrid from 'ol/tilegrid/TileGrid';
-import type { Session, TileChange } from '../api/types';
+import type { LayerName } from '../layers/layers';
+import type { Palette } from '../layers/palette';
 import { squareExtent, tileResolutions } from './grid';
-import type { Palette } from './palette';
+import type { MapSource } from './map_source';
 import { TileImages } from './tile_images';
-import type { TileVersions } from './versions';
 
 /** A tile that the server keeps refusing is not asked for more often than this. */
 const kRetryMs = 3_000;
 
-export class LiveTiles {
-  readonly layer: TileLayer<ImageTileSource>;
-  private readonly source: CellSource;
+export interface CellLayerOptions {
+  projection: Projection;
+  /** Metres per pixel of the view, now. */
+  viewResolution: () => number;
+  palette: Palette;
+  signal: AbortSignal;
+  /** Called when all that was asked for is there. */
+  idle: () => void;
+}
+
+export class CellLayer {
+  readonly tiles: TileLayer<ImageTileSource>;
+  private readonly cells: CellTiles;
   private readonly images: TileImages;
   private generation = 0;
   private outdated = false;
   private retriedAt = -Infinity;
 
   constructor(
-    session: Session,
-    private readonly versions: TileVersions,
-    projection: Projection,
-    viewResolution: () => number,
-    palette: Palette,
-    signal: AbortSignal,
+    private source: MapSource,
+    readonly layer: LayerName,
+    private readonly options: CellLayerOptions,
   ) {
-    this.images = new TileImages(session, versions, palette, signal, () => this.renewIfIdle());
-    this.source = new CellSource(session.cellSize, viewResolution, projection, this.images);
-    this.layer = new TileLayer({ source: this.source });
+    const { palette, signal } = options;
+    this.images = new TileImages(source, layer, palette, signal, () => this.settle());
+    this.cells = new CellTiles(source.cellSize, options.viewResolution, options.projection, this.images);
+    this.tiles = new TileLayer({ source: this.cells });
+    source.need(layer);
   }
 
-  apply(tiles: TileChange[]): void {
-    this.versions.apply(tiles);
+  get busy(): boolean {
+    return this.images.busy;
+  }
+
+  /** Whether these maps can be shown here without a blank frame in between. */
+  suits(source: MapSource, layer: LayerName): boolean {
+    const { session, cellSize, family } = this.source;
+    const same = session.id === source.session.id && cellSize === source.cellSize && family === source.family;
+    return same && layer === this.layer;
+  }
+
+  retarget(source: MapSource): void {
+    if (source === this.source) return;
+    this.source = source;
+    this.images.retarget(source);
+    source.need(this.layer);
+    this.renew();
+  }
+
+  /** More is known of the maps. */
+  renew(): void {
     this.outdated = true;
     this.renewIfIdle();
   }
@@ -44,14 +72,17 @@ export class LiveTiles {
     const now = performance.now();
     if (now - this.retriedAt < kRetryMs || !this.images.takeFailure()) return;
     this.retriedAt = now;
-    this.outdated = true;
-    this.renewIfIdle();
+    this.renew();
   }
 
   setPalette(palette: Palette): void {
     this.images.setPalette(palette);
-    this.outdated = true;
+    this.renew();
+  }
+
+  private settle(): void {
     this.renewIfIdle();
+    if (!this.images.busy) this.options.idle();
   }
 
   /**
@@ -62,11 +93,11 @@ export class LiveTiles {
     if (!this.outdated || this.images.busy) return;
     this.outdated = false;
     this.generation += 1;
-    this.source.renew(`g${this.generation}`);
+    this.cells.renew(`g${this.generation}`);
   }
 }
 
-class CellSource extends ImageTileSource {
+class CellTiles extends ImageTileSource {
   constructor(
     private readonly cellSize: number,
     private readonly viewResolution: () => number,

@@ -4,11 +4,18 @@ import type { TileChange } from '../api/types';
 export class TileVersions {
   private readonly revisions = new Map<string, number>();
 
-  /** An older revision never replaces a newer one, whatever the order of arrival. */
+  /**
+   * An older revision never replaces a newer one, whatever the order of arrival.
+   * What lies above a tile has changed with it: it may be told or left out.
+   */
   apply(tiles: TileChange[]): void {
     for (const tile of tiles) {
-      const key = tileKey(tile.z, tile.x, tile.y);
-      if (tile.revision > (this.revisions.get(key) ?? -1)) this.revisions.set(key, tile.revision);
+      for (let { z, x, y } = tile; z >= 0; z -= 1, x >>= 1, y >>= 1) {
+        const key = tileKey(z, x, y);
+        // Who is as new as this has told those above it already.
+        if ((this.revisions.get(key) ?? -1) >= tile.revision) break;
+        this.revisions.set(key, tile.revision);
+      }
     }
   }
 

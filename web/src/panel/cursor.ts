@@ -1,23 +1,30 @@
 /** Where the person points at, in metres and cells, and what is known there. */
 import type OlMap from 'ol/Map';
-import { setText } from '../dom';
+import { el, setText } from '../dom';
 import * as format from '../format';
+import type { CellReaders } from '../map/cell_readers';
 import { cellAt } from '../map/grid';
-import type { CellReader } from '../map/cell_reader';
+import type { Shown } from '../map/map_view';
+import type { CellValue } from '../layers/cell_value';
+import { kLayerTitles, type LayerName } from '../layers/layers';
+import type { Picture } from '../picture';
 
 export interface CursorFields {
   box: HTMLElement;
   x: HTMLElement;
   y: HTMLElement;
   cell: HTMLElement;
+  /** Of the layer that is seen there. */
   value: HTMLElement;
+  /** Of the others. */
+  others: HTMLElement;
   crosshair: HTMLElement;
 }
 
-/** What is under the cursor belongs to a session's grid. */
+/** What is under the cursor belongs to the maps of a session. */
 export interface CursorScene {
-  cellSize: number;
-  reader: CellReader;
+  readers: CellReaders;
+  picture: Picture;
 }
 
 export class Cursor {
@@ -46,10 +53,12 @@ export class Cursor {
 
   update(): void {
     const byKeyboard = this.pixel === null && this.target.matches(':focus-visible');
+    const [width = 1] = this.map.getSize() ?? [];
     const at = byKeyboard ? this.map.getView().getCenter() : this.pixel && this.map.getCoordinateFromPixel(this.pixel);
-    this.fields.box.hidden = !(this.scene && at);
-    this.fields.crosshair.hidden = !(this.scene && at && byKeyboard);
-    if (this.scene && at) this.tell(this.scene, at);
+    const shown = this.scene?.picture.shownAt(byKeyboard ? 0.5 : (this.pixel?.[0] ?? 0) / width) ?? null;
+    this.fields.box.hidden = !(shown && at);
+    this.fields.crosshair.hidden = !(shown && at && byKeyboard);
+    if (this.scene && shown && at) this.tell(this.scene.readers, shown, at);
   }
 
   private pointAt(pixel: number[] | null): void {
@@ -57,11 +66,34 @@ export class Cursor {
     this.update();
   }
 
-  private tell({ cellSize, reader }: CursorScene, [x = 0, y = 0]: number[]): void {
-    const cell = cellAt(x, y, cellSize);
+  private tell(readers: CellReaders, { source, layer }: Shown, [x = 0, y = 0]: number[]): void {
+    const cell = cellAt(x, y, source.cellSize);
     setText(this.fields.x, format.decimal(x, 2));
     setText(this.fields.y, format.decimal(y, 2));
     setText(this.fields.cell, `${format.integer(cell.i)}, ${format.integer(cell.j)}`);
-    setText(this.fields.value, format.cellValue(reader.read(cell)));
+    const [shown, ...others] = readers.all(source, layer);
+    setText(this.fields.value, shown ? format.cellValue(shown.read(cell)) : '');
+    this.tellOthers(others.flatMap((reader) => otherValue(reader.layer, reader.read(cell))));
   }
+
+  private tellOthers(values: OtherValue[]): void {
+    const fingerprint = JSON.stringify(values);
+    if (this.fields.others.dataset['values'] === fingerprint) return;
+    this.fields.others.dataset['values'] = fingerprint;
+    this.fields.others.replaceChildren(
+      ...values.map(({ title, text }) => el('div', {}, el('dt', {}, title), el('dd', {}, text))),
+    );
+  }
+}
+
+interface OtherValue {
+  title: string;
+  text: string;
+}
+
+/** Of layers that know nothing there, nothing. */
+function otherValue(layer: LayerName, value: CellValue): OtherValue[] {
+  if (value.kind === 'unknown' || value.kind === 'loading') return [];
+  if (value.kind === 'class' && value.name === 'unexplored') return [];
+  return [{ title: kLayerTitles[layer], text: format.cellValue(value) }];
 }

@@ -1,0 +1,36 @@
+/** Where the explored ground ends. */
+import { sessionPath } from './api';
+import { decodePoint, fields, list, MalformedAnswer, number } from './decode';
+import { getJson, Refused } from './http';
+import type { Frontier } from './types';
+
+/** @returns null while nothing can be said: no robot has a place to go from yet */
+export async function fetchFrontiers(name: string, signal: AbortSignal): Promise<Frontier[] | null> {
+  try {
+    return decodeFrontiers(await getJson(`${sessionPath(name)}/frontiers.geojson`, signal));
+  } catch (error) {
+    if (error instanceof Refused && error.status === 409) return null;
+    throw error;
+  }
+}
+
+function decodeFrontiers(json: unknown): Frontier[] {
+  return list(fields(json, 'frontiers')['features'], 'features').map((each) => {
+    const feature = fields(each, 'features[]');
+    const properties = fields(feature['properties'], 'features[].properties');
+    const geometry = fields(feature['geometry'], 'features[].geometry');
+    return {
+      areas: areasOf(geometry['coordinates'], 4) as Frontier['areas'],
+      centroid: decodePoint(properties['centroid']),
+      area: number(properties['area'], 'area'),
+      reachable: properties['reachable'] === true,
+      goal: properties['goal'] == null ? null : decodePoint(properties['goal']),
+    };
+  });
+}
+
+/** Lists of lists of ... positions, so many levels deep. */
+function areasOf(json: unknown, levels: number): unknown {
+  if (levels < 1) throw new MalformedAnswer('coordinates are nested too deep');
+  return levels === 1 ? decodePoint(json) : list(json, 'coordinates').map((each) => areasOf(each, levels - 1));
+}

@@ -1,0 +1,144 @@
+/** The messages of the live connection, from bytes to values of this program and back. */
+import { PbfReader, PbfWriter } from 'pbf';
+import {
+  Layer,
+  readLiveEvent,
+  SessionState,
+  writeLiveRequest,
+  type RobotUpdate,
+  type ScanPoints,
+  type TileChanges,
+} from 'virtual:live-protocol';
+import { kNativeZoom } from '../map/grid';
+import type { LayerName } from '../layers/layers';
+import { MalformedAnswer } from './decode';
+import type { Point, Pose, TileChange } from './types';
+
+const kTilesAcross = 2 ** kNativeZoom;
+const kMillimetre = 0.001;
+
+const kLayerOfNumber = new Map<number, LayerName>([
+  [Layer['LAYER_OCCUPANCY'] ?? 1, 'occupancy'],
+  [Layer['LAYER_HIMM'] ?? 2, 'himm'],
+  [Layer['LAYER_SONAR'] ?? 3, 'sonar'],
+  [Layer['LAYER_CLASSIFICATION'] ?? 4, 'classification'],
+]);
+
+export interface LiveTiles {
+  layer: LayerName;
+  /** Too many to be listed: ask for all that changed. */
+  everything: boolean;
+  /** Of the native zoom. */
+  tiles: TileChange[];
+}
+
+export interface LiveScan {
+  /** T_map_sensor. */
+  origin: Pose;
+  /** Where beams ended, in the map frame. */
+  points: Point[];
+}
+
+export interface LiveRobot {
+  /** Its number in the session. */
+  index: number;
+  name: string;
+  connected: boolean;
+  scans: number;
+  /** Null before its first scan. */
+  pose: Pose | null;
+  /** Metres; null: it has not said. */
+  bodyRadius: number | null;
+  trail: Point[];
+  /** How many points its trail has before these. */
+  trailFrom: number;
+  /** Null: as before. */
+  scan: LiveScan | null;
+}
+
+export interface LiveEvent {
+  /** The session's. */
+  id: string;
+  revision: number;
+  scans: number;
+  /** Why it takes no scans; null: it does. */
+  failure: string | null;
+  /** The server shuts down. */
+  draining: boolean;
+  /** Rises when frontiers may have changed. */
+  frontiersRevision: number;
+  tiles: LiveTiles[];
+  /** Those with news. */
+  robots: LiveRobot[];
+}
+
+export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
+  try {
+    const event = readLiveEvent(new PbfReader(new Uint8Array(bytes)));
+    return {
+      id: event.session,
+      revision: event.revision,
+      scans: event.counters?.scans ?? 0,
+      failure: event.state === SessionState['SESSION_STATE_FAILED'] ? event.reason : null,
+      draining: event.state === SessionState['SESSION_STATE_DRAINING'],
+      frontiersRevision: event.frontiers_revision,
+      tiles: event.tiles.flatMap(decodeTiles),
+      robots: event.robots.map(decodeRobot),
+    };
+  } catch (error) {
+    throw error instanceof MalformedAnswer ? error : new MalformedAnswer(`a live event (${String(error)})`);
+  }
+}
+
+/** @param points whether the newest scans are wanted, too */
+export function encodeLiveRequest(points: boolean): Uint8Array<ArrayBuffer> {
+  const writer = new PbfWriter();
+  writeLiveRequest({ layers: [...kLayerOfNumber.keys()], points }, writer);
+  return new Uint8Array(writer.finish());
+}
+
+/** Of a layer that this program does not know, nothing. */
+function decodeTiles({ layer, everything, tiles, revisions }: TileChanges): LiveTiles[] {
+  const name = kLayerOfNumber.get(layer);
+  if (!name) return [];
+  if (tiles.length !== revisions.length) throw new MalformedAnswer('a live event has not one revision for each tile');
+  const changes = tiles.map((tile, index) => ({
+    z: kNativeZoom,
+    x: tile % kTilesAcross,
+    y: Math.floor(tile / kTilesAcross),
+    revision: revisions[index] ?? 0,
+  }));
+  return [{ layer: name, everything, tiles: changes }];
+}
+
+function decodeRobot(robot: RobotUpdate): LiveRobot {
+  return {
+    index: robot.robot,
+    name: robot.name,
+    connected: robot.connected,
+    scans: robot.scan_count,
+    pose: robot.pose ? { ...robot.pose } : null,
+    bodyRadius: robot.body_radius ? robot.body_radius : null,
+    trail: pointsOf(robot.trail, 0, 0),
+    trailFrom: robot.trail_from,
+    scan: robot.scan ? decodeScan(robot.scan) : null,
+  };
+}
+
+function decodeScan({ origin, points }: ScanPoints): LiveScan {
+  const pose = origin ? { ...origin } : { x: 0, y: 0, yaw: 0 };
+  return { origin: pose, points: pointsOf(points, pose.x, pose.y) };
+}
+
+/** @param differences millimetres: x, y of the first from (x, y), then of each from the one before it */
+function pointsOf(differences: number[], x: number, y: number): Point[] {
+  if (differences.length % 2 !== 0) throw new MalformedAnswer('a live event has half a point');
+  const points: Point[] = [];
+  let [column, row] = [0, 0];
+  for (let at = 0; at < differences.length; at += 2) {
+    column += differences[at] ?? 0;
+    row += differences[at + 1] ?? 0;
+    points.push([x + column * kMillimetre, y + row * kMillimetre]);
+  }
+  return points;
+}

@@ -1,0 +1,55 @@
+/** What protocol.js makes of proto/scanloom/v1/live.proto: fields that were not sent have their defaults. */
+declare module 'virtual:live-protocol' {
+  import type { PbfReader, PbfWriter } from 'pbf';
+
+  interface Pose2 {
+    x: number;
+    y: number;
+    yaw: number;
+  }
+
+  interface TileChanges {
+    layer: number;
+    everything: boolean;
+    tiles: number[];
+    revisions: number[];
+  }
+
+  interface ScanPoints {
+    origin: Pose2 | undefined;
+    points: number[];
+  }
+
+  interface RobotUpdate {
+    robot: number;
+    name: string;
+    connected: boolean;
+    pose: Pose2 | undefined;
+    scan_count: number;
+    trail: number[];
+    trail_from: number;
+    scan: ScanPoints | undefined;
+    body_radius?: number;
+  }
+
+  interface LiveEvent {
+    session: string;
+    revision: number;
+    state: number;
+    reason: string;
+    counters: { scans: number } | undefined;
+    frontiers_revision: number;
+    tiles: TileChanges[];
+    robots: RobotUpdate[];
+  }
+
+  interface LiveRequest {
+    layers: number[];
+    points: boolean;
+  }
+
+  export const Layer: Record<string, number>;
+  export const SessionState: Record<string, number>;
+  export function readLiveEvent(pbf: PbfReader): LiveEvent;
+  export function writeLiveRequest(request: LiveRequest, pbf: PbfWriter): void;
+}

@@ -1,0 +1,59 @@
+/** Keys that do something wherever the focus is, and the list of them for people. */
+import { el } from './dom';
+
+export interface Binding {
+  /** As KeyboardEvent.key has it. */
+  key: string;
+  /** What it does, for the list. */
+  does: string;
+  run: () => void;
+}
+
+/** Those of the map, which OpenLayers minds. */
+const kMapKeys: [keys: string, does: string][] = [
+  ['Arrow keys', 'move the map, when it has the focus'],
+  ['+ \u2212', 'zoom'],
+];
+
+export class Keys {
+  private readonly bindings = new Map<string, Binding>();
+
+  constructor() {
+    document.addEventListener('keydown', (event) => this.press(event));
+  }
+
+  bind(binding: Binding): void {
+    if (this.bindings.has(binding.key)) throw new Error(`the key ${binding.key} has a meaning already`);
+    this.bindings.set(binding.key, binding);
+  }
+
+  /** A table of all keys. */
+  describe(): HTMLElement {
+    const bound = [...this.bindings.values()].map(({ key, does }): [string, string] => [nameOf(key), does]);
+    const rows = [...bound, ...kMapKeys].map(([keys, does]) =>
+      el('div', {}, el('dt', {}, el('kbd', {}, keys)), el('dd', {}, does)),
+    );
+    return el('dl', { class: 'keys' }, ...rows);
+  }
+
+  private press(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    if (event.target instanceof Element && isTypedInto(event.target, event.key)) return;
+    if (document.querySelector('dialog[open]')) return;
+    const binding = this.bindings.get(event.key);
+    if (!binding) return;
+    event.preventDefault();
+    binding.run();
+  }
+}
+
+/** Whether the key belongs to the element: text that is written, a choice that is stepped through, a button pressed. */
+function isTypedInto(element: Element, key: string): boolean {
+  if (element instanceof HTMLInputElement) return !['checkbox', 'radio', 'range'].includes(element.type) || key === ' ';
+  if (element instanceof HTMLTextAreaElement || element instanceof HTMLSelectElement) return true;
+  return key === ' ' && element.matches('button, a, summary, [role=button]');
+}
+
+function nameOf(key: string): string {
+  return key === ' ' ? 'Space' : key === 'Escape' ? 'Esc' : key;
+}

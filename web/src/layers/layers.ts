@@ -1,0 +1,34 @@
+/** The maps that a session has, in the order in which the keys step through them. */
+
+export const kLayers = ['occupancy', 'classification', 'himm', 'sonar'] as const;
+
+export type LayerName = (typeof kLayers)[number];
+
+export const kLayerTitles: Record<LayerName, string> = {
+  occupancy: 'Occupancy',
+  classification: 'Classes',
+  himm: 'HIMM',
+  sonar: 'Sonar',
+};
+
+export const kLayerNotes: Record<LayerName, string> = {
+  occupancy: 'Log-odds of all laser scans',
+  classification: 'Free, occupied, frontier, danger',
+  himm: 'Histogramic in-motion mapping: counters 0 to 15',
+  sonar: 'Log-odds of all sonar readings',
+};
+
+export function isLayerName(text: string | null | undefined): text is LayerName {
+  return kLayers.some((name) => name === text);
+}
+
+/** The layer so many steps further on, from the end back to the beginning. */
+export function layerBeside(layer: LayerName, steps: number): LayerName {
+  const count = kLayers.length;
+  return kLayers[(kLayers.indexOf(layer) + steps + count) % count] ?? layer;
+}
+
+/** A record with a value for each layer. */
+export function forEachLayer<Value>(make: (layer: LayerName) => Value): Record<LayerName, Value> {
+  return Object.fromEntries(kLayers.map((layer) => [layer, make(layer)])) as Record<LayerName, Value>;
+}

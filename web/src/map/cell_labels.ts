@@ -1,0 +1,91 @@
+/** The HIMM counters as numbers in their cells, where cells are large enough to hold them. */
+import type OlMap from 'ol/Map';
+import type RenderEvent from 'ol/render/Event';
+import VectorLayer from 'ol/layer/Vector';
+import VectorSource from 'ol/source/Vector';
+import Feature from 'ol/Feature';
+import PointGeometry from 'ol/geom/Point';
+import Style from 'ol/style/Style';
+import type { Theme } from '../theme';
+import type { CellReader } from './cell_reader';
+import { cellAt } from './grid';
+import { kOrder } from './order';
+
+/** A cell of this many pixels holds two digits. */
+export const kCellPxMin = 16;
+
+export class CellLabels {
+  /** One feature that is always in view: its renderer draws all labels. */
+  private readonly anchor = new Feature(new PointGeometry([0, 0]));
+  readonly layer = new VectorLayer({
+    source: new VectorSource({ features: [this.anchor] }),
+    zIndex: kOrder.labels,
+    updateWhileAnimating: true,
+    updateWhileInteracting: true,
+    visible: false,
+  });
+  private reader: CellReader | null = null;
+
+  constructor(
+    private readonly map: OlMap,
+    private readonly cellSize: number,
+    private theme: Theme,
+  ) {
+    this.layer.on('prerender', (event) => this.draw(event));
+    this.layer.setStyle(new Style());
+  }
+
+  /** @param reader of the counters; null: none are shown */
+  show(reader: CellReader | null): void {
+    this.reader = reader;
+    this.layer.setVisible(reader !== null);
+  }
+
+  /** More is known of the cells. */
+  update(): void {
+    if (this.reader) this.layer.changed();
+  }
+
+  setTheme(theme: Theme): void {
+    this.theme = theme;
+    this.layer.changed();
+  }
+
+  /** Whether cells are large enough at this zoom. */
+  get readable(): boolean {
+    return this.cellPixels >= kCellPxMin;
+  }
+
+  private get cellPixels(): number {
+    return this.cellSize / (this.map.getView().getResolution() ?? Infinity);
+  }
+
+  private draw({ context, frameState }: RenderEvent): void {
+    const canvas = context as CanvasRenderingContext2D;
+    if (!this.reader || !frameState?.extent || !this.readable) return;
+    const { extent, pixelRatio } = frameState;
+    const low = cellAt(extent[0] ?? 0, extent[1] ?? 0, this.cellSize);
+    const high = cellAt(extent[2] ?? 0, extent[3] ?? 0, this.cellSize);
+    canvas.save();
+    canvas.font = `${Math.min(13, 0.55 * this.cellPixels) * pixelRatio}px system-ui, sans-serif`;
+    canvas.textAlign = 'center';
+    canvas.textBaseline = 'middle';
+    canvas.lineJoin = 'round';
+    canvas.lineWidth = 3 * pixelRatio;
+    canvas.strokeStyle = this.theme.halo;
+    canvas.fillStyle = this.theme.ink;
+    for (let j = low.j; j <= high.j; ++j) {
+      for (let i = low.i; i <= high.i; ++i) this.label(canvas, i, j, pixelRatio);
+    }
+    canvas.restore();
+  }
+
+  private label(canvas: CanvasRenderingContext2D, i: number, j: number, pixelRatio: number): void {
+    const value = this.reader?.read({ i, j });
+    if (value?.kind !== 'counter') return;
+    const at = this.map.getPixelFromCoordinate([(i + 0.5) * this.cellSize, (j + 0.5) * this.cellSize]);
+    const [x = 0, y = 0] = at ?? [];
+    canvas.strokeText(String(value.count), x * pixelRatio, y * pixelRatio);
+    canvas.fillText(String(value.count), x * pixelRatio, y * pixelRatio);
+  }
+}

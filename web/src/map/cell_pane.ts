@@ -1,0 +1,110 @@
+/** A place on the map for one layer of cells; another takes its place when it is there, not before. */
+import type OlMap from 'ol/Map';
+import type RenderEvent from 'ol/render/Event';
+import type { LayerName } from '../layers/layers';
+import type { Palette } from '../layers/palette';
+import type { MapSource } from './map_source';
+import { kProjection } from './projection';
+import { CellLayer } from './tile_layer';
+
+/** The part of the map's width that a pane is seen in: from 0 on the left to 1. */
+export interface Clip {
+  from: number;
+  to: number;
+}
+
+interface Hung {
+  layer: CellLayer;
+  leave: AbortController;
+}
+
+export class CellPane {
+  private now: Hung | null = null;
+  private before: Hung | null = null;
+  private opacity = 1;
+  private clip: Clip = { from: 0, to: 1 };
+
+  constructor(
+    private readonly map: OlMap,
+    private readonly zIndex: number,
+    private palette: Palette,
+  ) {}
+
+  show(source: MapSource, layer: LayerName): void {
+    if (this.now?.layer.suits(source, layer)) this.now.layer.retarget(source);
+    else this.replace(source, layer);
+  }
+
+  clear(): void {
+    for (const hung of [this.before, this.now]) if (hung) this.takeDown(hung);
+    this.before = this.now = null;
+  }
+
+  /** More is known of the maps. */
+  renew(): void {
+    this.now?.layer.renew();
+  }
+
+  retry(): void {
+    this.now?.layer.retry();
+  }
+
+  setPalette(palette: Palette): void {
+    this.palette = palette;
+    this.now?.layer.setPalette(palette);
+  }
+
+  setOpacity(opacity: number): void {
+    this.opacity = opacity;
+    this.now?.layer.tiles.setOpacity(opacity);
+  }
+
+  setClip(clip: Clip): void {
+    this.clip = clip;
+    this.map.render();
+  }
+
+  private replace(source: MapSource, layer: LayerName): void {
+    if (this.before) this.takeDown(this.before);
+    this.before = this.now;
+    const leave = new AbortController();
+    const hung: Hung = {
+      leave,
+      layer: new CellLayer(source, layer, {
+        projection: kProjection,
+        viewResolution: () => this.map.getView().getResolution() ?? 0,
+        palette: this.palette,
+        signal: leave.signal,
+        idle: () => this.settled(hung),
+      }),
+    };
+    this.now = hung;
+    const { tiles } = hung.layer;
+    tiles.setZIndex(this.zIndex);
+    tiles.setOpacity(this.opacity);
+    tiles.on('prerender', (event) => this.beginClip(event));
+    tiles.on('postrender', ({ context }) => (context as CanvasRenderingContext2D).restore());
+    this.map.addLayer(tiles);
+    this.map.once('rendercomplete', () => this.settled(hung));
+  }
+
+  private settled(hung: Hung): void {
+    if (hung !== this.now || !this.before) return;
+    this.takeDown(this.before);
+    this.before = null;
+  }
+
+  private takeDown({ layer, leave }: Hung): void {
+    leave.abort();
+    this.map.removeLayer(layer.tiles);
+  }
+
+  private beginClip({ context }: RenderEvent): void {
+    const canvas = context as CanvasRenderingContext2D;
+    const { width, height } = canvas.canvas;
+    canvas.save();
+    canvas.beginPath();
+    canvas.rect(this.clip.from * width, 0, (this.clip.to - this.clip.from) * width, height);
+    canvas.clip();
+  }
+}

@@ -1,0 +1,33 @@
+/** Readers of cells, one for each layer of the maps that are looked at. */
+import { kLayers, type LayerName } from '../layers/layers';
+import { CellReader } from './cell_reader';
+import type { MapSource } from './map_source';
+
+/** Of so many maps at a time: two sides, and one more to go back to. */
+const kSourcesMax = 3;
+
+export class CellReaders {
+  /** Least recently used first. */
+  private readonly bySource = new Map<MapSource, Map<LayerName, CellReader>>();
+
+  constructor(
+    private readonly signal: AbortSignal,
+    /** Called when a reader would answer better than before. */
+    private readonly arrived: () => void,
+  ) {}
+
+  of(source: MapSource, layer: LayerName): CellReader {
+    const readers = this.bySource.get(source) ?? new Map<LayerName, CellReader>();
+    this.bySource.delete(source);
+    this.bySource.set(source, readers);
+    for (const oldest of this.bySource.keys()) if (this.bySource.size > kSourcesMax) this.bySource.delete(oldest);
+    const reader = readers.get(layer) ?? new CellReader(source, layer, this.signal, this.arrived);
+    readers.set(layer, reader);
+    return reader;
+  }
+
+  /** Of all layers that hold anything there, the shown one first. */
+  all(source: MapSource, shown: LayerName): CellReader[] {
+    return [shown, ...kLayers.filter((layer) => layer !== shown)].map((layer) => this.of(source, layer));
+  }
+}

@@ -1,0 +1,13 @@
+/** What lies above what on the map. */
+export const kOrder = {
+  cells: 0,
+  cellsBeside: 1,
+  difference: 2,
+  labels: 3,
+  frontiers: 4,
+  ways: 5,
+  trails: 6,
+  points: 7,
+  robots: 8,
+  marks: 9,
+} as const;

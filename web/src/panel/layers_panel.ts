@@ -1,0 +1,101 @@
+/** Which layers are shown, how, and what their colours mean. */
+import { el, setText } from '../dom';
+import { isLayerName, kLayerNotes, kLayers, kLayerTitles } from '../layers/layers';
+import type { Picture, PictureState } from '../picture';
+import type { Settings, SettingsStore } from '../settings';
+import { showLegend } from './legend';
+
+export interface LayersFields {
+  layers: HTMLElement;
+  note: HTMLElement;
+  legend: HTMLElement;
+  opacity: HTMLInputElement;
+  beside: HTMLSelectElement;
+  besideOptions: HTMLElement;
+  besideOpacity: HTMLInputElement;
+  besideLegend: HTMLElement;
+  swipe: HTMLInputElement;
+  over: HTMLInputElement;
+  overlays: HTMLElement;
+}
+
+type Switch = { [Key in keyof Settings]: Settings[Key] extends boolean ? Key : never }[keyof Settings];
+
+const kSwitches: [key: Switch, label: string][] = [
+  ['robots', 'Robots'],
+  ['trails', 'Trails'],
+  ['points', 'Newest scans'],
+  ['frontiers', 'Frontiers and goals'],
+  ['counters', 'HIMM counters in cells'],
+];
+
+export class LayersPanel {
+  private readonly radios: HTMLInputElement[];
+  private readonly switches = new Map<Switch, HTMLInputElement>();
+
+  constructor(
+    private readonly fields: LayersFields,
+    private readonly picture: Picture,
+    private readonly settings: SettingsStore,
+  ) {
+    this.radios = kLayers.map((layer) => this.addRadio(layer, kLayerTitles[layer]));
+    fields.beside.append(
+      el('option', { value: '' }, 'None'),
+      ...kLayers.map((layer) => el('option', { value: layer }, kLayerTitles[layer])),
+    );
+    for (const [key, label] of kSwitches) this.addSwitch(key, label);
+    this.connect();
+    picture.listen(() => this.show(picture.now));
+    settings.listen((now) => this.showSwitches(now));
+    this.show(picture.now);
+    this.showSwitches(settings.get());
+  }
+
+  private addRadio(value: string, title: string): HTMLInputElement {
+    const radio = el('input', { type: 'radio', name: 'layer', value });
+    this.fields.layers.append(el('label', { class: 'choice' }, radio, title));
+    radio.addEventListener('change', () => isLayerName(value) && this.picture.change({ layer: value }));
+    return radio;
+  }
+
+  private addSwitch(key: Switch, label: string): void {
+    const box = el('input', { type: 'checkbox', 'data-switch': key });
+    this.switches.set(key, box);
+    this.fields.overlays.append(el('label', { class: 'choice' }, box, label));
+    box.addEventListener('change', () => this.settings.change({ [key]: box.checked }));
+  }
+
+  private connect(): void {
+    const { opacity, beside, besideOpacity, swipe, over } = this.fields;
+    opacity.addEventListener('input', () => this.picture.change({ opacity: opacity.valueAsNumber / 100 }));
+    besideOpacity.addEventListener('input', () => {
+      this.picture.change({ besideOpacity: besideOpacity.valueAsNumber / 100 });
+    });
+    beside.addEventListener('change', () => {
+      this.picture.change({ besideLayer: isLayerName(beside.value) ? beside.value : null });
+    });
+    swipe.addEventListener('change', () => this.picture.change({ mode: 'swipe' }));
+    over.addEventListener('change', () => this.picture.change({ mode: 'over' }));
+  }
+
+  private show({ layer, besideLayer, mode, opacity, besideOpacity }: PictureState): void {
+    const { fields } = this;
+    for (const radio of this.radios) radio.checked = radio.value === layer;
+    setText(fields.note, kLayerNotes[layer]);
+    showLegend(fields.legend, layer);
+    const beside = this.picture.beside;
+    fields.beside.value = besideLayer ?? '';
+    fields.besideOptions.hidden = beside === null;
+    fields.besideLegend.hidden = beside === null || beside.layer === layer;
+    if (beside) showLegend(fields.besideLegend, beside.layer);
+    fields.swipe.checked = mode === 'swipe';
+    fields.over.checked = mode === 'over';
+    fields.opacity.value = String(Math.round(100 * opacity));
+    fields.besideOpacity.value = String(Math.round(100 * besideOpacity));
+    fields.besideOpacity.disabled = mode === 'swipe';
+  }
+
+  private showSwitches(settings: Settings): void {
+    for (const [key, box] of this.switches) box.checked = settings[key];
+  }
+}

@@ -1,0 +1,91 @@
+/** What a person has set, kept by the browser for the next visit. */
+
+export const kSchemes = ['auto', 'light', 'dark'] as const;
+export const kPalettes = ['standard', 'safe'] as const;
+
+export interface Settings {
+  /** auto: as the system has it. */
+  scheme: (typeof kSchemes)[number];
+  /** safe: colours that people of any colour vision tell apart. */
+  palette: (typeof kPalettes)[number];
+  robots: boolean;
+  trails: boolean;
+  points: boolean;
+  frontiers: boolean;
+  /** HIMM counters as numbers. */
+  counters: boolean;
+}
+
+const kKey = 'scanloom';
+const kDefaults: Settings = {
+  scheme: 'auto',
+  palette: 'standard',
+  robots: true,
+  trails: true,
+  points: true,
+  frontiers: false,
+  counters: false,
+};
+
+export class SettingsStore {
+  private settings = read();
+  private readonly listeners: ((settings: Settings) => void)[] = [];
+
+  constructor() {
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.tell());
+    this.apply();
+  }
+
+  get(): Settings {
+    return this.settings;
+  }
+
+  change(change: Partial<Settings>): void {
+    this.settings = { ...this.settings, ...change };
+    try {
+      localStorage.setItem(kKey, JSON.stringify(this.settings));
+    } catch {
+      // No storage: it holds until the page is left.
+    }
+    this.tell();
+  }
+
+  /** Called at every change, also of the system's colour scheme. */
+  listen(listener: (settings: Settings) => void): void {
+    this.listeners.push(listener);
+  }
+
+  private tell(): void {
+    this.apply();
+    for (const listener of this.listeners) listener(this.settings);
+  }
+
+  /** The style sheet's colours follow two attributes. */
+  private apply(): void {
+    const { scheme, palette } = this.settings;
+    const dark = scheme === 'dark' || (scheme === 'auto' && matchMedia('(prefers-color-scheme: dark)').matches);
+    document.documentElement.dataset['scheme'] = dark ? 'dark' : 'light';
+    document.documentElement.dataset['palette'] = palette;
+  }
+}
+
+/** What cannot be read is as it is at first. */
+function read(): Settings {
+  try {
+    const kept: unknown = JSON.parse(localStorage.getItem(kKey) ?? '{}');
+    return typeof kept === 'object' && kept !== null ? sound(kept as Record<string, unknown>) : kDefaults;
+  } catch {
+    return kDefaults;
+  }
+}
+
+function sound(kept: Record<string, unknown>): Settings {
+  const settings: Settings = { ...kDefaults };
+  for (const key of ['robots', 'trails', 'points', 'frontiers', 'counters'] as const) {
+    const value = kept[key];
+    if (typeof value === 'boolean') settings[key] = value;
+  }
+  settings.scheme = kSchemes.find((each) => each === kept['scheme']) ?? kDefaults.scheme;
+  settings.palette = kPalettes.find((each) => each === kept['palette']) ?? kDefaults.palette;
+  return settings;
+}

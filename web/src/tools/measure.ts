@@ -1,0 +1,54 @@
+/** Distances on the map: click from place to place; each piece and the sum are told. */
+import Feature from 'ol/Feature';
+import LineString from 'ol/geom/LineString';
+import VectorLayer from 'ol/layer/Vector';
+import type OlMap from 'ol/Map';
+import VectorSource from 'ol/source/Vector';
+import { el, setText } from '../dom';
+import * as format from '../format';
+import { kOrder } from '../map/order';
+import type { Theme } from '../theme';
+import { pathStyle } from './path_style';
+import { pickPlaces } from './pick_places';
+import type { Tool } from './toolbox';
+
+export function measureTool(map: OlMap, target: HTMLElement, theme: () => Theme): Tool {
+  return {
+    id: 'measure',
+    title: 'Measure',
+    key: 'm',
+    does: 'measures a distance',
+    icon: 'M2 11 11 2l3 3-9 9zM5 8l1.5 1.5M7 6l1.5 1.5M9 4l1.5 1.5',
+    open: (card, signal) => open(map, target, theme, card, signal),
+  };
+}
+
+function open(
+  map: OlMap,
+  target: HTMLElement,
+  theme: () => Theme,
+  card: HTMLElement,
+  signal: AbortSignal,
+): void {
+  const line = new LineString([]);
+  const layer = new VectorLayer({
+    source: new VectorSource({ features: [new Feature(line)] }),
+    style: (feature) => pathStyle(feature, theme().accent, theme().halo),
+    zIndex: kOrder.marks,
+  });
+  map.addLayer(layer);
+  const sum = el('output', { id: 'measured', class: 'numeric figure' });
+  const again = el('button', { type: 'button' }, 'Start again');
+  const help = 'Click places on the map, or move it with the arrow keys and press Enter.';
+  card.append(el('p', {}, help), sum, again);
+  const show = (): void => setText(sum, line.getCoordinates().length < 2 ? '' : format.distance(line.getLength()));
+  again.addEventListener('click', () => {
+    line.setCoordinates([]);
+    show();
+  });
+  pickPlaces(map, target, signal, (place) => {
+    line.appendCoordinate(place);
+    show();
+  });
+  signal.addEventListener('abort', () => map.removeLayer(layer));
+}

@@ -1,0 +1,24 @@
+/** Places on the map that a person points at: with the pointer, or with the crosshair of the keyboard and Enter. */
+import type OlMap from 'ol/Map';
+import type { Point } from '../api/types';
+
+/**
+ * @param target the map's element
+ * @param picked told of each place, metres, until the signal aborts
+ */
+export function pickPlaces(map: OlMap, target: HTMLElement, signal: AbortSignal, picked: (place: Point) => void): void {
+  const click = ({ coordinate }: { coordinate: number[] }): void => picked([coordinate[0] ?? 0, coordinate[1] ?? 0]);
+  const press = (event: KeyboardEvent): void => {
+    const centre = map.getView().getCenter();
+    if (event.key !== 'Enter' || event.target !== target || !centre) return;
+    event.preventDefault();
+    picked([centre[0] ?? 0, centre[1] ?? 0]);
+  };
+  map.on('click', click);
+  target.addEventListener('keydown', press, { signal });
+  target.classList.add('picking');
+  signal.addEventListener('abort', () => {
+    map.un('click', click);
+    target.classList.remove('picking');
+  });
+}

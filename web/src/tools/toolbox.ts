@@ -1,0 +1,80 @@
+/** Tools that work on the map, one at a time: a button for each, and a card beside the map while it is open. */
+import { el, setText } from '../dom';
+import type { Keys } from '../keys';
+
+export interface Tool {
+  /** Of the button: #tool-ID. */
+  id: string;
+  title: string;
+  key: string;
+  /** For the list of keys: "measures a distance". */
+  does: string;
+  /** The path of its sign on a square of 16. */
+  icon: string;
+  /** Fills the card, and begins to listen to the map until the signal aborts. */
+  open(card: HTMLElement, signal: AbortSignal): void;
+}
+
+export interface ToolboxFields {
+  /** Where the buttons go. */
+  bar: HTMLElement;
+  card: HTMLElement;
+  title: HTMLElement;
+  body: HTMLElement;
+  close: HTMLButtonElement;
+}
+
+export class Toolbox {
+  private readonly buttons = new Map<Tool, HTMLButtonElement>();
+  private open: Tool | null = null;
+  private leave = new AbortController();
+
+  constructor(
+    private readonly fields: ToolboxFields,
+    private readonly keys: Keys,
+  ) {
+    fields.close.addEventListener('click', () => this.close());
+    keys.bind({ key: 'Escape', does: 'closes the tool that is open', run: () => this.close() });
+  }
+
+  add(tool: Tool): void {
+    const title = `${tool.title} (${tool.key})`;
+    const icon = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+    icon.setAttribute('viewBox', '0 0 16 16');
+    icon.setAttribute('aria-hidden', 'true');
+    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+    path.setAttribute('d', tool.icon);
+    icon.append(path);
+    const button = el('button', { type: 'button', id: `tool-${tool.id}`, title, 'aria-pressed': 'false' }, icon);
+    button.setAttribute('aria-label', tool.title);
+    button.addEventListener('click', () => this.toggle(tool));
+    this.buttons.set(tool, button);
+    this.fields.bar.append(button);
+    this.keys.bind({ key: tool.key, does: tool.does, run: () => this.toggle(tool) });
+  }
+
+  /** Whatever is open belongs to a session that is left, or another tool takes its place. */
+  close(): void {
+    if (!this.open) return;
+    const button = this.buttons.get(this.open);
+    button?.setAttribute('aria-pressed', 'false');
+    this.open = null;
+    this.leave.abort();
+    if (this.fields.card.contains(document.activeElement)) button?.focus();
+    this.fields.body.replaceChildren();
+    this.fields.card.hidden = true;
+  }
+
+  private toggle(tool: Tool): void {
+    const wasOpen = this.open === tool;
+    this.close();
+    if (wasOpen) return;
+    this.open = tool;
+    this.leave = new AbortController();
+    this.buttons.get(tool)?.setAttribute('aria-pressed', 'true');
+    setText(this.fields.title, tool.title);
+    this.fields.card.hidden = false;
+    this.fields.card.dataset['tool'] = tool.id;
+    tool.open(this.fields.body, this.leave.signal);
+  }
+}
