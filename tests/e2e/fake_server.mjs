@@ -5,9 +5,9 @@
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
+import { FakeLive } from './fake_live.mjs';
 import { encodeGreyPng } from './png.mjs';
 
-const kNativeZoom = 9;
 const kTileSize = 256;
 const kMediaTypes = {
   '.html': 'text/html; charset=utf-8',
@@ -17,102 +17,44 @@ const kMediaTypes = {
 };
 const kSecurityHeaders = {
   'Content-Security-Policy':
-    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self'",
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; connect-src 'self' ws:",
   'X-Content-Type-Options': 'nosniff',
 };
 
-/** A session as the test shapes it; cells are painted tile by tile at the native zoom. */
-export class FakeSession {
-  constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z' } = {}) {
-    Object.assign(this, { name, id, cellSize, created });
-    this.revision = 0;
-    this.bounds = null;
-    this.robots = [];
-    this.tracks = new Map();
-    this.tiles = new Map();
-    /** Why it takes no scans; null: it does. */
-    this.failure = null;
+/** What a layer's tiles have for a code: bytes of .bin are the codes themselves. */
+const kLevelOf = {
+  occupancy: (percent) => Math.round(255 - 2.55 * percent),
+  sonar: (percent) => Math.round(255 - 2.55 * percent),
+  himm: (count) => 255 - 17 * count,
+  // The red of each class's colour, which is all that the viewer looks at.
+  classification: (code) => [128, 255, 67, 46, 217][code],
+};
+const kUntouched = { occupancy: 255, sonar: 255, himm: 255, classification: 0 };
+
+/** Sessions by name; whoever watches one hears of its end. */
+class Sessions extends Map {
+  set(name, session) {
+    if (this.get(name) !== session) this.get(name)?.end();
+    return super.set(name, session);
   }
 
-  /** Gives a whole native tile one probability of occupation, in percent, and touches what lies above it. */
-  paint(x, y, percent) {
-    this.revision += 1;
-    for (let z = kNativeZoom; z >= 0; --z) {
-      const shift = kNativeZoom - z;
-      this.tiles.set(`${z}/${x >> shift}/${y >> shift}`, { revision: this.revision, percent });
-    }
-    this.cover(x, y);
+  delete(name) {
+    this.get(name)?.end();
+    return super.delete(name);
   }
 
-  /** A scan taken here. */
-  move(robot, x, y, yaw) {
-    this.revision += 1;
-    let known = this.robots.find(({ name }) => name === robot);
-    if (!known) {
-      known = { name: robot, connected: true, scans: 0, last_seq: 0, stamp: 0, pose: null };
-      this.robots.push(known);
-    }
-    known.scans += 1;
-    known.last_seq += 1;
-    known.pose = { x, y, yaw };
-    const track = this.tracks.get(robot) ?? [];
-    track.push({ revision: this.revision, point: [x, y] });
-    this.tracks.set(robot, track);
-  }
-
-  cover(x, y) {
-    const side = kTileSize * this.cellSize;
-    const box = { min_x: (x - 256) * side, max_x: (x - 255) * side, min_y: (255 - y) * side, max_y: (256 - y) * side };
-    const old = this.bounds ?? box;
-    this.bounds = {
-      min_x: Math.min(old.min_x, box.min_x),
-      min_y: Math.min(old.min_y, box.min_y),
-      max_x: Math.max(old.max_x, box.max_x),
-      max_y: Math.max(old.max_y, box.max_y),
-    };
-  }
-
-  toJson() {
-    return {
-      name: this.name,
-      ...(this.failure ? { state: 'failed', reason: this.failure } : { state: 'ok' }),
-      id: this.id,
-      created: this.created,
-      revision: this.revision,
-      scans: this.robots.reduce((sum, { scans }) => sum + scans, 0),
-      config: { cell_size: this.cellSize },
-      layers: ['occupancy'],
-      bounds: this.bounds,
-      robots: this.robots,
-    };
-  }
-
-  changes(since) {
-    const tiles = [];
-    for (const [key, { revision }] of this.tiles) {
-      const [z, x, y] = key.split('/').map(Number);
-      if (revision > since || since > this.revision) tiles.push({ z, x, y, revision });
-    }
-    return { layer: 'occupancy', since, reset: since > this.revision, revision: this.revision, tiles };
-  }
-
-  trajectory(since) {
-    const features = [];
-    for (const [robot, track] of this.tracks) {
-      const coordinates = track.filter(({ revision }) => revision > since).map(({ point }) => point);
-      if (coordinates.length === 0) continue;
-      const type = coordinates.length < 2 ? 'MultiPoint' : 'LineString';
-      const properties = { robot, points: coordinates.length };
-      features.push({ type: 'Feature', id: robot, properties, geometry: { type, coordinates } });
-    }
-    return { type: 'FeatureCollection', frame_id: 'map', units: 'm', revision: this.revision, features };
+  clear() {
+    for (const session of this.values()) session.end();
+    super.clear();
   }
 }
 
 export class FakeServer {
-  sessions = new Map();
+  sessions = new Sessions();
   /** Path of every request to the API, in order. */
   requests = [];
+  /** Connections that became live ones. */
+  sockets = new Set();
   /** Path and query of every tile asked for, in order. */
   tileRequests = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
@@ -143,6 +85,7 @@ export class FakeServer {
 
   async listen(port) {
     this.server = createServer((request, response) => void this.answer(request, response));
+    this.server.on('upgrade', (request, socket) => this.upgrade(request, socket));
     await new Promise((resolve) => this.server.listen(port, '127.0.0.1', resolve));
     this.port = this.server.address().port;
   }
@@ -151,11 +94,23 @@ export class FakeServer {
   async vanish() {
     const closed = new Promise((resolve) => this.server.close(resolve));
     this.server.closeAllConnections();
+    for (const socket of this.sockets) socket.destroy();
     await closed;
   }
 
   async comeBack() {
     await this.listen(this.port);
+  }
+
+  upgrade(request, socket) {
+    const { pathname } = new URL(request.url, this.address);
+    this.requests.push(pathname);
+    const name = /^\/api\/v1\/sessions\/([^/]+)\/live$/.exec(pathname)?.[1];
+    const session = name === undefined || this.failure ? undefined : this.sessions.get(decodeURIComponent(name));
+    if (!session) return socket.end('HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n');
+    this.sockets.add(socket);
+    socket.on('close', () => this.sockets.delete(socket));
+    FakeLive.accept(request, socket, session);
   }
 
   async answer(request, response) {
@@ -192,24 +147,25 @@ export class FakeServer {
     if (!session) return problem(response, 404, 'Not found', 'no such session');
     const since = Number(url.searchParams.get('since') ?? 0);
     if (rest.length === 0) return json(response, session.toJson());
-    if (rest[0] === 'changes') return json(response, session.changes(since));
+    if (rest[0] === 'changes') return json(response, session.changes(url.searchParams.get('layer'), since));
     if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
-    if (rest[0] === 'tiles') return this.answerTile(session, rest.slice(2), url, response);
+    if (rest[0] === 'frontiers.geojson') return json(response, { type: 'FeatureCollection', features: session.frontiers });
+    if (rest[0] === 'tiles') return this.answerTile(session, rest.slice(1), url, response);
     return problem(response, 404, 'Not found', url.pathname);
   }
 
-  answerTile(session, [z, x, file], url, response) {
+  answerTile(session, [layer, z, x, file], url, response) {
     this.tileRequests.push(url.pathname + url.search);
     const [y, kind] = file.split('.');
-    const percent = session.tiles.get(`${z}/${x}/${y}`)?.percent;
+    const code = session.tiles.get(`${z}/${x}/${y}`)?.code;
     const headers = { 'Cache-Control': url.searchParams.has('v') ? 'public, max-age=31536000, immutable' : 'no-cache' };
     const cells = new Uint8Array(kTileSize * kTileSize);
     if (kind === 'bin') {
       response.writeHead(200, { 'Content-Type': 'application/octet-stream', ...headers });
-      response.end(cells.fill(percent ?? 255));
+      response.end(cells.fill(code ?? kUntouched[layer]));
     } else {
       response.writeHead(200, { 'Content-Type': 'image/png', ...headers });
-      const level = percent === undefined ? 128 : Math.round(255 - 2.55 * percent);
+      const level = code === undefined ? 128 : kLevelOf[layer](code);
       response.end(encodeGreyPng(kTileSize, kTileSize, cells.fill(level)));
     }
   }

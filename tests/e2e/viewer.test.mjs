@@ -12,7 +12,8 @@ import {
   showsColour,
   textOf,
 } from './browser.mjs';
-import { FakeServer, FakeSession } from './fake_server.mjs';
+import { FakeServer } from './fake_server.mjs';
+import { FakeSession } from './fake_session.mjs';
 
 const kHostile = '<img src=x onerror="document.title=1">';
 

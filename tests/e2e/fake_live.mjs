@@ -1,0 +1,121 @@
+/** The live connections of a fake server: WebSockets (RFC 6455) that tell what the test does to a session. */
+import { createHash } from 'node:crypto';
+import { liveProtocol } from '../../web/protocol.js';
+import { PbfWriter } from '../../web/node_modules/pbf/index.js';
+
+const { writeLiveEvent, Layer } = await import(`data:text/javascript,${encodeURIComponent(liveProtocol())}`);
+
+const kGuid = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
+const kNativeZoom = 9;
+const kStateOk = 1;
+const kStateFailed = 2;
+
+/** One viewer of a session. */
+export class FakeLive {
+  constructor(socket, session) {
+    Object.assign(this, { socket, session });
+    this.told = 0;
+  }
+
+  /** Answers the upgrade, and tells all that there is. */
+  static accept(request, socket, session) {
+    const key = createHash('sha1').update(request.headers['sec-websocket-key'] + kGuid).digest('base64');
+    socket.write(
+      'HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n' +
+        `Sec-WebSocket-Accept: ${key}\r\n\r\n`,
+    );
+    socket.on('error', () => {});
+    const live = new FakeLive(socket, session);
+    session.viewers.add(live);
+    socket.on('close', () => session.viewers.delete(live));
+    // What the browser says is its own matter here.
+    socket.resume();
+    live.tell();
+    return live;
+  }
+
+  /** What is new since the last time. */
+  tell() {
+    const writer = new PbfWriter();
+    writeLiveEvent(this.session.liveEvent(this.told), writer);
+    this.told = this.session.revision;
+    this.socket.write(frame(0x82, Buffer.from(writer.finish())));
+  }
+
+  /** Bytes that are no event. */
+  tellNonsense(bytes) {
+    this.socket.write(frame(0x82, Buffer.from(bytes)));
+  }
+
+  close(code, reason) {
+    const body = Buffer.alloc(2 + Buffer.byteLength(reason));
+    body.writeUInt16BE(code, 0);
+    body.write(reason, 2);
+    this.socket.end(frame(0x88, body));
+  }
+}
+
+/** A session's news as the message has them. */
+export function eventOf(session, since) {
+  const tiles = [];
+  const revisions = [];
+  for (const [key, { revision }] of session.tiles) {
+    const [z, x, y] = key.split('/').map(Number);
+    if (z !== kNativeZoom || revision <= since) continue;
+    tiles.push(512 * y + x);
+    revisions.push(revision);
+  }
+  return {
+    session: session.id,
+    revision: session.revision,
+    state: session.failure ? kStateFailed : kStateOk,
+    reason: session.failure ?? '',
+    counters: { scans: session.scans, robots: session.robots.length, connected: session.robots.length, chunks: 1 },
+    frontiers_revision: session.revision,
+    tiles: session.layers.map((layer) => ({ layer: Layer[`LAYER_${layer.toUpperCase()}`], tiles, revisions })),
+    robots: session.robots.map((robot, index) => robotNews(session, robot, index, since)),
+  };
+}
+
+function robotNews(session, robot, index, since) {
+  const track = session.tracks.get(robot.name) ?? [];
+  const points = track.filter(({ revision }) => revision > since).map(({ point }) => point);
+  return {
+    robot: index,
+    name: robot.name,
+    connected: robot.connected,
+    pose: robot.pose,
+    scan_count: robot.scans,
+    last_seq: robot.last_seq,
+    trail: differences(points, 0, 0),
+    trail_from: track.length - points.length,
+    scan: session.scan && { kind: 1, origin: robot.pose, points: differences(session.scan, robot.pose.x, robot.pose.y) },
+    body_radius: robot.body_radius ?? 0,
+  };
+}
+
+/** In whole millimetres. */
+function differences(points, x, y) {
+  let last = [0, 0];
+  return points.flatMap(([px, py]) => {
+    const at = [Math.round((px - x) * 1000), Math.round((py - y) * 1000)];
+    const step = [at[0] - last[0], at[1] - last[1]];
+    last = at;
+    return step;
+  });
+}
+
+/** One unmasked frame. */
+function frame(first, body) {
+  const length = body.length;
+  const head = length < 126 ? Buffer.from([first, length]) : Buffer.alloc(length < 65536 ? 4 : 10);
+  if (length >= 126) head[0] = first;
+  if (length >= 65536) {
+    head[1] = 127;
+    head.writeBigUInt64BE(BigInt(length), 2);
+  } else if (length >= 126) {
+    head[1] = 126;
+    head.writeUInt16BE(length, 2);
+  }
+  return Buffer.concat([head, body]);
+}

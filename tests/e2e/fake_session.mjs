@@ -1,0 +1,120 @@
+/** A session of the fake server. */
+import { eventOf } from './fake_live.mjs';
+
+const kNativeZoom = 9;
+const kTileSize = 256;
+
+/** A session as the test shapes it; cells are painted tile by tile at the native zoom. */
+export class FakeSession {
+  constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z' } = {}) {
+    Object.assign(this, { name, id, cellSize, created });
+    this.revision = 0;
+    this.bounds = null;
+    this.robots = [];
+    this.tracks = new Map();
+    this.tiles = new Map();
+    /** The layers that the tiles are of: all show the same. */
+    this.layers = ['occupancy'];
+    /** Where the beams of every robot's newest scan ended, metres; null: none is told. */
+    this.scan = null;
+    /** Features of frontiers.geojson. */
+    this.frontiers = [];
+    /** Live connections. */
+    this.viewers = new Set();
+    /** Why it takes no scans; null: it does. */
+    this.failure = null;
+  }
+
+  /** Gives a whole native tile one code (of occupancy: percent), and touches what lies above it. */
+  paint(x, y, code) {
+    this.revision += 1;
+    for (let z = kNativeZoom; z >= 0; --z) {
+      const shift = kNativeZoom - z;
+      this.tiles.set(`${z}/${x >> shift}/${y >> shift}`, { revision: this.revision, code });
+    }
+    this.cover(x, y);
+    this.tell();
+  }
+
+  /** A scan taken here. */
+  move(robot, x, y, yaw) {
+    this.revision += 1;
+    let known = this.robots.find(({ name }) => name === robot);
+    if (!known) {
+      known = { name: robot, connected: true, scans: 0, last_seq: 0, stamp: 0, pose: null };
+      this.robots.push(known);
+    }
+    known.scans += 1;
+    known.last_seq += 1;
+    known.pose = { x, y, yaw };
+    const track = this.tracks.get(robot) ?? [];
+    track.push({ revision: this.revision, point: [x, y] });
+    this.tracks.set(robot, track);
+    this.tell();
+  }
+
+  tell() {
+    for (const viewer of this.viewers) viewer.tell();
+  }
+
+  get scans() {
+    return this.robots.reduce((sum, { scans }) => sum + scans, 0);
+  }
+
+  liveEvent(since) {
+    return eventOf(this, since);
+  }
+
+  /** It is deleted. */
+  end() {
+    for (const viewer of this.viewers) viewer.close(4404, 'the session was deleted');
+  }
+
+  cover(x, y) {
+    const side = kTileSize * this.cellSize;
+    const box = { min_x: (x - 256) * side, max_x: (x - 255) * side, min_y: (255 - y) * side, max_y: (256 - y) * side };
+    const old = this.bounds ?? box;
+    this.bounds = {
+      min_x: Math.min(old.min_x, box.min_x),
+      min_y: Math.min(old.min_y, box.min_y),
+      max_x: Math.max(old.max_x, box.max_x),
+      max_y: Math.max(old.max_y, box.max_y),
+    };
+  }
+
+  toJson() {
+    return {
+      name: this.name,
+      ...(this.failure ? { state: 'failed', reason: this.failure } : { state: 'ok' }),
+      id: this.id,
+      created: this.created,
+      revision: this.revision,
+      scans: this.scans,
+      config: { cell_size: this.cellSize },
+      layers: this.layers,
+      bounds: this.bounds,
+      robots: this.robots,
+    };
+  }
+
+  changes(layer, since) {
+    const tiles = [];
+    for (const [key, { revision }] of this.tiles) {
+      const [z, x, y] = key.split('/').map(Number);
+      if (revision > since || since > this.revision) tiles.push({ z, x, y, revision });
+    }
+    return { layer, since, reset: since > this.revision, revision: this.revision, tiles };
+  }
+
+  trajectory(since) {
+    const features = [];
+    for (const [robot, track] of this.tracks) {
+      const coordinates = track.filter(({ revision }) => revision > since).map(({ point }) => point);
+      if (coordinates.length === 0) continue;
+      const type = coordinates.length < 2 ? 'MultiPoint' : 'LineString';
+      const properties = { robot, points: coordinates.length };
+      features.push({ type: 'Feature', id: robot, properties, geometry: { type, coordinates } });
+    }
+    return { type: 'FeatureCollection', frame_id: 'map', units: 'm', revision: this.revision, features };
+  }
+}
