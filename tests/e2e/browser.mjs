@@ -91,6 +91,50 @@ export function countPixels(page, [red, green, blue]) {
   );
 }
 
+/** The topmost colour of the map there, in pixels of the page; null: nothing is drawn. */
+export function colourAt(page, x, y) {
+  return page.evaluate(
+    ([left, top]) => {
+      for (const canvas of [...document.querySelectorAll('#map canvas')].reverse()) {
+        const box = canvas.getBoundingClientRect();
+        const scale = canvas.width / box.width;
+        const at = [(left - box.left) * scale, (top - box.top) * scale].map(Math.round);
+        const { data } = canvas.getContext('2d').getImageData(at[0], at[1], 1, 1);
+        if (data[3] > 127) return [...data.slice(0, 3)];
+      }
+      return null;
+    },
+    [x, y],
+  );
+}
+
+/** Waits until it is, or is not, this colour that is seen there. */
+export function showsColourAt(page, [x, y], colour, wanted = true) {
+  return until(page, async () => {
+    const seen = await colourAt(page, x, y);
+    return wanted === (seen !== null && isLike(seen, colour));
+  });
+}
+
+/** But for what smoothing does. */
+export function isLike(seen, colour) {
+  return colour.every((part, band) => Math.abs(seen[band] - part) < 12);
+}
+
+/** Waits until so many pixels of the map have this colour. */
+export function countsPixels(page, colour, holds) {
+  return until(page, async () => holds(await countPixels(page, colour)));
+}
+
+/** Looks at every frame of the page until it holds. */
+export async function until(page, holds) {
+  const deadline = Date.now() + 30_000;
+  while (!(await holds())) {
+    if (Date.now() > deadline) throw new Error('waited in vain for what the map should show');
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
+  }
+}
+
 /** Waits until the map shows one of these colours of the style sheet, at whatever opacity. */
 export async function showsColour(page, ...names) {
   const colours = await Promise.all(names.map((name) => colourOf(page, name)));

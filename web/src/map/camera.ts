@@ -2,6 +2,7 @@
 import { containsExtent, type Extent } from 'ol/extent';
 import type Map from 'ol/Map';
 import type { Bounds, Robot } from '../api/types';
+import { motionMs } from '../motion';
 
 type Aim = { kind: 'everything' } | { kind: 'free' } | { kind: 'robot'; name: string };
 
@@ -74,7 +75,7 @@ export class Camera {
     this.zoomed();
     const view = this.map.getView();
     const zoom = view.getZoom();
-    if (zoom !== undefined) view.animate({ zoom: zoom + levels, duration: kMoveMs });
+    if (zoom !== undefined) view.animate({ zoom: zoom + levels, duration: motionMs(kMoveMs) });
   }
 
   /** Zooming while a robot is followed goes on following it. */
@@ -98,7 +99,7 @@ export class Camera {
 
   private centreOn(name: string): void {
     const pose = this.robots.find((robot) => robot.name === name)?.pose;
-    if (pose) this.map.getView().animate({ center: [pose.x, pose.y], duration: kMoveMs, easing: (t) => t });
+    if (pose) this.map.getView().animate({ center: [pose.x, pose.y], duration: motionMs(kMoveMs), easing: (t) => t });
   }
 
   private fitTo(bounds: Bounds, room: number): void {
@@ -112,7 +113,7 @@ export class Camera {
     this.map.getView().fit(extent, {
       padding: [padding, padding, padding, padding],
       minResolution: kFitResolutionMin,
-      duration: this.fitted ? kMoveMs : 0,
+      duration: this.fitted ? motionMs(kMoveMs) : 0,
     });
     this.fitted = true;
   }

@@ -6,6 +6,7 @@ import VectorSource from 'ol/source/Vector';
 import Feature from 'ol/Feature';
 import PointGeometry from 'ol/geom/Point';
 import Style from 'ol/style/Style';
+import { counterColour, type Rgb } from '../layers/palette';
 import type { Theme } from '../theme';
 import type { CellReader } from './cell_reader';
 import { cellAt } from './grid';
@@ -72,8 +73,6 @@ export class CellLabels {
     canvas.textBaseline = 'middle';
     canvas.lineJoin = 'round';
     canvas.lineWidth = 3 * pixelRatio;
-    canvas.strokeStyle = this.theme.halo;
-    canvas.fillStyle = this.theme.ink;
     for (let j = low.j; j <= high.j; ++j) {
       for (let i = low.i; i <= high.i; ++i) this.label(canvas, i, j, pixelRatio);
     }
@@ -85,7 +84,16 @@ export class CellLabels {
     if (value?.kind !== 'counter') return;
     const at = this.map.getPixelFromCoordinate([(i + 0.5) * this.cellSize, (j + 0.5) * this.cellSize]);
     const [x = 0, y = 0] = at ?? [];
+    const ground = counterColour(this.theme.cells, value.count);
+    canvas.strokeStyle = `rgb(${ground.join(' ')})`;
+    canvas.fillStyle = inkOn(ground);
     canvas.strokeText(String(value.count), x * pixelRatio, y * pixelRatio);
     canvas.fillText(String(value.count), x * pixelRatio, y * pixelRatio);
   }
+}
+
+/** Black or white, whichever stands out more: luminance as WCAG 2 has it. */
+function inkOn(ground: Rgb): string {
+  const [red, green, blue] = ground.map((value) => ((value / 255 + 0.055) / 1.055) ** 2.4) as [number, number, number];
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.18 ? '#000000' : '#ffffff';
 }

@@ -1,4 +1,5 @@
 /** Places on the map that a person points at: with the pointer, or with the crosshair of the keyboard and Enter. */
+import DoubleClickZoom from 'ol/interaction/DoubleClickZoom';
 import type OlMap from 'ol/Map';
 import type { Point } from '../api/types';
 
@@ -14,10 +15,14 @@ export function pickPlaces(map: OlMap, target: HTMLElement, signal: AbortSignal,
     event.preventDefault();
     picked([centre[0] ?? 0, centre[1] ?? 0]);
   };
+  // Two places picked one right after the other are not a wish to zoom in.
+  const zooms = map.getInteractions().getArray().filter((each) => each instanceof DoubleClickZoom);
+  for (const zoom of zooms) zoom.setActive(false);
   map.on('click', click);
   target.addEventListener('keydown', press, { signal });
   target.classList.add('picking');
   signal.addEventListener('abort', () => {
+    for (const zoom of zooms) zoom.setActive(true);
     map.un('click', click);
     target.classList.remove('picking');
   });
