@@ -11,5 +11,11 @@ export default defineConfig({
     assetsInlineLimit: 0,
   },
   // `npm run dev` shows a server that runs on its usual port.
-  server: { proxy: { '/api': 'http://127.0.0.1:8080', '/readyz': 'http://127.0.0.1:8080' } },
+  server: {
+    proxy: {
+      '/api': 'http://127.0.0.1:8080',
+      '/metrics': 'http://127.0.0.1:8080',
+      '/readyz': 'http://127.0.0.1:8080',
+    },
+  },
 });

@@ -11,9 +11,10 @@ import { Facts } from './panel/facts';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
 import { showScale } from './panel/scale_bar';
-import { SessionList } from './panel/session_list';
 import { Status } from './panel/status';
 import { poll, type Pace } from './poll';
+import { ServerCharts } from './charts/server_charts';
+import { SessionPanel } from './sessions/session_panel';
 import { onThemeChange, readTheme } from './theme';
 import { Viewer } from './viewer';
 import './style/index.css';
@@ -26,7 +27,16 @@ const map = createMap(target);
 const mapView = new MapView(map, readTheme());
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
-const sessionList = new SessionList(byId('sessions', HTMLElement), byId('damaged', HTMLElement));
+/** Sessions whose end this page has asked for. */
+const ending = new Set<string>();
+const sessionPanel = new SessionPanel(readTheme(), {
+  created: ({ name }) => void (location.hash = hashOfSession(name)),
+  wanted: () => setPanel(true),
+  asked: (name) => void ending.add(name),
+  kept: (name) => void ending.delete(name),
+  deleted: (name) => leaveDeleted(name),
+});
+const serverCharts = new ServerCharts(byId('server-toggle', HTMLButtonElement), byId('server', HTMLElement));
 const newest = new NewestSessions();
 const robotList = new RobotList(byId('robots', HTMLElement), mapView, (robot) => follow(robot));
 const camera = new Camera(map, target, (robot) => robotList.setFollowed(robot));
@@ -50,9 +60,10 @@ const viewer = new Viewer({
   noRobots: byId('no-robots', HTMLElement),
   newest: (session) => {
     const known = newest.learn(session);
-    sessionList.refresh(known);
+    sessionPanel.refresh(known);
     return known;
   },
+  endIsExpected: (name) => ending.has(name),
 });
 let robotPort: RobotPort | null = null;
 
@@ -67,7 +78,7 @@ function openChosen(): void {
   if (name === null) return;
   document.title = `${name} \u2013 Scanloom`;
   setText(byId('chosen', HTMLElement), name);
-  sessionList.choose(name);
+  sessionPanel.choose(name);
   viewer.watch(name);
 }
 
@@ -87,13 +98,25 @@ async function chooseFrom(sessions: Session[], signal: AbortSignal): Promise<voi
 
 async function refreshSessions(signal: AbortSignal): Promise<void> {
   const answer = await fetchSessions(signal);
-  const sessions = answer.sessions.map((session) => newest.learn(session));
-  sessionList.show(sessions, answer.damaged);
-  byId('no-sessions', HTMLElement).hidden = sessions.length + answer.damaged.length > 0;
+  const learnt = answer.sessions.map((session) => newest.learn(session));
+  const sessions = sessionPanel.show(learnt, answer.damaged);
   const chosen = sessionOfHash(location.hash);
   if (chosen === null) return chooseFrom(sessions, signal);
   for (const session of sessions) if (session.name === chosen) viewer.refresh(session);
   for (const session of answer.damaged) if (session.name === chosen) explain(session);
+}
+
+/** The person knows that it is gone: the page goes to another one, or waits until there is one. */
+function leaveDeleted(name: string): void {
+  if (sessionOfHash(location.hash) === name) {
+    viewer.close();
+    history.replaceState(null, '', location.pathname + location.search);
+    document.title = 'Scanloom';
+    setText(byId('chosen', HTMLElement), '');
+    notice.show({ kind: 'loading' });
+    if (sessionPanel.all.length > 0) void chooseFrom(sessionPanel.all, new AbortController().signal);
+  }
+  ending.delete(name);
 }
 
 function explain({ name, reason }: DamagedSession): void {
@@ -122,4 +145,9 @@ window.addEventListener('hashchange', () => {
 });
 notice.show({ kind: 'loading' });
 openChosen();
-void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => status.settle('sessions', error));
+onThemeChange((theme) => sessionPanel.setTheme(theme));
+onThemeChange(() => serverCharts.takeColours());
+void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => {
+  status.settle('sessions', error);
+  sessionPanel.settle(error);
+});

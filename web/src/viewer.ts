@@ -25,6 +25,8 @@ export interface ViewerParts {
   noRobots: HTMLElement;
   /** Tells the rest of the page what was heard of a session; returns the newest that anybody heard. */
   newest: (session: Session) => Session;
+  /** Whether the person has just asked for the end of this session, and needs not be told of it. */
+  endIsExpected: (name: string) => boolean;
 }
 
 const kSource = 'session';
@@ -64,7 +66,8 @@ export class Viewer {
         },
         gone: () => {
           this.clear();
-          this.parts.notice.show({ kind: seen ? 'deleted' : 'missing', name });
+          if (this.parts.endIsExpected(name)) this.parts.notice.show({ kind: 'loading' });
+          else this.parts.notice.show({ kind: seen ? 'deleted' : 'missing', name });
         },
         settled: (error) => {
           this.parts.status.settle(kSource, error);
@@ -73,6 +76,13 @@ export class Viewer {
       },
       this.leave.signal,
     );
+  }
+
+  /** Leaves the session that is shown, for none. */
+  close(): void {
+    this.leave.abort();
+    this.parts.status.forget(kSource);
+    this.clear();
   }
 
   /** Something newer was heard of a session, which may be the one that is shown. */
