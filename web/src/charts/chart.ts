@@ -40,7 +40,7 @@ export class Chart {
     private readonly lines: ChartLine[],
   ) {
     const title = el('h3', {}, texts.title);
-    this.element = el('div', { class: 'chart' }, title, this.value, this.frame);
+    this.element = el('div', { class: 'chart', 'data-title': texts.title }, title, this.value, this.frame);
     this.observer.observe(this.frame);
   }
 

@@ -18,19 +18,27 @@ export class DeleteDialog {
 
   /** @param session null for one that the server cannot show */
   open(name: string, session: Session | null): void {
+    let done = false;
     const dialog = new FormDialog(
       { title: 'Delete session?', submit: 'Delete', busy: 'Deleting\u2026', destructive: true },
       [
         el('p', { class: 'doomed' }, el('strong', { dir: 'auto' }, name), session ? ` \u00b7 ${contentOf(session)}` : ''),
         el('p', {}, 'Its log of scans and all its maps are deleted for good. Robots that send to it are refused.'),
       ],
-      (signal) => this.delete(name, session, signal),
+      async (signal) => {
+        await this.delete(name, signal);
+        done = true;
+      },
     );
-    dialog.element.addEventListener('close', () => dialog.element.remove());
+    // Only once it is closed can the focus go elsewhere.
+    dialog.element.addEventListener('close', () => {
+      dialog.element.remove();
+      if (done) this.events.deleted(name, session);
+    });
     dialog.open(dialog.cancel);
   }
 
-  private async delete(name: string, session: Session | null, signal: AbortSignal): Promise<void> {
+  private async delete(name: string, signal: AbortSignal): Promise<void> {
     this.events.asked(name);
     try {
       await deleteSession(name, signal);
@@ -38,7 +46,6 @@ export class DeleteDialog {
       this.events.kept(name);
       throw error;
     }
-    this.events.deleted(name, session);
   }
 }
 

@@ -126,8 +126,8 @@ export class SessionPanel {
     this.sessions = this.sessions.filter((each) => each.name !== name);
     this.damaged = this.damaged.filter((each) => each.name !== name);
     this.arrange();
-    // The row that had the focus is gone: the dialog, as it closes, gives it to nobody.
-    queueMicrotask(() => this.list.focus(index) || this.search.focus());
+    // The row that had the focus is gone.
+    if (!this.list.focus(index)) this.search.focus();
     this.events.deleted(name, session);
   }
 
