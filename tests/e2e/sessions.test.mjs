@@ -79,7 +79,7 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     server.add(new FakeSession('bare', 'id-bare')).failure = 'the disk is full';
     await open();
     await says(page, '[data-session="map"]', /live.*2 scans.*12\.8 × 12\.8 m · 1 of 2 online/);
-    await says(page, '[data-session="bare"]', /takes no scans.*0 scans.*nothing seen yet · no robots.*the disk is full/);
+    await says(page, '[data-session="bare"]', /takes no scans.*0 scans.*nothing seen yet · no robots.*disk is full/);
     assert.equal(await page.isVisible('[data-session="bare"] .live'), false);
   });
 

@@ -33,14 +33,14 @@ const kSpecs: Spec[] = [
     say: (scans = null) => values.perSecond(scans),
   },
   {
-    texts: { title: 'Ack latency, ms (p99 dashed)', axis: (seconds) => values.short(seconds * 1000) },
+    texts: { title: 'Ack latency, ms', axis: (seconds) => values.short(seconds * 1000) },
     lines: [kOneLine[0] as ChartLine, { scale: 'y', colour: 1 }],
     needs: ['ack'],
     series: ({ ackMedian, ackSlow }) => [ackMedian, ackSlow],
-    say: (median = null, slow = null) => values.both(`p50 ${values.milliseconds(median)}`, `p99 ${values.milliseconds(slow)}`),
+    say: (median = null, slow = null) => ackText(median, slow),
   },
   {
-    texts: { title: 'Queue, scans (bytes dashed)', axis: values.short },
+    texts: { title: 'Queue (bytes dashed)', axis: values.short },
     lines: [
       { scale: 'scans', colour: 0 },
       { scale: 'bytes', colour: 1 },
@@ -131,6 +131,10 @@ export class ServerCharts {
     const lines = series(all);
     chart.show(say(...lines.map((line) => line[line.length - 1] ?? null)), all.times, lines);
   }
+}
+
+function ackText(median: number | null, slow: number | null): string {
+  return values.both(`p50 ${values.milliseconds(median)}`, `p99 ${values.milliseconds(slow)}`);
 }
 
 function readColours(): ChartColours {

@@ -12,7 +12,7 @@ export function perSecond(value: Value): string {
 export function milliseconds(seconds: Value): string {
   if (seconds === null) return kNone;
   const ms = seconds * 1000;
-  return `${decimal(ms, ms < 10 ? 2 : ms < 100 ? 1 : 0)} ms`;
+  return decimal(ms, ms < 10 ? 2 : ms < 100 ? 1 : 0);
 }
 
 export function scans(value: Value): string {

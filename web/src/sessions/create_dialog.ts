@@ -8,6 +8,7 @@ import { FormDialog } from './form_dialog';
 const kNamePattern = '[A-Za-z0-9_\\-]{1,64}';
 const kNameRule = '1 to 64 letters A\u2013Z, digits, _ or -';
 const kCellRange = { min: 0.01, max: 1, usual: 0.05 };
+const kCellRule = `${kCellRange.min} to ${kCellRange.max}; small cells cost memory.`;
 
 const kRayModelTexts: Record<RayModel, [title: string, text: string]> = {
   inverse_sensor_model: ['Inverse sensor model', 'Every cell in the cone of a beam. The usual choice.'],
@@ -31,7 +32,7 @@ export class CreateDialog {
       el('p', { id: 'new-name-rule', class: 'quiet' }, `${kNameRule}.`),
       el('label', { for: 'new-cell' }, 'Cell size, metres'),
       this.cellSize,
-      el('p', { id: 'new-cell-rule', class: 'quiet' }, `${kCellRange.min} to ${kCellRange.max}; small cells cost memory.`),
+      el('p', { id: 'new-cell-rule', class: 'quiet' }, kCellRule),
       el('fieldset', {}, el('legend', {}, 'Ray model'), ...this.models.map(withText)),
     ];
     this.dialog = new FormDialog(

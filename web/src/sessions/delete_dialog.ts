@@ -5,6 +5,9 @@ import { el } from '../dom';
 import { counted } from '../format';
 import { FormDialog } from './form_dialog';
 
+const kConsequence =
+  'Its log of scans and all its maps are deleted for good. Robots that are connected to it are sent away.';
+
 export interface DeleteEvents {
   /** The request is on its way: whoever watches the session may hear of its end before the answer comes. */
   asked(name: string): void;
@@ -22,8 +25,8 @@ export class DeleteDialog {
     const dialog = new FormDialog(
       { title: 'Delete session?', submit: 'Delete', busy: 'Deleting\u2026', destructive: true },
       [
-        el('p', { class: 'doomed' }, el('strong', { dir: 'auto' }, name), session ? ` \u00b7 ${contentOf(session)}` : ''),
-        el('p', {}, 'Its log of scans and all its maps are deleted for good. Robots that send to it are refused.'),
+        el('p', {}, el('strong', { dir: 'auto' }, name), session ? ` \u00b7 ${contentOf(session)}` : ''),
+        el('p', {}, kConsequence),
       ],
       async (signal) => {
         await this.delete(name, signal);

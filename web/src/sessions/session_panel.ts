@@ -146,8 +146,8 @@ export class SessionPanel {
 
   private tellCount(found: number, query: string): void {
     const all = this.sessions.length + this.damaged.length;
-    const filtered = query !== '' && all > 0;
-    setText(this.told, filtered ? `${count(found)} of ${counted(all, 'session')}` : all > 0 ? counted(all, 'session') : '');
+    const some = query === '' ? '' : `${count(found)} of `;
+    setText(this.told, all > 0 ? `${some}${counted(all, 'session')}` : '');
   }
 
   private tellState(): void {

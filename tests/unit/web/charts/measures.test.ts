@@ -17,7 +17,9 @@ process_resident_memory_bytes 1e6
 `;
 
 const at = (time: number, text = kText): measures.Measures => measures.measure(parseMetrics(text), time);
-const scans = (time: number, count: number, started = 100): measures.Measures => ({ ...at(time), scans: count, started });
+const scans = (time: number, count: number, started = 100): measures.Measures => {
+  return { ...at(time), scans: count, started };
+};
 
 describe('what is measured', () => {
   it('is summed over labels, and null where the server does not tell', () => {

@@ -8,7 +8,8 @@ function values(samples: Samples, name: string): number[] | undefined {
 
 describe('the text of metrics', () => {
   it('is read line by line', () => {
-    const samples = parseMetrics('# HELP a What it is.\n# TYPE a counter\na 12\r\nb{x="1"} 1.5e+3 1700000000000\n\nb{x="2"} -4\n');
+    const comments = '# HELP a What it is.\n# TYPE a counter\n';
+    const samples = parseMetrics(`${comments}a 12\r\nb{x="1"} 1.5e+3 1700000000000\n\nb{x="2"} -4\n`);
     assert.deepEqual([...samples.keys()], ['a', 'b']);
     assert.deepEqual(values(samples, 'a'), [12]);
     assert.deepEqual(values(samples, 'b'), [1500, -4]);
