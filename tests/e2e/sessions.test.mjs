@@ -94,10 +94,14 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.equal(tilesOf('empty').length, 0);
     assert.deepEqual(tilesOf('other').length, 1, 'one tile at the zoom at which the map is small');
     const heard = countOf('/api/v1/sessions');
+    // What the browser answers from its cache counts, too.
+    const asked = [];
+    page.on('request', (request) => asked.push(new URL(request.url()).pathname.split('/')));
     server.sessions.get('shown').paint(256, 255, 0);
     await pictured('shown', '--cell-free');
     assert.ok(countOf('/api/v1/sessions') - heard >= 3, 'not more often than each ten seconds');
     assert.deepEqual([tilesOf('shown').length, tilesOf('other').length], [2, 1]);
+    assert.ok(asked.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'), 'it has not changed');
     assert.match(tilesOf('shown')[1], /\?v=2&id=id-shown$/);
     await page.emulateMedia({ colorScheme: 'dark' });
     await pictured('shown', '--cell-free');
