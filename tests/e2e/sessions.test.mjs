@@ -105,7 +105,6 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.match(tilesOf('shown')[1], /\?v=2&id=id-shown$/);
     await page.emulateMedia({ colorScheme: 'dark' });
     await pictured('shown', '--cell-free');
-    assert.equal(await page.getAttribute('[data-session="shown"] canvas', 'aria-hidden'), 'true');
   });
 
   it('stays fluent with hundreds of sessions', async () => {
@@ -119,13 +118,11 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
         for (const { duration } of list.getEntries()) window.longest = Math.max(window.longest, duration);
       }).observe({ type: 'longtask' });
     });
-    const heard = countOf('/api/v1/sessions');
     for (let round = 0; round < 3; ++round) {
       for (const session of server.sessions.values()) session.move('r1', round, 1, 0);
       await page.waitForResponse((response) => new URL(response.url()).pathname === '/api/v1/sessions');
     }
     await says(page, '[data-session="session-499"]', /3 scans/);
-    assert.ok(countOf('/api/v1/sessions') > heard);
     const longest = await page.evaluate(() => window.longest);
     assert.ok(longest < 400, `the page stood still for ${longest} ms`);
     const pictures = new Set(server.tileRequests.map((path) => path.split('/')[4]));
