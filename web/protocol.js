@@ -34,3 +34,6 @@ function withImports(file, seen = new Set()) {
   }
   return parsed;
 }
+
+// As a program it writes the module, for tools other than Vite.
+if (process.argv[1] === fileURLToPath(import.meta.url)) process.stdout.write(liveProtocol());

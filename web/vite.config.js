@@ -13,5 +13,11 @@ export default defineConfig({
     assetsInlineLimit: 0,
   },
   // `npm run dev` shows a server that runs on its usual port.
-  server: { proxy: { '/api': { target: 'http://127.0.0.1:8080', ws: true }, '/readyz': 'http://127.0.0.1:8080' } },
+  server: {
+    proxy: {
+      '/api': { target: 'http://127.0.0.1:8080', ws: true },
+      '/metrics': 'http://127.0.0.1:8080',
+      '/readyz': 'http://127.0.0.1:8080',
+    },
+  },
 });

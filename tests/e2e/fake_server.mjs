@@ -59,6 +59,15 @@ export class FakeServer {
   tileRequests = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
   failure = null;
+  /** The same for requests that make or delete a session. */
+  refusal = null;
+  /** What was sent to make sessions, in order. */
+  wanted = [];
+  /** When set, a promise that what makes or deletes a session waits for before it answers. */
+  hold = null;
+  /** The text of /metrics. */
+  metrics = '';
+  metricsRequests = 0;
   /** Sessions that cannot be served, {name, reason}. */
   damaged = [];
   /** Where robots would connect. */
@@ -117,6 +126,8 @@ export class FakeServer {
     const url = new URL(request.url, this.address);
     try {
       if (url.pathname === '/readyz') json(response, { status: 'ready', robots: this.robots, damaged: this.damaged });
+      else if (url.pathname === '/metrics') this.answerMetrics(response);
+      else if (url.pathname.startsWith('/api/') && request.method !== 'GET') await this.change(request, url, response);
       else if (url.pathname.startsWith('/api/')) this.answerApi(url, response);
       else await this.answerFile(url, response);
     } catch (error) {
@@ -130,6 +141,39 @@ export class FakeServer {
     if (!body) return problem(response, 404, 'Not found', path);
     response.writeHead(200, { 'Content-Type': kMediaTypes[extname(path)], ...kSecurityHeaders });
     response.end(body);
+  }
+
+  answerMetrics(response) {
+    this.metricsRequests += 1;
+    response.writeHead(200, { 'Content-Type': 'text/plain; version=0.0.4; charset=utf-8' });
+    response.end(this.metrics);
+  }
+
+  async change(request, url, response) {
+    this.requests.push(`${request.method} ${url.pathname}`);
+    let body = '';
+    for await (const part of request) body += part;
+    const refusal = this.refusal;
+    if (!refusal && request.method === 'POST') return this.make(JSON.parse(body), response);
+    if (!refusal) this.deleteSession(decodeURIComponent(url.pathname.split('/')[4]));
+    await this.hold;
+    if (refusal) return problem(response, refusal.status, refusal.title, refusal.detail);
+    response.writeHead(204).end();
+  }
+
+  make(wanted, response) {
+    this.wanted.push(wanted);
+    if (this.sessions.has(wanted.name)) {
+      return problem(response, 409, 'Exists already', `session '${wanted.name}' exists already`);
+    }
+    const created = new Date(Date.UTC(2027, 0, this.wanted.length)).toISOString();
+    const session = new FakeSession(wanted.name, `made-${this.wanted.length}`, { cellSize: wanted.cell_size, created });
+    json(response, this.add(session).toJson(), 201);
+  }
+
+  deleteSession(name) {
+    this.sessions.delete(name);
+    this.damaged = this.damaged.filter((each) => each.name !== name);
   }
 
   answerApi(url, response) {
@@ -171,8 +215,8 @@ export class FakeServer {
   }
 }
 
-function json(response, value) {
-  response.writeHead(200, { 'Content-Type': 'application/json', 'Cache-Control': 'no-cache' });
+function json(response, value, status = 200) {
+  response.writeHead(status, { 'Content-Type': 'application/json', 'Cache-Control': 'no-cache' });
   response.end(JSON.stringify(value));
 }
 

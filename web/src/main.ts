@@ -14,15 +14,16 @@ import { LayersPanel } from './panel/layers_panel';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
 import { showScale } from './panel/scale_bar';
-import { SessionList } from './panel/session_list';
 import { Status } from './panel/status';
 import { SwipeHandle } from './panel/swipe_handle';
 import { Picture } from './picture';
 import { poll, type Pace } from './poll';
 import { SettingsStore } from './settings';
-import { readTheme } from './theme';
 import { measureTool } from './tools/measure';
 import { Toolbox } from './tools/toolbox';
+import { ServerCharts } from './charts/server_charts';
+import { SessionPanel } from './sessions/session_panel';
+import { readTheme } from './theme';
 import { Viewer } from './viewer';
 import './style/index.css';
 
@@ -37,7 +38,16 @@ const mapView = new MapView(map, readTheme());
 const picture = new Picture(mapView);
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
-const sessionList = new SessionList(byId('sessions', HTMLElement), byId('damaged', HTMLElement));
+/** Sessions whose end this page has asked for. */
+const ending = new Set<string>();
+const sessionPanel = new SessionPanel(readTheme(), {
+  created: ({ name }) => void (location.hash = hashOfSession(name)),
+  wanted: () => setPanel(true),
+  asked: (name) => void ending.add(name),
+  kept: (name) => void ending.delete(name),
+  deleted: (name) => leaveDeleted(name),
+});
+const serverCharts = new ServerCharts(byId('server-toggle', HTMLButtonElement), byId('server', HTMLElement));
 const newest = new NewestSessions();
 const robotList = new RobotList(
   byId('robots', HTMLElement),
@@ -68,10 +78,11 @@ const viewer: Viewer = new Viewer({
   noRobots: byId('no-robots', HTMLElement),
   newest: (session) => {
     const known = newest.learn(session);
-    sessionList.refresh(known);
+    sessionPanel.refresh(known);
     return known;
   },
   refresh: () => void refreshOnce(),
+  endIsExpected: (name) => ending.has(name),
 });
 const toolbox = new Toolbox(
   {
@@ -99,7 +110,7 @@ function openChosen(): void {
   if (layer !== null) picture.change({ layer });
   document.title = `${name} \u2013 Scanloom`;
   setText(byId('chosen', HTMLElement), name);
-  sessionList.choose(name);
+  sessionPanel.choose(name);
   viewer.watch(name);
 }
 
@@ -119,9 +130,8 @@ async function chooseFrom(sessions: Session[], signal: AbortSignal): Promise<voi
 
 async function refreshSessions(signal: AbortSignal): Promise<void> {
   const answer = await fetchSessions(signal);
-  const sessions = answer.sessions.map((session) => newest.learn(session));
-  sessionList.show(sessions, answer.damaged);
-  byId('no-sessions', HTMLElement).hidden = sessions.length + answer.damaged.length > 0;
+  const learnt = answer.sessions.map((session) => newest.learn(session));
+  const sessions = sessionPanel.show(learnt, answer.damaged);
   const chosen = sessionOfHash(location.hash);
   if (chosen === null) return chooseFrom(sessions, signal);
   for (const session of sessions) if (session.name === chosen) viewer.refresh(session);
@@ -134,6 +144,19 @@ async function refreshOnce(): Promise<void> {
   refreshing = true;
   await refreshSessions(new AbortController().signal).catch(() => {});
   refreshing = false;
+}
+
+/** The person knows that it is gone: the page goes to another one, or waits until there is one. */
+function leaveDeleted(name: string): void {
+  if (sessionOfHash(location.hash) === name) {
+    viewer.close();
+    history.replaceState(null, '', location.pathname + location.search);
+    document.title = 'Scanloom';
+    setText(byId('chosen', HTMLElement), '');
+    notice.show({ kind: 'loading' });
+    if (sessionPanel.all.length > 0) void chooseFrom(sessionPanel.all, new AbortController().signal);
+  }
+  ending.delete(name);
 }
 
 function explain({ name, reason }: DamagedSession): void {
@@ -163,7 +186,16 @@ function bindKeys(): void {
   keys.bind({ key: 'v', does: 'shows the next layer', run: () => picture.step(1) });
   keys.bind({ key: 'b', does: 'shows the layer before', run: () => picture.step(-1) });
   keys.bind({ key: 'g', does: 'shows HIMM counters in the cells, when zoomed in', run: toggleCounters });
+  keys.bind({ key: '/', does: 'searches the sessions', run: () => sessionPanel.focusSearch() });
   keys.bind({ key: 'f', does: 'fits the whole map', run: () => camera.fit() });
+}
+
+/** Of what is drawn on canvases. */
+function takeColours(): void {
+  const theme = readTheme();
+  mapView.setTheme(theme);
+  sessionPanel.setTheme(theme);
+  serverCharts.takeColours();
 }
 
 function toggleCounters(): void {
@@ -203,7 +235,7 @@ new DisplayPanel(
   keys,
 );
 toolbox.add(measureTool(map, target, readTheme));
-settings.listen(() => mapView.setTheme(readTheme()));
+settings.listen(takeColours);
 viewer.listen((session) => session ?? toolbox.close());
 picture.listen(rememberLayer);
 window.addEventListener('hashchange', () => {
@@ -212,4 +244,7 @@ window.addEventListener('hashchange', () => {
 });
 notice.show({ kind: 'loading' });
 openChosen();
-void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => status.settle('sessions', error));
+void poll(refreshSessions, kSessionsPace, new AbortController().signal, (error) => {
+  status.settle('sessions', error);
+  sessionPanel.settle(error);
+});

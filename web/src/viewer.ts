@@ -35,6 +35,8 @@ export interface ViewerParts {
   newest: (session: Session) => Session;
   /** Asks about all sessions soon: something came that the live connection does not tell. */
   refresh: () => void;
+  /** Whether the person has just asked for the end of this session, and needs not be told of it. */
+  endIsExpected: (name: string) => boolean;
 }
 
 /** A session as it was at some time. */
@@ -107,7 +109,8 @@ export class Viewer {
         trails: () => this.showTrails(),
         gone: () => {
           this.clear();
-          notice.show({ kind: seen ? 'deleted' : 'missing', name });
+          if (this.parts.endIsExpected(name)) notice.show({ kind: 'loading' });
+          else notice.show({ kind: seen ? 'deleted' : 'missing', name });
         },
         settled: (error) => {
           status.settle(kSource, error);
@@ -118,6 +121,13 @@ export class Viewer {
     );
     this.feed.showPoints(this.parts.settings.get().points);
     this.feed.run();
+  }
+
+  /** Leaves the session that is shown, for none. */
+  close(): void {
+    this.leave.abort();
+    this.parts.status.forget(kSource);
+    this.clear();
   }
 
   /** Something newer was heard of a session, which may be the one that is shown. */

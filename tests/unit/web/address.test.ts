@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { hashOfSession, sessionOfHash } from '../../../web/src/address';
+import { hashOfSession, hashWithLayer, layerOfHash, sessionOfHash } from '../../../web/src/address';
 
 describe('the address', () => {
   it('gives back any name that it was given', () => {
@@ -9,5 +9,14 @@ describe('the address', () => {
 
   it('chooses nothing when it says nothing', () => {
     for (const hash of ['', '#', '#session=', '#other=1']) assert.equal(sessionOfHash(hash), null);
+  });
+
+  it('tells the layer beside the session, unless it is the usual one', () => {
+    const hash = hashWithLayer(hashOfSession('a b'), 'himm');
+    assert.equal(layerOfHash(hash), 'himm');
+    assert.equal(sessionOfHash(hash), 'a b');
+    assert.equal(hashWithLayer(hash, 'occupancy'), hashOfSession('a b'));
+    assert.equal(layerOfHash('#session=a&layer=<b>'), null);
+    assert.equal(layerOfHash('#session=a'), null);
   });
 });

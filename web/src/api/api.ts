@@ -4,7 +4,7 @@ import { get, getJson, readBody } from './http';
 import type { LayerName } from '../layers/layers';
 import type { Changes, RobotPort, Session, Sessions, TileChange, Trajectory } from './types';
 
-const kRoot = 'api/v1/sessions';
+export const sessionsPath = 'api/v1/sessions';
 const kPageSize = 100;
 const kPagesMax = 20;
 
@@ -15,7 +15,7 @@ export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {
   for (let page = 0; page < kPagesMax; ++page) {
     const query = new URLSearchParams({ limit: String(kPageSize) });
     if (after !== null) query.set('after', after);
-    const answer = decodeSessionPage(await getJson(`${kRoot}?${query}`, signal));
+    const answer = decodeSessionPage(await getJson(`${sessionsPath}?${query}`, signal));
     all.sessions.push(...answer.sessions);
     all.damaged.push(...answer.damaged);
     after = answer.next;
@@ -26,6 +26,11 @@ export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {
 
 export async function fetchRobotPort(signal: AbortSignal): Promise<RobotPort> {
   return decodeRobotPort(await getJson('readyz', signal));
+}
+
+/** In the text format of Prometheus. */
+export async function fetchMetrics(signal: AbortSignal): Promise<string> {
+  return readBody(await get('metrics', signal), signal, (answer) => answer.text());
 }
 
 export async function fetchSession(name: string, signal: AbortSignal): Promise<Session> {
@@ -80,7 +85,7 @@ export function livePath(name: string): string {
 }
 
 export function sessionPath(name: string): string {
-  return `${kRoot}/${encodeURIComponent(name)}`;
+  return `${sessionsPath}/${encodeURIComponent(name)}`;
 }
 
 /** The version makes the answer immutable; the id keeps apart sessions that had the same name one after the other. */

@@ -1,4 +1,4 @@
-/** One GET, with a deadline, and its failures as two kinds of error. */
+/** One request, with a deadline, and its failures as two kinds of error. */
 
 const kDeadlineMs = 10_000;
 
@@ -25,26 +25,48 @@ export class Refused extends Error {
  * @param path relative to the page, so that the viewer works below any prefix
  * @throws Unreachable, Refused, or the signal's reason when the caller gave up
  */
-export async function get(path: string, signal: AbortSignal): Promise<Response> {
-  let response: Response;
-  try {
-    const deadline = AbortSignal.timeout(kDeadlineMs);
-    response = await fetch(new URL(path, document.baseURI), { signal: AbortSignal.any([signal, deadline]) });
-  } catch (error) {
-    signal.throwIfAborted();
-    throw new Unreachable('the server does not answer', { cause: error });
-  }
-  if (!response.ok) throw new Refused(response.status, await reason(response));
-  return response;
+export function get(path: string, signal: AbortSignal): Promise<Response> {
+  return ask(path, {}, signal, kDeadlineMs);
+}
+
+/**
+ * Changes something on the server; like get in all else.
+ *
+ * @param type media type of the body; null lets the body speak for itself
+ * @param deadlineMs for what takes the server, or the body on its way there, longer
+ */
+export function send(
+  method: 'POST' | 'DELETE',
+  path: string,
+  body: BodyInit | null,
+  type: string | null,
+  signal: AbortSignal,
+  deadlineMs = kDeadlineMs,
+): Promise<Response> {
+  const headers: HeadersInit = type === null ? {} : { 'Content-Type': type };
+  return ask(path, { method, body, headers }, signal, deadlineMs);
+}
+
+export function sendJson(
+  method: 'POST' | 'DELETE',
+  path: string,
+  value: unknown,
+  signal: AbortSignal,
+): Promise<Response> {
+  return send(method, path, JSON.stringify(value), 'application/json', signal);
 }
 
 /** Like get, for JSON; a body cut off half-way counts as unreachable. */
 export async function getJson(path: string, signal: AbortSignal): Promise<unknown> {
-  const body = await readBody(await get(path, signal), signal, (response) => response.text());
+  return parseJson(await get(path, signal), path, signal);
+}
+
+export async function parseJson(response: Response, path: string, signal: AbortSignal): Promise<unknown> {
+  const body = await readBody(response, signal, (answer) => answer.text());
   try {
     return JSON.parse(body);
   } catch {
-    throw new Refused(200, `the answer to ${path} is not JSON`);
+    throw new Refused(response.status, `the answer to ${path} is not JSON`);
   }
 }
 
@@ -59,6 +81,20 @@ export async function readBody<T>(
     signal.throwIfAborted();
     throw new Unreachable('the answer broke off', { cause: error });
   }
+}
+
+async function ask(path: string, init: RequestInit, signal: AbortSignal, deadlineMs: number): Promise<Response> {
+  let response: Response;
+  try {
+    const deadline = AbortSignal.timeout(deadlineMs);
+    const either = AbortSignal.any([signal, deadline]);
+    response = await fetch(new URL(path, document.baseURI), { ...init, signal: either });
+  } catch (error) {
+    signal.throwIfAborted();
+    throw new Unreachable('the server does not answer', { cause: error });
+  }
+  if (!response.ok) throw new Refused(response.status, await reason(response));
+  return response;
 }
 
 /** The sentence of an application/problem+json body, or the bare status. */

@@ -52,4 +52,13 @@ declare module 'virtual:live-protocol' {
   export const SessionState: Record<string, number>;
   export function readLiveEvent(pbf: PbfReader): LiveEvent;
   export function writeLiveRequest(request: LiveRequest, pbf: PbfWriter): void;
+  /** What the server does; tests do it, too. Fields that are left out have their defaults. */
+  export function writeLiveEvent(event: Sparse<LiveEvent>, pbf: PbfWriter): void;
+  export function readLiveRequest(pbf: PbfReader): LiveRequest;
+
+  type Sparse<Value> = Value extends (infer Item)[]
+    ? Sparse<Item>[]
+    : Value extends object
+      ? { [Field in keyof Value]?: Sparse<Value[Field]> }
+      : Value;
 }

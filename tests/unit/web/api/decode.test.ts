@@ -32,8 +32,9 @@ describe('decoding', () => {
       revision: 911,
       scans: 910,
       cellSize: 0.05,
+      config: { cell_size: 0.05, p_occupied: 0.9 },
       bounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
-      robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 } }],
+      robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 }, bodyRadius: null }],
       failure: null,
     });
   });
@@ -68,7 +69,7 @@ describe('decoding', () => {
   it('takes a session in which nothing was seen', () => {
     const empty = decodeSession({ ...session(), bounds: null, robots: [{ name: 'r', scans: 0, pose: null }] });
     assert.equal(empty.bounds, null);
-    assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null }]);
+    assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null }]);
   });
 
   it('names the field that is not as agreed', () => {

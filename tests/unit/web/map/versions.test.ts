@@ -15,4 +15,17 @@ describe('tile versions', () => {
     assert.equal(versions.get(8, 1, 2), 6);
     assert.equal(versions.get(9, 2, 1), undefined);
   });
+
+  it('change what lies above a tile with it', () => {
+    const versions = new TileVersions();
+    versions.apply([{ z: 9, x: 257, y: 255, revision: 7 }]);
+    assert.equal(versions.get(8, 128, 127), 7);
+    assert.equal(versions.get(0, 0, 0), 7);
+    versions.apply([{ z: 9, x: 256, y: 255, revision: 5 }]);
+    assert.equal(versions.get(9, 256, 255), 5);
+    assert.equal(versions.get(8, 128, 127), 7, 'what lies above both is as new as the newer one');
+    versions.apply([{ z: 9, x: 256, y: 255, revision: 9 }]);
+    assert.equal(versions.get(8, 128, 127), 9);
+    assert.equal(versions.get(0, 0, 0), 9);
+  });
 });

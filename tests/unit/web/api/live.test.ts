@@ -1,0 +1,94 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { PbfReader, PbfWriter } from 'pbf';
+import { readLiveRequest, writeLiveEvent } from 'virtual:live-protocol';
+import { MalformedAnswer } from '../../../../web/src/api/decode';
+import { decodeLiveEvent, encodeLiveRequest } from '../../../../web/src/api/live';
+
+type Fields = Parameters<typeof writeLiveEvent>[0];
+
+function bytesOf(fields: Partial<Fields>): ArrayBuffer {
+  const writer = new PbfWriter();
+  writeLiveEvent(fields, writer);
+  return new Uint8Array(writer.finish()).buffer;
+}
+
+describe('a live event', () => {
+  it('is read as the server means it', () => {
+    const event = decodeLiveEvent(
+      bytesOf({
+        session: 'id-1',
+        revision: 118,
+        state: 1,
+        counters: { scans: 110 },
+        frontiers_revision: 117,
+        tiles: [{ layer: 2, everything: false, tiles: [512 * 255 + 256, 512 * 255 + 257], revisions: [118, 2 ** 40] }],
+        robots: [
+          {
+            robot: 3,
+            name: 'r1',
+            connected: true,
+            pose: { x: 2.5, y: 1.25, yaw: 0.5 },
+            scan_count: 55,
+            trail: [2400, 1250, 100, 0],
+            trail_from: 53,
+            scan: { origin: { x: 2, y: 1, yaw: 0.5 }, points: [2000, 0, -5, -35] },
+          },
+        ],
+      }),
+    );
+    assert.equal(event.id, 'id-1');
+    assert.deepEqual([event.revision, event.scans, event.frontiersRevision], [118, 110, 117]);
+    assert.deepEqual([event.failure, event.draining], [null, false]);
+    assert.deepEqual(event.tiles, [
+      {
+        layer: 'himm',
+        everything: false,
+        tiles: [
+          { z: 9, x: 256, y: 255, revision: 118 },
+          { z: 9, x: 257, y: 255, revision: 2 ** 40 },
+        ],
+      },
+    ]);
+    const [robot] = event.robots;
+    assert.ok(robot);
+    assert.deepEqual([robot.index, robot.name, robot.connected, robot.scans, robot.trailFrom], [3, 'r1', true, 55, 53]);
+    assert.deepEqual(robot.pose, { x: 2.5, y: 1.25, yaw: 0.5 });
+    assert.deepEqual(rounded(robot.trail), [[2.4, 1.25], [2.5, 1.25]]);
+    assert.deepEqual(rounded(robot.scan?.points ?? []), [[4, 1], [3.995, 0.965]]);
+  });
+
+  it('may know a failure, a shutdown and a robot without a place', () => {
+    const failed = decodeLiveEvent(bytesOf({ state: 2, reason: 'no space left' }));
+    assert.equal(failed.failure, 'no space left');
+    assert.equal(decodeLiveEvent(bytesOf({ state: 3 })).draining, true);
+    const [robot] = decodeLiveEvent(bytesOf({ robots: [{ name: 'new' }] })).robots;
+    assert.deepEqual([robot?.pose, robot?.scan, robot?.bodyRadius, robot?.trail], [null, null, null, []]);
+  });
+
+  it('may have layers that this page does not know', () => {
+    assert.deepEqual(decodeLiveEvent(bytesOf({ tiles: [{ layer: 99, tiles: [1], revisions: [1] }] })).tiles, []);
+  });
+
+  it('is refused when it is none', () => {
+    const cut = bytesOf({ robots: [{ name: 'r1', pose: { x: 1, y: 2, yaw: 3 } }] });
+    assert.throws(() => decodeLiveEvent(cut.slice(0, cut.byteLength - 3)), MalformedAnswer);
+    assert.throws(() => decodeLiveEvent(new Uint8Array([0xff, 0xff, 0xff]).buffer), MalformedAnswer);
+    assert.throws(() => decodeLiveEvent(bytesOf({ tiles: [{ layer: 1, tiles: [1, 2], revisions: [1] }] })), MalformedAnswer);
+    assert.throws(() => decodeLiveEvent(bytesOf({ robots: [{ trail: [1, 2, 3] }] })), MalformedAnswer);
+  });
+});
+
+describe('a live request', () => {
+  it('asks for the tiles of all layers, and for scans only when they are wanted', () => {
+    for (const points of [true, false]) {
+      const request = readLiveRequest(new PbfReader(encodeLiveRequest(points)));
+      assert.deepEqual([...request.layers].sort(), [1, 2, 3, 4]);
+      assert.equal(request.points, points);
+    }
+  });
+});
+
+function rounded(points: [number, number][]): number[][] {
+  return points.map((point) => point.map((value) => Math.round(value * 1e6) / 1e6));
+}

@@ -1,0 +1,46 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import type { Session } from '../../../../web/src/api/types';
+import { arrange, keepOrder, matches } from '../../../../web/src/sessions/order';
+
+function session(name: string, created: string): Session {
+  return { name, id: name, created, revision: 0, scans: 0, cellSize: 0.05, config: {}, bounds: null, robots: [], failure: null };
+}
+
+const kSessions = [session('lab-10', '2026-03-01'), session('lab-9', '2026-01-01'), session('Attic', '2026-02-01')];
+const names = (sessions: Session[]): string[] => sessions.map(({ name }) => name);
+
+describe('a search', () => {
+  it('finds every word, in whatever case and order', () => {
+    assert.ok(matches('Intel-Lab_3', 'lab INTEL'));
+    assert.ok(!matches('Intel-Lab_3', 'lab hall'));
+  });
+
+  it('finds all when nothing is asked for', () => {
+    for (const query of ['', '  ']) assert.ok(matches('any', query));
+  });
+
+  it('takes what is typed for letters, not for a pattern', () => {
+    assert.ok(!matches('abc', '.*'));
+    assert.ok(matches('a.*c', '.*'));
+  });
+});
+
+describe('the order of sessions', () => {
+  it('by name is that of people, with 9 before 10', () => {
+    assert.deepEqual(names(arrange(kSessions, 'name', () => null)), ['Attic', 'lab-9', 'lab-10']);
+  });
+
+  it('by age begins with the newest', () => {
+    assert.deepEqual(names(arrange(kSessions, 'newest', () => 5)), ['lab-10', 'Attic', 'lab-9']);
+  });
+
+  it('by rate begins with the busiest, then the newest', () => {
+    const rate = (name: string): number | null => (name === 'lab-9' ? 3 : name === 'Attic' ? 0 : null);
+    assert.deepEqual(names(arrange(kSessions, 'busiest', rate)), ['lab-9', 'lab-10', 'Attic']);
+  });
+
+  it('stays as it was while someone points at it', () => {
+    assert.deepEqual(names(keepOrder(kSessions, ['Attic', 'gone', 'lab-9'])), ['Attic', 'lab-9', 'lab-10']);
+  });
+});

@@ -1,0 +1,52 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import type { Session } from '../../../../web/src/api/types';
+import { SessionRates } from '../../../../web/src/sessions/rates';
+
+function session(scans: number, id = '1', name = 'a'): Session {
+  return { name, id, created: '', revision: scans, scans, cellSize: 0.05, config: {}, bounds: null, robots: [], failure: null };
+}
+
+describe('the rate of a session', () => {
+  it('is not known from one answer', () => {
+    const rates = new SessionRates();
+    assert.equal(rates.of('a'), null);
+    rates.learn([session(100)], 0);
+    assert.equal(rates.of('a'), null);
+  });
+
+  it('is scans by seconds', () => {
+    const rates = new SessionRates();
+    rates.learn([session(100)], 1000);
+    rates.learn([session(130)], 3000);
+    assert.equal(rates.of('a'), 15);
+  });
+
+  it('forgets what is longer ago than some seconds', () => {
+    const rates = new SessionRates();
+    for (let second = 0; second <= 10; second += 2) rates.learn([session(second * 50)], second * 1000);
+    assert.equal(rates.of('a'), 50);
+    for (let second = 12; second <= 20; second += 2) rates.learn([session(500)], second * 1000);
+    assert.equal(rates.of('a'), 0);
+  });
+
+  it('is never negative: an overtaken answer and a session made anew start again', () => {
+    const rates = new SessionRates();
+    rates.learn([session(100)], 0);
+    rates.learn([session(90)], 2000);
+    assert.equal(rates.of('a'), null);
+    rates.learn([session(94)], 4000);
+    assert.equal(rates.of('a'), 2);
+    rates.learn([session(200, '2')], 6000);
+    assert.equal(rates.of('a'), null);
+  });
+
+  it('goes with its session', () => {
+    const rates = new SessionRates();
+    rates.learn([session(1), session(5, '2', 'b')], 0);
+    rates.learn([session(5, '2', 'b')], 2000);
+    rates.learn([session(9), session(5, '2', 'b')], 4000);
+    assert.equal(rates.of('a'), null);
+    assert.equal(rates.of('b'), 0);
+  });
+});

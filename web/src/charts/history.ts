@@ -1,0 +1,73 @@
+/** The last minutes of the server's measures, as the series of the charts. */
+import { comparable, observedBetween, quantile, rate, type Measures } from './measures';
+
+export const kHistorySeconds = 300;
+/** Latencies are taken over a few answers: one alone may have seen hardly a scan. */
+const kLatencySeconds = 10;
+
+export type Series = (number | null)[];
+
+/** One value for each time; null is a gap. */
+export interface SeriesOfTime {
+  /** Seconds since the epoch, rising. */
+  times: number[];
+  /** Per second. */
+  scans: Series;
+  /** Seconds. */
+  ackMedian: Series;
+  ackSlow: Series;
+  inFlight: Series;
+  queuedBytes: Series;
+  /** Per cent of one core. */
+  cpu: Series;
+  memoryBytes: Series;
+}
+
+export class History {
+  private measures: Measures[] = [];
+
+  /** Those that came before a clock was set back are forgotten. */
+  add(measures: Measures): void {
+    const recent = ({ time }: Measures): boolean => time < measures.time && measures.time - time <= kHistorySeconds;
+    this.measures = [...this.measures.filter(recent), measures];
+  }
+
+  /** Whether any of the answers told of it. */
+  tells(what: keyof Measures): boolean {
+    return this.measures.some((each) => each[what] !== null);
+  }
+
+  series(): SeriesOfTime {
+    const all = this.measures;
+    const sincePrevious = (counter: 'scans' | 'cpuSeconds', scale: number): Series =>
+      all.map((each, index) => {
+        const before = all[index - 1];
+        const perSecond = before ? rate(before, each, counter) : null;
+        return perSecond === null ? null : perSecond * scale;
+      });
+    return {
+      times: all.map(({ time }) => time),
+      scans: sincePrevious('scans', 1),
+      ackMedian: all.map((_, index) => this.latency(0.5, index)),
+      ackSlow: all.map((_, index) => this.latency(0.99, index)),
+      inFlight: all.map(({ inFlight }) => inFlight),
+      queuedBytes: all.map(({ queuedBytes }) => queuedBytes),
+      cpu: sincePrevious('cpuSeconds', 100),
+      memoryBytes: all.map(({ memoryBytes }) => memoryBytes),
+    };
+  }
+
+  private latency(q: number, index: number): number | null {
+    const after = this.measures[index];
+    if (!after) return null;
+    let oldest: Measures | null = null;
+    for (let at = index - 1; at >= 0; --at) {
+      const before = this.measures[at];
+      if (!before || after.time - before.time > kLatencySeconds || !comparable(before, after)) break;
+      if (observedBetween(before, after) === null) break;
+      oldest = before;
+    }
+    const observed = oldest && observedBetween(oldest, after);
+    return observed && quantile(q, observed);
+  }
+}

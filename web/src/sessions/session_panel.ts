@@ -1,0 +1,171 @@
+/** The panel's part about all sessions: search, order, list, and what makes sessions and ends them. */
+import type { DamagedSession, Session } from '../api/types';
+import { Refused, Unreachable } from '../api/http';
+import { byId, setText } from '../dom';
+import { count, counted } from '../format';
+import type { Theme } from '../theme';
+import { CreateDialog } from './create_dialog';
+import { DeleteDialog, type DeleteEvents } from './delete_dialog';
+import { arrange, keepOrder, matches, type Order } from './order';
+import { SessionRates } from './rates';
+import { SessionList } from './session_list';
+
+export interface SessionPanelEvents extends DeleteEvents {
+  created(session: Session): void;
+  /** The search field is to be used, wherever the panel is. */
+  wanted(): void;
+}
+
+const kOrders: readonly string[] = ['newest', 'name', 'busiest'] satisfies Order[];
+
+export class SessionPanel {
+  private readonly search = byId('session-search', HTMLInputElement);
+  private readonly order = byId('session-order', HTMLSelectElement);
+  private readonly told = byId('session-count', HTMLElement);
+  private readonly state = byId('sessions-state', HTMLElement);
+  private readonly rates = new SessionRates();
+  private readonly list: SessionList;
+  private readonly deletion: DeleteDialog;
+  /** Identities of what was deleted here: an answer that was on its way may still tell of them. */
+  private readonly deleted = new Set<string>();
+  private sessions: Session[] = [];
+  private damaged: DamagedSession[] = [];
+  private heard = false;
+  private trouble: unknown = null;
+
+  constructor(
+    theme: Theme,
+    private readonly events: SessionPanelEvents,
+  ) {
+    this.list = new SessionList(
+      byId('sessions', HTMLElement),
+      byId('damaged', HTMLElement),
+      theme.cells,
+      (name) => this.rates.of(name),
+      { remove: (name) => this.confirm(name), leave: () => this.search.focus() },
+    );
+    this.deletion = new DeleteDialog({ ...events, deleted: (name, session) => this.forget(name, session) });
+    this.connect();
+    this.arrange();
+  }
+
+  /** Whether found by the search or not. */
+  get all(): Session[] {
+    return this.sessions;
+  }
+
+  /** @returns those that are there, without what was deleted here since the server was asked */
+  show(sessions: Session[], damaged: DamagedSession[]): Session[] {
+    this.heard = true;
+    this.sessions = sessions.filter(({ id }) => !this.deleted.has(id));
+    this.damaged = damaged;
+    this.rates.learn(this.sessions, performance.now());
+    this.arrange();
+    return this.sessions;
+  }
+
+  /** One of them has changed. */
+  refresh(session: Session): void {
+    this.sessions = this.sessions.map((each) => (each.name === session.name ? session : each));
+    this.list.refresh(session);
+  }
+
+  choose(name: string): void {
+    this.list.choose(name);
+  }
+
+  /** @param error null when the server has answered */
+  settle(error: unknown): void {
+    this.trouble = error;
+    this.tellState();
+  }
+
+  setTheme(theme: Theme): void {
+    this.list.setPalette(theme.cells);
+  }
+
+  private connect(): void {
+    const creation = new CreateDialog((session) => this.add(session));
+    byId('new-session', HTMLButtonElement).addEventListener('click', () => creation.open());
+    this.search.addEventListener('input', () => this.arrange());
+    this.search.addEventListener('keydown', (event) => this.pressInSearch(event));
+    this.order.addEventListener('change', () => this.arrange(true));
+  }
+
+  /** Shows the list, ready to search it. */
+  focusSearch(): void {
+    this.events.wanted();
+    this.search.focus();
+    this.search.select();
+  }
+
+  private pressInSearch(event: KeyboardEvent): void {
+    if (event.key === 'Escape') {
+      this.search.value = '';
+      this.arrange();
+    } else if (event.key !== 'ArrowDown' || !this.list.focus(0)) {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  private add(session: Session): void {
+    this.sessions = [...this.sessions.filter(({ name }) => name !== session.name), session];
+    this.search.value = '';
+    this.arrange();
+    this.events.created(session);
+  }
+
+  private confirm(name: string): void {
+    this.deletion.open(name, this.sessions.find((session) => session.name === name) ?? null);
+  }
+
+  private forget(name: string, session: Session | null): void {
+    const index = this.list.shown.indexOf(name);
+    if (session) this.deleted.add(session.id);
+    this.sessions = this.sessions.filter((each) => each.name !== name);
+    this.damaged = this.damaged.filter((each) => each.name !== name);
+    this.arrange();
+    // The row that had the focus is gone.
+    if (!this.list.focus(index)) this.search.focus();
+    this.events.deleted(name, session);
+  }
+
+  /** @param anew whatever someone points at */
+  private arrange(anew = false): void {
+    const query = this.search.value.trim();
+    const found = this.sessions.filter(({ name }) => matches(name, query));
+    const damaged = this.damaged.filter(({ name }) => matches(name, query));
+    const order = kOrders.includes(this.order.value) ? (this.order.value as Order) : 'newest';
+    const arranged = arrange(found, order, (name) => this.rates.of(name));
+    const held = order === 'busiest' && !anew && this.list.isInUse;
+    this.list.show(held ? keepOrder(arranged, this.list.shown) : arranged, damaged);
+    this.tellCount(found.length + damaged.length, query);
+    this.tellState();
+  }
+
+  private tellCount(found: number, query: string): void {
+    const all = this.sessions.length + this.damaged.length;
+    const some = query === '' ? '' : `${count(found)} of `;
+    setText(this.told, all > 0 ? `${some}${counted(all, 'session')}` : '');
+  }
+
+  private tellState(): void {
+    const all = this.sessions.length + this.damaged.length;
+    const text = stateOf(this.heard, all, this.trouble);
+    this.state.dataset['state'] = this.trouble === null ? 'well' : 'trouble';
+    this.state.hidden = text === '';
+    setText(this.state, text);
+  }
+}
+
+/** @param heard whether the server has ever told of its sessions */
+function stateOf(heard: boolean, all: number, trouble: unknown): string {
+  const kept = heard ? ' The list shows what was last heard.' : '';
+  if (trouble instanceof Unreachable) return `Offline.${kept}`;
+  if (trouble instanceof Refused) return `The list cannot be had: ${trouble.message}.${kept}`;
+  if (trouble !== null) return `The list cannot be read.${kept}`;
+  if (!heard) return 'Loading\u2026';
+  return all === 0 ? 'None yet.' : '';
+}
+
