@@ -6,6 +6,7 @@ import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { FakeLive } from './fake_live.mjs';
+import { FakeSession } from './fake_session.mjs';
 import { encodeGreyPng } from './png.mjs';
 
 const kTileSize = 256;

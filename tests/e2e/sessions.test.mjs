@@ -194,9 +194,8 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     // The page hears that the session is gone before it hears that it was deleted.
     let release;
     server.hold = new Promise((resolve) => (release = resolve));
-    const gone = page.waitForResponse((response) => response.status() === 404);
     await page.click('dialog[open] .destructive');
-    await gone;
+    await says(page, '#notice', /Loading/);
     release();
     await page.waitForSelector('#sessions a[aria-current]:has-text("second")');
     await page.waitForSelector('#notice', { state: 'hidden' });
