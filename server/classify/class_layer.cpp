@@ -108,24 +108,26 @@ ClassLayer::ClassLayer(std::int32_t danger_cells) : danger_cells_(danger_cells),
 
 void ClassLayer::update(std::span<const grid::ChunkKey> changed, const FindPlane& find_plane, Revision revision) {
     StaleChunks stale;
-    for (const grid::ChunkKey key : changed) take_in(key, find_plane(key), stale);
+    for (const grid::ChunkKey key : changed) take_in(key, find_plane(key), revision, stale);
     for (const auto& [key, retyped] : stale) classify(key, retyped, revision);
 }
 
 /// Notes which chunks need their classes worked out again: this one, and the neighbours near enough to a change.
-void ClassLayer::take_in(grid::ChunkKey key, const OccPlane* types, StaleChunks& stale) {
-    const auto known = planes_.find(key);
-    if (types == nullptr && known == planes_.end()) return;
-    Planes& planes = known == planes_.end() ? planes_[key] : known->second;
+void ClassLayer::take_in(grid::ChunkKey key, const OccPlane* types, Revision revision, StaleChunks& stale) {
+    static constexpr Planes kUnwritten;
+    const auto* known = planes_.find(key);
+    if (types == nullptr && known == nullptr) return;
+    const Planes& before = known == nullptr ? kUnwritten : known->planes;
     const BitPlane free = types == nullptr ? BitPlane{} : bits_where(*types, OccType::kFree);
     const BitPlane occupied = types == nullptr ? BitPlane{} : bits_where(*types, OccType::kOccupied);
     BitPlane freed{};      // or no longer free
     BitPlane obstructed{}; // or no longer occupied
     for (std::size_t j = 0; j < free.size(); ++j) {
-        freed[j] = free[j] ^ planes.free[j];
-        obstructed[j] = occupied[j] ^ planes.occupied[j];
+        freed[j] = free[j] ^ before.free[j];
+        obstructed[j] = occupied[j] ^ before.occupied[j];
     }
     if (!any(freed) && !any(obstructed)) return;
+    Planes& planes = planes_.write(key, revision).planes;
     planes.free = free;
     planes.occupied = occupied;
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
@@ -140,8 +142,8 @@ void ClassLayer::take_in(grid::ChunkKey key, const OccPlane* types, StaleChunks&
 
 void ClassLayer::classify(grid::ChunkKey key, const BitPlane& retyped, Revision revision) {
     static constexpr Planes kUnwritten;
-    const auto known = planes_.find(key);
-    const Planes& before = known == planes_.end() ? kUnwritten : known->second;
+    const auto* known = planes_.find(key);
+    const Planes& before = known == nullptr ? kUnwritten : known->planes;
     const Around nine = around(key);
     const BitPlane beside_free = nine.dilated(&Planes::free, 1);
     const BitPlane near_occupied = nine.dilated(&Planes::occupied, danger_cells_);
@@ -154,7 +156,7 @@ void ClassLayer::classify(grid::ChunkKey key, const BitPlane& retyped, Revision 
     }
     if (!any(reclassified)) return;
     write(key, now, reclassified, revision);
-    planes_[key] = now;
+    planes_.write(key, revision).planes = now;
 }
 
 ClassLayer::Around ClassLayer::around(grid::ChunkKey key) const {
@@ -164,8 +166,8 @@ ClassLayer::Around ClassLayer::around(grid::ChunkKey key) const {
         for (std::int32_t di = -1; di <= 1; ++di, ++place) {
             const auto other = neighbour(key, di, dj);
             if (!other) continue;
-            const auto found = planes_.find(*other);
-            if (found != planes_.end()) nine.chunks[place] = &found->second;
+            const auto* found = planes_.find(*other);
+            if (found != nullptr) nine.chunks[place] = &found->planes;
         }
     }
     return nine;

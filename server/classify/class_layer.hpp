@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 namespace scanloom::classify {
 
@@ -39,12 +40,18 @@ public:
 
     [[nodiscard]] ClassView snapshot() { return tree_.snapshot(); }
 
+    /// See grid::ChunkTree::branch().
+    [[nodiscard]] ClassLayer branch() { return {danger_cells_, planes_.branch(), tree_.branch()}; }
+
 private:
     struct Planes {
         BitPlane free{};
         BitPlane occupied{};
         BitPlane frontier{}; // of the unexplored cells
         BitPlane danger{};   // of the free cells
+    };
+    struct PlanesChunk : grid::TreeItem {
+        Planes planes;
     };
     struct Around; // a chunk's planes and those of its 8 neighbours
 
@@ -53,13 +60,16 @@ private:
     };
     using StaleChunks = std::unordered_map<grid::ChunkKey, BitPlane, KeyHash>; // with the cells of another OccType
 
-    void take_in(grid::ChunkKey key, const OccPlane* types, StaleChunks& stale);
+    ClassLayer(std::int32_t danger_cells, grid::ChunkTree<PlanesChunk> planes, grid::ChunkTree<ClassChunk> tree)
+        : danger_cells_(danger_cells), planes_(std::move(planes)), tree_(std::move(tree)) {}
+
+    void take_in(grid::ChunkKey key, const OccPlane* types, Revision revision, StaleChunks& stale);
     void classify(grid::ChunkKey key, const BitPlane& retyped, Revision revision);
     [[nodiscard]] Around around(grid::ChunkKey key) const;
     void write(grid::ChunkKey key, const Planes& planes, const BitPlane& reclassified, Revision revision);
 
     std::int32_t danger_cells_;
-    std::unordered_map<grid::ChunkKey, Planes, KeyHash> planes_;
+    grid::ChunkTree<PlanesChunk> planes_{PlanesChunk{}};
     grid::ChunkTree<ClassChunk> tree_;
 };
 

@@ -48,6 +48,19 @@ using Quadrants = std::array<Quadrant, 4>; ///< by (cj < 0) * 2 + (ci < 0)
     return ((v >> shift) & (kFan - 1)) << kFanBits | ((u >> shift) & (kFan - 1));
 }
 
+/// The chunk, or nullptr where nothing was ever written.
+[[nodiscard]] inline const TreeItem* find(const Quadrants& quadrants, ChunkKey key) noexcept {
+    const auto& quadrant = quadrants[quadrant_of(key)];
+    const std::uint32_t u = away_from_origin(key.ci);
+    const std::uint32_t v = away_from_origin(key.cj);
+    if (!reaches(quadrant.height, u | v)) return nullptr;
+    const TreeItem* item = quadrant.root.get();
+    for (int level = quadrant.height; item != nullptr && level > 0; --level) {
+        item = static_cast<const Node*>(item)->children[slot_of(u, v, level)].get();
+    }
+    return item;
+}
+
 } // namespace tree
 
 /// What a ChunkTree held at one moment: immutable, shared, cheap to copy.
@@ -60,15 +73,7 @@ public:
 
     /// The chunk, or nullptr where nothing was ever written.
     [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
-        const auto& quadrant = quadrants_[tree::quadrant_of(key)];
-        const std::uint32_t u = tree::away_from_origin(key.ci);
-        const std::uint32_t v = tree::away_from_origin(key.cj);
-        if (!tree::reaches(quadrant.height, u | v)) return nullptr;
-        const TreeItem* item = quadrant.root.get();
-        for (int level = quadrant.height; item != nullptr && level > 0; --level) {
-            item = static_cast<const tree::Node*>(item)->children[tree::slot_of(u, v, level)].get();
-        }
-        return static_cast<const ChunkType*>(item);
+        return static_cast<const ChunkType*>(tree::find(quadrants_, key));
     }
 
     /// Calls visit(ChunkKey, const ChunkType&) for every chunk in the box changed after `since`.
@@ -161,6 +166,9 @@ class ChunkTree {
 public:
     /// `blank` is what a chunk holds before its first write.
     explicit ChunkTree(const ChunkType& blank) : blank_(std::make_shared<const ChunkType>(blank)) {}
+    ChunkTree(ChunkTree&&) noexcept = default;
+    ChunkTree& operator=(ChunkTree&&) noexcept = default;
+    ~ChunkTree() = default;
 
     /// The chunk, to be written at `revision`; made if it was not there.
     /// Valid until the next snapshot().
@@ -176,10 +184,24 @@ public:
         return *own_as<ChunkType>(node->children[tree::slot_of(u, v, 1)], revision);
     }
 
+    /// The chunk as it is now, or nullptr where nothing was ever written. Valid until the next write.
+    [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
+        return static_cast<const ChunkType*>(tree::find(quadrants_, key));
+    }
+
+    /// A second tree that holds the same. Either then copies what it writes, so that both have writers of their own.
+    [[nodiscard]] ChunkTree branch() {
+        ++epoch_; // and copied_ stays: it may count too many, but never too few
+        ChunkTree other(*this);
+        other.copied_ = 0;
+        return other;
+    }
+
     /// How many chunks it holds.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-    /// How many chunks of the last snapshot it has copied since: so many more there are while that one is held.
+    /// How many chunks of the last snapshot it has copied since, or a few more if it was branched: so many more there
+    /// are while that one is held.
     [[nodiscard]] std::size_t copied() const noexcept { return copied_; }
 
     /// What the tree holds now, for the writer to look at until its next write.
@@ -193,6 +215,8 @@ public:
     }
 
 private:
+    ChunkTree(const ChunkTree&) = default; // for branch() alone: copies share what their epochs do not tell apart
+
     void grow(tree::Quadrant& quadrant, std::uint32_t reach) {
         if (!quadrant.root) {
             quadrant.root = std::make_shared<tree::Node>();

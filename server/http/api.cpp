@@ -2,6 +2,7 @@
 
 #include "server/http/handlers/changes.hpp"
 #include "server/http/handlers/coverage.hpp"
+#include "server/http/handlers/difference.hpp"
 #include "server/http/handlers/digest.hpp"
 #include "server/http/handlers/frontiers.hpp"
 #include "server/http/handlers/goal.hpp"
@@ -109,6 +110,8 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kMapCsv: return get_map_csv(maps_, slots_, call);
     case Operation::kMapNpy: return get_map_npy(maps_, slots_, call);
     case Operation::kDigest: return get_digest(maps_, call);
+    case Operation::kDifference: return get_difference(maps_, call);
+    case Operation::kDifferencePng: return get_difference_png(maps_, slots_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
     case Operation::kFrontiers: return get_frontiers(maps_, slots_, call);
     case Operation::kPlan: return post_plan(maps_, slots_, call);

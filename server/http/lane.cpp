@@ -30,6 +30,8 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kTilePng:
     case Operation::kTileBin: return lane_of_tile(match.arguments["z"]);
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
+    case Operation::kDifference:
+    case Operation::kDifferencePng:
     case Operation::kLog: return Lane::kSurvey;
     case Operation::kDigest:
     case Operation::kMapPng:

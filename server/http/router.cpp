@@ -30,6 +30,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/sessions/{session}/map.csv", Operation::kMapCsv},
     Route{"GET", "/api/v1/sessions/{session}/map.npy", Operation::kMapNpy},
     Route{"GET", "/api/v1/sessions/{session}/digest", Operation::kDigest},
+    Route{"GET", "/api/v1/sessions/{session}/difference", Operation::kDifference},
+    Route{"GET", "/api/v1/sessions/{session}/difference.png", Operation::kDifferencePng},
     Route{"GET", "/api/v1/sessions/{session}/trajectory.geojson", Operation::kTrajectory},
     Route{"GET", "/api/v1/sessions/{session}/frontiers.geojson", Operation::kFrontiers},
     Route{"POST", "/api/v1/sessions/{session}/plan", Operation::kPlan},

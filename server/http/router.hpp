@@ -32,6 +32,8 @@ enum class Operation {
     kMapCsv,
     kMapNpy,
     kDigest,
+    kDifference,
+    kDifferencePng,
     kTrajectory,
     kFrontiers,
     kPlan,

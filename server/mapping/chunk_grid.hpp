@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace scanloom::mapping {
@@ -77,12 +78,22 @@ public:
     /// See ChunkTree::copied().
     [[nodiscard]] std::size_t copied() const noexcept { return tree_.copied(); }
 
+    /// See ChunkTree::branch().
+    [[nodiscard]] ChunkGrid branch() {
+        current_ = nullptr;
+        return ChunkGrid(*this, tree_.branch());
+    }
+
     [[nodiscard]] grid::ChunkView<ChunkType> snapshot() {
         current_ = nullptr;
         return tree_.snapshot();
     }
 
 private:
+    ChunkGrid(const ChunkGrid& other, grid::ChunkTree<ChunkType> tree)
+        : tree_(std::move(tree)), revision_(other.revision_), restored_(other.restored_),
+          newest_restored_(other.newest_restored_) {}
+
     [[nodiscard]] bool holds_already(grid::ChunkKey key) const {
         if (restored_.empty()) return false;
         const auto restored = restored_.find(key);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scanloom::mapping {
 namespace {
@@ -67,9 +68,11 @@ LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, doubl
     return fan;
 }
 
-LaserLayers::LaserLayers(const MapConfig& config)
+LaserLayers::LaserLayers(const MapConfig& config) : LaserLayers(config, ChunkGrid<LaserChunk>(blank_chunk())) {}
+
+LaserLayers::LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid)
     : config_(config), occupancy_(config), himm_(config), by_occupancy_(hysteresis_of_occupancy(config)),
-      by_himm_(hysteresis_of_himm(config)), grid_(blank_chunk()) {}
+      by_himm_(hysteresis_of_himm(config)), grid_(std::move(grid)) {}
 
 bool LaserLayers::integrate(const LaserScan& scan, Revision revision, double& work) {
     grid_.begin(revision);

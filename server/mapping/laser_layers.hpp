@@ -84,7 +84,16 @@ public:
 
     [[nodiscard]] LaserView snapshot() { return grid_.snapshot(); }
 
+    /// See grid::ChunkTree::branch(). Pre: not within a scan.
+    [[nodiscard]] LaserLayers branch() {
+        LaserLayers other(config_, grid_.branch());
+        other.bounds_ = bounds_;
+        return other;
+    }
+
 private:
+    LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid);
+
     /// What comes after what within a scan.
     enum class Stage { kOccupancy, kMarks, kHimm, kClasses };
 

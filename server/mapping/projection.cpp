@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace scanloom::mapping {
 namespace {
@@ -16,7 +18,10 @@ Error misplaced(Revision revision, std::string what) {
 } // namespace
 
 Projection::Projection(const MapConfig& config)
-    : config_(config), laser_(config), sonar_(config), classes_(danger_reach(config)) {}
+    : Projection(config, LaserLayers(config), SonarLayer(config), classify::ClassLayer(danger_reach(config))) {}
+
+Projection::Projection(const MapConfig& config, LaserLayers laser, SonarLayer sonar, classify::ClassLayer classes)
+    : config_(config), laser_(std::move(laser)), sonar_(std::move(sonar)), classes_(std::move(classes)) {}
 
 const std::string* Projection::find_robot_name(RobotIndex robot) const noexcept {
     return robot < robots_.size() ? &robots_[robot].state.name : nullptr;
@@ -156,6 +161,19 @@ void Projection::bring_classes_up_to(const LaserView& laser) {
     classes_.update(changed, types_of, newest);
     classes_at_ = revision_;
 }
+
+Projection Projection::branch() {
+    assert(!is_folding_);
+    Projection other(config_, laser_.branch(), sonar_.branch(), classes_.branch());
+    other.revision_ = revision_;
+    other.classes_at_ = classes_at_;
+    other.robots_.reserve(robots_.size());
+    for (const auto& robot : robots_) other.robots_.push_back(robot.branch());
+    return other;
+}
+
+/// Without the fans, which are made again when they are needed.
+Projection::Robot Projection::Robot::branch() const { return {state, source, trajectory.branch(), sensors, {}}; }
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, {}};

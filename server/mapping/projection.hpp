@@ -77,6 +77,11 @@ public:
     /// What has been woven so far. Cheap; the next writes copy the chunks they touch.
     [[nodiscard]] Snapshot snapshot();
 
+    /// A second projection that goes on from here by itself, with a writer of its own. Cheap: both share what there is,
+    /// and copy the chunks that they touch next.
+    /// Pre  not within a scan.
+    [[nodiscard]] Projection branch();
+
     [[nodiscard]] ProjectionState state() const;
 
     /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then
@@ -102,12 +107,16 @@ private:
     };
 
     struct Robot {
+        [[nodiscard]] Robot branch() const;
+
         RobotState state; // its trajectory view is filled in by snapshot()
         std::string source;
         Trajectory trajectory;
         std::map<std::uint32_t, KnownSensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;
     };
+
+    Projection(const MapConfig& config, LaserLayers laser, SonarLayer sonar, classify::ClassLayer classes);
 
     Result<bool> fold_entry(const RobotJoined& joined, double& work);
     Result<bool> fold_entry(const SensorDescribed& described, double& work);

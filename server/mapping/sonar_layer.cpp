@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scanloom::mapping {
 namespace {
@@ -31,9 +32,11 @@ double sonar_probability(Verdict region, double r, double range_max, double a, d
     return region == Verdict::kOccupied ? 0.5 + 0.5 * w : 0.5 * (1.0 - w);
 }
 
-SonarLayer::SonarLayer(const MapConfig& config)
+SonarLayer::SonarLayer(const MapConfig& config) : SonarLayer(config, ChunkGrid<SonarChunk>(blank_chunk())) {}
+
+SonarLayer::SonarLayer(const MapConfig& config, ChunkGrid<SonarChunk> grid)
     : config_(config), l_min_(to_fixed(log_odds_of(config.sonar_p_min))),
-      l_max_(to_fixed(log_odds_of(config.sonar_p_max))), grid_(blank_chunk()) {}
+      l_max_(to_fixed(log_odds_of(config.sonar_p_max))), grid_(std::move(grid)) {}
 
 bool SonarLayer::integrate(const SonarScan& scan, Revision revision, double& work) {
     grid_.begin(revision);

@@ -70,7 +70,16 @@ public:
 
     [[nodiscard]] SonarView snapshot() { return grid_.snapshot(); }
 
+    /// As LaserLayers::branch().
+    [[nodiscard]] SonarLayer branch() {
+        SonarLayer other(config_, grid_.branch());
+        other.bounds_ = bounds_;
+        return other;
+    }
+
 private:
+    SonarLayer(const MapConfig& config, ChunkGrid<SonarChunk> grid);
+
     void add(const SonarScan& scan, std::size_t cone);
     [[nodiscard]] int step_of(Verdict region, double r, double range_max, double a,
                               double half_aperture) const noexcept;

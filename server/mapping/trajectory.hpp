@@ -3,9 +3,11 @@
 #include "common/geometry/pose2.hpp"
 #include "common/scan/log_entry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace scanloom::mapping {
@@ -60,11 +62,18 @@ private:
 };
 
 /// A growing list of poses with cheap snapshots: points never move once written, views stop at the
-/// length they were taken at.
+/// length they were taken at. Branches share their blocks, too; the last one is copied by whoever goes on from it
+/// without having begun it.
 /// Thread  one writer.
 class Trajectory {
 public:
+    Trajectory() = default;
+    Trajectory(Trajectory&&) noexcept = default;
+    Trajectory& operator=(Trajectory&&) noexcept = default;
+    ~Trajectory() = default;
+
     void append(const TrajectoryPoint& point) {
+        if (!owns_last_) own_last();
         if (size_ % kTrajectoryBlock == 0) {
             auto longer = std::make_shared<detail::TrajectoryBlocks>(*blocks_);
             longer->push_back(std::make_shared<detail::TrajectoryBlock>());
@@ -76,9 +85,31 @@ public:
 
     [[nodiscard]] TrajectoryView snapshot() const { return {blocks_, size_}; }
 
+    /// A second one that goes on from here. Each has a writer of its own.
+    [[nodiscard]] Trajectory branch() const {
+        Trajectory other(*this);
+        other.owns_last_ = false;
+        return other;
+    }
+
 private:
+    Trajectory(const Trajectory&) = default; // for branch() alone
+
+    /// Reads no further than size_: behind it another may write.
+    void own_last() {
+        owns_last_ = true;
+        const std::size_t count = size_ % kTrajectoryBlock;
+        if (count == 0) return;
+        auto blocks = std::make_shared<detail::TrajectoryBlocks>(*blocks_);
+        auto last = std::make_shared<detail::TrajectoryBlock>();
+        std::copy_n(blocks->back()->begin(), count, last->begin());
+        blocks->back() = std::move(last);
+        blocks_ = std::move(blocks);
+    }
+
     std::shared_ptr<detail::TrajectoryBlocks> blocks_ = std::make_shared<detail::TrajectoryBlocks>();
     std::size_t size_ = 0;
+    bool owns_last_ = true; // of the blocks
 };
 
 } // namespace scanloom::mapping

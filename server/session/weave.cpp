@@ -81,6 +81,50 @@ bool Weave::resume(Revision target, ChunkBudget& budget) {
     return true;
 }
 
+// Beginning where another stands
+
+bool Weave::is_same_map(const Weave& other) const noexcept {
+    return session_.id == other.session_.id && request_.config == other.request_.config;
+}
+
+std::optional<Revision> Weave::base_for(const Weave& other, Revision target) const {
+    if (!is_same_map(other)) return std::nullopt;
+    const std::lock_guard lock(mutex_);
+    return revision_before(other.request_.end, target);
+}
+
+/// Pre: mutex_ is held.
+std::optional<Revision> Weave::revision_before(const WeaveEnd& end, Revision target) const {
+    const bool stands_still = state_ == State::kDone || (state_ == State::kWaiting && !cancelled_);
+    if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
+    if (end.stamp && newest_stamp_ && *newest_stamp_ > *end.stamp) return std::nullopt;
+    return projection_->revision();
+}
+
+bool Weave::leads_to(const Weave& other, Revision target) const {
+    const auto& end = request_.end.revision;
+    if (!is_same_map(other) || !end || *end > target || other.request_.end.stamp) return false;
+    const std::lock_guard lock(mutex_);
+    return !has_ended(state_) && !cancelled_;
+}
+
+bool Weave::begin_from(Weave& base) {
+    const Revision target = progress().target;
+    std::optional<mapping::Projection> branch;
+    std::optional<double> newest_stamp;
+    {
+        const std::lock_guard lock(base.mutex_);
+        if (!base.revision_before(request_.end, target)) return false;
+        branch.emplace(base.projection_->branch());
+        newest_stamp = base.newest_stamp_;
+    }
+    const std::lock_guard lock(mutex_);
+    projection_.emplace(std::move(*branch));
+    newest_stamp_ = newest_stamp;
+    woven_ = projection_->revision();
+    return true;
+}
+
 void Weave::cancel(Error reason) {
     const std::lock_guard lock(mutex_);
     if (has_ended(state_) || cancelled_) return;
@@ -131,6 +175,7 @@ bool Weave::wait_for_another_turn(Revision target) {
 /// @return whether nothing more can follow.
 Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
+    if (auto claimed = claim(budget); !claimed) return claimed.error(); // what it begins with
     const auto read =
         log.read(session_.id, projection_->revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
             if (revision > target) return kEnd;
@@ -160,6 +205,9 @@ Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget) {
         if (auto claimed = claim(budget); !claimed) return claimed;
     }
     woven_ = projection_->revision();
+    if (const auto* taken = std::get_if<ScanTaken>(&entry)) {
+        newest_stamp_ = std::max(newest_stamp_.value_or(taken->scan.stamp), taken->scan.stamp);
+    }
     return {};
 }
 
@@ -189,7 +237,6 @@ void Weave::forget_maps() {
 /// Shows what has been woven up to `target`. @return whether more has been asked for meanwhile.
 bool Weave::publish(Revision target, bool is_complete, ChunkBudget& budget) {
     auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
-    if (is_complete) projection_.reset();
     const std::lock_guard lock(mutex_);
     maps_.swap(maps);
     is_complete_ = is_complete;

@@ -25,8 +25,12 @@ namespace scanloom::session {
 /// for again, and goes on from where it is: no entry is folded twice. It works in rounds, each up to the target as it
 /// was when the round began, and shows the maps of its last round meanwhile. So whoever asks is served when his entry
 /// is in, however many ask after him.
+///
+/// One that has not begun may begin where another of the same session and settings stands, and then is on its own:
+/// whatever becomes of the other, nothing is missing. The maps are the same as from nothing, bit for bit.
 /// Memory  a round takes its chunks from the budget, also those of earlier maps that it has copied, to change them;
-///         where they do not fit, it shows the earlier maps no longer.
+///         where they do not fit, it shows the earlier maps no longer. What it shares with the one that it began from
+///         counts for either, as either may outlive the other.
 /// Thread  any; run() and resume() as they say.
 class Weave {
 public:
@@ -68,6 +72,18 @@ public:
     /// Pre  join() said no, the state is kDone, and nobody else does this. @return false: the budget has no room now.
     [[nodiscard]] bool resume(Revision target, ChunkBudget& budget);
 
+    /// Where another weave may begin that wants these maps up to `target`: nothing when their settings or sessions are
+    /// not the same, or this one is beyond what the other wants, has given up or has not begun, or is being run.
+    [[nodiscard]] std::optional<Revision> base_for(const Weave& other, Revision target) const;
+
+    /// Whether it will stand, when it ends, where the other may begin; whether that is worth waiting for is told by
+    /// progress(). No two wait for each other, as the end of the other is later.
+    [[nodiscard]] bool leads_to(const Weave& other, Revision target) const;
+
+    /// Begins where the other stands. Pre: it has not begun, and nobody runs it or asks for this at the same time.
+    /// @return false: the other cannot be begun from, or no longer; see base_for().
+    [[nodiscard]] bool begin_from(Weave& base);
+
     /// Ends soon for that reason, if it has not ended yet.
     void cancel(Error reason);
 
@@ -77,7 +93,12 @@ public:
     /// Pre  never at the same time as itself. @return whether there is more to weave: to be run again.
     [[nodiscard]] bool run(store::ScanLog& log, ChunkBudget& budget, double turn_work = kTurnWork);
 
+    /// Told to whoever runs it.
+    [[nodiscard]] bool has_begun() const noexcept { return projection_.has_value(); }
+
 private:
+    [[nodiscard]] bool is_same_map(const Weave& other) const noexcept;
+    [[nodiscard]] std::optional<Revision> revision_before(const WeaveEnd& end, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
     [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);
@@ -96,8 +117,9 @@ private:
     std::atomic<Revision> woven_ = 0;
     std::atomic<bool> cancelled_ = false;
 
-    // Whoever runs it, or resumes it, alone.
-    std::optional<mapping::Projection> projection_; // kept as long as it can go on
+    // Whoever runs it, or resumes it, alone; while nobody does, whoever has the mutex.
+    std::optional<mapping::Projection> projection_; // kept, so that it can go on, and others from it
+    std::optional<double> newest_stamp_;            // seconds, of the scans in it
     std::int64_t claimed_ = 0;                      // chunks, of the budget; none when it has ended
     double turn_left_ = 0.0;                        // work, as Reach::work
 

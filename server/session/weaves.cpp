@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace scanloom::session {
@@ -57,10 +58,56 @@ Result<> Weaves::check_room() const {
 }
 
 void Weaves::launch(std::shared_ptr<Weave> weave) {
-    boost::asio::post(executor_, [this, weave = std::move(weave)]() mutable {
-        if (weave->run(log_, budget_)) return launch(std::move(weave)); // behind the others that wait
-        const std::lock_guard lock(mutex_);
-        evict();
+    boost::asio::post(executor_, [this, weave = std::move(weave)] { run(weave); });
+}
+
+void Weaves::run(const std::shared_ptr<Weave>& weave) {
+    if (!weave->has_begun() && !begin(weave)) return;
+    if (weave->run(log_, budget_)) return launch(weave); // behind the others that wait
+    const std::lock_guard lock(mutex_);
+    evict();
+    launch_those_behind(*weave);
+}
+
+/// @return false: later, when another is there from which this one begins.
+bool Weaves::begin(const std::shared_ptr<Weave>& weave) {
+    const std::lock_guard lock(mutex_); // so that two that begin at once see each other
+    try {
+        while (const auto start = furthest_before(*weave)) {
+            if (start->is_on_its_way) {
+                behind_.push_back({start->weave, weave});
+                return false;
+            }
+            if (weave->begin_from(*start->weave)) return true;
+        }
+    } catch (const std::bad_alloc&) { // then from nothing, which says so itself if it has no room
+    }
+    return true;
+}
+
+/// Pre: mutex_ is held.
+std::optional<Weaves::Start> Weaves::furthest_before(const Weave& weave) const {
+    const auto wanted = weave.progress();
+    std::optional<Start> furthest;
+    if (has_ended(wanted.state)) return furthest; // cancelled
+    for (const auto& other : weaves_) {
+        if (other.get() == &weave) continue;
+        const bool is_on_its_way = other->leads_to(weave, wanted.target);
+        const auto at = is_on_its_way ? std::optional(other->progress().woven) : other->base_for(weave, wanted.target);
+        if (!at || (furthest && std::pair(*at, is_on_its_way) <= std::pair(furthest->at, furthest->is_on_its_way))) {
+            continue;
+        }
+        furthest = Start{other, *at, is_on_its_way};
+    }
+    return furthest;
+}
+
+/// Pre: mutex_ is held.
+void Weaves::launch_those_behind(const Weave& ended) {
+    std::erase_if(behind_, [&](auto& behind) {
+        if (behind.ahead.get() != &ended) return false;
+        launch(std::move(behind.weave));
+        return true;
     });
 }
 

@@ -10,6 +10,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -24,8 +25,14 @@ struct WeavesLimits {
 
 /// The weaves of all sessions: those that wait, those under way, and the newest of those that ended.
 ///
+/// One that begins does so where the furthest of those stands that hold the same map at an earlier time; if that one is
+/// still on its way to where it ends, the other begins when it is there. So whoever steps through the history of a
+/// session has each entry folded once, and going back costs no more than from the furthest that is kept before.
+///
 /// Queue   "weaves": at most waiting_max that have not ended; one more is refused with kOverloaded. The least recently
 ///         used of those that are done go when others need their place.
+/// Memory  each counts with all of its chunks, though those that began from each other share what neither has changed
+///         since: the bounds hold whichever of them go first.
 /// Thread  any; nothing here waits.
 class Weaves {
 public:
@@ -55,9 +62,20 @@ public:
     void stop();
 
 private:
+    /// Where a weave can begin.
+    struct Start {
+        std::shared_ptr<Weave> weave;
+        Revision at = 0;
+        bool is_on_its_way = false; // it goes on from there, but no further than to where the other may begin
+    };
+
     [[nodiscard]] std::shared_ptr<Weave> touch(store::SessionId session, std::string_view id);
     [[nodiscard]] Result<> check_room() const;
     void launch(std::shared_ptr<Weave> weave);
+    void run(const std::shared_ptr<Weave>& weave);
+    [[nodiscard]] bool begin(const std::shared_ptr<Weave>& weave);
+    [[nodiscard]] std::optional<Start> furthest_before(const Weave& weave) const;
+    void launch_those_behind(const Weave& ended);
     void evict();
 
     store::ScanLog& log_;
@@ -68,6 +86,12 @@ private:
     mutable std::mutex mutex_;
     bool stopped_ = false;
     std::list<std::shared_ptr<Weave>> weaves_; // the last used first
+
+    struct Behind {
+        std::shared_ptr<Weave> ahead;
+        std::shared_ptr<Weave> weave; // begins when the one ahead has ended, however it did
+    };
+    std::vector<Behind> behind_;
 };
 
 } // namespace scanloom::session

@@ -29,6 +29,10 @@ Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer lay
         if (!cells) return cells.error();
         frame.cells = *cells;
     }
+    return checked_frame(frame, bytes_per_pixel);
+}
+
+Result<MapFrame> checked_frame(const MapFrame& frame, std::int64_t bytes_per_pixel) {
     if (frame.cells.empty()) {
         return Error{Errc::kNotFound, "there is no map yet in this layer: no scan that it is made of has seen anything "
                                       "by then; layer= names others"};

@@ -19,6 +19,7 @@ struct MapFrame {
 
     [[nodiscard]] std::int32_t width() const noexcept { return static_cast<std::int32_t>(cells.width()); }
     [[nodiscard]] std::int32_t height() const noexcept { return static_cast<std::int32_t>(cells.height()); }
+    [[nodiscard]] std::size_t pixels_wide() const noexcept { return static_cast<std::size_t>(cells.width()); }
     [[nodiscard]] std::size_t pixels() const noexcept {
         return static_cast<std::size_t>(cells.width() * cells.height());
     }
@@ -42,6 +43,10 @@ struct MapImage {
 ///         kInvalidField: a bad bbox.
 [[nodiscard]] Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer layer,
                                          const std::optional<Extent>& bbox, std::int64_t bytes_per_pixel = 1);
+
+/// The frame, if it can be made an image of.
+/// Errors  kNotFound: it is empty; kTooLarge: see map_frame().
+[[nodiscard]] Result<MapFrame> checked_frame(const MapFrame& frame, std::int64_t bytes_per_pixel = 1);
 
 /// Cost: the pixels.
 [[nodiscard]] MapImage render_map(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame);

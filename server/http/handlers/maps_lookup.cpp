@@ -12,6 +12,7 @@ namespace scanloom::http {
 namespace {
 
 constexpr std::string_view kWeave = "weave";
+constexpr std::string_view kWith = "with";
 
 /// The maps of a weave, or why there are none.
 Result<Maps> maps_of(std::shared_ptr<session::Session> session, const session::Weave& weave,
@@ -46,7 +47,23 @@ Result<Maps> MapsLookup::find(const Call& call, std::initializer_list<std::strin
     std::vector<std::string_view> all(known);
     all.push_back(kWeave);
     if (auto ok = call.query.check_only(all); !ok) return ok.error();
-    return chosen(call);
+    return chosen(call, kWeave);
+}
+
+Result<TwoMaps> MapsLookup::find_two(const Call& call, std::initializer_list<std::string_view> known) const {
+    std::vector<std::string_view> all(known);
+    all.insert(all.end(), {kWeave, kWith});
+    if (auto ok = call.query.check_only(all); !ok) return ok.error();
+    if (!call.query.find(kWeave) && !call.query.find(kWith)) {
+        return Error{Errc::kInvalidField,
+                     "a weave to compare with is needed: weave=, with=, or both; where one is left out, the session's "
+                     "own map takes its place"};
+    }
+    auto a = chosen(call, kWeave);
+    if (!a) return a.error();
+    auto b = chosen(call, kWith);
+    if (!b) return b.error();
+    return TwoMaps{std::move(*a), std::move(*b)};
 }
 
 Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const {
@@ -55,15 +72,16 @@ Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<s
     const auto settings = weave_parameters();
     all.insert(all.end(), settings.begin(), settings.end());
     if (auto ok = call.query.check_only(all); !ok) return ok.error();
-    if (!asks_for_weaving(call.query)) return chosen(call);
+    if (!asks_for_weaving(call.query)) return chosen(call, kWeave);
     if (!call.query.find(kWeave)) return woven(call);
     return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
 }
 
-Result<Maps> MapsLookup::chosen(const Call& call) const {
+/// Those of the weave that the parameter names, or the session's own.
+Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter) const {
     auto session = find_session(sessions_, call);
     if (!session) return session.error();
-    const auto id = call.query.find(kWeave);
+    const auto id = call.query.find(parameter);
     if (!id) {
         auto snapshot = (*session)->snapshot();
         auto tag = session_tag((*session)->info());

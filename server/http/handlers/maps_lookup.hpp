@@ -21,6 +21,12 @@ struct Maps {
     std::string tag; ///< tells them from those of every other session and weave: for entity tags
 };
 
+/// The maps that a request compares.
+struct TwoMaps {
+    Maps a;
+    Maps b;
+};
+
 /// Finds the maps of a session: its own, those of the weave that `weave` names, or those that settings and `until` ask
 /// for (see weave_request()).
 /// Thread  any.
@@ -43,11 +49,16 @@ public:
     /// Errors  also those of weave_request().
     [[nodiscard]] Result<Maps> find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const;
 
+    /// Two of them, to be compared: those of `weave` and those of `with`, at least one of which names a weave; where
+    /// one does not, the session's own. Both may name the same weave.
+    /// Errors  as find(); kInvalidField: neither is given.
+    [[nodiscard]] Result<TwoMaps> find_two(const Call& call, std::initializer_list<std::string_view> known) const;
+
     [[nodiscard]] const session::SessionRegistry& sessions() const noexcept { return sessions_; }
     [[nodiscard]] session::Weaves& weaves() const noexcept { return weaves_; }
 
 private:
-    [[nodiscard]] Result<Maps> chosen(const Call& call) const;
+    [[nodiscard]] Result<Maps> chosen(const Call& call, std::string_view parameter) const;
     [[nodiscard]] Result<Maps> woven(const Call& call) const;
 
     const session::SessionRegistry& sessions_;

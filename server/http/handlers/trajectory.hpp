@@ -7,9 +7,10 @@
 
 namespace scanloom::http {
 
-/// GET .../trajectory.geojson?since: where each robot was, one feature a robot, in metres of the map
-/// frame (RFC 7946 knows only degrees; the foreign members say so). A long path takes a slot, as a large map image
-/// does.
+/// GET .../trajectory.geojson?since&times: where each robot was, one feature a robot, in metres of the map
+/// frame (RFC 7946 knows only degrees; the foreign members say so). With times=true its properties tell of each
+/// position also the revision, the stamp (seconds, the robot's clock) and the yaw (radians). A long path takes a slot,
+/// as a large map image does.
 [[nodiscard]] Result<Response> get_trajectory(const session::SessionRegistry& sessions, const AnswerSlots& slots,
                                               const Call& call);
 

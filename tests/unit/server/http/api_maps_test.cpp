@@ -88,5 +88,36 @@ TEST_F(ApiTest, TrajectoryIsWhereTheScansWereTaken) {
     EXPECT_EQ(get_json("/api/v1/sessions/a/trajectory.geojson?since=6"), whole); // of a session before
 }
 
+TEST_F(ApiTest, TrajectoryTellsTimesOnlyWhenItIsAskedTo) {
+    create("a");
+    std::vector<Scan> scans = {scan(1), scan(2), scan(3)};
+    scans[0].stamp = 976052857.33794796;
+    scans[0].pose.yaw = -0.000004; // rounds to 0, not to -0
+    scans[1].stamp = 976052857.5;
+    scans[1].pose.yaw = 3.14159;
+    scans[2].pose.yaw = -1.23456;
+    stream("a", "r1", std::move(scans));
+    const std::string path = "/api/v1/sessions/a/trajectory.geojson";
+    const auto plain = get(path).body.bytes();
+    EXPECT_EQ(get(path + "?times=false").body.bytes(), plain);
+    EXPECT_THAT(plain, Not(HasSubstr("stamps")));
+    EXPECT_THAT(get(path + "?times=true").body.bytes(),
+                HasSubstr(R"("properties":{"robot":"r1","points":3,"revisions":[3,4,5],)"
+                          R"("stamps":[976052857.337948,976052857.5,103],"yaws":[0,3.1416,-1.2346]},"geometry":)"));
+    const auto newest = get_json(path + "?times=true&since=4").at("features").at(0).at("properties");
+    EXPECT_EQ(newest,
+              boost::json::parse(R"({"robot":"r1","points":1,"revisions":[5],"stamps":[103],"yaws":[-1.2346]})"));
+    const auto none = get_json(path + "?times=true&since=5").at("features").at(0).at("properties");
+    EXPECT_EQ(none, boost::json::parse(R"({"robot":"r1","points":0,"revisions":[],"stamps":[],"yaws":[]})"));
+}
+
+TEST_F(ApiTest, TimesAreTrueOrFalse) {
+    create("a");
+    for (const auto* times : {"", "1", "yes", "TRUE"}) {
+        const auto refused = get(fmt::format("/api/v1/sessions/a/trajectory.geojson?times={}", times));
+        EXPECT_THAT(detail(refused, Status::bad_request), StartsWith("times is"));
+    }
+}
+
 } // namespace
 } // namespace scanloom::http

@@ -152,9 +152,9 @@ TEST_F(ApiTest, AStreamingRobotIsShown) {
 }
 
 TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {
-    for (const auto* path :
-         {"", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/0/0/0.bin", "/tiles/occupancy.json", "/changes",
-          "/map.png", "/map.pgm", "/map.yaml", "/map.csv", "/map.npy", "/digest", "/trajectory.geojson"}) {
+    for (const auto* path : {"", "/tiles/occupancy/0/0/0.png", "/tiles/occupancy/0/0/0.bin", "/tiles/occupancy.json",
+                             "/changes", "/map.png", "/map.pgm", "/map.yaml", "/map.csv", "/map.npy", "/digest",
+                             "/difference?with=0", "/difference.png?with=0", "/trajectory.geojson"}) {
         EXPECT_THAT(detail(get(fmt::format("/api/v1/sessions/nobody{}", path)), Status::not_found),
                     HasSubstr("there is no session 'nobody'"));
     }
