@@ -181,8 +181,7 @@ net::awaitable<bool> Connection::serve_request() {
     Message message = parser.release();
     const auto begin = std::chrono::steady_clock::now();
     const Response response = co_await compute(lane, request_of(message));
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    service_->counters.request_seconds.Observe(seconds.count());
+    service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
     if (response.invitation) {
         co_await show(*response.invitation, message);
         co_return false;

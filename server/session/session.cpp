@@ -53,6 +53,7 @@ template <class Work>
 void Session::on_strand(Work work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
         work(*self);
+        self->backlog_size_ = self->waiting_.size();
         self->tell_watchers(); // last: robots have their acks already
     });
 }

@@ -47,6 +47,9 @@ public:
     /// The newest maps; they hold every scan acknowledged so far.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const;
 
+    /// Entries that wait to be handed to the log.
+    [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
+
     /// Why the session takes no scans until the server is started again, its maps being served all the same: the log
     /// could not be written, or the memory ran out. Nothing while all is well.
     [[nodiscard]] std::optional<Error> failure() const;
@@ -148,7 +151,8 @@ private:
     std::uint64_t connections_told_ = 0; // Members::connection_changes() that the watchers know of
 
     Watchers watchers_;
-    std::atomic<bool> hurried_ = false; // set from any thread, as the strand may be busy
+    std::atomic<bool> hurried_ = false;         // set from any thread, as the strand may be busy
+    std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     mutable std::mutex published_mutex_; // guards what follows, held for a copy only
     std::shared_ptr<const mapping::Snapshot> published_;
