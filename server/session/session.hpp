@@ -69,13 +69,11 @@ public:
     [[nodiscard]] std::vector<bool> connected() const { return members_.connected(); }
 
     /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
-    /// `source` identifies what the robot streams when the same can be streamed again; empty for a live robot.
     /// `done` is called once, on the strand, when everything the robot's earlier links submitted is
     /// durable: so last_durable_seq is exact, and no more than one link's credit is under way.
     /// Errors  kReplaced, kConflict (the robot's scans come from another source), kGone, kStoreFailed,
     ///         kShuttingDown, kFull.
-    void join(std::string robot, std::string source, std::shared_ptr<RobotListener> listener,
-              std::function<void(Result<Joined>)> done);
+    void join(Newcomer who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
     /// Describes a sensor, for the scans submitted after it. What comes from a link that has not joined
     /// yet, or has failed, is ignored, here and below. `bytes` is given back through on_durable.

@@ -42,7 +42,7 @@ struct WatchingLink : RecordedLink {
 
 TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
     const auto link = std::make_shared<WatchingLink>(*session_);
-    session_->join("r", "", link, [](const Result<Joined>&) {});
+    session_->join({"r"}, link, [](const Result<Joined>&) {});
     run();
     session_->submit(link, small_laser(), 0);
     for (std::uint64_t seq = 1; seq <= 600; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
