@@ -22,6 +22,15 @@ namespace scanloom {
     };
 }
 
+/// The same without the lower end.
+[[nodiscard]] inline auto check_above_up_to(double low, double high) {
+    return [=](const std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value > low && value <= high) return std::string();
+        return fmt::format("'{}' is not more than {:g} and at most {:g}", text, low, high);
+    };
+}
+
 [[nodiscard]] inline std::string check_positive(const std::string& text) {
     double value = 0.0;
     if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0) return {};

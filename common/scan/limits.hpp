@@ -12,6 +12,7 @@ inline constexpr std::size_t kSensorsMax = 64; ///< sensors of one robot
 inline constexpr std::size_t kScansPerBatchMax = 1024;
 inline constexpr std::size_t kNameBytesMax = 64; ///< session, robot and sensor names
 inline constexpr double kCoordinateMax = 1e6;    ///< metres from the origin, each axis
+inline constexpr double kBodyRadiusMax = 5.0;    ///< metres, of a robot
 inline constexpr double kMapCellSizeMax = 100.0; ///< metres, of an imported map
 inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
 inline constexpr double kReachCellsMax = 8192.0; ///< cells of a session, a sensor's range_max
@@ -19,6 +20,9 @@ inline constexpr double kReachCellsMax = 8192.0; ///< cells of a session, a sens
 /// Radians from a scan's first beam to its last: a sensor may repeat its first direction at the end of a turn, and
 /// rounding may exceed it a little.
 inline constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-6;
+
+/// Of a robot that states one; false for NaN.
+[[nodiscard]] constexpr bool is_body_radius(double metres) noexcept { return metres > 0.0 && metres <= kBodyRadiusMax; }
 
 /// Session and robot names: [A-Za-z0-9_-]{1,64}. Safe in URLs; never used as paths.
 [[nodiscard]] constexpr bool is_valid_name(std::string_view name) noexcept {

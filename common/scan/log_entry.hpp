@@ -5,6 +5,7 @@
 #include "common/scan/sensor.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -17,11 +18,12 @@ using RobotIndex = std::uint32_t;
 /// revision 1. Also the state of a map after folding that entry.
 using Revision = std::uint64_t;
 
-/// A robot's first appearance; or again, as long as it has no scans, with another source.
+/// A robot's first appearance; or again, with another body, or as long as it has no scans with another source.
 struct RobotJoined {
     RobotIndex robot = 0;
     std::string name;
     std::string source = {}; ///< identifies a recording or simulation, so that no other continues it; empty: none
+    std::optional<double> body_radius = {}; ///< metres, above 0, at most kBodyRadiusMax; nothing: not stated
 
     friend bool operator==(const RobotJoined&, const RobotJoined&) = default;
 };

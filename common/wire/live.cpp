@@ -52,6 +52,7 @@ void write(const RobotUpdate& robot, v1::RobotUpdate& out) {
     append_differences(robot.trail, *out.mutable_trail());
     out.set_trail_from(robot.trail_from);
     if (robot.scan) write(*robot.scan, *out.mutable_scan());
+    out.set_body_radius(robot.body_radius.value_or(0.0));
 }
 
 } // namespace

@@ -59,6 +59,7 @@ struct RobotUpdate {
     std::vector<PointMm> trail; ///< in the map frame; up to kCoordinateMax, so that differences fit, too
     std::uint64_t trail_from = 0;
     std::optional<ScanPoints> scan;
+    std::optional<double> body_radius; ///< metres
 };
 
 struct LiveCounters {

@@ -26,6 +26,7 @@ struct ToProto {
         out.mutable_robot_joined()->set_robot(joined.robot);
         out.mutable_robot_joined()->set_name(joined.name);
         out.mutable_robot_joined()->set_source(joined.source);
+        if (joined.body_radius) out.mutable_robot_joined()->set_body_radius(*joined.body_radius);
     }
     void operator()(const SensorDescribed& described) const {
         out.mutable_sensor_described()->set_robot(described.robot);
@@ -44,6 +45,15 @@ struct ToProto {
         proto.set_cells(patch.cells.data(), patch.cells.size());
     }
 };
+
+Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
+    RobotJoined joined{proto.robot(), proto.name(), proto.source()};
+    if (proto.has_body_radius()) {
+        if (!is_body_radius(proto.body_radius())) return damaged("a log entry");
+        joined.body_radius = proto.body_radius();
+    }
+    return LogEntry(std::move(joined));
+}
 
 Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
     const auto& cells = proto.cells();
@@ -73,9 +83,7 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
     if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
     switch (proto->body_case()) {
-    case v1::LogEntry::kRobotJoined:
-        return LogEntry(
-            RobotJoined{proto->robot_joined().robot(), proto->robot_joined().name(), proto->robot_joined().source()});
+    case v1::LogEntry::kRobotJoined: return read_robot_joined(proto->robot_joined());
     case v1::LogEntry::kSensorDescribed: {
         auto sensor = from_proto(proto->sensor_described().sensor());
         if (!sensor) return prefixed("sensor_described.", sensor.error());

@@ -55,6 +55,13 @@ Result<Message> read_hello(const v1::Hello& proto) {
     if (auto ok = check_name("hello.session", hello.session); !ok) return ok.error();
     if (auto ok = check_text("hello.client", hello.client, kClientBytesMax); !ok) return ok.error();
     if (auto ok = check_text("hello.source", hello.source, kSourceBytesMax); !ok) return ok.error();
+    if (proto.has_body_radius()) {
+        hello.body_radius = proto.body_radius();
+        if (!is_body_radius(*hello.body_radius)) {
+            return invalid_field(fmt::format("hello.body_radius is {} m; it must be more than 0 and at most {}",
+                                             *hello.body_radius, kBodyRadiusMax));
+        }
+    }
     if (proto.has_create()) {
         auto options = from_proto(proto.create());
         if (!options) return prefixed("hello.create.", options.error());
@@ -136,6 +143,7 @@ struct ToProto {
         if (hello.create) to_proto(*hello.create, *out.mutable_create());
         out.set_client(hello.client);
         out.set_source(hello.source);
+        if (hello.body_radius) out.set_body_radius(*hello.body_radius);
     }
     void operator()(const Welcome& welcome) const {
         auto& out = *frame.mutable_welcome();

@@ -27,7 +27,8 @@ struct Hello {
     std::string token;
     std::optional<SessionOptions> create;
     std::string client;
-    std::string source; ///< what is streamed, if it can be streamed again; see frame.proto
+    std::string source;                ///< what is streamed, if it can be streamed again; see frame.proto
+    std::optional<double> body_radius; ///< metres, above 0, at most kBodyRadiusMax
 
     friend bool operator==(const Hello&, const Hello&) = default;
 };

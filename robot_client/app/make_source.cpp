@@ -2,6 +2,7 @@
 
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/sim/simulator.hpp"
+#include "robot_client/sim/unicycle.hpp"
 #include "robot_client/source/carmen_log.hpp"
 #include "robot_client/source/simulated_source.hpp"
 #include "robot_client/source/simulation_fingerprint.hpp"
@@ -44,8 +45,8 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
     if (!log) return log.error();
     const StampReport& stamps = log->stamps();
     if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", replay.file, order_text(stamps)));
-    PreparedSource prepared{nullptr, log->skipped_lines(), replay.speed, log->fingerprint(),
-                            stamps.file_order ? "file" : "time"};
+    PreparedSource prepared{
+        nullptr, log->skipped_lines(), replay.speed, log->fingerprint(), stamps.file_order ? "file" : "time", {}};
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
     return prepared;
 }
@@ -57,7 +58,7 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
     auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
     if (!log) return log.error();
-    PreparedSource prepared{nullptr, 0, sonar.speed, log->fingerprint(), "file"};
+    PreparedSource prepared{nullptr, 0, sonar.speed, log->fingerprint(), "file", {}};
     prepared.source = std::make_unique<SonarLog>(std::move(*log));
     return prepared;
 }
@@ -81,7 +82,8 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
-    PreparedSource prepared{nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return), "time"};
+    PreparedSource prepared{nullptr, 0,          simulate.speed, fingerprint_of(simulator, simulate.drive, no_return),
+                            "time",  kBodyRadius};
     prepared.source = std::make_unique<SimulatedSource>(
         Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
     return prepared;

@@ -5,6 +5,7 @@
 #include "robot_client/source/source.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,8 +15,9 @@ struct PreparedSource {
     std::unique_ptr<Source> source;
     std::size_t skipped_lines = 0;
     double speed = 0.0;
-    std::string fingerprint; ///< for Hello.source
-    std::string_view order;  ///< of its scans: "file" or "time", a literal
+    std::string fingerprint;           ///< for Hello.source
+    std::string_view order;            ///< of its scans: "file" or "time", a literal
+    std::optional<double> body_radius; ///< metres, of the robot whose scans they are, where it is known
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the

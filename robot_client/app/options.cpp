@@ -62,6 +62,10 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
         ->check(CLI::ExistingFile);
     app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
         ->check(check_within(0.01, 1.0));
+    app.add_option("--body-radius", options.body_radius,
+                   "Metres, of the robot's body, for viewers and as the default of planned ways. Default: that of the "
+                   "simulated robot, for recordings none")
+        ->check(check_above_up_to(0.0, kBodyRadiusMax));
     app.add_option("--give-up-after", raw.give_up_after, "Seconds without progress until it fails; 0 = never")
         ->check(check_not_negative)
         ->capture_default_str();

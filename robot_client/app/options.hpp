@@ -41,9 +41,10 @@ struct RobotOptions {
     std::string port;
     std::string session;
     std::string robot;
-    std::string token_file;          ///< empty: no token
-    std::optional<double> cell_size; ///< metres
-    std::optional<double> range_max; ///< metres
+    std::string token_file;            ///< empty: no token
+    std::optional<double> cell_size;   ///< metres
+    std::optional<double> range_max;   ///< metres
+    std::optional<double> body_radius; ///< metres
     std::optional<NoReturn> no_return;
     std::chrono::milliseconds give_up_after{120'000};
     std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;

@@ -66,6 +66,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     hello.create->cell_size = options.cell_size;
     hello.client = fmt::format("scanloom-robot {}", kVersion);
     hello.source = prepared.fingerprint;
+    hello.body_radius = options.body_radius ? options.body_radius : prepared.body_radius;
     return uplink;
 }
 

@@ -2,6 +2,7 @@
 
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
+#include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/live/invitation.hpp"
 
@@ -12,7 +13,6 @@
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
@@ -33,8 +33,6 @@ constexpr std::size_t kLingerBytesMax = 256 * 1024;
 
 std::string date_now() { return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(std::time(nullptr))); }
 
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
 /// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
 bool is_frame(const beast::flat_buffer& unread) {
     return unread.size() > 0 && *static_cast<const char*>(unread.data().data()) == '\0';
@@ -53,39 +51,6 @@ std::optional<Response> refusal_of(beast::error_code reason) {
     const bool is_protocol = reason.category() == beast::http::make_error_code(error::end_of_stream).category();
     if (!is_protocol || reason == error::end_of_stream || reason == error::partial_message) return std::nullopt;
     return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
-}
-
-/// What tells the lane.
-Request head_of(const beast::http::request<beast::http::string_body>& message) {
-    Request request;
-    request.method = view(message.method_string());
-    request.target = view(message.target());
-    return request;
-}
-
-std::optional<WebSocketUpgrade> upgrade_of(const beast::http::request<beast::http::string_body>& message) {
-    using beast::http::field;
-    if (!beast::websocket::is_upgrade(message)) return std::nullopt;
-    return WebSocketUpgrade{std::string(view(message[field::sec_websocket_version])),
-                            std::string(view(message[field::sec_websocket_key])),
-                            std::string(view(message[field::origin]))};
-}
-
-/// Takes the body out of the message.
-Request request_of(beast::http::request<beast::http::string_body>& message) {
-    Request request;
-    request.method = view(message.method_string());
-    request.target = view(message.target());
-    request.host = view(message[beast::http::field::host]);
-    request.upgrade = upgrade_of(message);
-    request.content_type = view(message[beast::http::field::content_type]);
-    const auto [begin, end] = message.equal_range(beast::http::field::if_none_match);
-    for (auto field = begin; field != end; ++field) {
-        if (!request.if_none_match.empty()) request.if_none_match += ", ";
-        request.if_none_match += view(field->value());
-    }
-    request.body = std::move(message.body());
-    return request;
 }
 
 /// The boundary at which a fault of ours costs one answer and nothing else.
@@ -167,7 +132,7 @@ net::awaitable<bool> Connection::serve_request() {
     }
     const Lane lane = lane_of(head_of(parser.get()));
     Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
-    if (lane == Lane::kImporting) slot = take_slot(lane); // its body is large
+    if (lane == Lane::kImporting) slot = take_slot(*service_, lane); // its body is large
     if (!slot) {
         co_await write(problem(slot.error(), instance_of(view(parser.get().target()))), {});
         co_return false;
@@ -178,11 +143,10 @@ net::awaitable<bool> Connection::serve_request() {
     Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
                   .keep_alive = parser.get().keep_alive(),
                   .takes_chunks = parser.get().version() >= 11};
-    Message message = parser.release();
+    Incoming message = parser.release();
     const auto begin = std::chrono::steady_clock::now();
     const Response response = co_await compute(lane, request_of(message));
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    service_->counters.request_seconds.Observe(seconds.count());
+    service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
     if (response.invitation) {
         co_await show(*response.invitation, message);
         co_return false;
@@ -242,7 +206,7 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
 }
 
 /// Hands the socket over to a viewer, until that ends.
-net::awaitable<void> Connection::show(const live::Invitation& invitation, const Message& upgrade) {
+net::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
     const auto path = instance_of(view(upgrade.target()));
     auto seat = service_->seats.try_take(invitation.session_id);
     std::optional<Response> refusal;
@@ -268,50 +232,12 @@ net::awaitable<void> Connection::show(const live::Invitation& invitation, const 
 net::awaitable<Response> Connection::compute(Lane lane, Request request) {
     if (lane == Lane::kAtOnce) co_return answer_guarded(service_->answer, request);
     Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
-    if (lane != Lane::kImporting) slot = take_slot(lane);
+    if (lane != Lane::kImporting) slot = take_slot(*service_, lane);
     if (!slot) co_return problem(slot.error(), instance_of(request.target));
     auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
         co_return answer_guarded(service->answer, request);
     };
-    co_return co_await net::co_spawn(executor_of(lane), std::move(work), net::use_awaitable);
-}
-
-/// For what must not pile up. Errors  kOverloaded.
-Result<std::shared_ptr<const void>> Connection::take_slot(Lane lane) const {
-    std::shared_ptr<const void> slot;
-    if (lane == Lane::kChanging) {
-        slot = service_->changes.try_take();
-        if (!slot) {
-            return Error{Errc::kOverloaded,
-                         "too many sessions are being created or deleted at this moment; try again soon"};
-        }
-    }
-    if (lane == Lane::kImporting) {
-        slot = service_->imports.try_take();
-        if (!slot) return Error{Errc::kOverloaded, "other maps are being imported at this moment; try again soon"};
-    }
-    if (lane == Lane::kWeaving) {
-        slot = service_->weaves.try_take();
-        if (!slot) return Error{Errc::kOverloaded, "too many maps are being waited for at this moment; try again soon"};
-    }
-    if (lane == Lane::kPlanning) {
-        slot = service_->plans.try_take();
-        if (!slot) return Error{Errc::kOverloaded, "too many ways are being looked for at this moment; try again soon"};
-    }
-    return slot;
-}
-
-/// Pre: not Lane::kAtOnce.
-const net::any_io_executor& Connection::executor_of(Lane lane) const {
-    switch (lane) {
-    case Lane::kTelling: return service_->executors.telling;
-    case Lane::kSurvey: return service_->executors.survey;
-    case Lane::kWeaving: return service_->executors.weaving;
-    case Lane::kPlanning: return service_->executors.planning;
-    case Lane::kImporting:
-    case Lane::kChanging: return service_->executors.changing;
-    default: return service_->executors.serving;
-    }
+    co_return co_await net::co_spawn(executor_of(service_->executors, lane), std::move(work), net::use_awaitable);
 }
 
 net::awaitable<void> Connection::refuse(beast::error_code reason) {

@@ -1,56 +1,23 @@
 #pragma once
 
+#include "server/http/incoming.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
-#include "server/http/server_config.hpp"
-#include "server/live/seats.hpp"
+#include "server/http/service.hpp"
 #include "server/live/viewer.hpp"
-#include "server/metrics/metrics.hpp"
-#include "server/sockets/slots.hpp"
 
-#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
 
 namespace scanloom::http {
-
-/// Computes the answer to a request. Called on several threads at once.
-using Answer = std::function<Response(const Request&)>;
-
-/// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:
-/// deleting a session waits for the executor that the sessions work on.
-struct Executors {
-    boost::asio::any_io_executor telling;
-    boost::asio::any_io_executor serving;
-    boost::asio::any_io_executor survey;
-    boost::asio::any_io_executor weaving;
-    boost::asio::any_io_executor planning;
-    boost::asio::any_io_executor changing;
-    boost::asio::any_io_executor showing; ///< not a lane: what viewers are told live is made here
-};
-
-/// What all connections of a server share.
-struct Service {
-    ServerConfig config;
-    bool check_host = true;
-    Executors executors;
-    Answer answer;
-    metrics::HttpCounters& counters;
-    sockets::Slots changes; ///< requests in Lane::kChanging
-    sockets::Slots imports; ///< requests in Lane::kImporting
-    sockets::Slots weaves;  ///< requests in Lane::kWeaving
-    sockets::Slots plans;   ///< requests in Lane::kPlanning
-    live::Seats seats;      ///< connections that are viewers'
-};
 
 /// One connection: reads a request, has it answered, writes the answer, and again, in order. A request that is invited
 /// to watch a session is the last: the connection becomes a live::Viewer's.
@@ -72,17 +39,14 @@ public:
     void abort();
 
 private:
-    using Message = boost::beast::http::request<boost::beast::http::string_body>;
     using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
-    [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Message& upgrade);
+    [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request);
-    [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(Lane lane) const;
-    [[nodiscard]] const boost::asio::any_io_executor& executor_of(Lane lane) const;
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     /// How the request wants to be answered.
     struct Manner {

@@ -66,7 +66,7 @@ asio::awaitable<Result<session::Joined>> join(session::Session& session, const w
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Result<session::Joined>)>(
         [&](auto handler) {
             auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-            session.join(hello.robot, hello.source, std::move(listener),
+            session.join({hello.robot, hello.source, hello.body_radius}, std::move(listener),
                          [shared, executor](Result<session::Joined> joined) {
                              asio::post(executor, [shared, joined] { std::move (*shared)(joined); });
                          });

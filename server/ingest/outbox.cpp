@@ -11,7 +11,8 @@
 namespace scanloom::ingest {
 namespace asio = boost::asio;
 
-Outbox::Outbox(asio::ip::tcp::socket& socket) : socket_(socket), emptied_(socket.get_executor()) {
+Outbox::Outbox(asio::ip::tcp::socket& socket, std::function<void(std::uint64_t)> told)
+    : socket_(socket), told_(std::move(told)), emptied_(socket.get_executor()) {
     emptied_.expires_at(std::chrono::steady_clock::time_point::max());
 }
 
@@ -41,7 +42,14 @@ void Outbox::answer(std::string frame, std::shared_ptr<const void> kept, std::sh
 }
 
 void Outbox::put_ack() {
-    if (ack_) wire::encode(*std::exchange(ack_, std::nullopt), bytes_);
+    if (!ack_) return;
+    durable_seq_ = ack_->durable_seq;
+    wire::encode(*std::exchange(ack_, std::nullopt), bytes_);
+}
+
+std::string Outbox::take_bytes() {
+    if (durable_seq_) told_(*std::exchange(durable_seq_, std::nullopt));
+    return std::exchange(bytes_, {});
 }
 
 void Outbox::start(std::shared_ptr<void> owner) {
@@ -54,7 +62,7 @@ asio::awaitable<void> Outbox::write([[maybe_unused]] std::shared_ptr<void> owner
     while (ack_ || !bytes_.empty() || !answers_.empty()) {
         put_ack();
         const bool answering = bytes_.empty();
-        const std::string sending = std::exchange(answering ? answers_.front().frame : bytes_, {});
+        const std::string sending = answering ? std::exchange(answers_.front().frame, {}) : take_bytes();
         const auto [error, written] =
             co_await asio::async_write(socket_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
         if (answering) answers_.pop_front();

@@ -7,7 +7,9 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +26,8 @@ namespace scanloom::ingest {
 class Outbox {
 public:
     /// `socket` must outlive this. `owner` keeps both alive while something is being written.
-    explicit Outbox(boost::asio::ip::tcp::socket& socket);
+    /// `told` is called with the durable_seq of each ack that is handed to the socket.
+    Outbox(boost::asio::ip::tcp::socket& socket, std::function<void(std::uint64_t)> told);
 
     void send(const wire::Message& message, std::shared_ptr<void> owner);
     void send_bytes(std::string_view bytes, std::shared_ptr<void> owner);
@@ -49,10 +52,12 @@ public:
 
 private:
     void put_ack();
+    [[nodiscard]] std::string take_bytes();
     void start(std::shared_ptr<void> owner);
     [[nodiscard]] boost::asio::awaitable<void> write(std::shared_ptr<void> owner);
 
     boost::asio::ip::tcp::socket& socket_;
+    std::function<void(std::uint64_t)> told_;
     std::string bytes_;
     struct Answer {
         std::string frame;
@@ -60,7 +65,8 @@ private:
     };
 
     std::deque<Answer> answers_;
-    std::optional<wire::Ack> ack_; // the newest, not in bytes_ yet
+    std::optional<wire::Ack> ack_;             // the newest, not in bytes_ yet
+    std::optional<std::uint64_t> durable_seq_; // of the newest ack in bytes_
     bool writing_ = false;
     bool closed_ = false;
     boost::asio::steady_timer emptied_; // never runs out; cancelled when there is nothing left

@@ -24,12 +24,6 @@ wire::CoverageReply reply(const wire::CoverageRequest& to, Revision revision, Re
     return {to.id, revision, std::move(coverage)};
 }
 
-planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) {
-    planning::PassabilityOptions options;
-    options.body_radius_m = body_radius.value_or(options.body_radius_m);
-    return options;
-}
-
 /// Of cells by rows.
 std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
     std::vector<wire::CellRun> runs;
@@ -59,6 +53,14 @@ struct Search {
     guide::GoalBook& goals;
     const planning::MayGoOn& may_go_on;
     const Point2& start;
+
+    /// The body that is asked for, else the asker's own.
+    [[nodiscard]] planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) const {
+        planning::PassabilityOptions options;
+        const auto& own = maps.robots.at(asker.robot).body_radius;
+        options.body_radius_m = body_radius.value_or(own.value_or(options.body_radius_m));
+        return options;
+    }
 
     [[nodiscard]] Result<wire::Path> operator()(const wire::PlanRequest& request) const {
         auto options = passability_of(request.body_radius);

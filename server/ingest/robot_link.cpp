@@ -50,7 +50,11 @@ bool is_retryable(Errc code) noexcept {
 }
 
 RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
-    : socket_(std::move(socket)), services_(services), config_(config), outbox_(socket_),
+    : socket_(std::move(socket)), services_(services), config_(config), unacknowledged_(services.counters),
+      outbox_(socket_,
+              [this](std::uint64_t durable_seq) {
+                  unacknowledged_.acknowledge(durable_seq, std::chrono::steady_clock::now());
+              }),
       settled_(socket_.get_executor(), std::chrono::steady_clock::time_point::max()),
       deadline_timer_(socket_.get_executor()) {
     boost::system::error_code ignored;
@@ -168,6 +172,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
             co_return closed_by_robot();
         }
         decoder_.commit(bytes);
+        read_ = std::chrono::steady_clock::now();
     }
 }
 
@@ -181,6 +186,7 @@ Result<> RobotLink::handle(wire::Message message) {
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
         services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         if (auto ok = charge_batch(); !ok) return ok.error();
+        unacknowledged_.add(batch->scans.back().seq, batch->scans.size(), read_);
         session_->submit(self, std::move(batch->scans), frame_bytes_);
         return {};
     }

@@ -4,6 +4,7 @@
 #include "common/wire/messages.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
+#include "server/ingest/unacknowledged.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
@@ -104,6 +105,9 @@ private:
     std::size_t asked_ = 0;     // requests that are being met
     bool goodbye_ = false;
     bool parting_ = false; // nothing more is said or heard
+
+    std::chrono::steady_clock::time_point read_; // when bytes were read off the socket last
+    Unacknowledged unacknowledged_;
 
     Outbox outbox_;
     boost::asio::steady_timer settled_; // never runs out; cancelled when nothing is under way any more

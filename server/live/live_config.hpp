@@ -10,6 +10,7 @@ struct LiveConfig {
     std::size_t viewers_max = 1000;            ///< in all; one more is answered 503
     std::size_t viewers_per_session_max = 512; ///< likewise
     std::size_t request_bytes_max = 64 * 1024; ///< a longer message closes the connection
+    int send_buffer_bytes = 64 * 1024; ///< of the socket (the system takes twice as many): what lies there grows old
 
     std::chrono::milliseconds interval{50};      ///< from one event to the next, at least
     std::chrono::milliseconds handshake{30'000}; ///< for a handshake of the WebSocket

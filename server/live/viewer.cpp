@@ -63,6 +63,9 @@ Viewer::Viewer(net::ip::tcp::socket socket, Invitation invitation, std::shared_p
       services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
       deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
+    boost::system::error_code ignored;
+    beast::get_lowest_layer(stream_).socket().set_option(net::socket_base::send_buffer_size(config.send_buffer_bytes),
+                                                         ignored);
     stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
     stream_.set_option(websocket::stream_base::decorator( // or Beast would tell its version
         [](websocket::response_type& response) { response.set(beast::http::field::server, "Scanloom"); }));

@@ -53,12 +53,13 @@ Result<bool> Projection::fold(const LogEntry& entry, double& work) {
 
 Result<bool> Projection::fold_entry(const RobotJoined& joined, double&) {
     const bool again = joined.robot < robots_.size() && robots_[joined.robot].state.name == joined.name &&
-                       robots_[joined.robot].state.last_seq == 0;
+                       (robots_[joined.robot].state.last_seq == 0 || robots_[joined.robot].source == joined.source);
     if (joined.robot != robots_.size() && !again) {
         return misplaced(revision_ + 1, fmt::format("robot {} joins after {} others", joined.robot, robots_.size()));
     }
     if (!again) robots_.emplace_back().state.name = joined.name;
     robots_[joined.robot].source = joined.source;
+    robots_[joined.robot].state.body_radius = joined.body_radius;
     return true;
 }
 
@@ -178,8 +179,8 @@ Projection::Robot Projection::Robot::branch() const { return {state, source, tra
 ProjectionState Projection::state() const {
     ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, {}};
     for (const auto& robot : robots_) {
-        auto& out = state.robots.emplace_back(
-            ProjectionState::Robot{robot.state.name, robot.source, robot.state.last_seq, robot.state.scan_count, {}});
+        auto& out = state.robots.emplace_back(ProjectionState::Robot{
+            robot.state.name, robot.source, robot.state.body_radius, robot.state.last_seq, robot.state.scan_count, {}});
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
     }
     return state;
@@ -193,6 +194,7 @@ void Projection::restore(const ProjectionState& state) {
         auto& robot = robots_.emplace_back();
         robot.state.name = saved.name;
         robot.source = saved.source;
+        robot.state.body_radius = saved.body_radius;
         robot.state.last_seq = saved.last_seq;
         robot.state.scan_count = saved.scan_count;
         for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;

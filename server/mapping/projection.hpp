@@ -27,7 +27,8 @@ struct KnownSensor {
 struct ProjectionState {
     struct Robot {
         std::string name;
-        std::string source; ///< RobotJoined::source
+        std::string source;                ///< RobotJoined::source
+        std::optional<double> body_radius; ///< RobotJoined::body_radius
         std::uint64_t last_seq = 0;
         std::uint64_t scan_count = 0;
         std::vector<KnownSensor> sensors; ///< by rising id

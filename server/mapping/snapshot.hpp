@@ -27,6 +27,7 @@ struct FoldedScan {
 /// What a session knows of one robot. Its place in Snapshot::robots is its RobotIndex.
 struct RobotState {
     std::string name;
+    std::optional<double> body_radius; ///< metres, as it stated when it joined last
     std::uint64_t last_seq = 0;
     std::uint64_t scan_count = 0;
     double stamp = 0.0;        ///< seconds, of the newest scan

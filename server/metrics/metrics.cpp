@@ -13,15 +13,15 @@ prometheus::Gauge& gauge(prometheus::Registry& registry, const char* name, const
     return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
 }
 
-/// Seconds: a cached tile takes a fraction of a millisecond, a whole map seconds.
-const prometheus::Histogram::BucketBoundaries kSecondsBuckets = {0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05,
-                                                                 0.1,    0.25,  0.5,    1.0,   2.5,  5.0,   10.0};
-
 } // namespace
 
 IngestCounters::IngestCounters(prometheus::Registry& registry)
     : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
-      scans_received(counter(registry, "scanloom_scans_received_total", "Well-formed scans that robots sent.")) {
+      scans_received(counter(registry, "scanloom_scans_received_total", "Well-formed scans that robots sent.")),
+      scans_in_flight(
+          gauge(registry, "scanloom_scans_in_flight", "Scans that were read and are not acknowledged yet.")),
+      ack_seconds("scanloom_ack_seconds",
+                  "Time from a scan's bytes being read to its ack being handed to the socket.") {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_links_failed_total")
                        .Help("Links that ended without a goodbye, by reason.")
@@ -41,11 +41,7 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
     : connections_open(gauge(registry, "scanloom_http_connections_open", "HTTP connections that are open.")),
       connections_refused(counter(registry, "scanloom_http_connections_refused_total",
                                   "HTTP connections refused because too many were open.")),
-      request_seconds(prometheus::BuildHistogram()
-                          .Name("scanloom_http_request_seconds")
-                          .Help("Time from a whole request to the start of its answer.")
-                          .Register(registry)
-                          .Add({}, kSecondsBuckets)),
+      request_seconds("scanloom_http_request_seconds", "Time from a whole request to the start of its answer."),
       live(registry) {
     auto& family = prometheus::BuildCounter()
                        .Name("scanloom_http_requests_total")
@@ -62,6 +58,13 @@ Metrics::Metrics(std::string_view version) {
         .Register(registry_)
         .Add({{"version", std::string(version)}})
         .Set(1.0);
+}
+
+std::vector<prometheus::MetricFamily> Metrics::collect() const {
+    auto families = registry_.Collect();
+    families.push_back(ingest_.ack_seconds.family());
+    families.push_back(http_.request_seconds.family());
+    return families;
 }
 
 } // namespace scanloom::metrics

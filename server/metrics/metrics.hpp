@@ -1,10 +1,10 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/metrics/duration_histogram.hpp"
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
-#include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 
 #include <array>
@@ -21,6 +21,8 @@ public:
 
     prometheus::Gauge& links_open;
     prometheus::Counter& scans_received; ///< well-formed scans that arrived
+    prometheus::Gauge& scans_in_flight;  ///< read and not acknowledged yet
+    DurationHistogram ack_seconds;       ///< of each scan: from being read to its ack being handed to the socket
 
     /// Links that ended without a goodbye, by the reason. Pre: one of the enumerators of Errc.
     [[nodiscard]] prometheus::Counter& failed(Errc reason) const { return *failed_[static_cast<std::size_t>(reason)]; }
@@ -47,7 +49,7 @@ public:
 
     prometheus::Gauge& connections_open;
     prometheus::Counter& connections_refused; ///< because too many were open
-    prometheus::Histogram& request_seconds;   ///< from the whole request to the start of its answer
+    DurationHistogram request_seconds;        ///< from the whole request to the start of its answer
     LiveCounters live;
 
     /// Answers by class of status. Pre: 100 <= status < 600.
@@ -65,7 +67,7 @@ public:
     [[nodiscard]] IngestCounters& ingest() noexcept { return ingest_; }
     [[nodiscard]] HttpCounters& http() noexcept { return http_; }
 
-    [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const { return registry_.Collect(); }
+    [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const;
 
 private:
     prometheus::Registry registry_;

@@ -23,8 +23,8 @@ struct ProcessStat {
 };
 
 /// The program's name, field 2, may hold anything but ends at the last parenthesis.
-std::optional<ProcessStat> read_stat() {
-    std::ifstream file("/proc/self/stat");
+std::optional<ProcessStat> read_stat(const std::filesystem::path& proc) {
+    std::ifstream file(proc / "self/stat");
     std::string line;
     if (!std::getline(file, line)) return std::nullopt;
     const auto name_end = line.rfind(')');
@@ -45,19 +45,22 @@ std::optional<ProcessStat> read_stat() {
 }
 
 /// When the machine started, seconds since the epoch.
-std::optional<double> boot_time() {
-    std::ifstream file("/proc/stat");
+std::optional<double> boot_time(const std::filesystem::path& proc) {
+    std::ifstream file(proc / "stat");
     std::string line;
     while (std::getline(file, line)) {
-        if (line.rfind("btime ", 0) == 0) return std::stod(line.substr(6));
+        std::istringstream words(line);
+        std::string name;
+        double seconds = 0.0;
+        if (words >> name >> seconds && name == "btime") return seconds;
     }
     return std::nullopt;
 }
 
-std::optional<double> open_fds() {
+std::optional<double> open_fds(const std::filesystem::path& proc) {
     std::error_code failed;
     double count = 0.0;
-    for (std::filesystem::directory_iterator entry("/proc/self/fd", failed), end; !failed && entry != end;
+    for (std::filesystem::directory_iterator entry(proc / "self/fd", failed), end; !failed && entry != end;
          entry.increment(failed)) {
         ++count;
     }
@@ -67,21 +70,21 @@ std::optional<double> open_fds() {
 
 } // namespace
 
-std::vector<prometheus::MetricFamily> process_families() {
+std::vector<prometheus::MetricFamily> process_families(const std::filesystem::path& proc) {
     std::vector<prometheus::MetricFamily> families;
     const auto ticks_per_second = static_cast<double>(sysconf(_SC_CLK_TCK));
-    if (const auto stat = read_stat()) {
+    if (const auto stat = read_stat(proc)) {
         families.push_back(counter_now("process_cpu_seconds_total", "CPU time used, user and system.",
                                        stat->cpu_ticks / ticks_per_second));
         families.push_back(gauge_now("process_resident_memory_bytes", "Memory that is in RAM.",
                                      stat->resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE))));
         families.push_back(gauge_now("process_virtual_memory_bytes", "Memory that is addressed.", stat->virtual_bytes));
-        if (const auto boot = boot_time()) {
+        if (const auto boot = boot_time(proc)) {
             families.push_back(gauge_now("process_start_time_seconds", "Start of the process since the epoch.",
                                          *boot + stat->start_ticks / ticks_per_second));
         }
     }
-    if (const auto count = open_fds()) {
+    if (const auto count = open_fds(proc)) {
         families.push_back(gauge_now("process_open_fds", "File descriptors that are open.", *count));
     }
     if (rlimit limit{}; getrlimit(RLIMIT_NOFILE, &limit) == 0) {

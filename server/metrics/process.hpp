@@ -2,13 +2,14 @@
 
 #include <prometheus/metric_family.h>
 
+#include <filesystem>
 #include <vector>
 
 namespace scanloom::metrics {
 
 /// The process_* metrics that Prometheus expects of every program: CPU seconds, resident and virtual
 /// bytes, open and possible file descriptors, start time. What the system does not tell is left out.
-/// Source  proc(5): /proc/self/stat, /proc/stat, /proc/self/fd.
-[[nodiscard]] std::vector<prometheus::MetricFamily> process_families();
+/// Source  proc(5): self/stat, stat and self/fd below `proc`.
+[[nodiscard]] std::vector<prometheus::MetricFamily> process_families(const std::filesystem::path& proc = "/proc");
 
 } // namespace scanloom::metrics

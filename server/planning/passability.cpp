@@ -1,5 +1,6 @@
 #include "server/planning/passability.hpp"
 
+#include "common/scan/limits.hpp"
 #include "server/classify/bit_plane.hpp"
 #include "server/planning/clearance.hpp"
 

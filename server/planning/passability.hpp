@@ -12,7 +12,6 @@
 namespace scanloom::planning {
 
 inline constexpr std::int64_t kWindowCellsMax = std::int64_t{1} << 26; ///< a search in it takes 512 MiB
-inline constexpr double kBodyRadiusMax = 5.0;                          ///< metres
 inline constexpr double kDangerCostMax = 1000.0;
 
 /// A radius of three cells shall reach the third cell, however the quotient of two decimal fractions was rounded.

@@ -35,6 +35,7 @@ public:
     void add(Submitted entry) { waiting_.push_back(std::move(entry)); }
 
     [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
+    [[nodiscard]] std::size_t size() const noexcept { return waiting_.size(); }
     [[nodiscard]] const Submitted& front() const { return waiting_.front(); }
 
     /// Takes the next group, of which no more than `room` chunks can be new; empty when already the

@@ -1,5 +1,6 @@
 #include "server/session/checkpoint.hpp"
 
+#include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
 
 #include <fmt/format.h>
@@ -42,6 +43,9 @@ public:
         rest_.remove_prefix(sizeof value);
         return value;
     }
+
+    /// So many bytes, or all that are left.
+    void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
 
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
     [[nodiscard]] bool complete() const noexcept { return !failed_ && rest_.empty(); }
@@ -87,7 +91,9 @@ std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     std::string value;
     put(value, robot.last_seq);
     put(value, robot.scan_count);
-    return value + robot.name + '\0' + robot.source;
+    value += robot.name + '\0' + robot.source;
+    if (robot.body_radius) put(value += '\0', *robot.body_radius); // earlier versions knew of none
+    return value;
 }
 
 std::string track_part(const mapping::TrajectoryView& track, std::size_t begin) {
@@ -261,8 +267,13 @@ bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value)
     robot.scan_count = part.take<std::uint64_t>();
     const auto name_end = std::min(part.rest().find('\0'), part.rest().size());
     robot.name = part.rest().substr(0, name_end);
-    robot.source = part.rest().substr(std::min(name_end + 1, part.rest().size()));
-    return !part.failed();
+    part.skip(name_end + 1);
+    const auto source_end = std::min(part.rest().find('\0'), part.rest().size());
+    robot.source = part.rest().substr(0, source_end);
+    part.skip(source_end + 1);
+    if (part.rest().empty()) return !part.failed();
+    robot.body_radius = part.take<double>();
+    return part.complete() && is_body_radius(*robot.body_radius);
 }
 
 bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value) {

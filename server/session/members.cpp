@@ -21,6 +21,7 @@ void Members::restore(const mapping::ProjectionState& state) {
 void Members::restore(Member& member, const mapping::ProjectionState::Robot& state) {
     member.name = state.name;
     member.source = state.source;
+    member.body_radius = state.body_radius;
     member.received_seq = member.durable_seq = state.last_seq;
     member.under_way = 0;
     member.sensors.clear();
@@ -42,8 +43,9 @@ Submitted Members::submitted(Member& member, std::optional<LogEntry> entry, std:
 
 // Joining and leaving
 
-std::optional<Submitted> Members::join(const std::string& robot, Joining joining) {
-    auto known = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == robot; });
+std::optional<Submitted> Members::join(Joining joining) {
+    const auto& who = joining.who;
+    auto known = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == who.robot; });
     if (known == members_.end() && members_.size() >= kRobotsMax) {
         joining.done(Error{Errc::kFull,
                            fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
@@ -53,18 +55,19 @@ std::optional<Submitted> Members::join(const std::string& robot, Joining joining
     const bool is_new = known == members_.end();
     Member& member = is_new ? members_.emplace_back() : *known;
     if (is_new) {
-        member.name = robot;
-    } else if (auto agrees = check_source(member, joining.source); !agrees) {
+        member.name = who.robot;
+    } else if (auto agrees = check_source(member, who.source); !agrees) {
         joining.done(agrees.error());
         return std::nullopt;
     } else {
         fail(member, {Errc::kReplaced, fmt::format("robot '{}' of session '{}' connected again; this link is closed",
-                                                   robot, info_.name)});
+                                                   who.robot, info_.name)});
     }
     std::optional<Submitted> entry;
-    if (is_new || member.source != joining.source) {
-        member.source = joining.source;
-        entry = submitted(member, RobotJoined{index_of(member), robot, joining.source}, 0);
+    if (is_new || member.source != who.source || member.body_radius != who.body_radius) {
+        member.source = who.source;
+        member.body_radius = who.body_radius;
+        entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius}, 0);
     }
     member.joining = std::move(joining);
     admit(member);

@@ -20,8 +20,8 @@ namespace scanloom::session {
 
 /// A link that waits until what the robot's earlier links submitted is in the maps.
 struct Joining {
+    Newcomer who;
     std::shared_ptr<RobotListener> listener;
-    std::string source; ///< Hello.source
     std::function<void(Result<Joined>)> done;
 };
 
@@ -45,8 +45,8 @@ public:
     [[nodiscard]] std::uint64_t connection_changes() const noexcept { return connection_changes_; }
 
     /// Lets the link in as soon as nothing of the robot's earlier ones is under way; these fail.
-    /// @return the entry that makes the robot known, if it is not.
-    [[nodiscard]] std::optional<Submitted> join(const std::string& robot, Joining joining);
+    /// @return the entry that makes the robot known, if it is not as it says it is.
+    [[nodiscard]] std::optional<Submitted> join(Joining joining);
 
     void leave(const std::shared_ptr<RobotListener>& listener);
 
@@ -68,6 +68,7 @@ private:
     struct Member {
         std::string name;
         std::string source;
+        std::optional<double> body_radius;
         std::shared_ptr<RobotListener> listener;
         std::optional<Joining> joining;
         std::size_t under_way = 0; // entries submitted and not released

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace scanloom::session {
 
@@ -19,6 +21,13 @@ public:
 
     /// The session will take nothing more from this link.
     virtual void on_failed(const Error& error) = 0;
+};
+
+/// Who joins, as its hello says.
+struct Newcomer {
+    std::string robot;
+    std::string source = {};                ///< Hello.source
+    std::optional<double> body_radius = {}; ///< metres
 };
 
 /// What a robot learns when it joins.

@@ -53,6 +53,7 @@ template <class Work>
 void Session::on_strand(Work work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
         work(*self);
+        self->backlog_size_ = self->waiting_.size();
         self->tell_watchers(); // last: robots have their acks already
     });
 }
@@ -65,13 +66,11 @@ void Session::tell_watchers() {
 
 // Down: from a link to the log
 
-void Session::join(std::string robot, std::string source, std::shared_ptr<RobotListener> listener,
-                   std::function<void(Result<Joined>)> done) {
-    on_strand([robot = std::move(robot),
-               joining = Joining{std::move(listener), std::move(source), std::move(done)}](Session& self) mutable {
+void Session::join(Newcomer who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done) {
+    on_strand([joining = Joining{std::move(who), std::move(listener), std::move(done)}](Session& self) mutable {
         if (self.refusing_) return joining.done(*self.refusing_);
         std::vector<Submitted> entries;
-        if (auto entry = self.members_.join(robot, std::move(joining))) entries.push_back(std::move(*entry));
+        if (auto entry = self.members_.join(std::move(joining))) entries.push_back(std::move(*entry));
         self.enqueue(std::move(entries));
     });
 }

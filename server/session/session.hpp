@@ -47,6 +47,9 @@ public:
     /// The newest maps; they hold every scan acknowledged so far.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const;
 
+    /// Entries that wait to be handed to the log.
+    [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
+
     /// Why the session takes no scans until the server is started again, its maps being served all the same: the log
     /// could not be written, or the memory ran out. Nothing while all is well.
     [[nodiscard]] std::optional<Error> failure() const;
@@ -66,13 +69,11 @@ public:
     [[nodiscard]] std::vector<bool> connected() const { return members_.connected(); }
 
     /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
-    /// `source` identifies what the robot streams when the same can be streamed again; empty for a live robot.
     /// `done` is called once, on the strand, when everything the robot's earlier links submitted is
     /// durable: so last_durable_seq is exact, and no more than one link's credit is under way.
     /// Errors  kReplaced, kConflict (the robot's scans come from another source), kGone, kStoreFailed,
     ///         kShuttingDown, kFull.
-    void join(std::string robot, std::string source, std::shared_ptr<RobotListener> listener,
-              std::function<void(Result<Joined>)> done);
+    void join(Newcomer who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
     /// Describes a sensor, for the scans submitted after it. What comes from a link that has not joined
     /// yet, or has failed, is ignored, here and below. `bytes` is given back through on_durable.
@@ -148,7 +149,8 @@ private:
     std::uint64_t connections_told_ = 0; // Members::connection_changes() that the watchers know of
 
     Watchers watchers_;
-    std::atomic<bool> hurried_ = false; // set from any thread, as the strand may be busy
+    std::atomic<bool> hurried_ = false;         // set from any thread, as the strand may be busy
+    std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     mutable std::mutex published_mutex_; // guards what follows, held for a copy only
     std::shared_ptr<const mapping::Snapshot> published_;

@@ -62,6 +62,23 @@ TEST_F(IngestTest, AGoodbyeWaitsForTheDiskAndNothingAfterItIsTaken) {
     EXPECT_EQ(ingest.snapshot("lab")->robots.at(0).scan_count, 30U);
 }
 
+TEST_F(IngestTest, ScansAreInFlightUntilTheirAckIsOnItsWay) {
+    auto& counters = start().counters();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 10);
+    EXPECT_EQ(counters.scans_in_flight.Value(), 0.0);
+    log_.hold_completions();
+    robot->send_bytes(frame_of(wire::ScanBatch{random_scans(1, 11, 20)}) + frame_of(wire::Ping{1}));
+    robot->receive_kind<wire::Pong>();
+    EXPECT_EQ(counters.scans_in_flight.Value(), 20.0);
+    EXPECT_EQ(counters.ack_seconds.family().metric.at(0).histogram.sample_count, 10U);
+    log_.release_completions();
+    robot->wait_for_ack(30);
+    EXPECT_EQ(counters.scans_in_flight.Value(), 0.0);
+    EXPECT_EQ(counters.ack_seconds.family().metric.at(0).histogram.sample_count, 30U);
+}
+
 TEST_F(IngestTest, AGoodbyeBeforeTheDiskFailsIsAnsweredWithAnError) {
     start();
     const auto robot = welcomed(port(), hello("r"));

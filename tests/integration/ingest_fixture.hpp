@@ -54,6 +54,7 @@ public:
 
     void stop_accepting() { server_->stop(); }
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
     [[nodiscard]] guide::GoalBook& goals() { return goals_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }

@@ -197,7 +197,7 @@ TEST_F(IngestTest, ARobotThatFindsTheSessionFullNeedNotTryAgain) {
     const auto robot = welcomed(port(), hello("r"));
     const auto session = running_->sessions().find("lab");
     for (int n = 1; n < 1024; ++n) {
-        session->join("r" + std::to_string(n), "", std::make_shared<Silent>(), [](const Result<session::Joined>&) {});
+        session->join({"r" + std::to_string(n)}, std::make_shared<Silent>(), [](const Result<session::Joined>&) {});
     }
     RobotSocket last(port());
     last.send(hello("last"));

@@ -85,6 +85,29 @@ TEST_F(RequestsTest, WithoutAStartTheRobotsNewestScanIsMeant) {
     EXPECT_EQ(mute->receive_kind<wire::CoverageReply>().coverage.error().code, Errc::kNoPath);
 }
 
+TEST_F(RequestsTest, WaysAreForTheBodyThatTheHelloStates) {
+    start();
+    auto stated = hello("r");
+    stated.body_radius = 0.5;
+    const auto robot = welcomed(port(), stated);
+    robot->send(half_round_laser());
+    robot->send(wire::ScanBatch{{scan_with_a_gap()}});
+    robot->wait_for_ack(1);
+    robot->send(plan_to({3.2, 1.25}));
+    const auto refused = robot->receive_kind<wire::PlanReply>();
+    EXPECT_THAT(refused.path.error().message, testing::HasSubstr("than the body radius of 0.5 m"));
+    robot->send(wire::PlanRequest{.id = 2, .goal = {3.2, 1.25}, .body_radius = 0.1});
+    EXPECT_TRUE(robot->receive_kind<wire::PlanReply>().path);
+    robot->send(wire::GoalRequest{.id = 3});
+    robot->send(wire::GoalRequest{.id = 4, .body_radius = 0.5});
+    const auto own = robot->receive_kind<wire::GoalReply>().goal.value();
+    EXPECT_EQ(own.target, robot->receive_kind<wire::GoalReply>().goal.value().target);
+    robot->send(wire::CoverageRequest{.id = 5});
+    robot->send(wire::CoverageRequest{.id = 6, .body_radius = 0.5});
+    const auto coverage = robot->receive_kind<wire::CoverageReply>().coverage.value();
+    EXPECT_EQ(coverage, robot->receive_kind<wire::CoverageReply>().coverage.value());
+}
+
 TEST_F(RequestsTest, WhatCannotBeMetIsRefusedAndTheLinkGoesOn) {
     start();
     const auto robot = looking_around("r");

@@ -24,16 +24,16 @@ Result<Position> start_of(const boost::json::object& body, const mapping::Snapsh
     if (maps.robots.size() == 1) {
         const auto pose = guide::pose_of(maps, 0);
         if (!pose) return prefixed("start is missing: ", pose.error());
-        return Position{pose->x, pose->y};
+        return Position{pose->x, pose->y, maps.robots[0].body_radius};
     }
     return Error{Errc::kInvalidField, fmt::format(R"(start is missing, and the session has {} robots; give [x, y] or )"
                                                   R"({{"robot": "name"}})",
                                                   maps.robots.size())};
 }
 
-Result<planning::CoverageOptions> options_of(const boost::json::object& body) {
+Result<planning::CoverageOptions> options_of(const boost::json::object& body, const std::optional<double>& own) {
     planning::CoverageOptions options;
-    const auto passability = passability_options(body);
+    const auto passability = passability_options(body, own);
     if (!passability) return passability.error();
     options.passability = *passability;
     const auto spacing = read_number(body, "spacing");
@@ -74,10 +74,10 @@ Result<Response> post_coverage(const MapsLookup& maps, const AnswerSlots& slots,
     const auto body = parse_json_object(call.request.body);
     if (!body) return body.error();
     if (auto known = check_members(*body, kMembers); !known) return known.error();
-    const auto options = options_of(*body);
-    if (!options) return options.error();
     const auto start = start_of(*body, snapshot);
     if (!start) return start.error();
+    const auto options = options_of(*body, start->body_radius);
+    if (!options) return options.error();
 
     auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point(), *options,
                                             guide::Patience(maps.sessions()));

@@ -47,12 +47,12 @@ Result<Response> get_goal(const MapsLookup& maps, guide::GoalBook& goals, const 
     const auto found = find_for_search(maps, call, {"robot", "size_min", "body_radius"});
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
-    const auto options = exploration_options(call.query);
-    if (!options) return options.error();
     const auto name = call.query.find("robot");
     if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot that is to explore"};
     const auto robot = guide::find_robot(snapshot, *name);
     if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(*name)), robot.error());
+    const auto options = exploration_options(call.query, snapshot.robots[*robot].body_radius);
+    if (!options) return options.error();
     const auto pose = guide::pose_of(snapshot, *robot);
     if (!pose) return pose.error();
 

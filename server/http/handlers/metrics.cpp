@@ -34,6 +34,8 @@ Families store_families(const store::ScanLog& log) {
 
 Families session_families(const session::SessionRegistry& sessions) {
     const auto served = sessions.list();
+    std::size_t backlog = 0;
+    for (const auto& session : served) backlog += session->backlog_size();
     const auto failed =
         std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
     return {
@@ -42,6 +44,8 @@ Families session_families(const session::SessionRegistry& sessions) {
                   static_cast<double>(failed)),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
                   static_cast<double>(sessions.damaged().size())),
+        gauge_now("scanloom_backlog_entries", "Log entries of all sessions that wait to be appended.",
+                  static_cast<double>(backlog)),
         counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
                     static_cast<double>(sessions.counters().scans_applied)),
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",

@@ -36,12 +36,12 @@ Result<Response> post_plan(const MapsLookup& maps, const AnswerSlots& slots, con
     const auto& snapshot = *found->snapshot;
     const auto body = parse_plan(call.request.body);
     if (!body) return body.error();
-    const auto options = passability_options(*body);
-    if (!options) return options.error();
     const auto to = read_point(body->at("to"), "to");
     if (!to) return to.error();
     const auto from = read_place(body->at("from"), "from", snapshot);
     if (!from) return from.error();
+    const auto options = passability_options(*body, from->body_radius);
+    if (!options) return options.error();
 
     const auto path =
         planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point(), to->point(), *options);

@@ -67,8 +67,9 @@ Result<Maps> find_for_search(const MapsLookup& maps, const Call& call, std::init
     return maps.find(call, known);
 }
 
-Result<planning::ExplorationOptions> exploration_options(const Query& query) {
+Result<planning::ExplorationOptions> exploration_options(const Query& query, const std::optional<double>& own) {
     planning::ExplorationOptions options;
+    options.passability.body_radius_m = own.value_or(options.passability.body_radius_m);
     if (const auto text = query.find("size_min")) {
         const auto size = parse_integer<std::size_t>(*text);
         if (!size || *size < 1) {
@@ -85,8 +86,10 @@ Result<planning::ExplorationOptions> exploration_options(const Query& query) {
     return options;
 }
 
-Result<planning::PassabilityOptions> passability_options(const boost::json::object& body) {
+Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
+                                                         const std::optional<double>& own) {
     planning::PassabilityOptions options;
+    options.body_radius_m = own.value_or(options.body_radius_m);
     if (auto ok = set(body, "allow_unknown", options.allow_unknown); !ok) return ok.error();
     options.on_known = !options.allow_unknown;
     if (auto ok = set(body, "body_radius", options.body_radius_m); !ok) return ok.error();
@@ -102,7 +105,7 @@ Result<Position> read_point(const boost::json::value& value, std::string_view na
     if (!x) return x.error();
     const auto y = read_coordinate(value.get_array()[1], fmt::format("{}[1]", name));
     if (!y) return y.error();
-    return Position{*x, *y};
+    return Position{*x, *y, {}};
 }
 
 Result<Position> read_place(const boost::json::value& value, std::string_view name, const mapping::Snapshot& maps) {
@@ -119,7 +122,7 @@ Result<Position> read_place(const boost::json::value& value, std::string_view na
     if (!index) return prefixed(fmt::format("{} is robot {}: ", name, in_quotes(*robot)), index.error());
     const auto pose = guide::pose_of(maps, *index);
     if (!pose) return prefixed(within, pose.error());
-    return Position{pose->x, pose->y};
+    return Position{pose->x, pose->y, maps.robots[*index].body_radius};
 }
 
 Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name) {

@@ -11,6 +11,7 @@
 #include <boost/json/value.hpp>
 
 #include <initializer_list>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace scanloom::http {
 struct Position {
     double x = 0.0;
     double y = 0.0;
+    std::optional<double> body_radius = {}; ///< metres, of the robot that is there, where one was named that states it
 
     [[nodiscard]] Point2 point() const { return {x, y}; }
 };
@@ -30,13 +32,16 @@ struct Position {
 [[nodiscard]] Result<Maps> find_for_search(const MapsLookup& maps, const Call& call,
                                            std::initializer_list<std::string_view> known);
 
-/// The parameters size_min and body_radius.
+/// The parameters size_min and body_radius; without the latter the body is `own`, if that is known.
 /// Errors  kInvalidField.
-[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query);
+[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query,
+                                                                       const std::optional<double>& own = {});
 
-/// The members allow_unknown, body_radius and danger_cost, each if it is there. Ranges are for the planning to check.
+/// The members allow_unknown, body_radius and danger_cost, each if it is there; `own` as above. Ranges are for the
+/// planning to check.
 /// Errors  kInvalidField.
-[[nodiscard]] Result<planning::PassabilityOptions> passability_options(const boost::json::object& body);
+[[nodiscard]] Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
+                                                                       const std::optional<double>& own);
 
 /// [x, y], in metres.
 /// Errors  kInvalidField: something else, or further out than any robot may be.

@@ -43,6 +43,11 @@ boost::json::value pose_json(const std::optional<Pose2>& pose) {
     return boost::json::object{{"x", rounded_metres(pose->x)}, {"y", rounded_metres(pose->y)}, {"yaw", pose->yaw}};
 }
 
+boost::json::value radius_json(const std::optional<double>& radius) {
+    if (!radius) return nullptr;
+    return *radius;
+}
+
 } // namespace
 
 boost::json::object to_json(const session::Session& session) {
@@ -57,7 +62,8 @@ boost::json::object to_json(const session::Session& session) {
                                              {"scans", robot.scan_count},
                                              {"last_seq", robot.last_seq},
                                              {"stamp", robot.stamp},
-                                             {"pose", pose_json(robot.pose)}});
+                                             {"pose", pose_json(robot.pose)},
+                                             {"body_radius", radius_json(robot.body_radius)}});
     }
     const auto& info = session.info();
     const auto failure = session.failure();

@@ -100,7 +100,8 @@ bool Narrator::shows_scan(const mapping::RobotState& robot, const ToldRobot& tol
 }
 
 bool Narrator::is_news(const mapping::RobotState& robot, bool connected, const ToldRobot& told) const {
-    return !told.known || told.connected != connected || told.scan_count != robot.scan_count || shows_scan(robot, told);
+    return !told.known || told.connected != connected || told.body_radius != robot.body_radius ||
+           told.scan_count != robot.scan_count || shows_scan(robot, told);
 }
 
 /// So that the scans to be told have no more points together than an event may have, or one each.
@@ -135,7 +136,8 @@ void Narrator::tell_robots(const Moment& moment, wire::LiveEvent& event) {
                                                                    robot.last_seq,
                                                                    {},
                                                                    0,
-                                                                   {}});
+                                                                   {},
+                                                                   robot.body_radius});
         const auto& trail = robot.trajectory;
         const std::size_t first = std::max(told.trail, trail.size() - std::min(trail.size(), trail_max));
         update.trail_from = first;
@@ -146,6 +148,7 @@ void Narrator::tell_robots(const Moment& moment, wire::LiveEvent& event) {
         }
         told.known = true;
         told.connected = connected;
+        told.body_radius = robot.body_radius;
         told.scan_count = robot.scan_count;
         told.trail = trail.size();
     }

@@ -40,6 +40,7 @@ private:
     struct ToldRobot {
         bool known = false;
         bool connected = false;
+        std::optional<double> body_radius;
         std::uint64_t scan_count = 0;
         std::size_t trail = 0; // points
         Revision scan = 0;     // shown as points

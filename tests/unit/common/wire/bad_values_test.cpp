@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 /// Every value a frame can spoil, and the error that names it.
@@ -46,6 +47,11 @@ TEST(BadHello, IsRefusedByTheNameOfItsField) {
         {[](Hello& h) { h.source = std::string(65, 's'); }, "hello.source has 65 bytes, at most 64", Errc::kTooLarge},
         {[](Hello& h) { h.source = "carmen:\n"; }, "hello.source holds a control character;"},
         {[](Hello& h) { h.source = "carmen:\x7f"; }, "hello.source holds a control character;"},
+        {[](Hello& h) { h.body_radius = 0.0; }, "hello.body_radius is 0 m; it must be more than 0 and at most 5"},
+        {[](Hello& h) { h.body_radius = -0.2; }, "hello.body_radius is -0.2 m;"},
+        {[](Hello& h) { h.body_radius = 5.01; }, "hello.body_radius is 5.01 m;"},
+        {[](Hello& h) { h.body_radius = std::nan(""); }, "hello.body_radius is nan m;"},
+        {[](Hello& h) { h.body_radius = HUGE_VAL; }, "hello.body_radius is inf m;"},
     };
     for (const auto& spoilt : kSpoilt) {
         Hello hello = example_hello();

@@ -76,6 +76,7 @@ inline Hello example_hello() {
     hello.create = every_option();
     hello.client = "a robot 1.0";
     hello.source = "carmen:" + std::string(57, '9'); // as long as it may be
+    hello.body_radius = 5.0;                         // as large as it may be
     return hello;
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -15,7 +16,8 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::vector<LogEntry> one_of_each() {
-    return {RobotJoined{3, "robot-1"}, SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}};
+    return {RobotJoined{3, "robot-1"}, RobotJoined{3, "robot-1", "carmen:12", 0.25},
+            SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}};
 }
 
 TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
@@ -23,6 +25,14 @@ TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
         const auto decoded = decode_entry(encode_entry(entry));
         ASSERT_TRUE(decoded) << decoded.error().message;
         EXPECT_EQ(*decoded, entry);
+    }
+}
+
+TEST(LogCodec, ABodyThatNoRobotCanStateIsDamage) {
+    for (const double radius : {0.0, -1.0, 5.5, std::nan("")}) {
+        const auto decoded = decode_entry(encode_entry(RobotJoined{0, "r", "", radius}));
+        ASSERT_FALSE(decoded) << radius;
+        EXPECT_THAT(decoded.error().message, StartsWith("a log entry in the store cannot be read"));
     }
 }
 

@@ -62,6 +62,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     hello.token.clear();
     hello.client.clear();
     hello.source.clear();
+    hello.body_radius.reset();
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello));
     hello.create = SessionOptions{.p_min = 0.0};
     EXPECT_EQ(decode(body_of(hello)).value(), Message(hello)) << "an option of 0 is not an absent one";

@@ -86,6 +86,15 @@ TEST_F(Options, DefaultsAreThoseOfTheContract) {
     EXPECT_FALSE(std::get<SimulateOptions>(simulate.source).duration);
 }
 
+TEST_F(Options, ABodyIsStatedForAnySource) {
+    EXPECT_EQ(parsed({"simulate", "--session", "s", "--robot", "r"}).body_radius, std::nullopt);
+    EXPECT_EQ(parsed({"replay", "f", "--session", "s", "--robot", "r", "--body-radius", "5"}).body_radius, 5.0);
+    for (const auto* radius : {"0", "-1", "5.1", "nan", "x"}) {
+        const auto refused = left({"simulate", "--session", "s", "--robot", "r", "--body-radius", radius});
+        EXPECT_EQ(refused.code, kExitUsage) << radius;
+    }
+}
+
 TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
     const auto options = parsed({"sonar", "m.txt", "p.txt", "--aperture", "15", "--session", "s", "--robot", "r"});
     const auto& sonar = std::get<SonarReplayOptions>(options.source);

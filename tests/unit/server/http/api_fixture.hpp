@@ -123,10 +123,12 @@ protected:
         link->wait();
     }
 
-    std::shared_ptr<Link> join(std::string_view name, const std::string& robot, std::uint64_t awaited_seq) {
+    std::shared_ptr<Link> join(std::string_view name, const std::string& robot, std::uint64_t awaited_seq,
+                               std::optional<double> body_radius = {}) {
         const auto link = std::make_shared<Link>(awaited_seq);
         std::promise<void> joined;
-        registry_.find(name)->join(robot, "", link, [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        registry_.find(name)->join({robot, "", body_radius}, link,
+                                   [&joined](const Result<session::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
         links_.push_back(link);
         return link;

@@ -230,6 +230,28 @@ TEST_F(ApiPlanningTest, APlanMayBeginAtARobot) {
     EXPECT_EQ(points.back(), Point2(2.5, 0.2));
 }
 
+TEST_F(ApiPlanningTest, WaysForARobotAreForItsBodyUnlessAnotherIsAskedFor) {
+    Scan scan = scan_with_a_gap();
+    scan.seq = 2;
+    const auto link = join("a", "r1", scan.seq, 0.5); // comes again, and states it
+    registry_.find("a")->submit(link, {scan}, 1);
+    link->wait();
+    const std::string near_wall = R"({"from":{"robot":"r1"},"to":[3.2,1.25])";
+    EXPECT_THAT(detail(post("plan", near_wall + "}"), Status::conflict), HasSubstr("than the body radius of 0.5 m"));
+    EXPECT_EQ(post("plan", near_wall + R"(,"body_radius":0.1})").status, Status::ok);
+    EXPECT_EQ(post("plan", R"({"from":[1.0,1.0],"to":[3.2,1.25]})").status, Status::ok) << "nobody is named";
+
+    const auto covered = [&](const std::string& body) { return post_json("coverage", body).at("features").at(0); };
+    EXPECT_EQ(covered("{}"), covered(R"({"body_radius":0.5})"));
+    EXPECT_EQ(covered(R"({"start":{"robot":"r1"}})"), covered(R"({"body_radius":0.5})"));
+    EXPECT_NE(covered(R"({"start":[0.5,1.25]})"), covered("{}"));
+
+    const auto goal = [&](const std::string& query) { return get_json("/api/v1/sessions/a/goal?robot=r1" + query); };
+    const auto own = goal("");
+    EXPECT_EQ(own, goal("&body_radius=0.5"));
+    EXPECT_NE(own, goal("&body_radius=0.15"));
+}
+
 TEST_F(ApiPlanningTest, OptionsOfAPlanAreHeeded) {
     const std::string beyond = R"({"from":[1.0,1.0],"to":[-2.5,1.0])";
     EXPECT_THAT(detail(post("plan", beyond + "}"), Status::conflict), HasSubstr("the goal (-2.5, 1) is "));

@@ -146,9 +146,16 @@ TEST_F(ApiTest, AStreamingRobotIsShown) {
                                                        {"scans", 3},
                                                        {"last_seq", 3},
                                                        {"stamp", 103},
-                                                       {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}}}}));
+                                                       {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}},
+                                                       {"body_radius", nullptr}}}));
     EXPECT_NEAR(shown.at("bounds").at("max_x").to_number<double>(), 3.5, 0.2);
     EXPECT_NEAR(shown.at("bounds").at("min_y").to_number<double>(), -0.75, 0.2);
+}
+
+TEST_F(ApiTest, TheBodyThatARobotStatesIsShown) {
+    create("a");
+    join("a", "r1", 1, 0.25);
+    EXPECT_EQ(get_json("/api/v1/sessions/a").at("robots").at(0).at("body_radius"), 0.25);
 }
 
 TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {

@@ -39,7 +39,7 @@ class StreamingRobot final : public session::RobotListener, public std::enable_s
 public:
     void join(session::Session& session, const std::string& name) {
         std::promise<void> joined;
-        session.join(name, "", shared_from_this(), [&joined](const Result<session::Joined>&) { joined.set_value(); });
+        session.join({name}, shared_from_this(), [&joined](const Result<session::Joined>&) { joined.set_value(); });
         joined.get_future().wait();
     }
 

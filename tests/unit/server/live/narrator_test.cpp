@@ -176,6 +176,25 @@ TEST(Narrator, AnotherStateIsNewsWithItsReason) {
     EXPECT_EQ(narrator.next(moment), std::nullopt);
 }
 
+TEST(Narrator, AnotherBodyIsNews) {
+    Growing session(2);
+    Narrator narrator("tag");
+    const auto told = [&] {
+        v1::LiveEvent event;
+        EXPECT_TRUE(event.ParseFromString(wire::encode(narrator.next(session.moment()).value())));
+        return event;
+    };
+    EXPECT_EQ(told().robots(0).body_radius(), 0.0) << "not stated";
+    for (const double radius : {0.25, 0.5}) {
+        session.fold(RobotJoined{1, "r1", "", radius});
+        const auto event = told();
+        ASSERT_EQ(event.robots_size(), 1);
+        EXPECT_EQ(event.robots(0).robot(), 1U);
+        EXPECT_EQ(event.robots(0).body_radius(), radius);
+    }
+    EXPECT_EQ(narrator.next(session.moment()), std::nullopt);
+}
+
 TEST(Narrator, AnEventIsBoundedHoweverManyRobotsThereAre) {
     constexpr std::uint32_t kRobots = 1024;
     mapping::Snapshot maps{.revision = 9};

@@ -184,6 +184,7 @@ TEST(LiveViewer, WhoeverReadsSlowlyGetsTheNewestStateAndHoldsUpNobody) {
         seq += 50;
     } while (!is_behind() && seq < 100'000);
     ASSERT_TRUE(is_behind());
+    EXPECT_LT(server.counters().bytes.Value(), 1 << 20) << "what nobody reads is no backlog of the system's either";
 
     LiveReplay viewer;
     catch_up(server, client, viewer);

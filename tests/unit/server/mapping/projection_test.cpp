@@ -229,6 +229,24 @@ TEST(Projection, EntriesThatCannotFollowAreRefusedAndLeaveItUnchanged) {
     refuse(ScanTaken{0, {.seq = 2, .sensor = 2, .ranges = {1}}}, "scan 2 of robot 'r' follows scan 0");
 }
 
+TEST(Projection, ARobotMayComeAgainWithAnotherBodyButItsScansComeFromOneSource) {
+    Projection projection{MapConfig{}};
+    const auto radius = [&] { return projection.snapshot().robots.at(0).body_radius; };
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "a", 0.2}));
+    EXPECT_EQ(radius(), 0.2);
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "b", 0.2}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, laser()}));
+    ASSERT_TRUE(projection.fold(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}));
+    const auto cells = testing_support::digests_of(projection.snapshot());
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "b", 0.4}));
+    EXPECT_EQ(radius(), 0.4);
+    EXPECT_FALSE(projection.fold(RobotJoined{0, "r", "a", 0.4}));
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r", "b"}));
+    EXPECT_EQ(radius(), std::nullopt) << "what it said last holds, also when it said nothing";
+    EXPECT_EQ(projection.snapshot().robots.at(0).scan_count, 1U);
+    EXPECT_EQ(testing_support::digests_of(projection.snapshot()), cells);
+}
+
 TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
     Projection projection{MapConfig{}};
     ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));

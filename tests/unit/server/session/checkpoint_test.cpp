@@ -22,7 +22,7 @@ void merge(Parts& parts, Parts newer) {
 std::vector<LogEntry> log_of_two_robots(std::size_t scans) {
     Sensor second = small_laser();
     second.id = 40;
-    std::vector<LogEntry> log{RobotJoined{0, "a", "carmen:12"}, SensorDescribed{0, small_laser()},
+    std::vector<LogEntry> log{RobotJoined{0, "a", "carmen:12", 0.35}, SensorDescribed{0, small_laser()},
                               SensorDescribed{0, second}, RobotJoined{1, "b"}, SensorDescribed{1, small_laser()}};
     for (std::uint64_t seq = 1; seq <= scans; ++seq) {
         for (RobotIndex robot = 0; robot < 2; ++robot) log.push_back(ScanTaken{robot, random_scan(robot, seq)});
@@ -66,8 +66,8 @@ void expect_same(mapping::Projection& a, mapping::Projection& b) {
     for (RobotIndex n = 0; n < left.robots.size(); ++n) {
         const auto& l = left.robots[n];
         const auto& r = right.robots[n];
-        EXPECT_EQ(std::tie(l.name, l.last_seq, l.scan_count, l.stamp, l.pose),
-                  std::tie(r.name, r.last_seq, r.scan_count, r.stamp, r.pose));
+        EXPECT_EQ(std::tie(l.name, l.body_radius, l.last_seq, l.scan_count, l.stamp, l.pose),
+                  std::tie(r.name, r.body_radius, r.last_seq, r.scan_count, r.stamp, r.pose));
         EXPECT_EQ(sensors_of(a.state().robots[n]), sensors_of(b.state().robots[n]));
         EXPECT_EQ(a.state().robots[n].source, b.state().robots[n].source);
         ASSERT_EQ(l.trajectory.size(), r.trajectory.size());
@@ -86,6 +86,13 @@ TEST(Checkpoint, ReadBackItIsTheSameProjection) {
     Parts parts_again;
     merge(parts_again, parts_of(again, 0));
     EXPECT_EQ(parts, parts_again);
+}
+
+TEST(Checkpoint, OfRobotsThatStateNoBodyIsAsItAlwaysWas) {
+    mapping::Projection projection{mapping::MapConfig{}};
+    fold(projection, {RobotJoined{0, "b", "carmen:12"}}, 0, 1);
+    const auto part = parts_of(projection, 0).at("robot/00000000");
+    EXPECT_EQ(part.substr(16), std::string("b\0carmen:12", 11));
 }
 
 TEST(Checkpoint, OfNothingIsABlankProjection) {
@@ -179,6 +186,8 @@ TEST(Checkpoint, PartsThatCannotBeAreReportedByTheirKey) {
     const std::string point(40, '\0');
     const std::pair<std::string, std::string> kImpossible[] = {
         {"robot/00000003", std::string(17, 'x')},
+        {"robot/00000000", std::string(16, '\1') + std::string("a\0s\0short", 9)},
+        {"robot/00000000", std::string(16, '\1') + std::string("a\0s\0\0\0\0\0\0\0\0\0", 12)}, // a body of 0 m
         {"robot/", ""},
         {"sensor/00000002/00000000", sensor},
         {"sensor/00000001/00000009", scan},

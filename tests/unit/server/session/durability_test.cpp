@@ -42,7 +42,7 @@ struct WatchingLink : RecordedLink {
 
 TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
     const auto link = std::make_shared<WatchingLink>(*session_);
-    session_->join("r", "", link, [](const Result<Joined>&) {});
+    session_->join({"r"}, link, [](const Result<Joined>&) {});
     run();
     session_->submit(link, small_laser(), 0);
     for (std::uint64_t seq = 1; seq <= 600; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
@@ -58,10 +58,12 @@ TEST_F(SessionTest, WhatIsSubmittedWhileTheDiskWorksIsAppendedTogether) {
     for (std::uint64_t seq = 1; seq <= 200; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
     run();
     EXPECT_EQ(log_.held_completions(), 1U) << "one append at a time";
+    EXPECT_EQ(session_->backlog_size(), 199U) << "the rest waits";
     log_.release_completions();
     run();
     EXPECT_EQ(log_.stats().appends, appends + 2);
     EXPECT_EQ(link->durable_seq(), 200U);
+    EXPECT_EQ(session_->backlog_size(), 0U);
     EXPECT_EQ(link->bytes_released, 2000U);
     EXPECT_THAT(link->durable_seqs, SizeIs(testing::Le(4U))) << "one ack a group";
 }

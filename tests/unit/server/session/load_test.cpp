@@ -72,8 +72,7 @@ TEST_F(HeavySessionTest, ItsOwnRobotsAreHeardBetweenItsScans) {
     session_->submit(link_, far_scans(1, 5), 10);
     run_until([&] { return log_.stats().entries == 7; });
     bool joined = false; // one group later
-    session_->join("r2", "", std::make_shared<RecordedLink>(),
-                   [&](const Result<Joined>& answer) { joined = !!answer; });
+    session_->join({"r2"}, std::make_shared<RecordedLink>(), [&](const Result<Joined>& answer) { joined = !!answer; });
     session_->leave(link_);
     run_until([&] { return !session_->is_connected(0); });
     EXPECT_LT(session_->snapshot()->robots[0].last_seq, 5U);

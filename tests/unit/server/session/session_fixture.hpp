@@ -65,9 +65,9 @@ protected:
         std::shared_ptr<std::optional<Result<Joined>>> answer = std::make_shared<std::optional<Result<Joined>>>();
     };
 
-    Join begin_join(const std::string& robot, const std::string& source = {}) {
+    Join begin_join(const std::string& robot, const std::string& source = {}, std::optional<double> body_radius = {}) {
         Join join;
-        session_->join(robot, source, join.link,
+        session_->join({robot, source, body_radius}, join.link,
                        [answer = join.answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
         run();
         return join;

@@ -49,8 +49,7 @@ struct AwaitedLink : RobotListener {
 Result<Joined> join_and_wait(Session& session, const std::string& robot, std::shared_ptr<RobotListener> link) {
     const auto promise = std::make_shared<std::promise<Result<Joined>>>();
     auto joined = promise->get_future();
-    session.join(robot, "", std::move(link),
-                 [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
+    session.join({robot}, std::move(link), [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
     return joined.get();
 }
 

@@ -176,6 +176,34 @@ TEST_F(SessionTest, ANewLinkReplacesTheRobotsEarlierOne) {
     EXPECT_THAT(second->failures, IsEmpty());
 }
 
+TEST_F(SessionTest, TheBodyThatARobotStatesIsLoggedWhenItIsNewsAndTheNewestHolds) {
+    const auto state = [&](std::optional<double> radius) {
+        const auto join = begin_join("r", "", radius);
+        EXPECT_TRUE(join.answer->has_value() && join.answer->value());
+        EXPECT_EQ(session_->snapshot()->robots.at(0).body_radius, radius);
+        return join.link;
+    };
+    auto link = state(0.2);
+    session_->submit(link, small_laser(), 0);
+    session_->submit(link, random_scans(1, 1, 3), 10);
+    run();
+    static_cast<void>(state(0.2));
+    static_cast<void>(state(0.3));
+    link = state(std::nullopt);
+    static_cast<void>(state(0.4));
+    EXPECT_THAT(link->failures, SizeIs(1)) << "replaced";
+    const auto entries = logged();
+    ASSERT_THAT(entries, SizeIs(8));
+    EXPECT_EQ(entries[0], LogEntry(RobotJoined{0, "r", "", 0.2}));
+    EXPECT_EQ(entries[5], LogEntry(RobotJoined{0, "r", "", 0.3}));
+    EXPECT_EQ(entries[6], LogEntry(RobotJoined{0, "r", ""}));
+    EXPECT_EQ(entries[7], LogEntry(RobotJoined{0, "r", "", 0.4}));
+    start_session();
+    EXPECT_EQ(session_->snapshot()->robots.at(0).body_radius, 0.4);
+    static_cast<void>(state(0.4));
+    EXPECT_THAT(logged(), SizeIs(8)) << "known from before the restart";
+}
+
 TEST_F(SessionTest, ALinkThatNeverJoinedIsIgnored) {
     const auto stranger = std::make_shared<RecordedLink>();
     session_->submit(stranger, small_laser(), 10);
@@ -190,7 +218,7 @@ TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
     std::vector<Join> joins;
     for (int n = 0; n < 1025; ++n) {
         joins.emplace_back();
-        session_->join("r" + std::to_string(n), "", joins.back().link,
+        session_->join({"r" + std::to_string(n)}, joins.back().link,
                        [answer = joins.back().answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
     }
     run();
