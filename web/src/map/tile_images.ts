@@ -1,4 +1,4 @@
-/** Coloured tiles, fetched once per version. */
+/** Coloured tiles: each is a canvas of its own, painted anew in place when its tile has changed. */
 import { fetchTileImage } from '../api/api';
 import type { LayerName } from '../layers/layers';
 import { colourise, colourTable, type ColourTable, type Palette } from '../layers/palette';
@@ -6,34 +6,56 @@ import { kTileSize } from './grid';
 import type { MapSource } from './map_source';
 import { tileKey } from './versions';
 
-/** About 64 MB of pixels: several screens full, so that a change of zoom and back asks for nothing. */
-const kImagesMax = 256;
+/** About 100 MB of pixels: several screens full, so that a change of zoom and back asks for nothing. */
+export const kImagesMax = 384;
+
+/** The revision of what nothing ever touched. */
+const kUntouched = -1;
+
+/** Tiles of one zoom: columns and rows, both ends included. */
+export interface TileRange {
+  z: number;
+  minX: number;
+  maxX: number;
+  minY: number;
+  maxY: number;
+}
 
 interface TileImage {
-  revision: number;
-  canvas: Promise<HTMLCanvasElement>;
+  z: number;
+  x: number;
+  y: number;
+  /** One pixel as long as there is nothing to show. */
+  canvas: HTMLCanvasElement;
+  /** What it shows; null: nothing yet. */
+  painted: number | null;
+  loading: Promise<void> | null;
+  failed: boolean;
+}
+
+export interface TileImagesEvents {
+  /** A canvas was painted: it is to be drawn. */
+  painted(): void;
+  /** Nothing is under way any more. */
+  idle(): void;
 }
 
 export class TileImages {
-  /** Least recently used first. */
   private readonly images = new Map<string, TileImage>();
-  private readonly blank = newCanvas();
   private table: ColourTable;
   private underWay = 0;
-  private failed = false;
 
   constructor(
     private source: MapSource,
     private readonly layer: LayerName,
     palette: Palette,
     private readonly signal: AbortSignal,
-    /** Called when nothing is under way any more. */
-    private readonly idle: () => void,
+    private readonly events: TileImagesEvents,
   ) {
     this.table = colourTable(layer, palette);
   }
 
-  /** Other maps of the same family: what is at hand of the same version stays good. */
+  /** Other maps of the same family: what is painted of the same version stays good. */
   retarget(source: MapSource): void {
     this.source = source;
   }
@@ -42,70 +64,100 @@ export class TileImages {
     return this.underWay > 0;
   }
 
-  /** Whether a tile could not be had since this was asked last. */
-  takeFailure(): boolean {
-    const failed = this.failed;
-    this.failed = false;
-    return failed;
+  get size(): number {
+    return this.images.size;
+  }
+
+  /** All are asked for anew. */
+  clear(): void {
+    this.images.clear();
   }
 
   setPalette(palette: Palette): void {
     this.table = colourTable(this.layer, palette);
-    this.images.clear();
+    this.clear();
   }
 
-  /** The newest version known of; a tile that was never touched is blank and asks nothing of the server. */
-  load(z: number, x: number, y: number): Promise<HTMLCanvasElement> {
-    const revision = this.source.versions(this.layer).get(z, x, y);
-    if (revision === undefined) return Promise.resolve(this.blank);
+  /** Whether a tile could not be had; from now on such are asked for again. */
+  takeFailures(): boolean {
+    const failed = [...this.images.values()].filter((image) => image.failed);
+    for (const image of failed) image.failed = false;
+    return failed.length > 0;
+  }
+
+  /** A tile that was never touched is blank and asks nothing of the server. */
+  async load(z: number, x: number, y: number): Promise<HTMLCanvasElement> {
     const key = tileKey(z, x, y);
-    const known = this.images.get(key);
-    this.images.delete(key);
-    const image = known?.revision === revision ? known : { revision, canvas: this.fetch(z, x, y, revision) };
-    this.images.set(key, image);
-    this.forgetOldest();
+    let image = this.images.get(key);
+    if (!image) {
+      image = { z, x, y, canvas: newCanvas(), painted: null, loading: null, failed: false };
+      this.images.set(key, image);
+    }
+    this.update(image);
+    if (image.painted === null) await image.loading;
     return image.canvas;
   }
 
-  private async fetch(z: number, x: number, y: number, revision: number): Promise<HTMLCanvasElement> {
-    this.underWay += 1;
-    try {
-      const { session, weave } = this.source;
-      const bitmap = await fetchTileImage({ session, weave, layer: this.layer }, { z, x, y, revision }, this.signal);
-      return paint(bitmap, this.table);
-    } catch (error) {
-      this.failed = true;
-      this.images.delete(tileKey(z, x, y));
-      throw error;
-    } finally {
-      this.underWay -= 1;
-      if (this.underWay === 0) this.idle();
+  /** Those of these tiles that have changed are asked for, and painted when they are there. */
+  refresh({ z, minX, maxX, minY, maxY }: TileRange): void {
+    for (let x = minX; x <= maxX; ++x) {
+      for (let y = minY; y <= maxY; ++y) {
+        const image = this.images.get(tileKey(z, x, y));
+        if (image && !image.failed) this.update(image);
+      }
     }
   }
 
-  private forgetOldest(): void {
-    for (const key of this.images.keys()) {
-      if (this.images.size <= kImagesMax) return;
-      this.images.delete(key);
+  private update(image: TileImage): void {
+    if (image.loading || image.painted === this.wanted(image)) return;
+    const loading = this.bringUpToDate(image).finally(() => {
+      image.loading = null;
+      this.underWay -= 1;
+      if (this.underWay === 0) this.events.idle();
+    });
+    this.underWay += 1;
+    image.loading = loading;
+    // Whoever waits for the first version hears of it; later ones are tried again.
+    loading.catch(() => (image.failed = true));
+  }
+
+  private async bringUpToDate(image: TileImage): Promise<void> {
+    for (let revision = this.wanted(image); revision !== image.painted; revision = this.wanted(image)) {
+      if (revision === kUntouched) {
+        image.canvas.width = image.canvas.height = 1;
+      } else {
+        const { session, weave } = this.source;
+        const { z, x, y } = image;
+        const bitmap = await fetchTileImage({ session, weave, layer: this.layer }, { z, x, y, revision }, this.signal);
+        paint(bitmap, this.table, image.canvas);
+      }
+      image.painted = revision;
+      this.events.painted();
     }
+  }
+
+  private wanted({ z, x, y }: TileImage): number {
+    return this.source.versions(this.layer).get(z, x, y) ?? kUntouched;
   }
 }
 
-function paint(bitmap: ImageBitmap, table: Uint32Array): HTMLCanvasElement {
-  const canvas = newCanvas();
-  const context = canvas.getContext('2d', { willReadFrequently: true });
-  if (!context) throw new Error('this browser gives no canvas to draw on');
-  context.drawImage(bitmap, 0, 0);
+/** Pixels are recoloured here, in memory, before they go to where they are drawn from. */
+const kWorkbench = newCanvas(kTileSize).getContext('2d', { willReadFrequently: true });
+
+function paint(bitmap: ImageBitmap, table: ColourTable, canvas: HTMLCanvasElement): void {
+  if (canvas.width !== kTileSize) canvas.width = canvas.height = kTileSize;
+  const context = canvas.getContext('2d');
+  if (!context || !kWorkbench) throw new Error('this browser gives no canvas to draw on');
+  kWorkbench.clearRect(0, 0, kTileSize, kTileSize);
+  kWorkbench.drawImage(bitmap, 0, 0);
   bitmap.close();
-  const image = context.getImageData(0, 0, kTileSize, kTileSize);
+  const image = kWorkbench.getImageData(0, 0, kTileSize, kTileSize);
   colourise(image.data, table);
   context.putImageData(image, 0, 0);
-  return canvas;
 }
 
-function newCanvas(): HTMLCanvasElement {
+function newCanvas(side = 1): HTMLCanvasElement {
   const canvas = document.createElement('canvas');
-  canvas.width = kTileSize;
-  canvas.height = kTileSize;
+  canvas.width = canvas.height = side;
   return canvas;
 }

@@ -1,13 +1,14 @@
-/** A layer of cells: tiles that are replaced one by one as the map grows, without a blank frame in between. */
+/** A layer of cells: tiles that are painted anew one by one as the map grows, without a blank frame in between. */
 import TileLayer from 'ol/layer/Tile';
 import type Projection from 'ol/proj/Projection';
+import type RenderEvent from 'ol/render/Event';
 import ImageTileSource from 'ol/source/ImageTile';
 import TileGrid from 'ol/tilegrid/TileGrid';
 import type { LayerName } from '../layers/layers';
 import type { Palette } from '../layers/palette';
 import { squareExtent, tileResolutions } from './grid';
 import type { MapSource } from './map_source';
-import { TileImages } from './tile_images';
+import { kImagesMax, TileImages } from './tile_images';
 
 /** A tile that the server keeps refusing is not asked for more often than this. */
 const kRetryMs = 3_000;
@@ -27,18 +28,17 @@ export class CellLayer {
   private readonly cells: CellTiles;
   private readonly images: TileImages;
   private generation = 0;
-  private outdated = false;
   private retriedAt = -Infinity;
 
   constructor(
     private source: MapSource,
     readonly layer: LayerName,
-    private readonly options: CellLayerOptions,
+    { palette, signal, viewResolution, projection, idle }: CellLayerOptions,
   ) {
-    const { palette, signal } = options;
-    this.images = new TileImages(source, layer, palette, signal, () => this.settle());
-    this.cells = new CellTiles(source.cellSize, options.viewResolution, options.projection, this.images);
+    this.images = new TileImages(source, layer, palette, signal, { painted: () => this.renew(), idle });
+    this.cells = new CellTiles(source.cellSize, viewResolution, projection, this.images);
     this.tiles = new TileLayer({ source: this.cells });
+    this.tiles.on('prerender', (event) => this.refresh(event));
     source.need(layer);
   }
 
@@ -61,37 +61,37 @@ export class CellLayer {
     this.renew();
   }
 
-  /** More is known of the maps. */
+  /** More is known of the maps: what is in view is looked through with the next frame. */
   renew(): void {
-    this.outdated = true;
-    this.renewIfIdle();
+    this.tiles.changed();
   }
 
   /** Tiles that could not be had are asked for again. */
   retry(): void {
     const now = performance.now();
-    if (now - this.retriedAt < kRetryMs || !this.images.takeFailure()) return;
+    if (now - this.retriedAt < kRetryMs || !this.images.takeFailures()) return;
     this.retriedAt = now;
-    this.renew();
+    this.reload();
   }
 
   setPalette(palette: Palette): void {
     this.images.setPalette(palette);
-    this.renew();
+    this.reload();
   }
 
-  private settle(): void {
-    this.renewIfIdle();
-    if (!this.images.busy) this.options.idle();
+  private refresh({ frameState }: RenderEvent): void {
+    if (!frameState?.extent) return;
+    const grid = this.cells.getTileGrid();
+    const z = grid?.getZForResolution(frameState.viewState.resolution, this.cells.zDirection);
+    if (!grid || z === undefined) return;
+    const { minX, maxX, minY, maxY } = grid.getTileRangeForExtentAndZ(frameState.extent, z);
+    this.images.refresh({ z, minX, maxX, minY, maxY });
+    if (this.images.size > kImagesMax) this.reload();
   }
 
-  /**
-   * A new key makes OpenLayers load every visible tile anew while it still draws the old ones. Waiting until the last
-   * round is through keeps a slow link from starting loads faster than they end.
-   */
-  private renewIfIdle(): void {
-    if (!this.outdated || this.images.busy) return;
-    this.outdated = false;
+  /** A new key makes OpenLayers ask for every visible tile anew while it still draws the old ones. */
+  private reload(): void {
+    this.images.clear();
     this.generation += 1;
     this.cells.renew(`g${this.generation}`);
   }
