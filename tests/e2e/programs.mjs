@@ -39,12 +39,17 @@ export function startRobot(server, session, robot, source) {
   ]);
 }
 
+/** @returns the exit code of a process that ends by itself */
+export function ended(child) {
+  return new Promise((resolve) => child.once('exit', resolve));
+}
+
 /** Asks the process to end, and waits until it has. */
 export async function stop(child) {
   if (child.exitCode !== null || child.signalCode !== null) return;
-  const ended = new Promise((resolve) => child.once('exit', resolve));
+  const over = ended(child);
   child.kill('SIGTERM');
-  await ended;
+  await over;
 }
 
 function start(program, args) {
