@@ -155,5 +155,5 @@ export class TimeBar {
 function noteOf(isPast: boolean, date: string): string {
   if (!isPast) return 'The map as it is now.';
   const then = date === '' ? '' : ` of ${date}`;
-  return `The map as it was then${then}, robots and trails, too; newest scans are hidden.`;
+  return `Map, robots and trails as they were then${then}; newest scans are hidden.`;
 }
