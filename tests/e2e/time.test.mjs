@@ -1,7 +1,7 @@
 /** The past of a session: what the real server weaves again of a simulated run, looked at and played back. */
 import assert from 'node:assert/strict';
 import { after, afterEach, before, describe, it } from 'node:test';
-import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, textOf } from './browser.mjs';
+import { colourOf, countPixels, keepPicture, launchBrowser, openPage, openTab, says, textOf } from './browser.mjs';
 import { Server, startRobot } from './programs.mjs';
 
 const kSimulation = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '0'];
@@ -126,6 +126,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     const start = Date.now();
     await page.click('#time-play');
     await page.waitForSelector('#time-play[aria-label="Pause"]');
+    await says(page, '#time-mode', /^Past$/);
     for (const least of [40, 150, 300]) {
       await page.waitForFunction((scan) => Number(document.querySelector('#time-slider').value) >= scan, least);
       if (least === 150) await keepPicture(page, 'time-playing');
@@ -133,6 +134,19 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await page.waitForSelector('#time-play[aria-label="Play"]');
     assert.ok(Date.now() - start > 1_800, '40 s at 20 times take 2 s');
     await showsScan(page, 400);
+  });
+
+  it('never blinks while it plays', async () => {
+    await seek(page, 150);
+    let most = await settledFree(page);
+    await page.click('#time-play');
+    for (let looks = 0; looks < 40 || (await valueOf(page)) < 250; ++looks) {
+      const free = await freePixels(page);
+      assert.ok(free > 0.97 * most, `${free} free pixels after ${most}`);
+      most = Math.max(most, free);
+    }
+    await page.keyboard.press(',');
+    await page.waitForSelector('#time-play[aria-label="Play"]');
   });
 
   it('asks for one weave at a time, and for the newest of those that are wanted', async () => {
@@ -213,6 +227,14 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await says(page, '#time-message', /^$/);
   });
 
+  it('goes on when the server is there again', async () => {
+    await page.route('**/weave', (route) => route.abort());
+    await page.fill('#time-slider', '60');
+    await says(page, '#time-message', /^No connection to the server; the map stays as it is\. Trying again\.$/);
+    await page.unrouteAll();
+    await showsScan(page, 60);
+  });
+
   it('tells that a weave takes long, and gives it up for the present', async () => {
     const cancelled = page.waitForRequest((request) => request.method() === 'DELETE');
     const slow = { id: '00000000000000aa', state: 'weaving', woven: 12, until: { revision: 102, stamp: null } };
@@ -237,6 +259,26 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     assert.equal(await valueOf(page), 50);
     await says(page, '#time-place', /^scan 50 of 450/);
     await says(page, '[data-robot="r1"] .row-detail', /\b50 scans /);
+  });
+
+  it('tells the time of day, and marks when nobody was there', async () => {
+    const tab = await openTab(page.context(), server.address, complaints, kHash);
+    await tab.route('**/trajectory.geojson?times=true*', async (route) => {
+      const response = await route.fetch();
+      const json = await response.json();
+      for (const { properties } of json.features) {
+        const noon = new Date(2026, 4, 3, 12).getTime() / 1000;
+        properties.stamps = properties.stamps.map((_, at) => noon + at / 10 + (at < 200 ? 0 : 3_720));
+      }
+      await route.fulfill({ response, json });
+    });
+    await openHistory(tab);
+    await seek(tab, 201);
+    assert.match(await textOf(tab, '#time-place'), /, 13:02:20 \(\+1:02:20\), after 1 h 2 min without scans$/);
+    assert.match(await textOf(tab, '#time-note'), /then, .*2026/);
+    assert.equal(await tab.locator('.time-marks span').count(), 1);
+    await keepPicture(tab, 'time-gap');
+    await tab.close();
   });
 
   it('fits a phone', async () => {

@@ -154,6 +154,6 @@ export class TimeBar {
 
 function noteOf(isPast: boolean, date: string): string {
   if (!isPast) return 'The map as it is now.';
-  const then = date === '' ? '' : ` of ${date}`;
+  const then = date === '' ? '' : `, ${date}`;
   return `Map, robots and trails as they were then${then}; newest scans are hidden.`;
 }
