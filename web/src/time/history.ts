@@ -38,6 +38,8 @@ interface Visit {
   session: Session;
   state: HistoryState;
   player: Player;
+  /** The scan from where playing begins, as soon as the map is there; null: it is under way. */
+  startAt: number | null;
   travel: TimeTravel;
   leave: AbortController;
 }
@@ -74,7 +76,7 @@ export class SessionHistory {
     const state: HistoryState = { ...kAtFirst, timeline, speed: player.speed };
     const weaver = new ServerWeaver(session, session.cellSize, () => this.picture.layersOfSession(), leave.signal);
     const travel = new TimeTravel(weaver, this.travelEvents(), leave.signal, kTimer);
-    this.visit = { session, state, player, travel, leave };
+    this.visit = { session, state, player, startAt: null, travel, leave };
     this.tell();
     this.follow(this.visit);
   }
@@ -93,7 +95,7 @@ export class SessionHistory {
     if (!this.visit || this.visit.state.timeline.count === 0) return;
     const { player, state } = this.visit;
     const to = Math.min(state.timeline.count - 1, Math.max(0, index));
-    if (player.isPlaying) player.play(to);
+    if (player.isPlaying) this.playFrom(to);
     this.goTo(to);
   }
 
@@ -117,9 +119,15 @@ export class SessionHistory {
     }
     const isAtEnd = state.index === null || state.index >= state.timeline.count - 1;
     const from = isAtEnd ? 0 : (state.index ?? 0);
-    player.play(from);
+    this.playFrom(from);
     this.goTo(from);
     this.nextFrame();
+  }
+
+  private playFrom(index: number): void {
+    if (!this.visit) return;
+    this.visit.startAt = index;
+    this.visit.player.play(index);
   }
 
   setSpeed(speed: number): void {
@@ -139,7 +147,12 @@ export class SessionHistory {
   /** At most once a frame, and only while anybody can see it. */
   private tick(): void {
     if (!this.visit?.player.isPlaying) return;
-    const { player, state } = this.visit;
+    const { player, state, startAt } = this.visit;
+    if (startAt !== null) {
+      player.play(startAt);
+      if (state.shown === startAt) this.visit.startAt = null;
+      return this.nextFrame();
+    }
     const due = player.due();
     if (due !== null && due !== state.index) this.goTo(due);
     else if (!player.isPlaying) this.change({ isPlaying: false });
