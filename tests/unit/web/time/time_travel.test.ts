@@ -75,6 +75,14 @@ class World {
     for (let turn = 0; turn < 200; ++turn) await new Promise((resolve) => setImmediate(resolve));
   }
 
+  /** Waits until something is told, but not for ever. */
+  async hears(expected: (line: string) => boolean): Promise<void> {
+    for (let turn = 0; turn < 2_000 && !this.told.some(expected); ++turn) {
+      await new Promise((resolve) => setImmediate(resolve));
+    }
+    assert.ok(this.told.some(expected), this.told.join());
+  }
+
   private weave(id: string): Weave {
     const woven = this.woven.get(id) ?? 0;
     return { id, state: woven < Number(id) ? 'weaving' : 'done', woven, until: Number(id), reason: '' };
@@ -112,7 +120,7 @@ describe('travelling in time', () => {
     const world = new World();
     world.perAsk = 1;
     world.travel.go(1_000);
-    while (!world.told.some((line) => line.startsWith('weaving'))) await new Promise((resolve) => setImmediate(resolve));
+    await world.hears((line) => line.startsWith('weaving'));
     world.travel.go(3);
     await world.settle();
     assert.ok(world.asked.includes('cancel 1000'), world.asked.join());
@@ -136,7 +144,7 @@ describe('travelling in time', () => {
       const world = new World();
       world.trouble = trouble;
       world.travel.go(7);
-      while (world.told.length < 3) await new Promise((resolve) => setImmediate(resolve));
+      await world.hears(() => world.told.length >= 3);
       assert.equal(world.told[2], `failed ${trouble.message} true`);
       assert.ok(world.now >= 3_000, 'ever more slowly');
       world.trouble = null;
