@@ -7,6 +7,8 @@ export interface Binding {
   /** What it does, for the list. */
   does: string;
   run: () => void;
+  /** Whether it means anything now; without it, always. */
+  when?: () => boolean;
 }
 
 /** Those of the map, which OpenLayers minds. */
@@ -41,7 +43,7 @@ export class Keys {
     if (event.target instanceof Element && isTypedInto(event.target, event.key)) return;
     if (document.querySelector('dialog[open]')) return;
     const binding = this.bindings.get(event.key);
-    if (!binding) return;
+    if (!binding || binding.when?.() === false) return;
     event.preventDefault();
     binding.run();
   }
@@ -49,7 +51,10 @@ export class Keys {
 
 /** Whether the key belongs to the element: text that is written, a choice that is stepped through, a button pressed. */
 function isTypedInto(element: Element, key: string): boolean {
-  if (element instanceof HTMLInputElement) return !['checkbox', 'radio', 'range'].includes(element.type) || key === ' ';
+  if (element instanceof HTMLInputElement) {
+    if (element.type === 'range') return false;
+    return !['checkbox', 'radio'].includes(element.type) || key === ' ';
+  }
   if (element instanceof HTMLTextAreaElement || element instanceof HTMLSelectElement) return true;
   return key === ' ' && element.matches('button, a, summary, [role=button]');
 }

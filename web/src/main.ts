@@ -16,6 +16,7 @@ import { RobotList } from './panel/robot_list';
 import { showScale } from './panel/scale_bar';
 import { Status } from './panel/status';
 import { SwipeHandle } from './panel/swipe_handle';
+import { TimeBar } from './panel/time_bar';
 import { Picture } from './picture';
 import { poll, type Pace } from './poll';
 import { SettingsStore } from './settings';
@@ -24,6 +25,7 @@ import { Toolbox } from './tools/toolbox';
 import { ServerCharts } from './charts/server_charts';
 import { SessionPanel } from './sessions/session_panel';
 import { readTheme } from './theme';
+import { SessionHistory } from './time/history';
 import { Viewer } from './viewer';
 import './style/index.css';
 
@@ -236,6 +238,8 @@ new DisplayPanel(
 );
 toolbox.add(measureTool(map, target, readTheme));
 settings.listen(takeColours);
+const past = new SessionHistory(viewer, picture);
+new TimeBar(byId('time-bar', HTMLElement), byId('history-open', HTMLButtonElement), past, keys);
 viewer.listen((session) => session ?? toolbox.close());
 picture.listen(rememberLayer);
 window.addEventListener('hashchange', () => {

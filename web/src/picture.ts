@@ -91,6 +91,12 @@ export class Picture {
     return source && besideLayer ? { source, layer: besideLayer } : null;
   }
 
+  /** Those of the session's own maps that are shown. */
+  layersOfSession(): LayerName[] {
+    const { layer, besideLayer } = this.state;
+    return besideLayer && !this.comparison ? [layer, besideLayer] : [layer];
+  }
+
   /** Whether there is a line between two sides now. */
   get isSwiping(): boolean {
     return this.state.mode === 'swipe' && this.beside !== null;

@@ -1,10 +1,10 @@
 /** One chosen session, from the server's events to everything that shows it. */
 import type { LiveEvent, LiveRobot } from './api/live';
-import type { Point, Robot, Session, TileChange } from './api/types';
+import type { Robot, Session, TileChange } from './api/types';
 import { FrontierWatch } from './frontier_watch';
 import type { LayerName } from './layers/layers';
 import { Feed } from './live/feed';
-import type { Trails } from './live/trails';
+import type { Trail, Trails } from './live/trails';
 import type { Camera } from './map/camera';
 import { CellReaders } from './map/cell_readers';
 import { LiveSource, type MapSource } from './map/map_source';
@@ -44,7 +44,7 @@ export interface Moment {
   source: MapSource;
   robots: Robot[];
   /** By robot. */
-  trails: Map<string, Point[]>;
+  trails: Map<string, Trail>;
 }
 
 /** What is known of the session that is open. */
@@ -139,11 +139,13 @@ export class Viewer {
 
   /** Shows the session as it was; null: as it is. */
   showMoment(moment: Moment | null): void {
+    if (!this.open) return;
     this.moment = moment;
-    this.parts.map.clearScans();
     this.parts.picture.showMoment(moment?.source ?? null);
+    this.chooseOverlays();
     this.showRobots();
     this.showTrails();
+    this.showSession();
   }
 
   private start(session: Session, trails: Trails): void {
@@ -176,8 +178,8 @@ export class Viewer {
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
-    if (this.moment) return this.showSession();
     for (const { name, scan } of event.robots) if (scan) this.parts.map.showScan(name, scan.points);
+    if (this.moment) return this.showSession();
     this.showRobots();
     this.showTrails();
     this.showSession();
@@ -204,25 +206,33 @@ export class Viewer {
   }
 
   private showTrails(): void {
-    for (const { name } of this.robots) {
-      const live = this.open?.trails.get(name).points ?? [];
-      this.parts.map.showTrail(name, this.moment ? (this.moment.trails.get(name) ?? []) : live);
-    }
+    for (const { name } of this.robots) this.parts.map.showTrail(name, this.trailOf(name)?.points ?? []);
     this.parts.robots.refresh();
   }
 
   /** Metres travelled. */
   pathLength(robot: string): number {
-    return this.open?.trails.get(robot).length ?? 0;
+    return this.trailOf(robot)?.length ?? 0;
+  }
+
+  private trailOf(robot: string): Trail | undefined {
+    return this.moment ? this.moment.trails.get(robot) : this.open?.trails.get(robot);
   }
 
   private choose(): void {
     const settings = this.parts.settings.get();
-    this.parts.map.choose(settings);
     this.feed?.showPoints(settings.points);
     if (!settings.points) this.parts.map.clearScans();
-    this.open?.frontiers.enable(settings.frontiers);
+    this.chooseOverlays();
     this.showCounters();
+  }
+
+  /** Scans and frontiers are told of the present only. */
+  private chooseOverlays(): void {
+    const chosen = this.parts.settings.get();
+    const settings = this.moment ? { ...chosen, points: false, frontiers: false } : chosen;
+    this.parts.map.choose(settings);
+    this.open?.frontiers.enable(settings.frontiers);
   }
 
   private showCounters(): void {

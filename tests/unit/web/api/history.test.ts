@@ -1,0 +1,35 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { MalformedAnswer } from '../../../../web/src/api/decode';
+import { decodeHistory } from '../../../../web/src/api/history';
+import { decodeWeave } from '../../../../web/src/api/weaves';
+
+function trajectory(properties: Record<string, unknown> = {}): unknown {
+  const times = { revisions: [3, 5], stamps: [10.5, 11], yaws: [0, 0.1] };
+  const geometry = { type: 'LineString', coordinates: [[1, 2], [3, 4]] };
+  const feature = { type: 'Feature', properties: { robot: 'r1', points: 2, ...times, ...properties }, geometry };
+  return { type: 'FeatureCollection', revision: 7, features: [feature] };
+}
+
+describe('decoding the past', () => {
+  it('reads where robots were when', () => {
+    assert.deepEqual(decodeHistory(trajectory()), {
+      revision: 7,
+      tracks: [{ robot: 'r1', points: [[1, 2], [3, 4]], revisions: [3, 5], stamps: [10.5, 11], yaws: [0, 0.1] }],
+    });
+  });
+
+  it('refuses times that are not as many as places, or none', () => {
+    assert.throws(() => decodeHistory(trajectory({ stamps: [1] })), /stamps are not as many/);
+    assert.throws(() => decodeHistory(trajectory({ yaws: undefined })), MalformedAnswer);
+    assert.throws(() => decodeHistory(trajectory({ revisions: [1, 'x'] })), /revisions\[\] is not a number/);
+  });
+
+  it('reads how far a weave is', () => {
+    const weave = { id: '0a', state: 'weaving', revision: null, woven: 5, until: { revision: 9, stamp: null } };
+    assert.deepEqual(decodeWeave(weave), { id: '0a', state: 'weaving', woven: 5, until: 9, reason: '' });
+    assert.equal(decodeWeave({ ...weave, state: 'failed', reason: 'no room' }).reason, 'no room');
+    assert.throws(() => decodeWeave({ ...weave, state: 'dreaming' }), MalformedAnswer);
+    assert.throws(() => decodeWeave({ ...weave, until: 9 }), MalformedAnswer);
+  });
+});

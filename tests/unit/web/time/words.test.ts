@@ -1,0 +1,43 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { Refused, Unreachable } from '../../../../web/src/api/http';
+import { Timeline } from '../../../../web/src/time/timeline';
+import { Unwoven } from '../../../../web/src/time/time_travel';
+import * as words from '../../../../web/src/time/words';
+
+function timelineFrom(start: number): Timeline {
+  const line = new Timeline();
+  const [revisions, stamps] = [[3, 4], [start, start + 95]];
+  line.add([{ robot: 'a', points: [[0, 0], [1, 0]], revisions, stamps, yaws: [0, 0] }]);
+  return line;
+}
+
+describe('words for times', () => {
+  it('count from the start', () => {
+    assert.equal(words.elapsed(0), '+00:00');
+    assert.equal(words.elapsed(95.9), '+01:35');
+    assert.equal(words.elapsed(3_695), '+1:01:35');
+  });
+
+  it('are short for long times', () => {
+    assert.deepEqual(
+      [45, 600, 3_600, 3_720, 90_000].map(words.duration),
+      ['45 s', '10 min', '1 h', '1 h 2 min', '1 d 1 h'],
+    );
+  });
+
+  it('tell the time of day only when a clock knows it', () => {
+    assert.equal(words.scanOf(timelineFrom(12), 1), 'scan 2 of 2, +01:35');
+    assert.equal(words.dateOf(timelineFrom(12), 1), '');
+    const noon = new Date(2026, 4, 3, 12, 1, 30).getTime() / 1000;
+    assert.equal(words.scanOf(timelineFrom(noon), 1), 'scan 2 of 2, 12:03:05 (+01:35)');
+    assert.match(words.dateOf(timelineFrom(noon), 1), /2026/);
+  });
+
+  it('say what is wrong, and what happens next', () => {
+    assert.match(words.troubleOf(new Unreachable('x'), true), /^No connection .* Trying again\.$/);
+    assert.match(words.troubleOf(new Refused(503, 'too many maps'), true), /reports: too many maps\. Trying again\.$/);
+    assert.match(words.troubleOf(new Refused(404, 'x'), true), /woven again/);
+    assert.match(words.troubleOf(new Unwoven('no room.'), false), /could not be woven: no room\.$/);
+  });
+});
