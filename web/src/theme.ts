@@ -10,6 +10,7 @@ export interface Theme {
   ink: string;
   accent: string;
   frontier: string;
+  warn: string;
 }
 
 export function readTheme(): Theme {
@@ -33,6 +34,7 @@ export function readTheme(): Theme {
     ink: colour('--ink'),
     accent: colour('--accent'),
     frontier: colour('--class-frontier'),
+    warn: colour('--warn'),
   };
 }
 
