@@ -11,6 +11,8 @@ export interface Theme {
   accent: string;
   frontier: string;
   warn: string;
+  /** Of ways that nobody has driven yet. */
+  way: string;
 }
 
 export function readTheme(): Theme {
@@ -35,6 +37,7 @@ export function readTheme(): Theme {
     accent: colour('--accent'),
     frontier: colour('--class-frontier'),
     warn: colour('--warn'),
+    way: colour('--way'),
   };
 }
 

@@ -41,7 +41,11 @@ export interface DifferencePicture {
   extent: [number, number, number, number];
 }
 
-export async function fetchDifference(session: string, query: DifferenceQuery, signal: AbortSignal): Promise<Difference> {
+export async function fetchDifference(
+  session: string,
+  query: DifferenceQuery,
+  signal: AbortSignal,
+): Promise<Difference> {
   const path = pathOf(session, 'difference', query);
   return decodeDifference(await parseJson(await get(path, signal, kFileDeadlineMs), path, signal));
 }
@@ -65,8 +69,9 @@ function pathOf(session: string, file: string, query: DifferenceQuery): string {
 function decodeDifference(json: unknown): Difference {
   const difference = fields(json, 'difference');
   const areas = fields(difference['areas'], 'areas');
+  const byName = kDifferences.map((name) => [name, number(areas[name], `areas.${name}`)]);
   return {
-    areas: Object.fromEntries(kDifferences.map((name) => [name, number(areas[name], `areas.${name}`)])) as Difference['areas'],
+    areas: Object.fromEntries(byName) as Difference['areas'],
     agreement: orNull(difference['agreement'], 'agreement'),
     meanDifference: orNull(difference['mean_difference'], 'mean_difference'),
   };

@@ -89,10 +89,10 @@ class CoverageCard {
         { class: 'tool-place' },
         el('span', { class: 'tool-letter' }, kStartLetter),
         this.startTold,
-        button('Choose the start', () => this.beginStart()),
+        button('Choose', () => this.beginStart(), { 'aria-label': 'Choose the start' }),
       ),
       labelled('Body radius, m', this.bodyRadius),
-      labelled('Between rows, m', this.spacing),
+      labelled('Row spacing, m', this.spacing),
       el('div', { class: 'tool-buttons' }, this.find, this.cancel),
     );
     form.addEventListener('submit', (event) => {

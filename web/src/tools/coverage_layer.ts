@@ -20,7 +20,7 @@ export class CoverageLayer {
   constructor({ map, theme }: ToolContext, signal: AbortSignal) {
     const layer = new VectorLayer({
       source: new VectorSource({ features: [this.rest, this.way] }),
-      style: (feature) => (feature === this.way ? wayStyles(theme().accent, theme().halo) : restStyle(theme().warn)),
+      style: (feature) => (feature === this.way ? wayStyles(theme().way, theme().halo) : restStyle(theme().warn)),
       zIndex: kOrder.ways,
     });
     map.addLayer(layer);

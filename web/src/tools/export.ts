@@ -78,7 +78,8 @@ class ExportCard {
       (error) => this.outcome.complain(error),
     );
     const { map, picture } = context;
-    const form = el('form', { class: 'tool-form' }, this.sideRow, labelled('Layer', this.layer), labelled('Part', this.extent));
+    const rows = [this.sideRow, labelled('Layer', this.layer), labelled('Part', this.extent)];
+    const form = el('form', { class: 'tool-form' }, ...rows);
     form.addEventListener('change', () => this.update());
     const screen = button('Picture of the screen', () => this.saveScreen());
     card.append(form, this.size, this.files, screen, this.outcome.element);
@@ -119,12 +120,14 @@ class ExportCard {
   }
 
   private boxInView(): MapQuery['box'] {
-    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = this.context.map.getView().calculateExtent(this.context.map.getSize());
+    const { map } = this.context;
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = map.getView().calculateExtent(map.getSize());
     return [minX, minY, maxX, maxY];
   }
 
   private describeSize({ bounds }: Session, { cellSize }: MapSource, { box }: MapQuery): string {
-    const [minX, minY, maxX, maxY] = box ?? (bounds ? [bounds.minX, bounds.minY, bounds.maxX, bounds.maxY] : [0, 0, 0, 0]);
+    const seen = bounds ? [bounds.minX, bounds.minY, bounds.maxX, bounds.maxY] : [];
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = box ?? seen;
     const [across, up] = [maxX - minX, maxY - minY].map((metres) => Math.ceil(metres / cellSize));
     if (across === undefined || up === undefined) return '';
     const text = `About ${format.count(across)} \u00d7 ${format.count(up)} cells of ${format.cellSize(cellSize)}.`;

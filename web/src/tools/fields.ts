@@ -45,7 +45,9 @@ export function checkbox(name: string, checked: boolean): HTMLInputElement {
   return box;
 }
 
-export function selectOf(name: string, options: readonly (readonly [value: string, label: string])[]): HTMLSelectElement {
+export type Options = readonly (readonly [value: string, label: string])[];
+
+export function selectOf(name: string, options: Options): HTMLSelectElement {
   return el('select', { name }, ...options.map(([value, label]) => el('option', { value, dir: 'auto' }, label)));
 }
 

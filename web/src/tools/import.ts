@@ -131,10 +131,11 @@ class ImportCard {
     if (!yaml || !image) return;
     const map: RosMap = { yaml, image };
     const given = this.settings.filter(({ value }) => value !== '').map(({ name, value }) => [name, value]);
+    const settings = Object.fromEntries(given) as Record<string, string>;
     const size = ((yaml.size + image.size) / kMegabyte).toFixed(1);
     this.asking.run(async (signal) => {
       this.outcome.say(`Sending ${size} MB, then the server reads the map\u2026`);
-      const session = await importMap(this.name.value, map, Object.fromEntries(given) as Record<string, string>, signal);
+      const session = await importMap(this.name.value, map, settings, signal);
       this.outcome.say(`The session ${session.name} is there.`);
       location.hash = hashOfSession(session.name);
     });

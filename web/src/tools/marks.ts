@@ -57,6 +57,11 @@ function styleOf(letter: string, { accent, halo }: Theme): Style {
       fill: new Fill({ color: accent }),
       stroke: new Stroke({ color: halo, width: 2.5 }),
     }),
-    text: new Text({ text: letter, font: '700 12px system-ui, sans-serif', fill: new Fill({ color: halo }), offsetY: 1 }),
+    text: new Text({
+      text: letter,
+      font: '700 12px system-ui, sans-serif',
+      fill: new Fill({ color: halo }),
+      offsetY: 1,
+    }),
   });
 }

@@ -28,7 +28,7 @@ export function pathTool(context: ToolContext): Tool {
     title: 'Path',
     key: 'p',
     does: 'finds a way between two places',
-    icon: 'M3.5 12.5h5a2.5 2.5 0 0 0 0-5h-2a2.5 2.5 0 0 1 0-5h4M3.5 12.5m-1.5 0a1.5 1.5 0 1 0 3 0a1.5 1.5 0 1 0-3 0M12.5 4.5l2-2-2-2',
+    icon: 'M3 12.5h5.5a2.5 2.5 0 0 0 0-5h-2a2.5 2.5 0 0 1 0-5H13M11.5 1l1.5 1.5L11.5 4',
     open: (card, signal) => void new PathCard(context, card, signal),
   };
 }
@@ -77,7 +77,7 @@ class PathCard {
     const { map, theme } = this.context;
     const layer = new VectorLayer({
       source: new VectorSource({ features: [new Feature(this.line)] }),
-      style: (feature) => pathStyle(feature, theme().accent, theme().halo),
+      style: (feature) => pathStyle(feature, theme().way, theme().halo),
       zIndex: kOrder.ways,
     });
     map.addLayer(layer);
@@ -109,13 +109,16 @@ class PathCard {
   }
 
   private placeRow(end: End, label: string): HTMLElement {
-    const again = button(label, () => {
-      if (end === 'from') this.start.choosePlace();
-      this.next = end;
-      this.guide();
-      this.context.target.focus();
-    });
-    return el('div', { class: 'tool-place' }, el('span', { class: 'tool-letter' }, kLetters[end]), this.told[end], again);
+    const again = button('Choose', () => this.choose(end), { 'aria-label': label });
+    const letter = el('span', { class: 'tool-letter' }, kLetters[end]);
+    return el('div', { class: 'tool-place' }, letter, this.told[end], again);
+  }
+
+  private choose(end: End): void {
+    if (end === 'from') this.start.choosePlace();
+    this.next = end;
+    this.guide();
+    this.context.target.focus();
   }
 
   private chooseStart(): void {

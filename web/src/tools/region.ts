@@ -26,7 +26,7 @@ export class Region {
     this.map = map;
     const layer = new VectorLayer({
       source: new VectorSource({ features: [this.feature] }),
-      style: (feature) => pathStyle(feature, theme().accent, theme().halo),
+      style: (feature) => pathStyle(feature, theme().ink, theme().halo),
       zIndex: kOrder.marks,
     });
     const follow = ({ coordinate }: { coordinate: number[] }): void => {

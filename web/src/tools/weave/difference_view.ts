@@ -1,7 +1,14 @@
 /** What the two sides disagree in: numbers beside the map, a picture on it, and what its colours mean. */
 import ImageLayer from 'ol/layer/Image';
 import ImageStatic from 'ol/source/ImageStatic';
-import { fetchDifference, fetchDifferencePicture, type Difference, type DifferenceName } from '../../api/difference';
+import {
+  fetchDifference,
+  fetchDifferencePicture,
+  type Difference,
+  type DifferenceName,
+  type DifferencePicture,
+  type DifferenceQuery,
+} from '../../api/difference';
 import { el } from '../../dom';
 import * as format from '../../format';
 import { kOrder } from '../../map/order';
@@ -24,7 +31,7 @@ const kLegend: [name: DifferenceName, label: string][] = [
 ];
 
 export class DifferenceView {
-  private readonly onMap = checkbox('difference', true);
+  private readonly onMap = checkbox('difference', false);
   private readonly numbers = el('div');
   private readonly save = button('Save the picture', () => this.keep());
   readonly element = el(
@@ -37,7 +44,6 @@ export class DifferenceView {
   private readonly layer = new ImageLayer<ImageStatic>({ zIndex: kOrder.difference });
   private readonly asking: NewestOnly;
   private weave: string | null = null;
-  private png: Blob | null = null;
   private address: string | null = null;
 
   constructor(
@@ -55,7 +61,7 @@ export class DifferenceView {
     );
     this.element.hidden = true;
     context.map.addLayer(this.layer);
-    this.onMap.addEventListener('change', () => this.layer.setVisible(this.onMap.checked));
+    this.onMap.addEventListener('change', () => this.compare(this.weave));
     signal.addEventListener('abort', () => {
       this.forget();
       context.map.removeLayer(this.layer);
@@ -65,22 +71,28 @@ export class DifferenceView {
   /** @param weave that is to be compared with what is shown; null: none */
   compare(weave: string | null): void {
     const session = this.context.session();
-    const shown = this.context.picture.main;
     this.weave = weave;
     this.element.hidden = weave === null;
-    if (weave === null || !session || !shown) {
+    const query = this.query();
+    if (!session || !query) {
       this.asking.stop();
       return this.forget();
     }
-    const query = { layer: shown.layer, weave: shownWeave(this.context), with: weave };
     this.asking.run(async (signal) => {
-      const [difference, { png, extent }] = await Promise.all([
+      const [difference, picture] = await Promise.all([
         fetchDifference(session.name, query, signal),
-        fetchDifferencePicture(session.name, query, signal),
+        this.onMap.checked ? fetchDifferencePicture(session.name, query, signal) : null,
       ]);
       this.show(difference);
-      this.draw(png, extent);
+      this.draw(picture);
     });
+  }
+
+  /** What is shown against the weave; null: there is none. */
+  private query(): DifferenceQuery | null {
+    const shown = this.context.picture.main;
+    if (this.weave === null || !shown) return null;
+    return { layer: shown.layer, weave: shownWeave(this.context), with: this.weave };
   }
 
   private show({ areas, agreement, meanDifference }: Difference): void {
@@ -100,23 +112,26 @@ export class DifferenceView {
     this.numbers.replaceChildren(figures(totals), el('table', {}, caption, el('tbody', {}, ...rows)));
   }
 
-  private draw(png: Blob, imageExtent: [number, number, number, number]): void {
-    this.png = png;
+  private draw(picture: DifferencePicture | null): void {
     const before = this.address;
-    const url = (this.address = URL.createObjectURL(png));
-    this.layer.setSource(new ImageStatic({ url, imageExtent, projection: kProjection, interpolate: false }));
+    this.address = picture && URL.createObjectURL(picture.png);
+    const at = { imageExtent: picture?.extent ?? [], projection: kProjection, interpolate: false };
+    this.layer.setSource(this.address === null ? null : new ImageStatic({ url: this.address, ...at }));
     if (before !== null) URL.revokeObjectURL(before);
   }
 
   private forget(): void {
     this.numbers.replaceChildren();
-    this.layer.setSource(null);
-    this.png = null;
-    if (this.address !== null) URL.revokeObjectURL(this.address);
-    this.address = null;
+    this.draw(null);
   }
 
   private keep(): void {
-    if (this.png) saveBlob(this.png, `${this.context.session()?.name ?? 'map'}-difference.png`);
+    const session = this.context.session();
+    const query = this.query();
+    if (!session || !query) return;
+    this.asking.run(async (signal) => {
+      const { png } = await fetchDifferencePicture(session.name, query, signal);
+      saveBlob(png, `${session.name}-difference.png`);
+    });
   }
 }

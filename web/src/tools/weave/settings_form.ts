@@ -108,5 +108,6 @@ function wordOf(value: MapConfig[string] | undefined): string {
 /** "cell_size 0.1, ray_model traversal": in what one way differs from another. */
 export function describeChanges(config: MapConfig, from: MapConfig): string {
   const changed = Object.entries(config).filter(([name, value]) => from[name] !== value);
-  return changed.length === 0 ? 'as the session' : changed.map(([name, value]) => `${name} ${String(value)}`).join(', ');
+  if (changed.length === 0) return 'as the session';
+  return changed.map(([name, value]) => `${name} ${String(value)}`).join(', ');
 }
