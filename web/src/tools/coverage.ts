@@ -73,7 +73,6 @@ class CoverageCard {
     this.fill(card);
     this.chooseStart();
     pickPlaces(context.map, context.target, signal, (place) => this.pick(place));
-    this.keepZoomStill(signal);
     this.cancel.hidden = true;
   }
 
@@ -102,14 +101,6 @@ class CoverageCard {
     this.shape.addEventListener('change', () => this.beginOutline());
     this.start.element.addEventListener('change', () => this.chooseStart());
     card.append(this.outcome.element, this.result, form);
-  }
-
-  /** A double click ends the outline; it does not zoom meanwhile. */
-  private keepZoomStill(signal: AbortSignal): void {
-    const { map } = this.context;
-    const stay = (event: { stopPropagation(): void }): void => event.stopPropagation();
-    map.on('dblclick', stay);
-    signal.addEventListener('abort', () => map.un('dblclick', stay));
   }
 
   private beginOutline(): void {
