@@ -91,7 +91,7 @@ class CoverageCard {
         button('Choose', () => this.beginStart(), { 'aria-label': 'Choose the start' }),
       ),
       labelled('Body radius, m', this.bodyRadius),
-      labelled('Row spacing, m', this.spacing),
+      labelled('Row gap, m', this.spacing),
       el('div', { class: 'tool-buttons' }, this.find, this.cancel),
     );
     form.addEventListener('submit', (event) => {

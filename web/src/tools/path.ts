@@ -179,7 +179,7 @@ class PathCard {
     this.line.setCoordinates(way.points);
     const rows: [string, string][] = [
       ['Length', format.distance(way.length)],
-      ['Cost', format.decimal(way.cost, 2)],
+      [`Cost, danger counting ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(way.cost, 2)],
     ];
     this.result.replaceChildren(figures(rows));
     this.outcome.say('There is a way. Drag its ends, or click another end.');

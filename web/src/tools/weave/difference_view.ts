@@ -33,7 +33,7 @@ const kLegend: [name: DifferenceName, label: string][] = [
 export class DifferenceView {
   private readonly onMap = checkbox('difference', false);
   private readonly numbers = el('div');
-  private readonly save = button('Save the picture', () => this.keep());
+  private readonly save = button('Save picture', () => this.keep());
   readonly element = el(
     'section',
     { class: 'tool-difference', 'aria-label': 'Difference' },

@@ -72,7 +72,8 @@ export class SettingsForm {
 
   private update(): void {
     for (const field of this.fields) {
-      field.row.hidden = !this.matters(field);
+      // What is disabled, the browser does not check.
+      field.row.hidden = field.control.disabled = !this.matters(field);
       const now = this.config[field.setting.name];
       field.row.classList.toggle('changed', this.differs(field));
       setText(field.mark, this.differs(field) ? `Changed; the session has ${wordOf(now)}` : '');
@@ -80,6 +81,7 @@ export class SettingsForm {
   }
 
   private matters({ setting }: Field): boolean {
+    if (this.config[setting.name] === undefined) return false;
     const rays = this.fields.find(({ setting: { kind } }) => kind === 'rays')?.control.value ?? '';
     return setting.rays === undefined || setting.rays.includes(rays);
   }
