@@ -142,12 +142,13 @@ describe('tools on the map', { timeout: 280_000 }, () => {
 
     it('find a way by keyboard alone, from where the robot is', async () => {
       const [x, y] = track.at(-1);
+      await page.mouse.move(5, 5);
       await page.focus('[data-robot="r1"] .follow');
       await page.keyboard.press('Enter');
       await page.focus('#map');
       await says(page, '#cursor-x', new RegExp(`^.${Math.abs(x).toFixed(2)}$`));
       await says(page, '#cursor-y', new RegExp(`^.${Math.abs(y).toFixed(2)}$`));
-      await page.keyboard.press('p');
+      await open('p');
       await page.keyboard.press('Enter');
       await told(/Click where the way ends/);
       await page.keyboard.press('ArrowRight');

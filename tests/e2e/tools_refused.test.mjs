@@ -166,6 +166,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     await page.keyboard.press('w');
     await says(page, '.tool-weaves', /<img src=x/);
     await page.click('.tool-weaves :text-is("Show")');
+    await page.waitForSelector('.tool-weaves [aria-pressed=true]');
     await says(page, '.tool-difference', /Agreement.*92\.5 %.*obstacle only in the map.*0\.50 m/);
     await page.check('[name=difference]');
     await showsColourAt(page, kPlaces[0], [90, 90, 90]);

@@ -166,7 +166,7 @@ class WeaveCard {
 
   private markShown(): void {
     const shown = this.comparison.weave?.id ?? null;
-    this.rows.shown = shown;
+    this.rows.mark(shown);
     this.end.hidden = shown === null;
     this.difference.compare(shown);
   }

@@ -22,8 +22,8 @@ interface WeaveRow extends Row {
 export class WeaveRows {
   readonly element = el('ul', { class: 'tool-weaves', 'aria-label': 'Weaves of this session' });
   private readonly rows: KeyedList<ListedWeave, WeaveRow>;
-  /** The weave that is on the second side. */
-  shown: string | null = null;
+  private weaves: ListedWeave[] = [];
+  private shown: string | null = null;
 
   constructor(
     private readonly config: () => MapConfig,
@@ -34,7 +34,14 @@ export class WeaveRows {
   }
 
   show(weaves: ListedWeave[]): void {
+    this.weaves = weaves;
     this.rows.show(weaves);
+  }
+
+  /** @param weave that is on the second side; null: none */
+  mark(weave: string | null): void {
+    this.shown = weave;
+    this.rows.show(this.weaves);
   }
 
   private create(weave: ListedWeave): WeaveRow {
