@@ -54,6 +54,8 @@ describe('tools on the map', { timeout: 280_000 }, () => {
     server = await Server.start();
     browser = await launchBrowser();
     ({ page, complaints } = await openPage(browser, server.address));
+    // The map is where it shall be at once: what is clicked lies where it was looked for.
+    await page.emulateMedia({ reducedMotion: 'reduce' });
   });
 
   after(async () => {
