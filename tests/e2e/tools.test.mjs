@@ -90,12 +90,17 @@ describe('tools on the map', { timeout: 280_000 }, () => {
     assert.equal(await page.locator('#tool-body [name=name]:invalid').count(), 1);
     await drop(['notes.txt', 'x']);
     await alerted(/notes\.txt is neither a description/);
+    await drop(['lab.yaml', kYaml], ['lab.pgm', [...roomPgm()]]);
+    await page.fill('#tool-body [name=name]', 'another');
+    await page.click('#tool-body :text-is("Import")');
+    await page.waitForURL(/#session=another$/);
+    await page.waitForSelector('#tool', { state: 'hidden' });
   });
 
   async function drop(...files) {
     const data = await page.evaluateHandle((all) => {
       const transfer = new DataTransfer();
-      for (const [name, content] of all) transfer.items.add(new File([content], name));
+      for (const [name, content] of all) transfer.items.add(new File([Array.isArray(content) ? new Uint8Array(content) : content], name));
       return transfer;
     }, files);
     await page.dispatchEvent('#tool', 'drop', { dataTransfer: data });

@@ -96,18 +96,24 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     let asked = 0;
     let release;
     const held = new Promise((resolve) => (release = resolve));
+    let late;
+    const answered = new Promise((resolve) => (late = resolve));
     await page.route('**/plan', async (route) => {
       asked += 1;
       const length = asked;
       if (length === 1) await held;
-      const answered = { ...way([[1, 1], [2, 2]]), properties: { length, cost: 1 } };
-      await route.fulfill({ contentType: 'application/json', body: JSON.stringify(answered) }).catch(() => {});
+      const found = { ...way([[1, 1], [2, 2]]), properties: { length, cost: 1 } };
+      await route.fulfill({ contentType: 'application/json', body: JSON.stringify(found) }).catch(() => {});
+      if (length === 1) late();
     });
     await page.keyboard.press('p');
     await clickBoth();
     await page.mouse.click(650, 450);
     await says(page, '.tool-figures', /2\.00 m/);
     release();
+    await answered;
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve))));
+    assert.match(await page.textContent('.tool-figures'), /2\.00 m/);
     await page.click('#tool-body :text-is("Find the way")');
     await says(page, '.tool-figures', /3\.00 m/);
   });
