@@ -20,12 +20,19 @@ import { TimeBar } from './panel/time_bar';
 import { Picture } from './picture';
 import { poll, type Pace } from './poll';
 import { SettingsStore } from './settings';
+import type { ToolContext } from './tools/context';
+import { coverageTool } from './tools/coverage';
+import { exportTool } from './tools/export';
+import { importTool } from './tools/import';
 import { measureTool } from './tools/measure';
+import { pathTool } from './tools/path';
 import { Toolbox } from './tools/toolbox';
 import { ServerCharts } from './charts/server_charts';
 import { SessionPanel } from './sessions/session_panel';
 import { readTheme } from './theme';
 import { SessionHistory } from './time/history';
+import { Comparison } from './tools/weave/comparison';
+import { weaveTool } from './tools/weave/weave';
 import { Viewer } from './viewer';
 import './style/index.css';
 
@@ -95,6 +102,7 @@ const toolbox = new Toolbox(
     close: byId('tool-close', HTMLButtonElement),
   },
   keys,
+  () => viewer.session?.bounds != null,
 );
 let refreshing = false;
 let robotPort: RobotPort | null = null;
@@ -200,6 +208,28 @@ function takeColours(): void {
   serverCharts.takeColours();
 }
 
+function addTools(): void {
+  const comparison = new Comparison(picture);
+  const importing = importTool();
+  const context: ToolContext = {
+    ...{ map, target, picture, theme: readTheme },
+    session: () => viewer.session,
+    robots: () => viewer.robots,
+  };
+  toolbox.add(measureTool(map, target, readTheme));
+  toolbox.add(pathTool(context));
+  toolbox.add(coverageTool(context));
+  toolbox.add(weaveTool(context, comparison));
+  toolbox.add(importing);
+  toolbox.add(exportTool(context));
+  viewer.listen((session) => session ?? comparison.end());
+  settings.listen(() => map.getLayers().forEach((layer) => layer.changed()));
+  byId('import-open', HTMLButtonElement).addEventListener('click', () => {
+    setPanel(false);
+    toolbox.toggle(importing);
+  });
+}
+
 function toggleCounters(): void {
   settings.change({ counters: !settings.get().counters });
 }
@@ -236,7 +266,7 @@ new DisplayPanel(
   settings,
   keys,
 );
-toolbox.add(measureTool(map, target, readTheme));
+addTools();
 settings.listen(takeColours);
 const past = new SessionHistory(viewer, picture);
 new TimeBar(byId('time-bar', HTMLElement), byId('history-open', HTMLButtonElement), past, keys);

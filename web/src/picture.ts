@@ -35,7 +35,7 @@ export class Picture {
   private moment: MapSource | null = null;
   /** Maps that were made otherwise, on the second side. */
   private comparison: MapSource | null = null;
-  private readonly listeners: (() => void)[] = [];
+  private listeners: (() => void)[] = [];
 
   constructor(private readonly map: MapView) {}
 
@@ -43,9 +43,10 @@ export class Picture {
     return this.state;
   }
 
-  /** Called whenever something else is shown. */
-  listen(listener: () => void): void {
+  /** Called whenever something else is shown, until the signal aborts. */
+  listen(listener: () => void, signal?: AbortSignal): void {
     this.listeners.push(listener);
+    signal?.addEventListener('abort', () => (this.listeners = this.listeners.filter((each) => each !== listener)));
   }
 
   /** Another session's maps, or none. */

@@ -10,6 +10,9 @@ export interface Theme {
   ink: string;
   accent: string;
   frontier: string;
+  warn: string;
+  /** Of ways that nobody has driven yet. */
+  way: string;
 }
 
 export function readTheme(): Theme {
@@ -33,6 +36,8 @@ export function readTheme(): Theme {
     ink: colour('--ink'),
     accent: colour('--accent'),
     frontier: colour('--class-frontier'),
+    warn: colour('--warn'),
+    way: colour('--way'),
   };
 }
 

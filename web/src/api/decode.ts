@@ -148,6 +148,12 @@ export function decodePoint(json: unknown): Point {
   return [number(x, 'coordinates[].x'), number(y, 'coordinates[].y')];
 }
 
+/** Of a MultiPolygon: polygons of rings. */
+export function decodeAreas(json: unknown): Point[][][] {
+  const polygons = list(json, 'coordinates').map((each) => list(each, 'coordinates[]'));
+  return polygons.map((rings) => rings.map((ring) => list(ring, 'coordinates[][]').map(decodePoint)));
+}
+
 export function fields(value: unknown, where: string): Fields {
   if (typeof value !== 'object' || value === null || Array.isArray(value)) {
     throw new MalformedAnswer(`${where} is not an object`);

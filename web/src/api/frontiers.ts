@@ -1,6 +1,6 @@
 /** Where the explored ground ends. */
 import { sessionPath } from './api';
-import { decodePoint, fields, list, MalformedAnswer, number } from './decode';
+import { decodeAreas, decodePoint, fields, list, number } from './decode';
 import { getJson, Refused } from './http';
 import type { Frontier } from './types';
 
@@ -20,17 +20,11 @@ function decodeFrontiers(json: unknown): Frontier[] {
     const properties = fields(feature['properties'], 'features[].properties');
     const geometry = fields(feature['geometry'], 'features[].geometry');
     return {
-      areas: areasOf(geometry['coordinates'], 4) as Frontier['areas'],
+      areas: decodeAreas(geometry['coordinates']),
       centroid: decodePoint(properties['centroid']),
       area: number(properties['area'], 'area'),
       reachable: properties['reachable'] === true,
       goal: properties['goal'] == null ? null : decodePoint(properties['goal']),
     };
   });
-}
-
-/** Lists of lists of ... positions, so many levels deep. */
-function areasOf(json: unknown, levels: number): unknown {
-  if (levels < 1) throw new MalformedAnswer('coordinates are nested too deep');
-  return levels === 1 ? decodePoint(json) : list(json, 'coordinates').map((each) => areasOf(each, levels - 1));
 }

@@ -23,10 +23,11 @@ export class Refused extends Error {
  * Asks for a resource of this server.
  *
  * @param path relative to the page, so that the viewer works below any prefix
+ * @param deadlineMs until the whole answer is there; for large ones
  * @throws Unreachable, Refused, or the signal's reason when the caller gave up
  */
-export function get(path: string, signal: AbortSignal): Promise<Response> {
-  return ask(path, {}, signal, kDeadlineMs);
+export function get(path: string, signal: AbortSignal, deadlineMs = kDeadlineMs): Promise<Response> {
+  return ask(path, {}, signal, deadlineMs);
 }
 
 /**

@@ -1,7 +1,8 @@
-/** How a line with its corners is drawn on the map. */
+/** How a line, or an outline, with its corners is drawn on the map. */
 import type { FeatureLike } from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import MultiPoint from 'ol/geom/MultiPoint';
+import Polygon from 'ol/geom/Polygon';
 import Circle from 'ol/style/Circle';
 import Fill from 'ol/style/Fill';
 import Stroke from 'ol/style/Stroke';
@@ -10,6 +11,7 @@ import Style from 'ol/style/Style';
 export function pathStyle(feature: FeatureLike, colour: string, halo: string): Style[] {
   const corners = (): MultiPoint => {
     const geometry = feature.getGeometry();
+    if (geometry instanceof Polygon) return new MultiPoint(geometry.getCoordinates()[0] ?? []);
     return new MultiPoint(geometry instanceof LineString ? geometry.getCoordinates() : []);
   };
   return [

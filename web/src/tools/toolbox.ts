@@ -11,6 +11,8 @@ export interface Tool {
   does: string;
   /** The path of its sign on a square of 16. */
   icon: string;
+  /** It needs no map to work on. */
+  withoutMap?: true;
   /** Fills the card, and begins to listen to the map until the signal aborts. */
   open(card: HTMLElement, signal: AbortSignal): void;
 }
@@ -32,6 +34,8 @@ export class Toolbox {
   constructor(
     private readonly fields: ToolboxFields,
     private readonly keys: Keys,
+    /** Whether there is a map to work on. */
+    private readonly hasMap: () => boolean,
   ) {
     fields.close.addEventListener('click', () => this.close());
     keys.bind({ key: 'Escape', does: 'closes the tool that is open', run: () => this.close() });
@@ -65,10 +69,11 @@ export class Toolbox {
     this.fields.card.hidden = true;
   }
 
-  private toggle(tool: Tool): void {
+  /** Opens it, in the place of another one, or closes it. */
+  toggle(tool: Tool): void {
     const wasOpen = this.open === tool;
     this.close();
-    if (wasOpen) return;
+    if (wasOpen || !(tool.withoutMap || this.hasMap())) return;
     this.open = tool;
     this.leave = new AbortController();
     this.buttons.get(tool)?.setAttribute('aria-pressed', 'true');

@@ -1,0 +1,234 @@
+/** The tools of the viewer when the server refuses, is slow, or answers with what it never should. */
+import assert from 'node:assert/strict';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { violations } from './accessibility.mjs';
+import {
+  colourOf,
+  countsPixels,
+  keepPicture,
+  kWebDirectory,
+  launchBrowser,
+  openPage,
+  says,
+  showsColour,
+  showsColourAt,
+} from './browser.mjs';
+import { FakeServer } from './fake_server.mjs';
+import { FakeSession } from './fake_session.mjs';
+import { encodeGreyPng } from './png.mjs';
+
+const kHostile = '<img src=x onerror="document.title=1">';
+/** Left of the card, on the one tile that is painted. */
+const kPlaces = [
+  [600, 300],
+  [700, 500],
+];
+const kWeaveId = '0123456789abcdef';
+const kAreas = {
+  ...{ neither: 0, only_a: 1.5, only_b: 2, both_free: 120, both_occupied: 4 },
+  ...{ free_occupied: 0.25, occupied_free: 0.5, undecided: 7 },
+};
+
+describe('tools that are refused', { timeout: 180_000 }, () => {
+  let browser;
+  let server;
+  let page;
+  let session;
+  let complaints = [];
+
+  before(async () => (browser = await launchBrowser()));
+  after(() => browser?.close());
+  beforeEach(async () => {
+    server = await FakeServer.start(kWebDirectory);
+    session = server.add(new FakeSession('map', 'id-map'));
+    session.paint(256, 255, 10);
+    session.move('r1', 1, 1, 0);
+    ({ page, complaints } = await openPage(browser, server.address));
+    await showsColour(page, '--cell-free');
+  });
+  afterEach(async () => {
+    await page?.context().close();
+    await server.vanish().catch(() => {});
+    assert.deepEqual(complaints, []);
+  });
+
+  const answer = (path, body, { status = 200, type = 'application/json', headers = {} } = {}) =>
+    page.route(path, (route) =>
+      route.fulfill({ status, contentType: type, headers, body: Buffer.isBuffer(body) ? body : JSON.stringify(body) }),
+    );
+
+  const refuse = (path, status, detail) =>
+    answer(path, { type: 'about:blank', title: 'Refused', status, detail }, { status, type: 'application/problem+json' });
+
+  const alerted = (pattern) => says(page, '#tool-body [role=alert]', pattern);
+
+  const clickBoth = async () => {
+    for (const place of kPlaces) await page.mouse.click(...place);
+  };
+
+  const way = (coordinates) => ({
+    ...{ type: 'Feature', revision: 1, properties: { length: 1, cost: 1 } },
+    geometry: { type: 'LineString', coordinates },
+  });
+
+  it('tell the sentence that came, as text', async () => {
+    await refuse('**/plan', 409, `the goal is in ${kHostile}`);
+    await page.keyboard.press('p');
+    await clickBoth();
+    await alerted(/^Refused: the goal is in <img src=x .*>\.$/);
+    assert.equal(await page.locator('img').count(), 0);
+    assert.deepEqual(await violations(page), []);
+  });
+
+  it('draw nothing of a way that is none', async () => {
+    for (const coordinates of [[[1, 'x'], [2, 2]], [[1, 1]], kHostile, null, [[1, 1], [1e400, 0]]]) {
+      await page.unrouteAll();
+      await answer('**/plan', way(coordinates));
+      await page.keyboard.press('p');
+      await clickBoth();
+      await alerted(/answer cannot be read/);
+      assert.equal(await page.locator('.tool-figures').count(), 0);
+      await page.keyboard.press('Escape');
+    }
+  });
+
+  it('ask only for the newest, whatever order answers come in', async () => {
+    let asked = 0;
+    let release;
+    const held = new Promise((resolve) => (release = resolve));
+    let late;
+    const answered = new Promise((resolve) => (late = resolve));
+    await page.route('**/plan', async (route) => {
+      asked += 1;
+      const length = asked;
+      if (length === 1) await held;
+      const found = { ...way([[1, 1], [2, 2]]), properties: { length, cost: 1 } };
+      await route.fulfill({ contentType: 'application/json', body: JSON.stringify(found) }).catch(() => {});
+      if (length === 1) late();
+    });
+    await page.keyboard.press('p');
+    await clickBoth();
+    await page.mouse.click(650, 450);
+    await says(page, '.tool-figures', /2\.00 m/);
+    release();
+    await answered;
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve))));
+    assert.match(await page.textContent('.tool-figures'), /2\.00 m/);
+    await page.click('#tool-body :text-is("Find the way")');
+    await says(page, '.tool-figures', /3\.00 m/);
+  });
+
+  it('say that the map has grown, and ask again by themselves when that is wished', async () => {
+    let asked = 0;
+    await page.route('**/plan', async (route) => {
+      asked += 1;
+      const body = JSON.stringify({ ...way([[1, 1], [2, 2]]), revision: session.revision });
+      await route.fulfill({ contentType: 'application/json', body });
+    });
+    await page.keyboard.press('p');
+    await clickBoth();
+    await says(page, '#tool-body', /There is a way/);
+    session.move('r1', 2, 2, 0);
+    await says(page, '#tool-body', /The map has grown since/);
+    assert.equal(asked, 1);
+    await page.check('[name=keep_up]');
+    await says(page, '#tool-body', /There is a way/);
+    session.move('r1', 3, 2, 0);
+    await page.waitForRequest('**/plan');
+  });
+
+  it('tell why there is no coverage, no file and no weave', async () => {
+    await refuse('**/coverage', 409, 'the start is in a wall');
+    await refuse('**/map.png*', 413, 'this map has 20000 x 20000 pixels');
+    await refuse('**/log*', 409, 'the log is damaged');
+    await page.route('**/weave', (route) => {
+      const problem = { title: 'Refused', detail: 'p_free is too much' };
+      if (route.request().method() === 'POST') return route.fulfill({ status: 400, body: JSON.stringify(problem) });
+      return route.fulfill({ contentType: 'application/json', body: JSON.stringify({ weaves: [] }) });
+    });
+    await page.keyboard.press('c');
+    await page.click('#tool-body :text-is("Find the way")');
+    await alerted(/the start is in a wall\.$/);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('e');
+    await page.click('#tool-body :text-is("PNG")');
+    await alerted(/this map has 20000 x 20000 pixels\.$/);
+    await page.click('#tool-body :text-is("CARMEN log")');
+    await alerted(/the log is damaged\.$/);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('w');
+    await page.click('#tool-body :text-is("Weave")');
+    await alerted(/p_free is too much\.$/);
+  });
+
+  it('show weaves whose settings are hostile as text, and their difference in numbers and as a picture', async () => {
+    const config = { cell_size: 0.05, [kHostile]: kHostile };
+    const weave = { id: kWeaveId, state: 'done', revision: 2, woven: 2, until: { revision: 2 }, follows: true, config };
+    await answer('**/weave', { weaves: [weave] });
+    await answer('**/difference?*', { areas: kAreas, agreement: 0.925, mean_difference: null });
+    const grey = encodeGreyPng(2, 2, new Uint8Array(4).fill(90));
+    const bounds = { 'Scanloom-Bounds': '0,0,12.8,12.8' };
+    await answer('**/difference.png?*', grey, { type: 'image/png', headers: bounds });
+    await page.keyboard.press('w');
+    await says(page, '.tool-weaves', /<img src=x/);
+    await page.click('.tool-weaves :text-is("Show")');
+    await page.waitForSelector('.tool-weaves [aria-pressed=true]');
+    await says(page, '.tool-difference', /Agreement.*92\.5 %.*obstacle only in the map.*0\.50 m/);
+    await page.check('[name=difference]');
+    await showsColourAt(page, kPlaces[0], [90, 90, 90]);
+    await keepPicture(page, 'tool-difference');
+    assert.deepEqual(await violations(page), []);
+    await page.uncheck('[name=difference]');
+    await showsColourAt(page, kPlaces[0], [90, 90, 90], false);
+    await page.click('#tool-body :text-is("End the comparison")');
+    await page.waitForSelector('.tool-difference', { state: 'hidden' });
+    assert.equal(await page.locator('img').count(), 0);
+  });
+
+  it('follow a weave on its way, and cancel it', async () => {
+    const config = { cell_size: 0.05 };
+    const weave = { id: kWeaveId, state: 'weaving', revision: null, woven: 3, until: { revision: 9 }, follows: true, config };
+    const deleted = [];
+    let there = [];
+    await page.route('**/weave', (route) => {
+      if (route.request().method() === 'POST') there = [weave];
+      const body = route.request().method() === 'POST' ? weave : { weaves: there };
+      return route.fulfill({ contentType: 'application/json', body: JSON.stringify(body) });
+    });
+    await page.route('**/weave/*', (route) => {
+      deleted.push(route.request().method());
+      there = [];
+      return route.fulfill({ status: 204 });
+    });
+    await page.keyboard.press('w');
+    await page.click('#tool-body :text-is("Weave")');
+    await says(page, '.tool-weaves', /3 of 9 entries/);
+    assert.equal(await page.locator('.tool-weaves progress').evaluate(({ position }) => position.toFixed(2)), '0.33');
+    await page.click('.tool-weaves :text-is("Cancel")');
+    await says(page, '#tool-body [role=status]', /Cancelled/);
+    await page.waitForSelector('.tool-weaves li', { state: 'detached' });
+    assert.deepEqual(deleted, ['DELETE']);
+  });
+
+  it('leave nothing on the map and nothing under way when they are closed', async () => {
+    await answer('**/plan', way([[1, 1], [9, 9]]));
+    await page.keyboard.press('p');
+    await clickBoth();
+    await says(page, '#tool-body', /There is a way/);
+    await showsColour(page, '--way');
+    await page.keyboard.press('Escape');
+    await page.waitForSelector('#tool', { state: 'hidden' });
+    assert.equal(await page.locator('#tool-body > *').count(), 0);
+    await countsPixels(page, await colourOf(page, '--way'), (pixels) => pixels === 0);
+    assert.equal(await page.locator('#map.picking').count(), 0);
+  });
+
+  it('are not there without a map, but for the import', async () => {
+    server.sessions.clear();
+    await says(page, '#notice', /deleted/);
+    await page.keyboard.press('p');
+    assert.ok(await page.locator('#tool').isHidden());
+    await page.keyboard.press('i');
+    await page.waitForSelector('#tool[data-tool=import]', { state: 'visible' });
+  });
+});

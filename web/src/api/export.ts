@@ -1,0 +1,70 @@
+/** Files that the server makes of a session: where they are, and how they are had. */
+import { sessionPath } from './api';
+import { get, readBody, Unreachable } from './http';
+import type { LayerName } from '../layers/layers';
+
+export type MapFormat = 'png' | 'pgm' | 'yaml' | 'csv' | 'npy';
+
+export interface MapQuery {
+  layer: LayerName;
+  /** [min_x, min_y, max_x, max_y], metres; null: all that was seen. */
+  box: [number, number, number, number] | null;
+  /** Null: the session's own maps. */
+  weave: string | null;
+}
+
+/** Large maps are drawn first and sent then, over whatever link there is. */
+export const kFileDeadlineMs = 600_000;
+/** To the millimetre: smaller than any cell. */
+const kDigits = 3;
+
+export function mapFilePath(session: string, format: MapFormat, { layer, box, weave }: MapQuery): string {
+  const query = new URLSearchParams({ layer });
+  if (box) query.set('bbox', box.map((edge) => edge.toFixed(kDigits)).join(','));
+  if (weave !== null) query.set('weave', weave);
+  return `${sessionPath(session)}/map.${format}?${query}`;
+}
+
+export function trajectoryPath(session: string): string {
+  return `${sessionPath(session)}/trajectory.geojson`;
+}
+
+export function frontiersPath(session: string, weave: string | null): string {
+  return `${sessionPath(session)}/frontiers.geojson${weave === null ? '' : `?${new URLSearchParams({ weave })}`}`;
+}
+
+export function logPath(session: string, format: 'clf' | 'protobuf'): string {
+  return `${sessionPath(session)}/log?format=${format}`;
+}
+
+/**
+ * The whole file, for those that the server limits to some 100 MB.
+ *
+ * @param progress told how many bytes have come
+ * @throws Refused with the server's sentence
+ */
+export async function fetchFile(path: string, signal: AbortSignal, progress: (bytes: number) => void): Promise<Blob> {
+  const response = await get(path, signal, kFileDeadlineMs);
+  return readBody(response, signal, async ({ body, headers }) => {
+    if (!body) throw new Unreachable('the answer has no body');
+    const reader = body.getReader();
+    const parts: Uint8Array<ArrayBuffer>[] = [];
+    let bytes = 0;
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) break;
+      parts.push(value as Uint8Array<ArrayBuffer>);
+      bytes += value.length;
+      progress(bytes);
+    }
+    return new Blob(parts, { type: headers.get('Content-Type') ?? '' });
+  });
+}
+
+/** Asks for a file whose length has no bound, and reads none of it. @throws Refused with the server's sentence */
+export async function checkFile(path: string, signal: AbortSignal): Promise<void> {
+  const giveUp = new AbortController();
+  const response = await get(path, AbortSignal.any([signal, giveUp.signal]));
+  await response.body?.cancel();
+  giveUp.abort();
+}

@@ -1,0 +1,34 @@
+/** All weaves that the server keeps of a session, with how each is made. */
+import { sessionPath } from './api';
+import { cellSizeOf, decodeConfig, fields, list, number } from './decode';
+import { getJson } from './http';
+import type { MapConfig } from './types';
+import { decodeWeave, type Weave } from './weaves';
+
+export interface ListedWeave extends Weave {
+  config: MapConfig;
+  /** Metres. */
+  cellSize: number;
+  /** Asked for again, it goes on to where the session is by then. */
+  follows: boolean;
+  /** Of its maps; null while there are none. */
+  revision: number | null;
+}
+
+/** The last used first. */
+export async function fetchWeaves(session: string, signal: AbortSignal): Promise<ListedWeave[]> {
+  const answer = fields(await getJson(`${sessionPath(session)}/weave`, signal), 'weaves');
+  return list(answer['weaves'], 'weaves').map(decodeListed);
+}
+
+function decodeListed(json: unknown): ListedWeave {
+  const weave = fields(json, 'weaves[]');
+  const config = decodeConfig(weave['config']);
+  return {
+    ...decodeWeave(json),
+    config,
+    cellSize: cellSizeOf(config),
+    follows: weave['follows'] === true,
+    revision: weave['revision'] == null ? null : number(weave['revision'], 'weaves[].revision'),
+  };
+}

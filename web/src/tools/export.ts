@@ -1,0 +1,210 @@
+/** What is seen, as files: maps for programs and for people, paths, frontiers, logs, and a picture of the screen. */
+import {
+  checkFile,
+  fetchFile,
+  frontiersPath,
+  logPath,
+  mapFilePath,
+  trajectoryPath,
+  type MapFormat,
+  type MapQuery,
+} from '../api/export';
+import type { Session } from '../api/types';
+import { el, setText } from '../dom';
+import * as format from '../format';
+import { kLayers, kLayerTitles, isLayerName } from '../layers/layers';
+import type { MapSource } from '../map/map_source';
+import type { ToolContext } from './context';
+import { button, labelled, selectOf } from './fields';
+import { NewestOnly } from './newest_only';
+import { Outcome } from './outcome';
+import { saveBlob, saveFrom } from './save_file';
+import { screenPicture } from './screen_picture';
+import type { Tool } from './toolbox';
+
+/** So many cells the server puts into one file; of CSV and NPY it may be fewer. */
+const kCellsMax = 64_000_000;
+const kMegabyte = 1_000_000;
+
+/** A file on offer. */
+interface Offer {
+  label: string;
+  /** What it is good for. */
+  note: string;
+  file: string;
+  path: string;
+  /** It has no bound: the browser fetches it by itself. */
+  endless?: true;
+}
+
+export function exportTool(context: ToolContext): Tool {
+  return {
+    id: 'export',
+    title: 'Export',
+    key: 'e',
+    does: 'saves what is seen as files',
+    icon: 'M8 9.5v-7M5 5.5l3-3 3 3M2.5 10.5v3h11v-3',
+    open: (card, signal) => void new ExportCard(context, card, signal),
+  };
+}
+
+class ExportCard {
+  private readonly side = selectOf('side', [
+    ['main', 'The map'],
+    ['beside', 'The second side'],
+  ]);
+  private readonly layer = selectOf(
+    'layer',
+    kLayers.map((layer) => [layer, kLayerTitles[layer]] as const),
+  );
+  private readonly extent = selectOf('extent', [
+    ['all', 'All that was seen'],
+    ['view', 'What is in view'],
+  ]);
+  private readonly size = el('p', { class: 'quiet' });
+  private readonly sideRow = labelled('Of', this.side);
+  private readonly files = el('ul', { class: 'tool-files', 'aria-label': 'Files' });
+  private readonly outcome = new Outcome();
+  private readonly fetching: NewestOnly;
+
+  constructor(
+    private readonly context: ToolContext,
+    card: HTMLElement,
+    private readonly signal: AbortSignal,
+  ) {
+    this.fetching = new NewestOnly(
+      signal,
+      () => {},
+      (error) => this.outcome.complain(error),
+    );
+    const { map, picture } = context;
+    const rows = [this.sideRow, labelled('Layer', this.layer), labelled('Part', this.extent)];
+    const form = el('form', { class: 'tool-form' }, ...rows);
+    form.addEventListener('change', () => this.update());
+    const screen = button('Picture of the screen', () => this.saveScreen());
+    card.append(form, this.size, this.files, screen, this.outcome.element);
+    const update = (): void => this.update();
+    map.on('moveend', update);
+    signal.addEventListener('abort', () => map.un('moveend', update));
+    this.side.addEventListener('change', () => this.followLayer());
+    picture.listen(() => this.followLayer(), signal);
+    this.followLayer();
+  }
+
+  /** The layer that is shown is the one that is meant, until another is chosen. */
+  private followLayer(): void {
+    const shown = this.side.value === 'beside' ? this.context.picture.beside : this.context.picture.main;
+    if (shown) this.layer.value = shown.layer;
+    this.update();
+  }
+
+  private update(): void {
+    const { picture } = this.context;
+    const session = this.context.session();
+    this.sideRow.hidden = picture.beside === null;
+    if (picture.beside === null) this.side.value = 'main';
+    const source = (this.side.value === 'beside' ? picture.beside : picture.main)?.source;
+    if (!session || !source) return;
+    const query = this.query(source);
+    setText(this.size, this.describeSize(session, source, query));
+    const offers = offersOf(session.name, query);
+    const fingerprint = JSON.stringify(offers);
+    if (this.files.dataset['offers'] === fingerprint) return;
+    this.files.dataset['offers'] = fingerprint;
+    this.files.replaceChildren(...offers.map((offer) => this.row(offer)));
+  }
+
+  private query({ weave }: MapSource): MapQuery {
+    const layer = isLayerName(this.layer.value) ? this.layer.value : 'occupancy';
+    return { layer, weave, box: this.extent.value === 'view' ? this.boxInView() : null };
+  }
+
+  private boxInView(): MapQuery['box'] {
+    const { map } = this.context;
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = map.getView().calculateExtent(map.getSize());
+    return [minX, minY, maxX, maxY];
+  }
+
+  private describeSize({ bounds }: Session, { cellSize }: MapSource, { box }: MapQuery): string {
+    const seen = bounds ? [bounds.minX, bounds.minY, bounds.maxX, bounds.maxY] : [];
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = box ?? seen;
+    const [across, up] = [maxX - minX, maxY - minY].map((metres) => Math.ceil(metres / cellSize));
+    if (across === undefined || up === undefined) return '';
+    const text = `About ${format.count(across)} \u00d7 ${format.count(up)} cells of ${format.cellSize(cellSize)}.`;
+    if (across * up <= kCellsMax) return text;
+    return `${text} That is more than the server puts into one file: zoom in and choose what is in view.`;
+  }
+
+  private row(offer: Offer): HTMLElement {
+    const { label, note, path, file } = offer;
+    const link = el('a', { href: path, download: file }, label);
+    link.addEventListener('click', (event) => {
+      // With a modifier the browser does with the link what the person wants of it.
+      if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+      event.preventDefault();
+      this.save(offer);
+    });
+    return el('li', {}, link, el('span', { class: 'quiet' }, note));
+  }
+
+  private save({ label, file, path, endless }: Offer): void {
+    this.fetching.run(async (signal) => {
+      this.outcome.say(`The server makes ${label}\u2026`);
+      if (endless) {
+        await checkFile(path, signal);
+        saveFrom(path, file);
+        this.outcome.say(`The browser fetches ${file}.`);
+        return;
+      }
+      const blob = await fetchFile(path, signal, (bytes) => this.outcome.say(`${file}: ${megabytes(bytes)}\u2026`));
+      saveBlob(blob, file);
+      this.outcome.say(`Saved ${file}, ${megabytes(blob.size)}.`);
+    });
+  }
+
+  private saveScreen(): void {
+    const { map, target, theme, session } = this.context;
+    const file = `${session()?.name ?? 'map'}-screen.png`;
+    this.fetching.run(async () => {
+      saveBlob(await screenPicture(map, target, theme().halo), file);
+      if (!this.signal.aborted) this.outcome.say(`Saved ${file}.`);
+    });
+  }
+}
+
+function offersOf(session: string, query: MapQuery): Offer[] {
+  const { layer, weave } = query;
+  const base = layer === 'occupancy' ? session : `${session}-${layer}`;
+  const map = (kind: MapFormat, label: string, note: string, file: string): Offer => ({
+    ...{ label, note, file },
+    path: mapFilePath(session, kind, query),
+  });
+  return [
+    map('png', 'PNG', 'grey levels or colours', `${base}.png`),
+    // The description names the image: these two keep their names.
+    map('pgm', 'PGM', 'image for ROS, as map.pgm', 'map.pgm'),
+    map('yaml', 'YAML', 'goes with the PGM, as map.yaml', 'map.yaml'),
+    map('csv', 'CSV', 'a number for each cell', `${base}.csv`),
+    map('npy', 'NPY', 'for NumPy', `${base}.npy`),
+    {
+      ...{ label: 'Paths (GeoJSON)', note: 'where the robots were, metres' },
+      ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session) },
+    },
+    {
+      ...{ label: 'Frontiers (GeoJSON)', note: 'ends of the explored ground' },
+      ...{ file: `${session}-frontiers.geojson`, path: frontiersPath(session, weave) },
+    },
+    {
+      ...{ label: 'CARMEN log', note: 'all scans, to replay', file: `${session}.clf` },
+      ...{ path: logPath(session, 'clf'), endless: true },
+    },
+    {
+      ...{ label: 'Protobuf log', note: 'all scans as they came', file: `${session}.scanlog` },
+      ...{ path: logPath(session, 'protobuf'), endless: true },
+    },
+  ];
+}
+
+function megabytes(bytes: number): string {
+  return bytes < kMegabyte ? `${format.count(Math.ceil(bytes / 1000))} kB` : `${(bytes / kMegabyte).toFixed(1)} MB`;
+}

@@ -1,0 +1,167 @@
+/** A new session from a ROS map: its description and its image, chosen or dropped on the page. */
+import { hashOfSession } from '../address';
+import { importMap, type RosMap } from '../api/import';
+import { el, setText } from '../dom';
+import { button, labelled, numberInput, selectOf } from './fields';
+import { NewestOnly } from './newest_only';
+import { Outcome } from './outcome';
+import { kRayModels } from './ray_models';
+import type { Tool } from './toolbox';
+
+/** As the server has it. */
+const kNamePattern = '[A-Za-z0-9_\\-]{1,64}';
+const kNameLengthMax = 64;
+const kMegabyte = 1_000_000;
+
+export function importTool(): Tool {
+  return {
+    id: 'import',
+    title: 'Import a map',
+    key: 'i',
+    does: 'makes a session from a ROS map',
+    icon: 'M8 2.5v7M5 6.5l3 3 3-3M2.5 10.5v3h11v-3',
+    withoutMap: true,
+    open: (card, signal) => void new ImportCard(card, signal),
+  };
+}
+
+class ImportCard {
+  private readonly yaml = el('input', { type: 'file', name: 'yaml', accept: '.yaml,.yml', required: '' });
+  private readonly image = el('input', { type: 'file', name: 'image', accept: '.pgm,.png', required: '' });
+  private readonly name = el('input', { type: 'text', name: 'name', pattern: kNamePattern, required: '' });
+  private readonly settings = [
+    numberInput('cell_size', null, { min: 0.01, max: 1, empty: 'as the map' }),
+    numberInput('p_occupied', null, { min: 0.5, max: 1, empty: 'as usual' }),
+    numberInput('p_free', null, { min: 0, max: 0.5, empty: 'as usual' }),
+    selectOf('ray_model', [['', 'As usual'], ...kRayModels]),
+  ];
+  private readonly send = el('button', { class: 'tool-button primary' }, 'Import');
+  private readonly cancel = button('Cancel', () => this.giveUp());
+  private readonly progress = el('progress', { 'aria-label': 'Import' });
+  private readonly outcome = new Outcome();
+  private readonly asking: NewestOnly;
+  private nameIsOwn = false;
+
+  constructor(card: HTMLElement, signal: AbortSignal) {
+    this.asking = new NewestOnly(
+      signal,
+      (busy) => this.showBusy(busy),
+      (error) => this.outcome.complain(error),
+    );
+    this.name.autocomplete = 'off';
+    this.name.title = 'Letters, digits, _ and -, at most 64';
+    this.fill(card);
+    this.takeDrops(card, signal);
+    this.showBusy(false);
+    this.yaml.focus();
+  }
+
+  private fill(card: HTMLElement): void {
+    const [cellSize, occupied, free, rays] = this.settings;
+    if (!cellSize || !occupied || !free || !rays) return;
+    const form = el(
+      'form',
+      { class: 'tool-form' },
+      labelled('map.yaml', this.yaml),
+      labelled('PGM or PNG', this.image),
+      labelled('New session', this.name),
+      el(
+        'details',
+        {},
+        el('summary', {}, 'Settings of the session'),
+        labelled('Cell, m', cellSize),
+        labelled('p occupied', occupied),
+        labelled('p free', free),
+        labelled('Laser scans', rays),
+      ),
+      el('div', { class: 'tool-buttons' }, this.send, this.cancel),
+      this.progress,
+    );
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.ask();
+    });
+    this.yaml.addEventListener('change', () => this.proposeName());
+    this.image.addEventListener('change', () => this.proposeName());
+    this.name.addEventListener('input', () => (this.nameIsOwn = this.name.value !== ''));
+    const help = 'Choose the two files that map_saver writes, or drop them here.';
+    card.append(el('p', {}, help), form, this.outcome.element);
+  }
+
+  /** Anywhere on the page: a file that misses the card must not take the page's place. */
+  private takeDrops(card: HTMLElement, signal: AbortSignal): void {
+    document.addEventListener(
+      'dragover',
+      (event) => {
+        event.preventDefault();
+        card.classList.add('dropping');
+      },
+      { signal },
+    );
+    document.addEventListener('dragleave', () => card.classList.remove('dropping'), { signal });
+    document.addEventListener(
+      'drop',
+      (event) => {
+        event.preventDefault();
+        card.classList.remove('dropping');
+        this.take([...(event.dataTransfer?.files ?? [])]);
+      },
+      { signal },
+    );
+    signal.addEventListener('abort', () => card.classList.remove('dropping'));
+  }
+
+  private take(files: File[]): void {
+    for (const file of files) {
+      const field = /\.ya?ml$/i.test(file.name) ? this.yaml : /\.(pgm|png)$/i.test(file.name) ? this.image : null;
+      if (field) put(field, file);
+      else this.outcome.complain(new Error(`${file.name} is neither a description (.yaml) nor an image (.pgm, .png)`));
+    }
+    this.proposeName();
+  }
+
+  private proposeName(): void {
+    const file = this.yaml.files?.[0] ?? this.image.files?.[0];
+    if (file && !this.nameIsOwn) this.name.value = nameFrom(file.name);
+  }
+
+  private ask(): void {
+    const yaml = this.yaml.files?.[0];
+    const image = this.image.files?.[0];
+    if (!yaml || !image) return;
+    const map: RosMap = { yaml, image };
+    const given = this.settings.filter(({ value }) => value !== '').map(({ name, value }) => [name, value]);
+    const settings = Object.fromEntries(given) as Record<string, string>;
+    const size = ((yaml.size + image.size) / kMegabyte).toFixed(1);
+    this.asking.run(async (signal) => {
+      this.outcome.say(`Sending ${size} MB, then the server reads the map\u2026`);
+      const session = await importMap(this.name.value, map, settings, signal);
+      this.outcome.say(`The session ${session.name} is there.`);
+      location.hash = hashOfSession(session.name);
+    });
+  }
+
+  private giveUp(): void {
+    this.asking.stop();
+    this.outcome.say('Given up. The session may be there all the same, if the server was quicker.');
+    this.send.focus();
+  }
+
+  private showBusy(busy: boolean): void {
+    this.cancel.hidden = this.progress.hidden = !busy;
+    this.send.disabled = busy;
+    setText(this.send, busy ? 'Importing\u2026' : 'Import');
+  }
+}
+
+function put(field: HTMLInputElement, file: File): void {
+  const files = new DataTransfer();
+  files.items.add(file);
+  field.files = files.files;
+}
+
+/** "Lab 3.yaml" -> "Lab-3": what the server takes as a name. */
+export function nameFrom(file: string): string {
+  const base = file.replace(/\.[^.]*$/, '').normalize('NFKD');
+  return base.replace(/[^A-Za-z0-9_-]+/g, '-').replace(/^-+|-+$/g, '').slice(0, kNameLengthMax);
+}

@@ -1,0 +1,207 @@
+/** The way from one place to another, as a robot of some size could drive it. */
+import Feature from 'ol/Feature';
+import LineString from 'ol/geom/LineString';
+import VectorLayer from 'ol/layer/Vector';
+import VectorSource from 'ol/source/Vector';
+import { requestPlan, type Start, type Way } from '../api/plan';
+import type { Point } from '../api/types';
+import { el, setText } from '../dom';
+import * as format from '../format';
+import { kOrder } from '../map/order';
+import { shownWeave, type ToolContext } from './context';
+import { button, checkbox, choice, figures, labelled, numberInput } from './fields';
+import { Marks } from './marks';
+import { NewestOnly } from './newest_only';
+import { Outcome } from './outcome';
+import { pathStyle } from './path_style';
+import { pickPlaces } from './pick_places';
+import { StartSelect } from './start_select';
+import type { Tool } from './toolbox';
+
+/** How often it is looked whether the map has grown. */
+const kWatchMs = 1_000;
+const kBodyRadius = 0.15;
+
+export function pathTool(context: ToolContext): Tool {
+  return {
+    id: 'path',
+    title: 'Path',
+    key: 'p',
+    does: 'finds a way between two places',
+    icon: 'M3 12.5h5.5a2.5 2.5 0 0 0 0-5h-2a2.5 2.5 0 0 1 0-5H13M11.5 1l1.5 1.5L11.5 4',
+    open: (card, signal) => void new PathCard(context, card, signal),
+  };
+}
+
+type End = 'from' | 'to';
+
+const kLetters: Record<End, string> = { from: 'A', to: 'B' };
+
+class PathCard {
+  private readonly places: Record<End, Point | null> = { from: null, to: null };
+  private readonly told: Record<End, HTMLElement> = { from: el('output'), to: el('output') };
+  private next: End = 'from';
+  private way: Way | null = null;
+  private readonly start: StartSelect;
+  private readonly bodyRadius = numberInput('body_radius', kBodyRadius, { min: 0, max: 5 });
+  private readonly dangerCost = numberInput('danger_cost', 1, { min: 0, max: 1000 });
+  private readonly allowUnknown = checkbox('allow_unknown', false);
+  private readonly keepUp = checkbox('keep_up', false);
+  private readonly result = el('div');
+  private readonly outcome = new Outcome();
+  private readonly line = new LineString([]);
+  private readonly marks: Marks;
+  private readonly asking: NewestOnly;
+
+  constructor(
+    private readonly context: ToolContext,
+    card: HTMLElement,
+    private readonly signal: AbortSignal,
+  ) {
+    this.start = new StartSelect(context.robots);
+    this.asking = new NewestOnly(
+      signal,
+      (busy) => busy && this.outcome.say('Looking for a way\u2026'),
+      (error) => this.refuse(error),
+    );
+    this.drawWay();
+    this.marks = new Marks(context, signal, (letter, place) => this.put(letter === kLetters.to ? 'to' : 'from', place));
+    this.fill(card);
+    pickPlaces(context.map, context.target, signal, (place) => this.pick(place));
+    const watch = setInterval(() => this.watch(), kWatchMs);
+    signal.addEventListener('abort', () => clearInterval(watch));
+    this.guide();
+  }
+
+  private drawWay(): void {
+    const { map, theme } = this.context;
+    const layer = new VectorLayer({
+      source: new VectorSource({ features: [new Feature(this.line)] }),
+      style: (feature) => pathStyle(feature, theme().way, theme().halo),
+      zIndex: kOrder.ways,
+    });
+    map.addLayer(layer);
+    this.signal.addEventListener('abort', () => map.removeLayer(layer));
+  }
+
+  private fill(card: HTMLElement): void {
+    const form = el(
+      'form',
+      { class: 'tool-form' },
+      labelled('From', this.start.element),
+      this.placeRow('from', 'Choose the start'),
+      this.placeRow('to', 'Choose the end'),
+      labelled('Body radius, m', this.bodyRadius),
+      labelled('Cost of danger', this.dangerCost),
+      choice('Through unknown ground, too', this.allowUnknown),
+      choice('Again as the map grows', this.keepUp),
+      el('button', { class: 'tool-button primary' }, 'Find the way'),
+    );
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.ask();
+    });
+    form.addEventListener('change', ({ target }) => {
+      if (target === this.start.element) this.chooseStart();
+      if (form.checkValidity()) this.ask();
+    });
+    card.append(this.outcome.element, this.result, form);
+  }
+
+  private placeRow(end: End, label: string): HTMLElement {
+    const again = button('Choose', () => this.choose(end), { 'aria-label': label });
+    const letter = el('span', { class: 'tool-letter' }, kLetters[end]);
+    return el('div', { class: 'tool-place' }, letter, this.told[end], again);
+  }
+
+  private choose(end: End): void {
+    if (end === 'from') this.start.choosePlace();
+    this.next = end;
+    this.guide();
+    this.context.target.focus();
+  }
+
+  private chooseStart(): void {
+    if (this.start.robot === null) this.next = this.places.from ? 'to' : 'from';
+    else this.next = 'to';
+    this.bodyRadius.value = String(this.start.bodyRadius ?? this.bodyRadius.value);
+    this.marks.put(kLetters.from, this.start.robot === null ? this.places.from : null);
+    this.guide();
+  }
+
+  private pick(place: Point): void {
+    const end = this.next;
+    this.next = 'to';
+    this.put(end, place);
+  }
+
+  /** A place was picked, or dragged elsewhere. */
+  private put(end: End, place: Point): void {
+    this.places[end] = place;
+    this.marks.put(kLetters[end], place);
+    this.ask();
+  }
+
+  /** Tells what there is, and what is needed next. */
+  private guide(): void {
+    const { from, to } = this.places;
+    setText(this.told.from, this.start.robot ?? (from ? placeText(from) : 'not chosen yet'));
+    setText(this.told.to, to ? placeText(to) : 'not chosen yet');
+    const wanted = this.next === 'from' ? 'begins' : 'ends';
+    const known = this.startPlace !== null && to !== null && this.next === 'to';
+    if (!known) this.outcome.say(`Click where the way ${wanted}, or move the map with the arrow keys and press Enter.`);
+  }
+
+  private get startPlace(): Start | null {
+    return this.start.robot === null ? this.places.from : { robot: this.start.robot };
+  }
+
+  private ask(): void {
+    this.guide();
+    const session = this.context.session();
+    const from = this.startPlace;
+    const { to } = this.places;
+    if (!session || !from || !to) return;
+    const request = {
+      from,
+      to,
+      allowUnknown: this.allowUnknown.checked,
+      bodyRadius: this.bodyRadius.valueAsNumber,
+      dangerCost: this.dangerCost.valueAsNumber,
+    };
+    this.asking.run(async (signal) => {
+      this.show(await requestPlan(session.name, shownWeave(this.context), request, signal));
+    });
+  }
+
+  private show(way: Way): void {
+    this.way = way;
+    this.line.setCoordinates(way.points);
+    const rows: [string, string][] = [
+      ['Length', format.distance(way.length)],
+      [`Cost, danger counting ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(way.cost, 2)],
+    ];
+    this.result.replaceChildren(figures(rows));
+    this.outcome.say('There is a way. Drag its ends, or click another end.');
+  }
+
+  private refuse(error: unknown): void {
+    this.way = null;
+    this.line.setCoordinates([]);
+    this.result.replaceChildren();
+    this.outcome.complain(error);
+  }
+
+  /** A way is right for the map that it was found on. */
+  private watch(): void {
+    const session = this.context.session();
+    const grown = this.way !== null && session !== null && session.revision > this.way.revision;
+    if (!grown || this.asking.busy || shownWeave(this.context) !== null) return;
+    if (this.keepUp.checked) this.ask();
+    else this.outcome.say('The map has grown since this way was found.');
+  }
+}
+
+function placeText([x, y]: Point): string {
+  return `x ${format.decimal(x, 2)}, y ${format.decimal(y, 2)} m`;
+}

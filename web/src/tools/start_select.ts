@@ -1,0 +1,42 @@
+/** Where a way begins: at a place of the map, or where a robot is. */
+import type { Robot } from '../api/types';
+import { el } from '../dom';
+
+/** No robot can have this name. */
+const kPlace = '';
+
+export class StartSelect {
+  readonly element = el('select', { name: 'start' });
+
+  /** @param robots those of now; asked again whenever the list is opened */
+  constructor(private readonly robots: () => Robot[]) {
+    this.fill();
+    for (const event of ['focus', 'pointerdown']) this.element.addEventListener(event, () => this.fill());
+  }
+
+  /** The chosen robot; null: a place of the map. */
+  get robot(): string | null {
+    return this.element.value === kPlace ? null : this.element.value;
+  }
+
+  choosePlace(): void {
+    this.element.value = kPlace;
+  }
+
+  /** What it is known to be, metres; null where nobody has said. */
+  get bodyRadius(): number | null {
+    return this.robots().find(({ name }) => name === this.robot)?.bodyRadius ?? null;
+  }
+
+  private fill(): void {
+    const names = this.robots().flatMap(({ name, pose }) => (pose ? [name] : []));
+    const there = [...this.element.options].slice(1).map(({ value }) => value);
+    if (this.element.options.length > 0 && JSON.stringify(names) === JSON.stringify(there)) return;
+    const chosen = this.element.value;
+    this.element.replaceChildren(
+      el('option', { value: kPlace }, 'A place on the map'),
+      ...names.map((name) => el('option', { value: name, dir: 'auto' }, `Robot ${name}`)),
+    );
+    this.element.value = names.includes(chosen) ? chosen : kPlace;
+  }
+}

@@ -1,0 +1,173 @@
+/** The session's maps made once more in another way, beside those that there are. */
+import { deleteWeave, startWeave } from '../../api/weaves';
+import { fetchWeaves, type ListedWeave } from '../../api/weave_list';
+import { el } from '../../dom';
+import { poll, type Pace } from '../../poll';
+import type { ToolContext } from '../context';
+import { button } from '../fields';
+import { NewestOnly } from '../newest_only';
+import { Outcome } from '../outcome';
+import type { Tool } from '../toolbox';
+import type { Comparison } from './comparison';
+import { DifferenceView } from './difference_view';
+import { SettingsForm } from './settings_form';
+import { isUnderWay, WeaveRows } from './weave_rows';
+
+const kBusyPace: Pace = { visibleMs: 300, hiddenMs: 2_000 };
+const kIdlePace: Pace = { visibleMs: 3_000, hiddenMs: 15_000 };
+
+/** @param comparison goes on when the tool is closed: the map is there to be looked at */
+export function weaveTool(context: ToolContext, comparison: Comparison): Tool {
+  return {
+    id: 'weave',
+    title: 'Re-weave and compare',
+    key: 'w',
+    does: 'makes the maps once more in another way',
+    icon: 'M2.5 4.5h4l3 7h4M2.5 11.5h4l3-7h4M11.5 2.5l2 2-2 2M11.5 9.5l2 2-2 2',
+    open: (card, signal) => void new WeaveCard(context, comparison, card, signal),
+  };
+}
+
+class WeaveCard {
+  private readonly form: SettingsForm;
+  private readonly rows: WeaveRows;
+  private readonly difference: DifferenceView;
+  private readonly outcome = new Outcome();
+  private readonly asking: NewestOnly;
+  private readonly end = button('End the comparison', () => this.endComparison());
+  private polling = new AbortController();
+  /** The weave that was asked for here: shown as soon as it is done. */
+  private wanted: string | null = null;
+
+  constructor(
+    private readonly context: ToolContext,
+    private readonly comparison: Comparison,
+    card: HTMLElement,
+    private readonly signal: AbortSignal,
+  ) {
+    this.form = new SettingsForm(context.session()?.config ?? {});
+    this.rows = new WeaveRows(() => context.session()?.config ?? {}, {
+      show: (weave) => this.show(weave),
+      remove: (weave) => this.remove(weave),
+    });
+    this.difference = new DifferenceView(context, signal, this.outcome);
+    this.asking = new NewestOnly(
+      signal,
+      () => {},
+      (error) => this.outcome.complain(error),
+    );
+    this.fill(card);
+    signal.addEventListener('abort', () => this.polling.abort());
+    this.followSides();
+    this.markShown();
+    this.watch(kIdlePace);
+  }
+
+  private fill(card: HTMLElement): void {
+    const form = el(
+      'form',
+      { class: 'tool-form' },
+      this.form.element,
+      el(
+        'div',
+        { class: 'tool-buttons' },
+        el('button', { class: 'tool-button primary' }, 'Weave'),
+        button('As the session', () => this.form.reset()),
+      ),
+    );
+    form.addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.start();
+    });
+    card.append(this.outcome.element, this.end, this.difference.element, form, this.rows.element);
+  }
+
+  /** Another layer, or another moment, is another difference. */
+  private followSides(): void {
+    const { picture } = this.context;
+    const sides = (): string => `${picture.main?.layer ?? ''} ${picture.main?.source.weave ?? ''}`;
+    let seen = sides();
+    picture.listen(() => {
+      if (sides() === seen) return;
+      seen = sides();
+      this.markShown();
+    }, this.signal);
+  }
+
+  private start(): void {
+    const session = this.context.session();
+    if (!session) return;
+    this.asking.run(async (signal) => {
+      this.outcome.say('The server weaves\u2026');
+      const weave = await startWeave(session.name, this.form.changes, signal);
+      this.wanted = weave.id;
+      this.watch(kBusyPace);
+    });
+  }
+
+  /** Asks for the list again and again, more often while something is under way. */
+  private watch(pace: Pace): void {
+    this.polling.abort();
+    this.polling = new AbortController();
+    const session = this.context.session();
+    if (!session || this.signal.aborted) return;
+    const { signal } = this.polling;
+    void poll(
+      async () => {
+        const weaves = await fetchWeaves(session.name, signal);
+        if (!signal.aborted) this.hear(weaves, pace);
+      },
+      pace,
+      signal,
+      (error) => error && this.outcome.complain(error),
+    );
+  }
+
+  private hear(weaves: ListedWeave[], pace: Pace): void {
+    this.rows.show(weaves);
+    const wanted = weaves.find(({ id }) => id === this.wanted);
+    if (wanted?.state === 'done') this.show(wanted);
+    else if (wanted && !isUnderWay(wanted)) this.fail(wanted);
+    const wantedPace = weaves.some(isUnderWay) ? kBusyPace : kIdlePace;
+    if (wantedPace !== pace) this.watch(wantedPace);
+  }
+
+  private show(weave: ListedWeave): void {
+    const session = this.context.session();
+    if (!session) return;
+    this.wanted = null;
+    this.comparison.show(session, weave, (error) => this.outcome.complain(error));
+    this.outcome.say('Shown right of the line; drag it to compare.');
+    this.markShown();
+  }
+
+  private fail({ state, reason }: ListedWeave): void {
+    this.wanted = null;
+    this.outcome.complain(new Error(reason === '' ? `The weave was ${state}` : reason));
+  }
+
+  private remove(weave: ListedWeave): void {
+    const session = this.context.session();
+    if (!session) return;
+    if (weave.id === this.comparison.weave?.id) this.endComparison();
+    if (weave.id === this.wanted) this.wanted = null;
+    this.asking.run(async (signal) => {
+      await deleteWeave(session.name, weave.id, signal);
+      this.outcome.say(isUnderWay(weave) ? 'Cancelled.' : 'Deleted.');
+      this.watch(kBusyPace);
+    });
+  }
+
+  private endComparison(): void {
+    this.comparison.end();
+    this.outcome.say('');
+    this.markShown();
+  }
+
+  private markShown(): void {
+    const shown = this.comparison.weave?.id ?? null;
+    this.rows.mark(shown);
+    this.end.hidden = shown === null;
+    this.difference.compare(shown);
+  }
+}
