@@ -3,13 +3,25 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
-import { colourOf, countPixels, keepPicture, launchBrowser, openPage, says, showsColour } from './browser.mjs';
+import {
+  colourOf,
+  countPixels,
+  countsPixels,
+  keepPicture,
+  launchBrowser,
+  openPage,
+  says,
+  showsColour,
+} from './browser.mjs';
 import { pixelsOf } from './map_places.mjs';
 import { Server, startRobot } from './programs.mjs';
 
 const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '0'];
 const kPng = Buffer.from([0x89, 0x50, 0x4e, 0x47]);
 const kYaml = 'image: lab.pgm\nresolution: 0.1\norigin: [-2.0, -1.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n';
+
+/** What the server's picture of a difference has where only the second map sees an obstacle. */
+const kOnlyInWeave = [213, 94, 0];
 
 /** A room of 40 x 30 cells with a wall around it. */
 function roomPgm() {
@@ -273,6 +285,12 @@ describe('tools on the map', { timeout: 280_000 }, () => {
       await page.waitForSelector('#swipe:not([hidden])');
       await says(page, '.tool-weaves', /cell_size 0\.1, ray_model bresenham/);
       await page.waitForSelector('.tool-weaves [aria-pressed=true]');
+      await says(page, '.tool-difference', /Agreement9\d\.\d %/);
+      await page.check('[name=difference]');
+      await countsPixels(page, kOnlyInWeave, (pixels) => pixels > 100);
+      await keepPicture(page, 'tool-weave-difference');
+      await page.uncheck('[name=difference]');
+      await countsPixels(page, kOnlyInWeave, (pixels) => pixels === 0);
       await keepPicture(page, 'tool-weave');
       assert.deepEqual(await violations(page), []);
     });
