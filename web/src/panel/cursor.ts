@@ -1,6 +1,6 @@
 /** Where the person points at, in metres and cells, and what is known there. */
 import type OlMap from 'ol/Map';
-import { el, setText } from '../dom';
+import { byId, el, setText } from '../dom';
 import * as format from '../format';
 import type { CellReaders } from '../map/cell_readers';
 import { cellAt } from '../map/grid';
@@ -9,18 +9,6 @@ import type { CellValue } from '../layers/cell_value';
 import { kLayerTitles, type LayerName } from '../layers/layers';
 import type { Picture } from '../picture';
 
-export interface CursorFields {
-  box: HTMLElement;
-  x: HTMLElement;
-  y: HTMLElement;
-  cell: HTMLElement;
-  /** Of the layer that is seen there. */
-  value: HTMLElement;
-  /** Of the others. */
-  others: HTMLElement;
-  crosshair: HTMLElement;
-}
-
 /** What is under the cursor belongs to the maps of a session. */
 export interface CursorScene {
   readers: CellReaders;
@@ -28,13 +16,23 @@ export interface CursorScene {
 }
 
 export class Cursor {
+  private readonly fields = {
+    box: byId('cursor', HTMLElement),
+    x: byId('cursor-x', HTMLElement),
+    y: byId('cursor-y', HTMLElement),
+    cell: byId('cursor-cell', HTMLElement),
+    /** Of the layer that is seen there. */
+    value: byId('cursor-value', HTMLElement),
+    /** Of the others. */
+    others: byId('cursor-others', HTMLElement),
+    crosshair: byId('crosshair', HTMLElement),
+  };
   private pixel: number[] | null = null;
   private scene: CursorScene | null = null;
 
   constructor(
     private readonly map: OlMap,
     private readonly target: HTMLElement,
-    private readonly fields: CursorFields,
   ) {
     map.on('pointermove', ({ pixel }) => this.pointAt(pixel));
     map.on('click', ({ pixel }) => this.pointAt(pixel));

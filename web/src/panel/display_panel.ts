@@ -1,22 +1,22 @@
 /** Light or dark, the palette, and the list of keys. */
+import { byId } from '../dom';
 import type { Keys } from '../keys';
 import { kPalettes, kSchemes, type Settings, type SettingsStore } from '../settings';
 
-export interface DisplayFields {
-  scheme: HTMLSelectElement;
-  palette: HTMLSelectElement;
-  keysOpen: HTMLButtonElement;
-  keys: HTMLDialogElement;
-  keysBody: HTMLElement;
-}
-
 export class DisplayPanel {
+  private readonly fields = {
+    scheme: byId('scheme', HTMLSelectElement),
+    palette: byId('palette', HTMLSelectElement),
+    keysOpen: byId('keys-open', HTMLButtonElement),
+    keys: byId('keys', HTMLDialogElement),
+    keysBody: byId('keys-body', HTMLElement),
+  };
+
   constructor(
-    private readonly fields: DisplayFields,
     settings: SettingsStore,
     private readonly keys: Keys,
   ) {
-    const { scheme, palette, keysOpen } = fields;
+    const { scheme, palette, keysOpen } = this.fields;
     scheme.addEventListener('change', () => {
       settings.change({ scheme: kSchemes.find((each) => each === scheme.value) ?? 'auto' });
     });

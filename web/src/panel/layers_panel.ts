@@ -1,23 +1,9 @@
 /** Which layers are shown, how, and what their colours mean. */
-import { el, setText } from '../dom';
+import { byId, el, setText } from '../dom';
 import { isLayerName, kLayerNotes, kLayers, kLayerTitles } from '../layers/layers';
 import type { Picture, PictureState } from '../picture';
 import type { Settings, SettingsStore } from '../settings';
 import { showLegend } from './legend';
-
-export interface LayersFields {
-  layers: HTMLElement;
-  note: HTMLElement;
-  legend: HTMLElement;
-  opacity: HTMLInputElement;
-  beside: HTMLSelectElement;
-  besideOptions: HTMLElement;
-  besideOpacity: HTMLInputElement;
-  besideLegend: HTMLElement;
-  swipe: HTMLInputElement;
-  over: HTMLInputElement;
-  overlays: HTMLElement;
-}
 
 type Switch = { [Key in keyof Settings]: Settings[Key] extends boolean ? Key : never }[keyof Settings];
 
@@ -30,16 +16,28 @@ const kSwitches: [key: Switch, label: string][] = [
 ];
 
 export class LayersPanel {
+  private readonly fields = {
+    layers: byId('layers', HTMLElement),
+    note: byId('layer-note', HTMLElement),
+    legend: byId('legend', HTMLElement),
+    opacity: byId('opacity', HTMLInputElement),
+    beside: byId('beside', HTMLSelectElement),
+    besideOptions: byId('beside-options', HTMLElement),
+    besideOpacity: byId('beside-opacity', HTMLInputElement),
+    besideLegend: byId('beside-legend', HTMLElement),
+    swipe: byId('mode-swipe', HTMLInputElement),
+    over: byId('mode-over', HTMLInputElement),
+    overlays: byId('overlays', HTMLElement),
+  };
   private readonly radios: HTMLInputElement[];
   private readonly switches = new Map<Switch, HTMLInputElement>();
 
   constructor(
-    private readonly fields: LayersFields,
     private readonly picture: Picture,
     private readonly settings: SettingsStore,
   ) {
     this.radios = kLayers.map((layer) => this.addRadio(layer, kLayerTitles[layer]));
-    fields.beside.append(
+    this.fields.beside.append(
       el('option', { value: '' }, 'None'),
       ...kLayers.map((layer) => el('option', { value: layer }, kLayerTitles[layer])),
     );

@@ -1,5 +1,5 @@
 /** Tools that work on the map, one at a time: a button for each, and a card beside the map while it is open. */
-import { el, setText } from '../dom';
+import { byId, el, setText } from '../dom';
 import type { Keys } from '../keys';
 
 export interface Tool {
@@ -17,27 +17,25 @@ export interface Tool {
   open(card: HTMLElement, signal: AbortSignal): void;
 }
 
-export interface ToolboxFields {
-  /** Where the buttons go. */
-  bar: HTMLElement;
-  card: HTMLElement;
-  title: HTMLElement;
-  body: HTMLElement;
-  close: HTMLButtonElement;
-}
-
 export class Toolbox {
+  private readonly fields = {
+    /** Where the buttons go. */
+    bar: byId('toolbar', HTMLElement),
+    card: byId('tool', HTMLElement),
+    title: byId('tool-title', HTMLElement),
+    body: byId('tool-body', HTMLElement),
+    close: byId('tool-close', HTMLButtonElement),
+  };
   private readonly buttons = new Map<Tool, HTMLButtonElement>();
   private open: Tool | null = null;
   private leave = new AbortController();
 
   constructor(
-    private readonly fields: ToolboxFields,
     private readonly keys: Keys,
     /** Whether there is a map to work on. */
     private readonly hasMap: () => boolean,
   ) {
-    fields.close.addEventListener('click', () => this.close());
+    this.fields.close.addEventListener('click', () => this.close());
     keys.bind({ key: 'Escape', does: 'closes the tool that is open', run: () => this.close() });
   }
 
