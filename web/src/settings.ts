@@ -12,6 +12,8 @@ export interface Settings {
   trails: boolean;
   points: boolean;
   frontiers: boolean;
+  /** Where robots are going. */
+  goals: boolean;
   /** HIMM counters as numbers. */
   counters: boolean;
 }
@@ -24,6 +26,7 @@ const kDefaults: Settings = {
   trails: true,
   points: true,
   frontiers: false,
+  goals: true,
   counters: false,
 };
 
@@ -81,7 +84,7 @@ function read(): Settings {
 
 function sound(kept: Record<string, unknown>): Settings {
   const settings: Settings = { ...kDefaults };
-  for (const key of ['robots', 'trails', 'points', 'frontiers', 'counters'] as const) {
+  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'counters'] as const) {
     const value = kept[key];
     if (typeof value === 'boolean') settings[key] = value;
   }

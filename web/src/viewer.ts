@@ -1,7 +1,8 @@
 /** One chosen session, from the server's events to everything that shows it. */
+import { fetchFrontiers } from './api/frontiers';
+import { fetchGoals, type RobotGoal } from './api/goals';
 import type { LiveEvent, LiveRobot } from './api/live';
-import type { Robot, Session, TileChange } from './api/types';
-import { FrontierWatch } from './frontier_watch';
+import type { Frontier, Robot, Session, TileChange } from './api/types';
 import type { LayerName } from './layers/layers';
 import { Feed } from './live/feed';
 import type { Trail, Trails } from './live/trails';
@@ -16,6 +17,7 @@ import type { RobotList } from './panel/robot_list';
 import type { Status } from './panel/status';
 import type { Picture } from './picture';
 import { RobotColours } from './robot_colours';
+import { RevisionWatch } from './revision_watch';
 import type { SettingsStore } from './settings';
 import { kRobotColours } from './theme';
 
@@ -54,7 +56,8 @@ interface Open {
   trails: Trails;
   /** By number. */
   robots: Map<number, Robot>;
-  frontiers: FrontierWatch;
+  frontiers: RevisionWatch<Frontier[]>;
+  goals: RevisionWatch<RobotGoal[]>;
   readers: CellReaders;
 }
 
@@ -103,6 +106,10 @@ export class Viewer {
         started: (session, trails) => {
           seen = true;
           this.start(session, trails);
+        },
+        opened: () => {
+          this.open?.frontiers.doubt();
+          this.open?.goals.doubt();
         },
         event: (event) => this.hear(event),
         tiles: (layer, tiles) => this.showTiles(layer, tiles),
@@ -157,8 +164,17 @@ export class Viewer {
       cursor.update();
       map.updateCounters();
     });
-    const frontiers = new FrontierWatch(session.name, (all) => map.showFrontiers(all), this.reading.signal);
-    this.open = { session: newest(session), source, trails, robots: new Map(), frontiers, readers };
+    const { name } = session;
+    const { signal } = this.reading;
+    this.open = {
+      session: newest(session),
+      source,
+      trails,
+      robots: new Map(),
+      frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
+      goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => map.showGoals(all), signal),
+      readers,
+    };
     map.open(session.cellSize, this.colours, settings.get());
     picture.open(source);
     cursor.show({ readers, picture });
@@ -172,9 +188,10 @@ export class Viewer {
 
   private hear(event: LiveEvent): void {
     if (!this.open) return;
-    const { robots, frontiers, session } = this.open;
+    const { robots, frontiers, goals, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
     frontiers.hear(event.frontiersRevision);
+    goals.hear(event.goalsRevision);
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
@@ -227,12 +244,13 @@ export class Viewer {
     this.showCounters();
   }
 
-  /** Scans and frontiers are told of the present only. */
+  /** Scans, frontiers and goals are told of the present only. */
   private chooseOverlays(): void {
     const chosen = this.parts.settings.get();
-    const settings = this.moment ? { ...chosen, points: false, frontiers: false } : chosen;
+    const settings = this.moment ? { ...chosen, points: false, frontiers: false, goals: false } : chosen;
     this.parts.map.choose(settings);
     this.open?.frontiers.enable(settings.frontiers);
+    this.open?.goals.enable(settings.goals);
   }
 
   private showCounters(): void {

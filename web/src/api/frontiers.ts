@@ -4,12 +4,12 @@ import { decodeAreas, decodePoint, fields, list, number } from './decode';
 import { getJson, Refused } from './http';
 import type { Frontier } from './types';
 
-/** @returns null while nothing can be said: no robot has a place to go from yet */
-export async function fetchFrontiers(name: string, signal: AbortSignal): Promise<Frontier[] | null> {
+/** None while no robot has a place to go from. */
+export async function fetchFrontiers(name: string, signal: AbortSignal): Promise<Frontier[]> {
   try {
     return decodeFrontiers(await getJson(`${sessionPath(name)}/frontiers.geojson`, signal));
   } catch (error) {
-    if (error instanceof Refused && error.status === 409) return null;
+    if (error instanceof Refused && error.status === 409) return [];
     throw error;
   }
 }

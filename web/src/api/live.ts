@@ -67,6 +67,8 @@ export interface LiveEvent {
   draining: boolean;
   /** Rises when frontiers may have changed. */
   frontiersRevision: number;
+  /** Rises when what robots were told to do has changed. */
+  goalsRevision: number;
   tiles: LiveTiles[];
   /** Those with news. */
   robots: LiveRobot[];
@@ -82,6 +84,7 @@ export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
       failure: event.state === SessionState['SESSION_STATE_FAILED'] ? event.reason : null,
       draining: event.state === SessionState['SESSION_STATE_DRAINING'],
       frontiersRevision: event.frontiers_revision,
+      goalsRevision: event.goals_revision,
       tiles: event.tiles.flatMap(decodeTiles),
       robots: event.robots.map(decodeRobot),
     };

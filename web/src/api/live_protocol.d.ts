@@ -29,7 +29,7 @@ declare module 'virtual:live-protocol' {
     trail: number[];
     trail_from: number;
     scan: ScanPoints | undefined;
-    body_radius?: number;
+    body_radius: number;
   }
 
   interface LiveEvent {
@@ -39,6 +39,7 @@ declare module 'virtual:live-protocol' {
     reason: string;
     counters: { scans: number } | undefined;
     frontiers_revision: number;
+    goals_revision: number;
     tiles: TileChanges[];
     robots: RobotUpdate[];
   }

@@ -17,6 +17,8 @@ class Replaced extends Error {}
 export interface FeedEvents {
   /** The session is there, or was made anew under the same name: forget what was shown before. */
   started(session: Session, trails: Trails): void;
+  /** There is a live connection: the first, or another after one that ended. */
+  opened(): void;
   event(event: LiveEvent): void;
   tiles(layer: LayerName, tiles: TileChange[]): void;
   /** The trails hold more than before. */
@@ -81,6 +83,7 @@ export class Feed {
   private opened(socket: LiveSocket): void {
     this.socket = socket;
     if (!this.wantsPoints) socket.ask(false);
+    this.events.opened();
   }
 
   private start(session: Session): void {

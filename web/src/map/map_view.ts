@@ -2,6 +2,7 @@
 import { defaults as defaultInteractions } from 'ol/interaction/defaults';
 import OlMap from 'ol/Map';
 import View from 'ol/View';
+import type { RobotGoal } from '../api/goals';
 import type { Frontier, Point, Robot } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import type { RobotColours } from '../robot_colours';
@@ -11,6 +12,7 @@ import { CellLabels } from './cell_labels';
 import { CellPane } from './cell_pane';
 import type { CellReader } from './cell_reader';
 import { FrontiersLayer } from './frontiers_layer';
+import { GoalsLayer } from './goals_layer';
 import { squareExtent, tileResolutions } from './grid';
 import type { MapSource } from './map_source';
 import { kOrder } from './order';
@@ -34,6 +36,7 @@ interface Scene {
   beside: CellPane;
   labels: CellLabels;
   frontiers: FrontiersLayer;
+  goals: GoalsLayer;
   paths: PathLayer;
   points: PointsLayer;
   robots: RobotsLayer;
@@ -64,28 +67,30 @@ export class MapView {
       beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells),
       labels: new CellLabels(this.map, cellSize, this.theme),
       frontiers: new FrontiersLayer(this.theme),
+      goals: new GoalsLayer(colours, this.theme),
       paths: new PathLayer(colours, this.theme),
       points: new PointsLayer(colours, this.theme),
       robots: new RobotsLayer(colours, this.theme),
     };
-    const { labels, frontiers, paths, points, robots } = this.scene;
-    for (const { layer } of [labels, frontiers, paths, points, robots]) this.map.addLayer(layer);
+    const { labels, frontiers, goals, paths, points, robots } = this.scene;
+    for (const { layer } of [labels, frontiers, goals, paths, points, robots]) this.map.addLayer(layer);
     this.choose(settings);
   }
 
   close(): void {
     if (!this.scene) return;
-    const { main, beside, labels, frontiers, paths, points, robots } = this.scene;
+    const { main, beside, labels, frontiers, goals, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.clear();
-    for (const { layer } of [labels, frontiers, paths, points, robots]) this.map.removeLayer(layer);
+    for (const { layer } of [labels, frontiers, goals, paths, points, robots]) this.map.removeLayer(layer);
     this.scene = null;
   }
 
   /** Which of the things on top of the map are to be seen. */
-  choose({ robots, trails, points, frontiers }: Settings): void {
+  choose({ robots, trails, points, goals, frontiers }: Settings): void {
     this.scene?.robots.layer.setVisible(robots);
     this.scene?.paths.layer.setVisible(trails);
     this.scene?.points.layer.setVisible(points);
+    this.scene?.goals.layer.setVisible(goals);
     this.scene?.frontiers.layer.setVisible(frontiers);
   }
 
@@ -130,6 +135,10 @@ export class MapView {
     this.scene?.points.clear();
   }
 
+  showGoals(goals: RobotGoal[]): void {
+    this.scene?.goals.show(goals);
+  }
+
   showFrontiers(frontiers: Frontier[]): void {
     this.scene?.frontiers.show(frontiers);
   }
@@ -158,9 +167,9 @@ export class MapView {
   setTheme(theme: Theme): void {
     this.theme = theme;
     if (!this.scene) return;
-    const { main, beside, labels, frontiers, paths, points, robots } = this.scene;
+    const { main, beside, labels, frontiers, goals, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.setPalette(theme.cells);
-    for (const overlay of [labels, frontiers, paths, points, robots]) overlay.setTheme(theme);
+    for (const overlay of [labels, frontiers, goals, paths, points, robots]) overlay.setTheme(theme);
   }
 }
 

@@ -11,7 +11,8 @@ const kSwitches: [key: Switch, label: string][] = [
   ['robots', 'Robots'],
   ['trails', 'Trails'],
   ['points', 'Newest scans'],
-  ['frontiers', 'Frontiers and goals'],
+  ['goals', 'Goals and ways'],
+  ['frontiers', 'Frontiers'],
   ['counters', 'HIMM counters in cells'],
 ];
 
