@@ -37,6 +37,7 @@ enum class Operation {
     kPlan,
     kCoverage,
     kGoal,
+    kGoals,
     kLog,
     kLive,
     kStartWeave,
