@@ -29,7 +29,7 @@ public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
-    static constexpr std::size_t kWayPointsMax = 4096;
+    static constexpr std::size_t kWayPointsMax = 16'384;
     static constexpr std::size_t kPointsMax = std::size_t{1} << 20; ///< a way beyond them has its two first points
 
     /// How things stand with a session.
