@@ -72,6 +72,7 @@ std::string encode(const LiveEvent& event) {
     out.set_frontiers_revision(event.frontiers_revision);
     for (const auto& changes : event.tiles) write(changes, *out.add_tiles());
     for (const auto& robot : event.robots) write(robot, *out.add_robots());
+    out.set_goals_revision(event.goals_revision);
     return out.SerializeAsString();
 }
 

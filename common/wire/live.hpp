@@ -78,6 +78,7 @@ struct LiveEvent {
     std::uint64_t frontiers_revision = 0;
     std::vector<TileChanges> tiles;
     std::vector<RobotUpdate> robots;
+    std::uint64_t goals_revision = 0;
 };
 
 [[nodiscard]] std::string encode(const LiveEvent& event);

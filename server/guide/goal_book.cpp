@@ -38,6 +38,11 @@ Visit begin_visit(const planning::FrontierGoal& goal, const mapping::RobotState&
             state.scan_count, std::nullopt};
 }
 
+Goal told(const planning::FrontierGoal& goal, const mapping::Snapshot& maps) {
+    const double cell_size = maps.config.cell_size;
+    return {centre_of(goal.cell, cell_size), centre_of(goal.target, cell_size), goal.in_danger, maps.revision};
+}
+
 } // namespace
 
 Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::Session>& session,
@@ -49,41 +54,49 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
     const mapping::RobotState state = state_of(maps, robot);
     InVain in_vain = take_in_vain(session, maps);
     std::optional<Visit> going_on; // at the goal, without having looked yet
-    if (auto had = take_entry(session, robot); had && had->settings == maps.config && is_there(had->visit, state)) {
+    if (const auto* had = find_entry(session, robot);
+        had != nullptr && had->settings == maps.config && is_there(had->visit, state)) {
         if (has_looked(had->visit, state, cell_size)) {
             add(planning::seen_in_vain(maps.classes, had->goal, had->around_target), in_vain.cells);
         } else {
             going_on = had->visit;
         }
     }
-    auto found =
-        planning::next_goal(maps.classes, cell_size, position, targets_in(session, cell_size), options, in_vain.cells);
+    auto found = planning::next_goal(maps.classes, cell_size, position, targets_of_others(session, robot, cell_size),
+                                     options, in_vain.cells);
     keep(std::move(in_vain));
-    if (!found || !found->goal) return found;
+    forget_entry(session, robot);
+    if (!found || !found->goal) {
+        ways_.take_back(session, robot);
+        return found;
+    }
     Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);
     if (going_on && is_there(visit, state)) { // be it a better goal: it waits no longer than it has to
         visit.asking_since = going_on->asking_since.value_or(state.stamp);
     }
-    entries_.push_back({session, robot, now, session->is_connected(robot), maps.config, found->goal->cell,
-                        found->around_target, visit});
+    const auto given = ways_.give_goal(session, robot, told(*found->goal, maps),
+                                       {WayKind::kGoal, found->path.points, found->path.length_m, maps.revision}, now);
+    entries_.push_back({session, robot, given, maps.config, found->goal->cell, found->around_target, visit});
     return found;
 }
 
-std::optional<GoalBook::Entry> GoalBook::take_entry(const std::shared_ptr<const session::Session>& session,
-                                                    RobotIndex robot) {
+const GoalBook::Entry* GoalBook::find_entry(const std::shared_ptr<const session::Session>& session,
+                                            RobotIndex robot) const {
     const auto entry = std::ranges::find_if(
         entries_, [&](const Entry& one) { return one.robot == robot && one.session.lock() == session; });
-    if (entry == entries_.end()) return std::nullopt;
-    Entry taken = std::move(*entry);
-    entries_.erase(entry);
-    return taken;
+    return entry == entries_.end() ? nullptr : &*entry;
 }
 
-std::vector<grid::Cell> GoalBook::targets_in(const std::shared_ptr<const session::Session>& session,
-                                             double cell_size) const {
+void GoalBook::forget_entry(const std::shared_ptr<const session::Session>& session, RobotIndex robot) {
+    std::erase_if(entries_, [&](const Entry& one) { return one.robot == robot && one.session.lock() == session; });
+}
+
+std::vector<grid::Cell> GoalBook::targets_of_others(const std::shared_ptr<const session::Session>& session,
+                                                    RobotIndex robot, double cell_size) const {
     std::vector<grid::Cell> targets;
     for (const Entry& entry : entries_) {
-        if (entry.session.lock() == session) targets.push_back(cell_of(entry.visit.target, cell_size));
+        if (entry.robot != robot && entry.session.lock() == session)
+            targets.push_back(cell_of(entry.visit.target, cell_size));
     }
     return targets;
 }
@@ -114,14 +127,9 @@ void GoalBook::keep(InVain in_vain) {
 
 void GoalBook::forget_what_counts_no_longer(Clock::time_point now) {
     std::erase_if(in_vain_, [](const InVain& one) { return one.session.expired(); });
-    std::erase_if(entries_, [&](Entry& entry) {
+    std::erase_if(entries_, [&](const Entry& entry) {
         const auto session = entry.session.lock();
-        if (!session) return true;
-        if (session->is_connected(entry.robot)) {
-            entry.was_connected = true;
-            return false;
-        }
-        return entry.was_connected || now - entry.given > kKeptForAbsent;
+        return !session || !ways_.holds(session, entry.robot, entry.given, now);
     });
 }
 

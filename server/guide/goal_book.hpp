@@ -1,11 +1,12 @@
 #pragma once
 
 #include "server/guide/visit.hpp"
+#include "server/guide/way_book.hpp"
 #include "server/mapping/snapshot.hpp"
 #include "server/planning/goals.hpp"
 #include "server/session/session.hpp"
 
-#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,9 +16,8 @@ namespace scanloom::guide {
 
 /// Who pursues which frontier: gives each robot of a session its next goal, and no two of them the same frontier.
 ///
-/// A robot's goal counts until the robot asks again. It counts no longer once the robot has left: a robot that comes
-/// back asks again. A goal that was asked for on behalf of a robot that was not connected counts until the robot has
-/// connected and left, or for kKeptForAbsent. Nothing of it survives a restart.
+/// A robot's goal counts until the robot asks again, and as long as the WayBook says that the robot holds it: no longer
+/// once the robot has left; a robot that comes back asks again. Nothing of it survives a restart.
 /// Goals are kept as places in the map frame: those of maps woven with other cells count, too.
 ///
 /// It also remembers what robots have looked at in vain, so that exploring comes to an end where a frontier cannot be
@@ -29,9 +29,8 @@ namespace scanloom::guide {
 /// Thread  any; one search at a time.
 class GoalBook {
 public:
-    using Clock = std::chrono::steady_clock;
+    using Clock = WayBook::Clock;
 
-    static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
     static constexpr std::size_t kInVainCellsMax = std::size_t{1} << 16;
     static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently asked for go
 
@@ -43,12 +42,14 @@ public:
                                                   const Point2& position, Clock::time_point now,
                                                   const planning::ExplorationOptions& options = {});
 
+    /// What robots were told, these goals among it.
+    [[nodiscard]] WayBook& ways() noexcept { return ways_; }
+
 private:
     struct Entry {
         std::weak_ptr<const session::Session> session;
         RobotIndex robot;
-        Clock::time_point given;
-        bool was_connected;
+        std::uint64_t given;         // WayBook::give_goal()
         mapping::MapConfig settings; // of the maps
         grid::Cell goal;
         std::vector<grid::Cell> around_target;
@@ -65,14 +66,16 @@ private:
 
     void forget_what_counts_no_longer(Clock::time_point now);
 
-    [[nodiscard]] std::optional<Entry> take_entry(const std::shared_ptr<const session::Session>& session,
-                                                  RobotIndex robot);
-    [[nodiscard]] std::vector<grid::Cell> targets_in(const std::shared_ptr<const session::Session>& session,
-                                                     double cell_size) const;
+    [[nodiscard]] const Entry* find_entry(const std::shared_ptr<const session::Session>& session,
+                                          RobotIndex robot) const;
+    [[nodiscard]] std::vector<grid::Cell> targets_of_others(const std::shared_ptr<const session::Session>& session,
+                                                            RobotIndex robot, double cell_size) const;
+    void forget_entry(const std::shared_ptr<const session::Session>& session, RobotIndex robot);
     [[nodiscard]] InVain take_in_vain(const std::shared_ptr<const session::Session>& session,
                                       const mapping::Snapshot& maps);
     void keep(InVain in_vain);
 
+    WayBook ways_;
     std::mutex mutex_;
     std::vector<Entry> entries_;  // at most one a robot
     std::vector<InVain> in_vain_; // of each session and settings one, if it has cells; the last asked for last

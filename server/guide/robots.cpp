@@ -13,6 +13,7 @@ Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view na
 }
 
 Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot) {
+    if (robot >= maps.robots.size()) return Error{Errc::kNoPath, "the robot has just joined, and sent no scan yet"};
     const auto& state = maps.robots[robot];
     if (state.pose) return *state.pose;
     return Error{Errc::kNoPath, fmt::format("where robot '{}' is, is not known: it has sent no scan yet", state.name)};

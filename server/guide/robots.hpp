@@ -12,7 +12,7 @@ namespace scanloom::guide {
 [[nodiscard]] Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name);
 
 /// T_map_robot of the robot's newest scan that is in the maps.
-/// Errors  kNoPath: it has sent none; so there is no way from there.
+/// Errors  kNoPath: it has sent none, or joined after their last entry; so there is no way from there.
 [[nodiscard]] Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot);
 
 } // namespace scanloom::guide

@@ -6,6 +6,7 @@
 #include "server/http/handlers/digest.hpp"
 #include "server/http/handlers/frontiers.hpp"
 #include "server/http/handlers/goal.hpp"
+#include "server/http/handlers/goals.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/import.hpp"
 #include "server/http/handlers/live.hpp"
@@ -117,8 +118,9 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kPlan: return post_plan(maps_, slots_, call);
     case Operation::kCoverage: return post_coverage(maps_, slots_, call);
     case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);
+    case Operation::kGoals: return get_goals(sessions_, goals_.ways(), slots_, call);
     case Operation::kLog: return get_log(sessions_, log_, call);
-    case Operation::kLive: return get_live(sessions_, call);
+    case Operation::kLive: return get_live(sessions_, goals_.ways(), call);
     case Operation::kStartWeave: return start_weave(maps_, call);
     case Operation::kListWeaves: return list_weaves(maps_, call);
     case Operation::kGetWeave: return get_weave(maps_, call);

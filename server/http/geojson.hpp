@@ -26,6 +26,9 @@ inline constexpr std::size_t kCellTextBytes = 120;
 /// [x, y]
 [[nodiscard]] boost::json::array position(const Point2& point);
 
+/// A Point.
+[[nodiscard]] std::string point_geometry(const Point2& point);
+
 /// A LineString; of a single point, one that stays there.
 [[nodiscard]] std::string line_string(std::span<const Point2> points);
 

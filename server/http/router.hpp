@@ -39,6 +39,7 @@ enum class Operation {
     kPlan,
     kCoverage,
     kGoal,
+    kGoals,
     kLog,
     kLive,
     kStartWeave,

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,16 @@ struct Search {
     }
 };
 
+/// The way that whoever looks on is shown as the robot's.
+std::optional<guide::Way> way_of(const Result<wire::Path>& path, Revision revision) {
+    if (!path) return std::nullopt;
+    return guide::Way{guide::WayKind::kPlan, path->points, path->length, revision};
+}
+std::optional<guide::Way> way_of(const Result<wire::Coverage>& coverage, Revision revision) {
+    if (!coverage) return std::nullopt;
+    return guide::Way{guide::WayKind::kCoverage, coverage->path.points, coverage->path.length, revision};
+}
+
 template <class Kind>
 wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBook& goals,
                          const planning::MayGoOn& may_go_on) {
@@ -115,7 +126,11 @@ wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBoo
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2(pose->x, pose->y);
     }
-    return reply(request, maps->revision, Search{asker, *maps, goals, may_go_on, *start}(request));
+    auto found = Search{asker, *maps, goals, may_go_on, *start}(request);
+    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // of goals the book knows
+        goals.ways().give_way(asker.session, asker.robot, way_of(found, maps->revision), guide::WayBook::Clock::now());
+    }
+    return reply(request, maps->revision, std::move(found));
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/guide/way_book.hpp"
 #include "server/session/session.hpp"
 
 #include <memory>
@@ -7,12 +8,14 @@
 
 namespace scanloom::live {
 
-/// To watch a session over the connection that asked for it. Holds no session: one that is deleted is gone.
+/// To watch a session over the connection that asked for it. Holds no session: one that is deleted is gone. The book
+/// outlives whatever shows sessions.
 struct Invitation {
     std::weak_ptr<session::Session> session;
     store::SessionId session_id = 0;
     std::string name; ///< of the session, as its end is told after it is gone
     std::string tag;  ///< LiveEvent::session
+    guide::WayBook& ways;
 };
 
 } // namespace scanloom::live

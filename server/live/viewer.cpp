@@ -33,8 +33,8 @@ websocket::close_reason close_with(websocket::close_code code, std::string_view 
 }
 
 /// A session's state as it is now. Pre: it is not deleted.
-Moment moment_of(const session::Session& session) {
-    Moment moment{session.snapshot(), session.connected(), wire::LiveState::kOk, {}};
+Moment moment_of(const session::Session& session, std::uint64_t goals_revision) {
+    Moment moment{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
     const auto closing = session.closing();
     const auto failure = session.failure();
     if (closing || failure) {
@@ -168,6 +168,7 @@ net::awaitable<void> Viewer::tell_events() {
         if (wishes_) narrator_.set_wishes(*std::exchange(wishes_, std::nullopt));
         auto work = [self = shared_from_this()]() -> net::awaitable<Narration> { co_return self->narrate(); };
         const Narration narration = co_await net::co_spawn(services_.showing, std::move(work), net::use_awaitable);
+        look_again_ = narration.look_again;
         if (narration.end) end(*narration.end);
         if (!narration.event) continue;
         due_ = Clock::now() + services_.config.interval;
@@ -179,8 +180,9 @@ net::awaitable<void> Viewer::tell_events() {
 /// Until there may be something to tell, and it may be told; or the end.
 net::awaitable<void> Viewer::wait_for_turn() {
     while (!ending_ && reading_) {
+        changed_ = changed_ || Clock::now() >= look_again_;
         if (changed_ && Clock::now() >= due_) co_return;
-        turn_.expires_at(changed_ ? due_ : Clock::time_point::max());
+        turn_.expires_at(changed_ ? due_ : look_again_);
         co_await turn_.async_wait(kAwaitTuple);
     }
 }
@@ -191,11 +193,12 @@ Viewer::Narration Viewer::narrate() {
     const auto session = invitation_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
     if (!session || (closing && closing->code == Errc::kGone)) {
-        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name))};
+        return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name)), {}};
     }
-    const auto event = narrator_.next(moment_of(*session));
-    if (!event) return {};
-    return {wire::encode(*event), {}};
+    const auto ways = invitation_.ways.state(session, Clock::now());
+    const auto event = narrator_.next(moment_of(*session, ways.revision));
+    if (!event) return {{}, {}, ways.until};
+    return {wire::encode(*event), {}, ways.until};
 }
 
 /// @return false when the connection cannot be used any more.

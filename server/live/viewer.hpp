@@ -70,6 +70,7 @@ private:
     struct Narration {
         std::optional<std::string> event;
         std::optional<Close> end;
+        Clock::time_point look_again = Clock::time_point::max(); // even if nobody says that something has changed
     };
 
     [[nodiscard]] boost::asio::awaitable<bool> accept(const Upgrade& upgrade);
@@ -92,7 +93,8 @@ private:
     Narrator narrator_; // of whoever runs narrate()
     boost::asio::steady_timer turn_;
     boost::asio::steady_timer deadline_;
-    Clock::time_point due_;        // the next event is not sent before
+    Clock::time_point due_; // the next event is not sent before
+    Clock::time_point look_again_ = Clock::time_point::max();
     std::optional<Wishes> wishes_; // that the narrator does not know yet
     bool changed_ = true;          // something may be new
     bool reading_ = false;

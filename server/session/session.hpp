@@ -62,6 +62,9 @@ public:
     /// looks misses nothing.
     void watch(std::weak_ptr<Watcher> watcher) { watchers_.add(std::move(watcher)); }
 
+    /// Tells the watchers that something has changed which others keep about this session.
+    void tell_changed() const { watchers_.tell(); }
+
     /// Whether the robot has a link at present.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return members_.is_connected(robot); }
 
@@ -148,7 +151,7 @@ private:
     bool has_news_ = false;              // for the watchers, besides links that came or went
     std::uint64_t connections_told_ = 0; // Members::connection_changes() that the watchers know of
 
-    Watchers watchers_;
+    mutable Watchers watchers_;
     std::atomic<bool> hurried_ = false;         // set from any thread, as the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 

@@ -6,13 +6,14 @@
 
 namespace scanloom::session {
 
-/// Wants to know when a session has something new to show: maps, links of robots, or its own end.
+/// Wants to know when a session has something new to show: maps, links of robots, its own end, or what others keep
+/// about it.
 class Watcher {
 public:
     virtual ~Watcher() = default;
 
-    /// Look again when you have time. Called on the session's strand, perhaps often: hand over, do not block, do not
-    /// throw.
+    /// Look again when you have time. Called on the session's strand or on any thread, perhaps often: hand over, do not
+    /// block, do not throw.
     virtual void on_changed() noexcept = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <future>
 #include <numbers>
 #include <set>
+#include <thread>
 
 /// Robots that ask for ways.
 namespace scanloom::ingest {
@@ -106,6 +107,40 @@ TEST_F(RequestsTest, WaysAreForTheBodyThatTheHelloStates) {
     robot->send(wire::CoverageRequest{.id = 6, .body_radius = 0.5});
     const auto coverage = robot->receive_kind<wire::CoverageReply>().coverage.value();
     EXPECT_EQ(coverage, robot->receive_kind<wire::CoverageReply>().coverage.value());
+}
+
+TEST_F(RequestsTest, WhatARobotPlannedLastIsKnownUntilItLeaves) {
+    auto& ingest = start();
+    const auto robot = looking_around("r");
+    const auto session = ingest.sessions().find("lab");
+    const auto page = [&] { return ingest.goals().ways().page(session, guide::WayBook::Clock::now()); };
+    robot->send(plan_to({2.5, 0.2}));
+    const auto plan = robot->receive_kind<wire::PlanReply>();
+    ASSERT_EQ(page().robots.size(), 1U);
+    EXPECT_EQ(page().robots[0].way->kind, guide::WayKind::kPlan);
+    EXPECT_EQ(page().robots[0].way->points, plan.path.value().points);
+    EXPECT_EQ(page().robots[0].way->length_m, plan.path.value().length);
+    EXPECT_EQ(page().robots[0].way->revision, plan.revision);
+
+    robot->send(wire::CoverageRequest{.id = 2});
+    const auto coverage = robot->receive_kind<wire::CoverageReply>();
+    EXPECT_EQ(page().robots[0].way->kind, guide::WayKind::kCoverage);
+    EXPECT_EQ(page().robots[0].way->points, coverage.coverage.value().path.points);
+
+    robot->send(wire::GoalRequest{.id = 3, .frontier_size_min = 10});
+    const auto goal = robot->receive_kind<wire::GoalReply>();
+    EXPECT_EQ(page().robots[0].goal->target, goal.goal.value().target);
+    EXPECT_EQ(page().robots[0].way->points, goal.goal.value().path->points);
+
+    robot->send(plan_to({3.53, 1.25})); // inside a wall
+    EXPECT_FALSE(robot->receive_kind<wire::PlanReply>().path);
+    EXPECT_TRUE(page().robots[0].goal);
+    EXPECT_EQ(page().robots[0].way, nullptr);
+
+    robot->send(wire::Goodbye{});
+    EXPECT_FALSE(robot->receive().has_value());
+    while (session->is_connected(0)) std::this_thread::yield();
+    EXPECT_THAT(page().robots, testing::IsEmpty());
 }
 
 TEST_F(RequestsTest, WhatCannotBeMetIsRefusedAndTheLinkGoesOn) {

@@ -25,7 +25,7 @@ Response upgrade_required(const Call& call) {
 
 } // namespace
 
-Result<Response> get_live(const session::SessionRegistry& sessions, const Call& call) {
+Result<Response> get_live(const session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
@@ -42,8 +42,9 @@ Result<Response> get_live(const session::SessionRegistry& sessions, const Call& 
     }
     Response response;
     response.status = Status::switching_protocols;
+    const auto& info = (*session)->info();
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, (*session)->info().id, (*session)->info().name, session_tag((*session)->info())});
+        live::Invitation{*session, info.id, info.name, session_tag(info), ways});
     return response;
 }
 

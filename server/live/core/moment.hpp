@@ -5,6 +5,7 @@
 #include "server/mapping/snapshot.hpp"
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct Moment {
     std::shared_ptr<const mapping::Snapshot> maps;
     std::vector<bool> connected; ///< by RobotIndex; those beyond the end have no link
     wire::LiveState state = wire::LiveState::kOk;
-    std::string reason; ///< when the state is not kOk
+    std::string reason;               ///< when the state is not kOk
+    std::uint64_t goals_revision = 0; ///< LiveEvent::goals_revision
 };
 
 /// What a viewer wants to be told.

@@ -74,15 +74,16 @@ std::optional<wire::LiveEvent> Narrator::next(const Moment& moment) {
     wire::LiveEvent event;
     tell_tiles(maps, event);
     tell_robots(moment, event);
-    const bool is_same = told_ && told_->revision == maps.revision && told_->state == moment.state;
-    if (is_same && event.tiles.empty() && event.robots.empty()) return std::nullopt;
-    told_ = ToldSession{maps.revision, moment.state};
+    const ToldSession now{maps.revision, moment.state, moment.goals_revision};
+    if (told_ == now && event.tiles.empty() && event.robots.empty()) return std::nullopt;
+    told_ = now;
     event.session = session_;
     event.revision = maps.revision;
     event.state = moment.state;
     event.reason = moment.reason;
     event.counters = totals_of(moment);
     event.frontiers_revision = maps.classes.newest({});
+    event.goals_revision = moment.goals_revision;
     return event;
 }
 

@@ -49,6 +49,9 @@ private:
     struct ToldSession {
         Revision revision = 0;
         wire::LiveState state = wire::LiveState::kOk;
+        std::uint64_t goals_revision = 0;
+
+        friend bool operator==(const ToldSession&, const ToldSession&) = default;
     };
 
     void tell_tiles(const mapping::Snapshot& maps, wire::LiveEvent& event);

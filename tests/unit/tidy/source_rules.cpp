@@ -54,7 +54,7 @@ const std::vector<Folder> kFolders = {
                      "server/tiles"},
      .pure = true},
     {.path = "server/live",
-     .may_include = {"common", "server/mapping", "server/metrics", "server/session", "server/store"}},
+     .may_include = {"common", "server/guide", "server/mapping", "server/metrics", "server/session", "server/store"}},
     {.path = "server/http",
      .may_include = {"common", "server/classify", "server/exchange", "server/grid", "server/guide", "server/live",
                      "server/mapping", "server/metrics", "server/planning", "server/session", "server/sockets",

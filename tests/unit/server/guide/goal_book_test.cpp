@@ -103,7 +103,7 @@ TEST_F(GoalBookTest, AGoalOfAConnectedRobotCountsHoweverLongItTakes) {
 TEST_F(GoalBookTest, AGoalOnBehalfOfAnAbsentRobotCountsForAWhile) {
     for (const char* robot : {"a", "b", "c"}) leave(join(robot));
     EXPECT_EQ(next(0), 'l');
-    now_ += GoalBook::kKeptForAbsent;
+    now_ += WayBook::kKeptForAbsent;
     EXPECT_EQ(next(1), 'r');
     now_ += std::chrono::seconds(1);
     EXPECT_EQ(next(2), 'l');
@@ -115,7 +115,7 @@ TEST_F(GoalBookTest, ARobotThatConnectsKeepsTheGoalUntilItLeaves) {
     EXPECT_EQ(next(0), 'l');
     const auto link = join("a");
     EXPECT_EQ(next(1), 'r');
-    now_ += 2 * GoalBook::kKeptForAbsent;
+    now_ += 2 * WayBook::kKeptForAbsent;
     EXPECT_EQ(next(1), 'r');
     leave(link);
     EXPECT_EQ(next(1), 'l');

@@ -26,6 +26,7 @@ TEST(Robots, AreWhereTheirNewestScanWasTaken) {
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.error().code, Errc::kNoPath);
     EXPECT_THAT(unknown.error().message, testing::HasSubstr("'mute'"));
+    EXPECT_EQ(pose_of(two_robots(), 2).error().code, Errc::kNoPath) << "who has joined since";
 }
 
 } // namespace

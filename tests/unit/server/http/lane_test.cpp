@@ -23,7 +23,7 @@ TEST(Lane, WholeMapsDoNotHoldUpParts) {
         EXPECT_EQ(lane("GET", session + whole), Lane::kSurvey) << whole;
     }
     for (const char* part :
-         {"", "/map.yaml", "/changes?since=3", "/trajectory.geojson", "/tiles/occupancy.json",
+         {"", "/map.yaml", "/changes?since=3", "/trajectory.geojson", "/goals.geojson", "/tiles/occupancy.json",
           "/tiles/occupancy/5/0/0.png", "/tiles/occupancy/9/256/255.bin", "/tiles/occupancy/x/0/0.png"}) {
         EXPECT_EQ(lane("GET", session + part), Lane::kServing) << part;
     }

@@ -116,6 +116,7 @@ public:
 
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
+    [[nodiscard]] guide::WayBook& ways() { return goals_.ways(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 

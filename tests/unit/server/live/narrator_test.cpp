@@ -195,6 +195,23 @@ TEST(Narrator, AnotherBodyIsNews) {
     EXPECT_EQ(narrator.next(session.moment()), std::nullopt);
 }
 
+TEST(Narrator, GoalsAloneAreNews) {
+    Growing session(1);
+    session.scan(0);
+    Narrator narrator("tag");
+    Moment moment = session.moment();
+    EXPECT_EQ(narrator.next(moment)->goals_revision, 0U);
+    moment.goals_revision = 3;
+    EXPECT_EQ(narrator.next(moment)->goals_revision, 3U);
+    EXPECT_EQ(narrator.next(moment), std::nullopt);
+    session.scan(0);
+    Moment later = session.moment();
+    later.goals_revision = 3;
+    v1::LiveEvent event;
+    ASSERT_TRUE(event.ParseFromString(wire::encode(*narrator.next(later))));
+    EXPECT_EQ(event.goals_revision(), 3U) << "in every event";
+}
+
 TEST(Narrator, AnEventIsBoundedHoweverManyRobotsThereAre) {
     constexpr std::uint32_t kRobots = 1024;
     mapping::Snapshot maps{.revision = 9};

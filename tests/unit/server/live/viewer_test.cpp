@@ -80,6 +80,35 @@ TEST(LiveViewer, RobotsThatComeAndGoAreTold) {
     read_until(client, viewer, [&] { return !viewer.robots.at(0).connected; });
 }
 
+TEST(LiveViewer, AGoalThatIsGivenIsToldAlthoughNoScanCame) {
+    LiveServer server;
+    server.stream("r1", 1, 20);
+    LiveClient client(server.port());
+    LiveReplay viewer;
+    catch_up(server, client, viewer);
+    EXPECT_EQ(viewer.last.goals_revision(), 0U);
+    const auto revision = viewer.last.revision();
+    HttpClient person(server.port());
+    person.send("GET /api/v1/sessions/lab/goal?robot=r1&size_min=1&body_radius=0 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    EXPECT_THAT(person.read().body, HasSubstr(R"("outcome":"goal")"));
+    read_until(client, viewer, [&] { return viewer.last.goals_revision() == 1; });
+    EXPECT_EQ(viewer.last.revision(), revision);
+    EXPECT_EQ(viewer.last.tiles_size(), 0);
+    EXPECT_EQ(viewer.last.robots_size(), 0);
+    server.leave("r1");
+    read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
+}
+
+TEST(LiveViewer, AGoalWhoseTermIsOverIsToldByItself) {
+    LiveServer server;
+    LiveClient client(server.port());
+    LiveReplay viewer;
+    catch_up(server, client, viewer);
+    const auto almost_over = guide::WayBook::Clock::now() - guide::WayBook::kKeptForAbsent + 200ms;
+    server.ways().give_goal(server.sessions().find("lab"), 0, {}, {}, almost_over);
+    read_until(client, viewer, [&] { return viewer.last.goals_revision() == 2; });
+}
+
 TEST(LiveViewer, GetsWhatItAsksFor) {
     LiveServer server;
     server.stream("r1", 1, 5);

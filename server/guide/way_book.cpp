@@ -1,0 +1,117 @@
+#include "server/guide/way_book.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace scanloom::guide {
+
+std::uint64_t WayBook::give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, Way way,
+                                 Clock::time_point now) {
+    const bool connected = session->is_connected(robot);
+    std::uint64_t given = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        Record& record = record_of(session);
+        record.holdings.erase(robot);
+        given = ++record.revision;
+        record.holdings[robot] = {now, connected, goal, given, bounded(record, std::move(way))};
+    }
+    session->tell_changed();
+    return given;
+}
+
+void WayBook::give_way(const SessionPtr& session, RobotIndex robot, std::optional<Way> way, Clock::time_point now) {
+    {
+        const std::lock_guard lock(mutex_);
+        Record& record = record_of(session);
+        auto& holding = record.holdings.try_emplace(robot, Holding{now, true, {}, 0, {}}).first->second;
+        const bool had_none = !holding.way;
+        holding.was_connected = true; // or it could not have asked
+        holding.way = nullptr;
+        if (way) holding.way = bounded(record, std::move(*way));
+        const bool has_none = !holding.way;
+        if (has_none && !holding.goal) record.holdings.erase(robot);
+        if (had_none && has_none) return;
+        ++record.revision;
+    }
+    session->tell_changed();
+}
+
+void WayBook::take_back(const SessionPtr& session, RobotIndex robot) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto found = records_.find(session);
+        if (found == records_.end() || found->second.holdings.erase(robot) == 0) return;
+        ++found->second.revision;
+    }
+    session->tell_changed();
+}
+
+bool WayBook::holds(const SessionPtr& session, RobotIndex robot, std::uint64_t goal, Clock::time_point now) {
+    const std::lock_guard lock(mutex_);
+    const Record* record = find(session, now);
+    if (record == nullptr) return false;
+    const auto held = record->holdings.find(robot);
+    return held != record->holdings.end() && held->second.goal && held->second.goal_given == goal;
+}
+
+WayBook::State WayBook::state(const SessionPtr& session, Clock::time_point now) {
+    const std::lock_guard lock(mutex_);
+    const Record* record = find(session, now);
+    if (record == nullptr) return {};
+    State state{record->revision};
+    for (const auto& [robot, holding] : record->holdings) {
+        if (holding.was_connected) continue; // and its session says when it leaves
+        state.until = std::min(state.until, holding.given + kKeptForAbsent + Clock::duration(1));
+    }
+    return state;
+}
+
+WayBook::Page WayBook::page(const SessionPtr& session, Clock::time_point now) {
+    const std::lock_guard lock(mutex_);
+    const Record* record = find(session, now);
+    if (record == nullptr) return {};
+    Page page{record->revision, {}};
+    for (const auto& [robot, holding] : record->holdings) page.robots.push_back({robot, holding.goal, holding.way});
+    return page;
+}
+
+WayBook::Record& WayBook::record_of(const SessionPtr& session) {
+    std::erase_if(records_, [](const auto& one) { return one.first.expired(); });
+    return records_[session];
+}
+
+/// What the session's robots hold now. Null: nothing was given there yet.
+WayBook::Record* WayBook::find(const SessionPtr& session, Clock::time_point now) {
+    const auto found = records_.find(session);
+    if (found == records_.end()) return nullptr;
+    forget_what_is_over(found->second, *session, now);
+    return &found->second;
+}
+
+/// The beginning of a way that is too long.
+std::shared_ptr<const Way> WayBook::bounded(const Record& record, Way way) {
+    std::size_t room = kPointsMax;
+    for (const auto& [robot, holding] : record.holdings) {
+        if (holding.way) room -= std::min(room, holding.way->points.size());
+    }
+    const std::size_t kept = std::min(way.points.size(), std::clamp<std::size_t>(room, 2, kWayPointsMax));
+    way.points_left_out += way.points.size() - kept;
+    way.points.resize(kept);
+    way.points.shrink_to_fit();
+    return std::make_shared<const Way>(std::move(way));
+}
+
+void WayBook::forget_what_is_over(Record& record, const session::Session& session, Clock::time_point now) {
+    if (record.holdings.empty()) return;
+    const auto connected = session.connected();
+    const auto is_here = [&](RobotIndex robot) { return robot < connected.size() && connected[robot]; };
+    for (auto& [robot, holding] : record.holdings) holding.was_connected = holding.was_connected || is_here(robot);
+    const auto forgotten = std::erase_if(record.holdings, [&](const auto& one) {
+        const auto& [robot, holding] = one;
+        return !is_here(robot) && (holding.was_connected || now - holding.given > kKeptForAbsent);
+    });
+    if (forgotten > 0) ++record.revision;
+}
+
+} // namespace scanloom::guide

@@ -1,0 +1,209 @@
+#include "server/guide/way_book.hpp"
+
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::guide {
+namespace {
+
+using testing::IsEmpty;
+
+/// Counts how often it is told to look again.
+struct CountingWatcher : session::Watcher {
+    void on_changed() noexcept override { ++told; }
+    int told = 0;
+};
+
+Way way(WayKind kind, std::size_t points = 2) {
+    Way way{kind, {}, static_cast<double>(points - 1), 7};
+    for (std::size_t n = 0; n < points; ++n) way.points.emplace_back(static_cast<double>(n), 0.0);
+    return way;
+}
+
+class WayBookTest : public session::SessionTest {
+protected:
+    std::uint64_t give_goal(RobotIndex robot, std::size_t points = 2) {
+        return book_.give_goal(session_, robot, kGoal, way(WayKind::kGoal, points), now_);
+    }
+    void give_way(RobotIndex robot, std::optional<Way> given) {
+        book_.give_way(session_, robot, std::move(given), now_);
+    }
+    void leave(const std::shared_ptr<session::RecordedLink>& link) {
+        session_->leave(link);
+        run();
+    }
+    [[nodiscard]] WayBook::Page page() { return book_.page(session_, now_); }
+    [[nodiscard]] std::uint64_t revision() { return book_.state(session_, now_).revision; }
+
+    static inline const Goal kGoal{{1.0, 2.0}, {1.5, 2.0}, true, 7};
+
+    WayBook book_;
+    WayBook::Clock::time_point now_{};
+};
+
+TEST_F(WayBookTest, IsEmptyUntilSomethingIsGiven) {
+    join("a");
+    EXPECT_EQ(revision(), 0U);
+    EXPECT_THAT(page().robots, IsEmpty());
+    book_.take_back(session_, 0);
+    give_way(0, std::nullopt);
+    EXPECT_EQ(revision(), 0U);
+}
+
+TEST_F(WayBookTest, ARobotHoldsItsGoalAndTheWayItAskedForLast) {
+    for (const char* robot : {"a", "b"}) join(robot);
+    give_way(1, way(WayKind::kCoverage));
+    give_goal(0);
+    auto now = page();
+    ASSERT_EQ(now.robots.size(), 2U);
+    EXPECT_EQ(now.robots[0].robot, 0U);
+    EXPECT_EQ(now.robots[0].goal->place, kGoal.place);
+    EXPECT_EQ(now.robots[0].way->kind, WayKind::kGoal);
+    EXPECT_FALSE(now.robots[1].goal);
+    EXPECT_EQ(now.robots[1].way->kind, WayKind::kCoverage);
+
+    give_way(0, way(WayKind::kPlan));
+    EXPECT_TRUE(page().robots[0].goal) << "a plan may lead to it";
+    EXPECT_EQ(page().robots[0].way->kind, WayKind::kPlan);
+    give_way(0, std::nullopt);
+    EXPECT_TRUE(page().robots[0].goal);
+    EXPECT_EQ(page().robots[0].way, nullptr);
+    give_goal(0);
+    EXPECT_EQ(page().robots[0].way->kind, WayKind::kGoal);
+    give_goal(1);
+    EXPECT_EQ(page().robots[1].way->kind, WayKind::kGoal) << "of both kinds the newest";
+    book_.take_back(session_, 0);
+    EXPECT_EQ(page().robots.size(), 1U);
+    give_way(0, way(WayKind::kPlan));
+    give_way(0, std::nullopt);
+    EXPECT_EQ(page().robots.size(), 1U) << "who holds nothing is not on the page";
+}
+
+TEST_F(WayBookTest, EachChangeRaisesTheRevisionAndIsToldAndNothingElseIs) {
+    const auto link = join("a");
+    const auto watcher = std::make_shared<CountingWatcher>();
+    session_->watch(watcher);
+    std::uint64_t before = 0;
+    const auto expect_told = [&](const char* what) {
+        EXPECT_GT(revision(), before) << what;
+        EXPECT_EQ(watcher->told, 1) << what;
+        before = revision();
+        watcher->told = 0;
+    };
+    give_goal(0);
+    expect_told("a goal");
+    give_way(0, way(WayKind::kPlan));
+    expect_told("a plan");
+    give_way(0, way(WayKind::kPlan));
+    expect_told("another");
+    give_way(0, std::nullopt);
+    expect_told("none");
+    give_way(0, std::nullopt);
+    static_cast<void>(page());
+    EXPECT_EQ(revision(), before) << "nor of asking";
+    EXPECT_EQ(watcher->told, 0);
+    book_.take_back(session_, 0);
+    expect_told("taken back");
+    give_goal(0);
+    expect_told("a goal again");
+    leave(link);
+    expect_told("left");
+    book_.take_back(session_, 0);
+    EXPECT_EQ(revision(), before);
+    EXPECT_EQ(watcher->told, 0);
+}
+
+TEST_F(WayBookTest, WhoHasLeftHoldsNothingAndNothingAgainWhenItComesBack) {
+    const auto link = join("a");
+    const auto goal = give_goal(0);
+    now_ += std::chrono::hours(10);
+    EXPECT_EQ(page().robots.size(), 1U);
+    EXPECT_TRUE(book_.holds(session_, 0, goal, now_));
+    leave(link);
+    EXPECT_THAT(page().robots, IsEmpty());
+    EXPECT_FALSE(book_.holds(session_, 0, goal, now_));
+    join("a");
+    EXPECT_THAT(page().robots, IsEmpty());
+}
+
+TEST_F(WayBookTest, AWayThatComesWhenItsRobotHasLeftIsForgotten) {
+    leave(join("a"));
+    give_way(0, way(WayKind::kPlan));
+    EXPECT_THAT(page().robots, IsEmpty());
+}
+
+TEST_F(WayBookTest, AGoalOnBehalfOfAnAbsentRobotHasATerm) {
+    leave(join("a"));
+    EXPECT_EQ(book_.state(session_, now_).until, WayBook::Clock::time_point::max());
+    give_goal(0);
+    const auto state = book_.state(session_, now_);
+    EXPECT_GT(state.until, now_);
+    now_ = state.until - WayBook::Clock::duration(1);
+    EXPECT_EQ(revision(), state.revision);
+    now_ = state.until;
+    EXPECT_GT(revision(), state.revision) << "at the moment that was named";
+    EXPECT_THAT(page().robots, IsEmpty());
+}
+
+TEST_F(WayBookTest, ARobotThatConnectsHoldsItsGoalUntilItLeaves) {
+    leave(join("a"));
+    give_goal(0);
+    const auto link = join("a");
+    EXPECT_EQ(book_.state(session_, now_).until, WayBook::Clock::time_point::max());
+    now_ += 2 * WayBook::kKeptForAbsent;
+    EXPECT_EQ(page().robots.size(), 1U);
+    leave(link);
+    EXPECT_THAT(page().robots, IsEmpty());
+}
+
+TEST_F(WayBookTest, AGoalIsToldFromThoseBeforeAndAfter) {
+    join("a");
+    const auto first = give_goal(0);
+    const auto second = give_goal(0);
+    EXPECT_FALSE(book_.holds(session_, 0, first, now_));
+    EXPECT_TRUE(book_.holds(session_, 0, second, now_));
+    give_way(0, way(WayKind::kPlan));
+    EXPECT_TRUE(book_.holds(session_, 0, second, now_));
+    book_.take_back(session_, 0);
+    EXPECT_FALSE(book_.holds(session_, 0, second, now_));
+}
+
+TEST_F(WayBookTest, SessionsHaveTheirOwnAndTakeItWithThem) {
+    join("a");
+    give_goal(0);
+    const std::weak_ptr<session::Session> before = session_;
+    start_session(); // another one
+    join("a");
+    EXPECT_TRUE(before.expired()) << "nobody keeps it";
+    EXPECT_EQ(revision(), 0U);
+    EXPECT_THAT(page().robots, IsEmpty());
+}
+
+TEST_F(WayBookTest, OfAWayThatIsTooLongTheBeginningIsKept) {
+    join("a");
+    give_way(0, way(WayKind::kCoverage, WayBook::kWayPointsMax));
+    EXPECT_EQ(page().robots[0].way->points_left_out, 0U);
+    give_way(0, way(WayKind::kCoverage, WayBook::kWayPointsMax + 5));
+    const auto kept = page().robots[0].way;
+    EXPECT_EQ(kept->points.size(), WayBook::kWayPointsMax);
+    EXPECT_EQ(kept->points.back().x(), static_cast<double>(WayBook::kWayPointsMax - 1));
+    EXPECT_EQ(kept->points_left_out, 5U);
+    EXPECT_EQ(kept->length_m, static_cast<double>(WayBook::kWayPointsMax + 4)) << "of all of it";
+}
+
+TEST_F(WayBookTest, ASessionsWaysAreBoundedTogether) {
+    constexpr std::size_t kFull = WayBook::kPointsMax / WayBook::kWayPointsMax;
+    for (RobotIndex robot = 0; robot <= kFull; ++robot) give_goal(robot, WayBook::kWayPointsMax);
+    auto now = page();
+    ASSERT_EQ(now.robots.size(), kFull + 1) << "who is absent keeps it for a while";
+    EXPECT_EQ(now.robots[kFull - 1].way->points.size(), WayBook::kWayPointsMax);
+    EXPECT_EQ(now.robots[kFull].way->points.size(), 2U);
+    EXPECT_EQ(now.robots[kFull].way->points_left_out, WayBook::kWayPointsMax - 2);
+    give_goal(0, WayBook::kWayPointsMax);
+    EXPECT_EQ(page().robots[0].way->points.size(), WayBook::kWayPointsMax - 2) << "its own make room";
+}
+
+} // namespace
+} // namespace scanloom::guide
