@@ -99,7 +99,7 @@ const std::vector<Package> kPackages = {
       "robot_client/uplink", "robot_client/app"}},
     {"boost/beast", {"server/live", "server/http", "server/app"}},
     {"bzlib.h", {"robot_client/source"}},
-    {"zlib.h", {"robot_client/source"}},
+    {"zlib.h", {"robot_client/source", "server/tiles"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab"}},
 };
 
