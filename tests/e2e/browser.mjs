@@ -117,8 +117,8 @@ export function showsColourAt(page, [x, y], colour, wanted = true) {
 }
 
 /** But for what smoothing does. */
-export function isLike(seen, colour) {
-  return colour.every((part, band) => Math.abs(seen[band] - part) < 12);
+export function isLike(seen, colour, tolerance = 12) {
+  return colour.every((part, band) => Math.abs(seen[band] - part) < tolerance);
 }
 
 /** Waits until so many pixels of the map have this colour. */
