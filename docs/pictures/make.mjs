@@ -1,14 +1,16 @@
 /**
  * Pictures of the viewer: a recorded log, mapped by a real server and looked at in a real browser.
  *
- *   ./scanloom pictures LOG [DIRECTORY]
+ *   ./scanloom pictures LOG [DIRECTORY [SONAR]]
+ *
+ * SONAR: a folder with measurement.txt and poses.txt of a ring of sonars.
  */
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { launchBrowser, openPage } from '../../tests/e2e/browser.mjs';
 import { ended, Server, startRobot } from '../../tests/e2e/programs.mjs';
 
-const [log, directory] = process.argv.slice(2);
+const [log, directory, sonar] = process.argv.slice(2);
 const kSize = [1280, 800];
 const kPhone = [390, 844];
 
@@ -19,6 +21,9 @@ const kPictures = [
   { name: 'viewer-himm', hash: '&layer=himm', act: counters },
   { name: 'viewer-swipe', hash: '&layer=classification', act: (page) => page.selectOption('#beside', 'himm') },
   { name: 'viewer-frontiers', act: (page) => page.check('[data-switch=frontiers]') },
+  { name: 'viewer-history', act: history },
+  { name: 'viewer-path', act: way },
+  { name: 'viewer-difference', act: difference },
   { name: 'viewer-dark', hash: '&layer=classification', scheme: 'dark' },
   { name: 'viewer-safe', hash: '&layer=classification', act: (page) => page.selectOption('#palette', 'safe') },
   { name: 'viewer-phone', size: kPhone, scale: 2 },
@@ -31,13 +36,18 @@ try {
   const code = await ended(startRobot(server, 'intel', 'r1', ['replay', log]));
   if (code !== 0) throw new Error(`the log ${log} could not be replayed`);
   for (const picture of kPictures) await take(picture);
+  if (sonar) {
+    const files = [join(sonar, 'measurement.txt'), join(sonar, 'poses.txt')];
+    await ended(startRobot(server, 'sonar', 'r1', ['sonar', ...files]));
+    await take({ name: 'viewer-sonar', session: 'sonar', hash: '&layer=sonar' });
+  }
 } finally {
   await browser.close();
   await server.stop();
 }
 
-async function take({ name, hash = '', size = kSize, scheme = 'light', scale = 1, act = async () => {} }) {
-  const { page } = await openPage(browser, server.address, { hash: `#session=intel${hash}`, size, scheme, scale });
+async function take({ name, session = 'intel', hash = '', size = kSize, scheme = 'light', scale = 1, act = async () => {} }) {
+  const { page } = await openPage(browser, server.address, { hash: `#session=${session}${hash}`, size, scheme, scale });
   await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
   await page.waitForSelector('#notice', { state: 'hidden' });
   await act(page);
@@ -58,4 +68,33 @@ async function counters(page) {
     await page.waitForTimeout(400);
   }
   await page.mouse.move(820, 380);
+}
+
+/** A third of the way through the run. */
+async function history(page) {
+  await page.keyboard.press('t');
+  await page.waitForSelector('#time-slider:not([disabled])');
+  await page.$eval('#time-slider', (slider) => {
+    slider.value = String(Math.round(slider.max / 3));
+    slider.dispatchEvent(new Event('input', { bubbles: true }));
+    slider.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await page.waitForFunction(() => /past/i.test(document.querySelector('#time-mode').textContent));
+}
+
+/** From one side of the building to the other. */
+async function way(page) {
+  await page.keyboard.press('p');
+  await page.mouse.click(673, 500);
+  await page.mouse.click(1043, 560);
+  await page.waitForSelector('#tool-body dl');
+}
+
+/** The same scans at cells of twice the size. */
+async function difference(page) {
+  await page.keyboard.press('w');
+  await page.fill('#tool-body [name=cell_size]', '0.1');
+  await page.click('#tool-body :text-is("Weave")');
+  await page.waitForSelector('#swipe', { state: 'visible' });
+  await page.check('[name=difference]');
 }
