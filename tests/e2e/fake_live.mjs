@@ -72,6 +72,7 @@ export function eventOf(session, since) {
     reason: session.failure ?? '',
     counters: { scans: session.scans, robots: session.robots.length, connected: session.robots.length, chunks: 1 },
     frontiers_revision: session.revision,
+    goals_revision: session.goalsRevision,
     tiles: session.layers.map((layer) => ({ layer: Layer[`LAYER_${layer.toUpperCase()}`], tiles, revisions })),
     robots: session.robots.map((robot, index) => robotNews(session, robot, index, since)),
   };

@@ -19,6 +19,9 @@ export class FakeSession {
     this.scan = null;
     /** Features of frontiers.geojson. */
     this.frontiers = [];
+    /** Features of goals.geojson, and how often they were told. */
+    this.goals = [];
+    this.goalsRevision = 0;
     /** Live connections. */
     this.viewers = new Set();
     /** Why it takes no scans; null: it does. */
@@ -55,6 +58,12 @@ export class FakeSession {
 
   tell() {
     for (const viewer of this.viewers) viewer.tell();
+  }
+
+  tellGoals(features) {
+    this.goals = features;
+    this.goalsRevision += 1;
+    this.tell();
   }
 
   get scans() {

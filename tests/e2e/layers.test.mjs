@@ -7,7 +7,6 @@ import {
   colourOf,
   countPixels,
   countsPixels,
-  isLike,
   keepPicture,
   kWebDirectory,
   launchBrowser,
@@ -16,15 +15,12 @@ import {
   showsColour,
   showsColourAt,
   textOf,
-  until,
 } from './browser.mjs';
 import { FakeServer } from './fake_server.mjs';
 import { FakeSession } from './fake_session.mjs';
+import { kMiddle, pixelOf } from './one_tile.mjs';
 
 const kLayers = ['occupancy', 'classification', 'himm', 'sonar'];
-/** Of the one tile: 12.8 m from the origin up and right, fitted in the middle of the map. */
-const kMiddle = [784, 400];
-
 describe('layers', { timeout: 180_000 }, () => {
   let browser;
   let server;
@@ -170,67 +166,6 @@ describe('layers', { timeout: 180_000 }, () => {
     await says(page, '#cursor-others', /Classesfrontier.*HIMMcounter 3.*Sonar3 % occupied/);
   });
 
-  it('show the newest scan where its beams ended, unless it is not wanted', async () => {
-    session.paint(256, 255, 0);
-    session.scan = [
-      [3, 3],
-      [9.4, 9.4],
-    ];
-    session.move('r1', 6, 2, 0);
-    await open();
-    await showsColour(page, '--cell-free');
-    const colour = await colourOf(page, '--robot-0');
-    await showsAt(...pixelOf(3, 3), colour);
-    await showsAt(...pixelOf(9.4, 9.4), colour);
-    await page.uncheck('[data-switch=points]');
-    await showsNotAt(...pixelOf(3, 3), colour);
-  });
-
-  it('show a robot with the ground that its body takes, and its trail', async () => {
-    session.paint(256, 255, 0);
-    session.move('r1', 2, 6.4, 0);
-    session.move('r1', 10, 6.4, 0);
-    session.robots[0].body_radius = 1.5;
-    session.move('r1', 10, 6.4, 0);
-    await open();
-    const colour = await colourOf(page, '--robot-0');
-    await showsNear(...pixelOf(10, 7.9), colour);
-    await showsNear(...pixelOf(4, 6.4), colour);
-    await page.uncheck('[data-switch=trails]');
-    await showsNotAt(...pixelOf(4, 6.4), colour);
-    await page.uncheck('[data-switch=robots]');
-    await showsNoPixels(colour);
-  });
-
-  it('show frontiers as areas with their goals, as soon as they change, and only when wanted', async () => {
-    session.paint(256, 255, 0);
-    session.frontiers = [frontier([3, 3], [5, 5])];
-    await open();
-    await showsColour(page, '--cell-free');
-    const path = '/api/v1/sessions/map/frontiers.geojson';
-    assert.ok(!server.requests.includes(path));
-    const colour = await colourOf(page, '--class-frontier');
-    await page.check('[data-switch=frontiers]');
-    await showsAt(...pixelOf(3, 3), colour);
-    session.frontiers = [frontier([9, 9], [8, 5])];
-    session.move('r1', 1, 1, 0);
-    await showsAt(...pixelOf(9, 9), colour);
-    await showsNotAt(...pixelOf(3, 3), colour);
-    await keepPicture(page, 'frontiers');
-  });
-
-  it('survive frontiers that are none', async () => {
-    session.paint(256, 255, 0);
-    session.frontiers = [{ type: 'Feature', geometry: { type: '<b>x</b>', coordinates: 'nonsense' }, properties: {} }];
-    await open();
-    await page.check('[data-switch=frontiers]');
-    await page.waitForResponse(/frontiers\.geojson/);
-    session.frontiers = [frontier([3, 3], [5, 5])];
-    session.move('r1', 1, 1, 0);
-    await showsAt(...pixelOf(3, 3), await colourOf(page, '--class-frontier'));
-    assert.equal(await page.locator('#map b').count(), 0);
-  });
-
   it('are measured by pointer and by keys', async () => {
     session.paint(256, 255, 0);
     await open();
@@ -245,6 +180,9 @@ describe('layers', { timeout: 180_000 }, () => {
     await page.click('text=Start again');
     await says(page, '#measured', /^$/);
     await page.focus('#map');
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('#crosshair:not([hidden])');
+    await says(page, '#measured', /^$/);
     await page.keyboard.press('Enter');
     const before = await textOf(page, '#cursor-x');
     await page.keyboard.press('ArrowRight');
@@ -292,37 +230,8 @@ describe('layers', { timeout: 180_000 }, () => {
     });
   }
 
-  /** A square of 1 m around a place. */
-  function frontier([x, y], goal) {
-    const ring = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]].map(([dx, dy]) => [x + dx, y + dy]);
-    return {
-      type: 'Feature',
-      properties: { cells: 400, area: 1, centroid: [x, y], reachable: true, robot: 'r1', goal, length: 1, cost: 1 },
-      geometry: { type: 'MultiPolygon', coordinates: [[ring]] },
-    };
-  }
-
-  /** Of the page: the tile's 12.8 m fill the height but for 56 pixels on either side. */
-  function pixelOf(x, y) {
-    const scale = (800 - 2 * 56) / 12.8;
-    return [kMiddle[0] + (x - 6.4) * scale, kMiddle[1] - (y - 6.4) * scale].map(Math.round);
-  }
-
   function showsAt(x, y, colour) {
     return showsColourAt(page, [x, y], colour);
-  }
-
-  /** Lines are thin: they may share a pixel with what lies below. */
-  async function showsNear(x, y, colour) {
-    const steps = [-2, -1, 0, 1, 2];
-    await until(page, async () => {
-      const seen = await Promise.all(steps.map((dy) => colourAt(page, x, y + dy)));
-      return seen.some((each) => each !== null && isLike(each, colour, 80));
-    });
-  }
-
-  function showsNotAt(x, y, colour) {
-    return showsColourAt(page, [x, y], colour, false);
   }
 
   function showsNoPixels(colour) {

@@ -19,6 +19,7 @@ const kMapKeys: [keys: string, does: string][] = [
 
 export class Keys {
   private readonly bindings = new Map<string, Binding>();
+  private enabled: () => boolean = () => true;
 
   constructor() {
     document.addEventListener('keydown', (event) => this.press(event));
@@ -27,6 +28,11 @@ export class Keys {
   bind(binding: Binding): void {
     if (this.bindings.has(binding.key)) throw new Error(`the key ${binding.key} has a meaning already`);
     this.bindings.set(binding.key, binding);
+  }
+
+  /** @param enabled whether single keys do anything: people who dictate, or tremble, switch them off (WCAG 2.1.4) */
+  enable(enabled: () => boolean): void {
+    this.enabled = enabled;
   }
 
   /** A table of all keys. */
@@ -42,8 +48,10 @@ export class Keys {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     if (event.target instanceof Element && isTypedInto(event.target, event.key)) return;
     if (document.querySelector('dialog[open]')) return;
-    const binding = this.bindings.get(event.key);
+    // Letters mean the same with Caps Lock.
+    const binding = this.bindings.get(event.key) ?? this.bindings.get(event.key.toLowerCase());
     if (!binding || binding.when?.() === false) return;
+    if (event.key !== 'Escape' && !this.enabled()) return;
     event.preventDefault();
     binding.run();
   }
@@ -51,6 +59,7 @@ export class Keys {
 
 /** Whether the key belongs to the element: text that is written, a choice that is stepped through, a button pressed. */
 function isTypedInto(element: Element, key: string): boolean {
+  if (key === 'Escape') return false;
   if (element instanceof HTMLInputElement) {
     if (element.type === 'range') return false;
     return !['checkbox', 'radio'].includes(element.type) || key === ' ';

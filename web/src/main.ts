@@ -33,7 +33,7 @@ const keys = new Keys();
 const panelToggle = byId('panel-toggle', HTMLButtonElement);
 const target = byId('map', HTMLElement);
 const map = createMap(target);
-const mapView = new MapView(map, readTheme());
+const mapView = new MapView(map, readTheme(), (error) => status.settle('tiles', error));
 const picture = new Picture(mapView);
 const notice = new Notice(byId('notice', HTMLElement));
 const status = new Status(byId('status', HTMLElement));
@@ -79,6 +79,8 @@ const viewer: Viewer = new Viewer({
 });
 const chooser = new Chooser({ viewer, panel: sessionPanel, notice, newest });
 const toolbox = new Toolbox(keys, () => viewer.session?.bounds != null);
+/** The colours that everything has. */
+let coloured = JSON.stringify(readTheme());
 const comparison = new Comparison(picture);
 
 function open(): void {
@@ -102,6 +104,8 @@ function rememberLayer(): void {
 /** Of what is drawn on canvases. */
 function takeColours(): void {
   const theme = readTheme();
+  if (JSON.stringify(theme) === coloured) return;
+  coloured = JSON.stringify(theme);
   mapView.setTheme(theme);
   sessionPanel.setTheme(theme);
   serverCharts.takeColours();
@@ -129,6 +133,7 @@ function buildPanels(): void {
   new LayersPanel(picture, settings);
   new SwipeHandle(byId('swipe', HTMLElement), target, picture);
   new DisplayPanel(settings, keys);
+  keys.enable(() => settings.get().keys);
   const past = new SessionHistory(viewer, picture);
   new TimeBar(byId('time-bar', HTMLElement), byId('history-open', HTMLButtonElement), past, keys);
 }

@@ -6,6 +6,7 @@ export interface Pace {
 }
 
 const kBackoffMaxMs = 5_000;
+const kRetryMs = 500;
 
 /**
  * Runs the task, waits, and runs it again until the signal aborts; never two runs at once.
@@ -32,6 +33,18 @@ export async function poll(
     }
     const everyMs = document.hidden ? pace.hiddenMs : pace.visibleMs;
     await pause(backoff(everyMs, failures), signal);
+  }
+}
+
+/** Runs the task until it succeeds once, or the signal aborts. */
+export async function untilDone(task: (signal: AbortSignal) => Promise<void>, signal: AbortSignal): Promise<void> {
+  for (let failures = 1; !signal.aborted; ++failures) {
+    try {
+      return await task(signal);
+    } catch {
+      // Whether the server can be heard is told elsewhere.
+      await pause(backoff(kRetryMs, failures), signal);
+    }
   }
 }
 

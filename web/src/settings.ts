@@ -16,6 +16,8 @@ export interface Settings {
   goals: boolean;
   /** HIMM counters as numbers. */
   counters: boolean;
+  /** Whether single keys do anything. */
+  keys: boolean;
 }
 
 const kKey = 'scanloom';
@@ -28,6 +30,7 @@ const kDefaults: Settings = {
   frontiers: false,
   goals: true,
   counters: false,
+  keys: true,
 };
 
 export class SettingsStore {
@@ -84,7 +87,7 @@ function read(): Settings {
 
 function sound(kept: Record<string, unknown>): Settings {
   const settings: Settings = { ...kDefaults };
-  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'counters'] as const) {
+  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'counters', 'keys'] as const) {
     const value = kept[key];
     if (typeof value === 'boolean') settings[key] = value;
   }

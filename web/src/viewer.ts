@@ -3,13 +3,14 @@ import { fetchFrontiers } from './api/frontiers';
 import { fetchGoals, type RobotGoal } from './api/goals';
 import type { LiveEvent, LiveRobot } from './api/live';
 import type { Frontier, Robot, Session, TileChange } from './api/types';
-import type { LayerName } from './layers/layers';
+import { kLayers, type LayerName } from './layers/layers';
 import { Feed } from './live/feed';
 import type { Trail, Trails } from './live/trails';
 import type { Camera } from './map/camera';
+import type { CellReader } from './map/cell_reader';
 import { CellReaders } from './map/cell_readers';
 import { LiveSource, type MapSource } from './map/map_source';
-import type { MapView } from './map/map_view';
+import type { MapView, Shown } from './map/map_view';
 import type { Cursor } from './panel/cursor';
 import type { Facts } from './panel/facts';
 import type { Notice } from './panel/notice';
@@ -59,6 +60,8 @@ interface Open {
   frontiers: RevisionWatch<Frontier[]>;
   goals: RevisionWatch<RobotGoal[]>;
   readers: CellReaders;
+  /** No scan of it was told of yet. */
+  isNew: boolean;
 }
 
 const kSource = 'session';
@@ -119,10 +122,7 @@ export class Viewer {
           if (this.parts.endIsExpected(name)) notice.show({ kind: 'loading' });
           else notice.show({ kind: seen ? 'deleted' : 'missing', name });
         },
-        settled: (error) => {
-          status.settle(kSource, error);
-          if (error === null) this.parts.map.retry();
-        },
+        settled: (error) => status.settle(kSource, error),
       },
       this.leave.signal,
     );
@@ -140,6 +140,7 @@ export class Viewer {
   /** Something newer was heard of a session, which may be the one that is shown. */
   refresh(session: Session): void {
     if (!this.open || session.id !== this.open.session.id) return;
+    this.feed?.expect(session.revision);
     this.open.session = session;
     this.showSession();
   }
@@ -174,6 +175,7 @@ export class Viewer {
       frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
       goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => map.showGoals(all), signal),
       readers,
+      isNew: true,
     };
     map.open(session.cellSize, this.colours, settings.get());
     picture.open(source);
@@ -190,6 +192,10 @@ export class Viewer {
     if (!this.open) return;
     const { robots, frontiers, goals, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
+    if (this.open.isNew && event.scans > 0) {
+      this.open.isNew = false;
+      this.leaveEmptyLayer(event);
+    }
     frontiers.hear(event.frontiersRevision);
     goals.hear(event.goalsRevision);
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
@@ -200,6 +206,13 @@ export class Viewer {
     this.showRobots();
     this.showTrails();
     this.showSession();
+  }
+
+  /** A session of sonars has nothing to show of lasers, and the other way round: begin with what there is. */
+  private leaveEmptyLayer({ tiles }: LiveEvent): void {
+    const held = new Set(tiles.filter((each) => each.everything || each.tiles.length > 0).map(({ layer }) => layer));
+    const other = kLayers.find((layer) => held.has(layer));
+    if (other !== undefined && !held.has(this.parts.picture.now.layer)) this.parts.picture.change({ layer: other });
   }
 
   private showTiles(layer: LayerName, tiles: TileChange[]): void {
@@ -255,9 +268,11 @@ export class Viewer {
 
   private showCounters(): void {
     const { map, picture, settings } = this.parts;
-    const main = picture.main;
-    const wanted = settings.get().counters && main !== null && this.open !== null;
-    map.showCounters(wanted ? (this.open?.readers.of(main.source, 'himm') ?? null) : null);
+    const readers = settings.get().counters ? this.open?.readers : undefined;
+    const of = (shown: Shown | null): CellReader | null =>
+      shown && readers ? readers.of(shown.source, 'himm') : null;
+    // On each other, two numbers in a cell would be no numbers.
+    map.showCounters(of(picture.main), picture.isSwiping ? of(picture.beside) : null);
   }
 
   private clear(): void {

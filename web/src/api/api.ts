@@ -7,6 +7,8 @@ import type { Changes, RobotPort, Session, Sessions, TileChange, Trajectory } fr
 export const sessionsPath = 'api/v1/sessions';
 const kPageSize = 100;
 const kPagesMax = 20;
+/** For answers as long as the session. */
+const kLongMs = 120_000;
 
 /** All sessions, at most kPageSize * kPagesMax of them. */
 export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {
@@ -54,7 +56,8 @@ export async function fetchChanges(
 }
 
 export async function fetchTrajectory(name: string, since: number, signal: AbortSignal): Promise<Trajectory> {
-  return decodeTrajectory(await getJson(`${sessionPath(name)}/trajectory.geojson?since=${since}`, signal));
+  const path = `${sessionPath(name)}/trajectory.geojson?since=${since}`;
+  return decodeTrajectory(await getJson(path, signal, kLongMs));
 }
 
 export type SessionKey = Pick<Session, 'name' | 'id'>;

@@ -58,8 +58,8 @@ export function sendJson(
 }
 
 /** Like get, for JSON; a body cut off half-way counts as unreachable. */
-export async function getJson(path: string, signal: AbortSignal): Promise<unknown> {
-  return parseJson(await get(path, signal), path, signal);
+export async function getJson(path: string, signal: AbortSignal, deadlineMs?: number): Promise<unknown> {
+  return parseJson(await get(path, signal, deadlineMs), path, signal);
 }
 
 export async function parseJson(response: Response, path: string, signal: AbortSignal): Promise<unknown> {

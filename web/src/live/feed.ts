@@ -4,12 +4,15 @@ import { Refused } from '../api/http';
 import type { LiveEvent } from '../api/live';
 import type { Session, TileChange } from '../api/types';
 import type { LayerName } from '../layers/layers';
-import { poll, type Pace } from '../poll';
+import { poll, untilDone, type Pace } from '../poll';
 import { errorOf, kCodeGone, LiveSocket } from './socket';
 import { Trails } from './trails';
 
 /** How soon a connection that ended is tried again; poll() waits longer with every failure in a row. */
 const kPace: Pace = { visibleMs: 500, hiddenMs: 5_000 };
+
+/** A connection may be behind what is known of the session for so long: events are due every 50 ms. */
+const kSilenceMs = 5_000;
 
 /** The session is another than the one that was asked about. */
 class Replaced extends Error {}
@@ -33,6 +36,10 @@ export class Feed {
   private socket: LiveSocket | null = null;
   private id: string | null = null;
   private trails = new Trails();
+  /** Those that are being fetched whole. */
+  private filling: Trails | null = null;
+  /** Since when the connection has not told what the server is known to have. */
+  private behindSince: number | null = null;
   private revision = 0;
   private wantsPoints = true;
 
@@ -50,6 +57,18 @@ export class Feed {
   showPoints(wanted: boolean): void {
     this.wantsPoints = wanted;
     this.socket?.ask(wanted);
+  }
+
+  /**
+   * The session is known to be so far. A connection that does not tell of it has died without a word, as behind a router
+   * that forgot it: another is made.
+   */
+  expect(revision: number): void {
+    if (revision <= this.revision) this.behindSince = null;
+    else this.behindSince ??= performance.now();
+    if (this.behindSince === null || performance.now() - this.behindSince < kSilenceMs) return;
+    this.behindSince = null;
+    this.socket?.drop();
   }
 
   /** One connection, from start to end. */
@@ -101,30 +120,36 @@ export class Feed {
   private hear(event: LiveEvent): void {
     if (event.id !== this.id) throw new Replaced();
     const gap = event.robots.filter(({ name, trail, trailFrom }) => !this.trails.merge(name, trailFrom, trail));
-    if (gap.length > 0) void this.orBeginAnew(this.fetchTrails(this.trails));
+    if (gap.length > 0) void this.fillTrails(this.trails);
     for (const { layer, everything, tiles } of event.tiles) {
-      if (everything) void this.orBeginAnew(this.fetchTiles(layer, this.revision));
+      if (everything) void this.fetchTiles(layer, this.revision);
       else if (tiles.length > 0) this.events.tiles(layer, tiles);
     }
     this.revision = event.revision;
+    this.behindSince = null;
     this.events.event(event);
     this.events.settled(null);
   }
 
-  /** What could not be fetched, the first event of another connection tells again. */
-  private async orBeginAnew(fetched: Promise<void>): Promise<void> {
-    await fetched.catch(() => this.socket?.close());
-  }
-
-  private async fetchTrails(trails: Trails): Promise<void> {
-    const { tracks } = await fetchTrajectory(this.name, 0, this.signal);
-    for (const { robot, points } of tracks) trails.merge(robot, 0, points);
+  /** Once at a time: what comes meanwhile joins on to what is fetched, or the next event finds the gap again. */
+  private async fillTrails(trails: Trails): Promise<void> {
+    if (this.filling === trails) return;
+    this.filling = trails;
+    await untilDone(async (signal) => {
+      if (trails !== this.trails) return;
+      const { tracks } = await fetchTrajectory(this.name, 0, signal);
+      for (const { robot, points } of tracks) trails.merge(robot, 0, points);
+    }, this.signal);
+    this.filling = null;
     if (trails === this.trails && !this.signal.aborted) this.events.trails();
   }
 
   private async fetchTiles(layer: LayerName, since: number): Promise<void> {
     const id = this.id;
-    const { tiles } = await fetchChanges(this.name, { layer, since, weave: null }, this.signal);
-    if (id === this.id && !this.signal.aborted) this.events.tiles(layer, tiles);
+    await untilDone(async (signal) => {
+      if (id !== this.id) return;
+      const { tiles } = await fetchChanges(this.name, { layer, since, weave: null }, signal);
+      if (id === this.id && !signal.aborted) this.events.tiles(layer, tiles);
+    }, this.signal);
   }
 }

@@ -18,7 +18,10 @@ export interface SocketEnd {
 }
 
 export class LiveSocket {
-  private constructor(private readonly socket: WebSocket) {}
+  private constructor(
+    private readonly socket: WebSocket,
+    private readonly ended: (end: SocketEnd) => void,
+  ) {}
 
   /**
    * Connects and tells what comes, until it ends or the signal aborts.
@@ -30,17 +33,20 @@ export class LiveSocket {
     const address = new URL(path, document.baseURI);
     address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
     return new Promise((resolve, reject) => {
+      let opened = false;
       const socket = new WebSocket(address);
       socket.binaryType = 'arraybuffer';
-      let opened = false;
-      const close = (): void => socket.close();
+      const close = (): void => {
+        socket.close();
+        resolve({ opened, code: 1006, reason: '' });
+      };
       signal.addEventListener('abort', close, { once: true });
       socket.addEventListener('open', () => {
         opened = true;
-        events.opened(new LiveSocket(socket));
+        events.opened(new LiveSocket(socket, resolve));
       });
       socket.addEventListener('message', ({ data }: MessageEvent<ArrayBuffer>) => {
-        if (signal.aborted) return;
+        if (signal.aborted || socket.readyState !== WebSocket.OPEN) return;
         try {
           events.event(decodeLiveEvent(data));
         } catch (error) {
@@ -60,8 +66,10 @@ export class LiveSocket {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(encodeLiveRequest(points));
   }
 
-  close(): void {
+  /** Gives up a connection that nothing comes over any more, without waiting for the other end. */
+  drop(): void {
     this.socket.close();
+    this.ended({ opened: true, code: 1006, reason: '' });
   }
 }
 

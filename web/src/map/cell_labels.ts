@@ -9,6 +9,7 @@ import Style from 'ol/style/Style';
 import { counterColour, type Rgb } from '../layers/palette';
 import type { Theme } from '../theme';
 import type { CellReader } from './cell_reader';
+import { clipTo, type Clip } from './clip';
 import { cellAt } from './grid';
 import { kOrder } from './order';
 
@@ -26,10 +27,10 @@ export class CellLabels {
     visible: false,
   });
   private reader: CellReader | null = null;
+  private clip: Clip = { from: 0, to: 1 };
 
   constructor(
     private readonly map: OlMap,
-    private readonly cellSize: number,
     private theme: Theme,
   ) {
     this.layer.on('prerender', (event) => this.draw(event));
@@ -42,6 +43,11 @@ export class CellLabels {
     this.layer.setVisible(reader !== null);
   }
 
+  setClip(clip: Clip): void {
+    this.clip = clip;
+    this.layer.changed();
+  }
+
   /** More is known of the cells. */
   update(): void {
     if (this.reader) this.layer.changed();
@@ -52,23 +58,18 @@ export class CellLabels {
     this.layer.changed();
   }
 
-  /** Whether cells are large enough at this zoom. */
-  get readable(): boolean {
-    return this.cellPixels >= kCellPxMin;
-  }
-
-  private get cellPixels(): number {
-    return this.cellSize / (this.map.getView().getResolution() ?? Infinity);
-  }
-
   private draw({ context, frameState }: RenderEvent): void {
     const canvas = context as CanvasRenderingContext2D;
-    if (!this.reader || !frameState?.extent || !this.readable) return;
-    const { extent, pixelRatio } = frameState;
-    const low = cellAt(extent[0] ?? 0, extent[1] ?? 0, this.cellSize);
-    const high = cellAt(extent[2] ?? 0, extent[3] ?? 0, this.cellSize);
+    if (!this.reader || !frameState?.extent) return;
+    const { extent, pixelRatio, viewState } = frameState;
+    const { cellSize } = this.reader;
+    const cellPixels = cellSize / viewState.resolution;
+    if (cellPixels < kCellPxMin) return;
+    const low = cellAt(extent[0] ?? 0, extent[1] ?? 0, cellSize);
+    const high = cellAt(extent[2] ?? 0, extent[3] ?? 0, cellSize);
     canvas.save();
-    canvas.font = `${Math.min(13, 0.55 * this.cellPixels) * pixelRatio}px system-ui, sans-serif`;
+    clipTo(canvas, this.clip);
+    canvas.font = `${Math.min(13, 0.55 * cellPixels) * pixelRatio}px system-ui, sans-serif`;
     canvas.textAlign = 'center';
     canvas.textBaseline = 'middle';
     canvas.lineJoin = 'round';
@@ -80,9 +81,11 @@ export class CellLabels {
   }
 
   private label(canvas: CanvasRenderingContext2D, i: number, j: number, pixelRatio: number): void {
-    const value = this.reader?.read({ i, j });
-    if (value?.kind !== 'counter') return;
-    const at = this.map.getPixelFromCoordinate([(i + 0.5) * this.cellSize, (j + 0.5) * this.cellSize]);
+    if (!this.reader) return;
+    const { cellSize } = this.reader;
+    const value = this.reader.read({ i, j });
+    if (value.kind !== 'counter') return;
+    const at = this.map.getPixelFromCoordinate([(i + 0.5) * cellSize, (j + 0.5) * cellSize]);
     const [x = 0, y = 0] = at ?? [];
     const ground = counterColour(this.theme.cells, value.count);
     canvas.strokeStyle = `rgb(${ground.join(' ')})`;

@@ -3,15 +3,10 @@ import type OlMap from 'ol/Map';
 import type RenderEvent from 'ol/render/Event';
 import type { LayerName } from '../layers/layers';
 import type { Palette } from '../layers/palette';
+import { clipTo, type Clip } from './clip';
 import type { MapSource } from './map_source';
 import { kProjection } from './projection';
 import { CellLayer } from './tile_layer';
-
-/** The part of the map's width that a pane is seen in: from 0 on the left to 1. */
-export interface Clip {
-  from: number;
-  to: number;
-}
 
 interface Hung {
   layer: CellLayer;
@@ -28,6 +23,8 @@ export class CellPane {
     private readonly map: OlMap,
     private readonly zIndex: number,
     private palette: Palette,
+    /** Told how each tile's request went: null, or what went wrong. */
+    private readonly settledTile: (error: unknown) => void,
   ) {}
 
   show(source: MapSource, layer: LayerName): void {
@@ -43,10 +40,6 @@ export class CellPane {
   /** More is known of the maps. */
   renew(): void {
     this.now?.layer.renew();
-  }
-
-  retry(): void {
-    this.now?.layer.retry();
   }
 
   setPalette(palette: Palette): void {
@@ -76,6 +69,7 @@ export class CellPane {
         palette: this.palette,
         signal: leave.signal,
         idle: () => this.settled(hung),
+        settled: this.settledTile,
       }),
     };
     this.now = hung;
@@ -101,10 +95,7 @@ export class CellPane {
 
   private beginClip({ context }: RenderEvent): void {
     const canvas = context as CanvasRenderingContext2D;
-    const { width, height } = canvas.canvas;
     canvas.save();
-    canvas.beginPath();
-    canvas.rect(this.clip.from * width, 0, (this.clip.to - this.clip.from) * width, height);
-    canvas.clip();
+    clipTo(canvas, this.clip);
   }
 }

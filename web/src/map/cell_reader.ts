@@ -34,17 +34,31 @@ export class CellReader {
     source.need(layer);
   }
 
+  /** Metres. */
+  get cellSize(): number {
+    return this.source.cellSize;
+  }
+
   /** Answers from what is at hand, and asks for a newer version of the tile if there is one. */
   read(cell: Cell): CellValue {
     const place = placeOfCell(cell);
     const revision = place ? this.source.versions(this.layer).get(kNativeZoom, place.x, place.y) : undefined;
     if (!place || revision === undefined) return valueOf(this.layer, kNothing[this.layer]);
     const tile = this.tileAt(place.x, place.y);
-    if (tile.revision < revision && !tile.loading && performance.now() - tile.loadedAt > kAgeMinMs) {
-      void this.load(tile, place.x, place.y, revision);
-    }
+    if (tile.revision < revision) this.renew(tile, place.x, place.y, revision);
     const code = tile.codes?.[place.row * kTileSize + place.column];
     return code === undefined ? { kind: 'loading' } : valueOf(this.layer, code);
+  }
+
+  private renew(tile: TileCells, x: number, y: number, revision: number): void {
+    if (tile.loading) return;
+    const age = performance.now() - tile.loadedAt;
+    if (age >= kAgeMinMs) return void this.load(tile, x, y, revision);
+    tile.loading = true;
+    setTimeout(() => {
+      tile.loading = false;
+      if (!this.signal.aborted) this.arrived();
+    }, kAgeMinMs - age);
   }
 
   private tileAt(x: number, y: number): TileCells {

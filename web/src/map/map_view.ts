@@ -1,10 +1,15 @@
 /** The map: its view, its layers, and what of a session is drawn on it. */
+import DragPan from 'ol/interaction/DragPan';
 import { defaults as defaultInteractions } from 'ol/interaction/defaults';
+import KeyboardPan from 'ol/interaction/KeyboardPan';
+import KeyboardZoom from 'ol/interaction/KeyboardZoom';
+import Kinetic from 'ol/Kinetic';
 import OlMap from 'ol/Map';
 import View from 'ol/View';
 import type { RobotGoal } from '../api/goals';
 import type { Frontier, Point, Robot } from '../api/types';
 import type { LayerName } from '../layers/layers';
+import { motionMs } from '../motion';
 import type { RobotColours } from '../robot_colours';
 import type { Settings } from '../settings';
 import type { Theme } from '../theme';
@@ -24,6 +29,9 @@ import { RobotsLayer } from './robots_layer';
 /** A cell may be blown up to this many pixels. */
 const kCellPxMax = 48;
 
+const kZoomMs = 250;
+const kKeyMs = 100;
+
 /** A layer of some maps. */
 export interface Shown {
   source: MapSource;
@@ -35,6 +43,7 @@ interface Scene {
   main: CellPane;
   beside: CellPane;
   labels: CellLabels;
+  labelsBeside: CellLabels;
   frontiers: FrontiersLayer;
   goals: GoalsLayer;
   paths: PathLayer;
@@ -46,7 +55,14 @@ export function createMap(target: HTMLElement): OlMap {
   return new OlMap({
     target,
     controls: [],
-    interactions: defaultInteractions({ altShiftDragRotate: false, pinchRotate: false }),
+    interactions: defaultInteractions({
+      ...{ altShiftDragRotate: false, pinchRotate: false, keyboard: false, dragPan: false },
+      zoomDuration: motionMs(kZoomMs),
+    }).extend([
+      new DragPan({ kinetic: motionMs(1) > 0 ? new Kinetic(-0.005, 0.05, 100) : undefined }),
+      new KeyboardPan({ duration: motionMs(kKeyMs) }),
+      new KeyboardZoom({ duration: motionMs(kKeyMs) }),
+    ]),
   });
 }
 
@@ -56,6 +72,8 @@ export class MapView {
   constructor(
     private readonly map: OlMap,
     private theme: Theme,
+    /** Told how each tile's request went: null, or what went wrong. */
+    private readonly settled: (error: unknown) => void,
   ) {}
 
   /** Starts with an empty map on this grid. */
@@ -63,25 +81,26 @@ export class MapView {
     this.close();
     this.map.setView(viewOf(cellSize));
     this.scene = {
-      main: new CellPane(this.map, kOrder.cells, this.theme.cells),
-      beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells),
-      labels: new CellLabels(this.map, cellSize, this.theme),
+      main: new CellPane(this.map, kOrder.cells, this.theme.cells, this.settled),
+      beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells, this.settled),
+      labels: new CellLabels(this.map, this.theme),
+      labelsBeside: new CellLabels(this.map, this.theme),
       frontiers: new FrontiersLayer(this.theme),
       goals: new GoalsLayer(colours, this.theme),
       paths: new PathLayer(colours, this.theme),
       points: new PointsLayer(colours, this.theme),
       robots: new RobotsLayer(colours, this.theme),
     };
-    const { labels, frontiers, goals, paths, points, robots } = this.scene;
-    for (const { layer } of [labels, frontiers, goals, paths, points, robots]) this.map.addLayer(layer);
+    const { labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, paths, points, robots]) this.map.addLayer(layer);
     this.choose(settings);
   }
 
   close(): void {
     if (!this.scene) return;
-    const { main, beside, labels, frontiers, goals, paths, points, robots } = this.scene;
+    const { main, beside, labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.clear();
-    for (const { layer } of [labels, frontiers, goals, paths, points, robots]) this.map.removeLayer(layer);
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, paths, points, robots]) this.map.removeLayer(layer);
     this.scene = null;
   }
 
@@ -108,15 +127,15 @@ export class MapView {
 
   /** Where the one ends and the other begins, from 0 on the left to 1; null: they lie on each other. */
   setDivider(at: number | null): void {
-    this.scene?.main.setClip({ from: 0, to: at ?? 1 });
-    this.scene?.beside.setClip({ from: at ?? 0, to: 1 });
+    for (const first of [this.scene?.main, this.scene?.labels]) first?.setClip({ from: 0, to: at ?? 1 });
+    for (const second of [this.scene?.beside, this.scene?.labelsBeside]) second?.setClip({ from: at ?? 0, to: 1 });
   }
 
   /** More is known of the maps that are shown. */
   renew(): void {
     this.scene?.main.renew();
     this.scene?.beside.renew();
-    this.scene?.labels.update();
+    this.updateCounters();
   }
 
   showTrail(robot: string, points: Point[]): void {
@@ -143,33 +162,24 @@ export class MapView {
     this.scene?.frontiers.show(frontiers);
   }
 
-  /** @param reader of HIMM counters to be written into their cells; null: none */
-  showCounters(reader: CellReader | null): void {
-    this.scene?.labels.show(reader);
-  }
-
-  /** Whether cells are large enough for counters at this zoom. */
-  get countersReadable(): boolean {
-    return this.scene?.labels.readable ?? false;
+  /** @param main, beside readers of HIMM counters to be written into the cells of either side; null: none */
+  showCounters(main: CellReader | null, beside: CellReader | null): void {
+    this.scene?.labels.show(main);
+    this.scene?.labelsBeside.show(beside);
   }
 
   /** Cells that were asked for have come. */
   updateCounters(): void {
     this.scene?.labels.update();
-  }
-
-  /** The server answers again: ask for what could not be had meanwhile. */
-  retry(): void {
-    this.scene?.main.retry();
-    this.scene?.beside.retry();
+    this.scene?.labelsBeside.update();
   }
 
   setTheme(theme: Theme): void {
     this.theme = theme;
     if (!this.scene) return;
-    const { main, beside, labels, frontiers, goals, paths, points, robots } = this.scene;
+    const { main, beside, labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.setPalette(theme.cells);
-    for (const overlay of [labels, frontiers, goals, paths, points, robots]) overlay.setTheme(theme);
+    for (const overlay of [labels, labelsBeside, frontiers, goals, paths, points, robots]) overlay.setTheme(theme);
   }
 }
 

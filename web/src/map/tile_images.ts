@@ -9,6 +9,9 @@ import { tileKey } from './versions';
 /** About 100 MB of pixels: several screens full, so that a change of zoom and back asks for nothing. */
 export const kImagesMax = 384;
 
+/** A tile that the server refuses is not asked for more often than this. */
+export const kRetryMs = 3_000;
+
 /** The revision of what nothing ever touched. */
 const kUntouched = -1;
 
@@ -30,7 +33,8 @@ interface TileImage {
   /** What it shows; null: nothing yet. */
   painted: number | null;
   loading: Promise<void> | null;
-  failed: boolean;
+  /** When it could not be had, by performance.now(). */
+  failedAt: number;
 }
 
 export interface TileImagesEvents {
@@ -38,6 +42,8 @@ export interface TileImagesEvents {
   painted(): void;
   /** Nothing is under way any more. */
   idle(): void;
+  /** A tile could not be had, and is asked for again after kRetryMs; null: one could. */
+  settled(error: unknown): void;
 }
 
 export class TileImages {
@@ -78,19 +84,15 @@ export class TileImages {
     this.clear();
   }
 
-  /** Whether a tile could not be had; from now on such are asked for again. */
-  takeFailures(): boolean {
-    const failed = [...this.images.values()].filter((image) => image.failed);
-    for (const image of failed) image.failed = false;
-    return failed.length > 0;
-  }
-
-  /** A tile that was never touched is blank and asks nothing of the server. */
+  /**
+   * A tile that was never touched is blank and asks nothing of the server; so is, for the time being, one that cannot be
+   * had: it is painted when it can.
+   */
   async load(z: number, x: number, y: number): Promise<HTMLCanvasElement> {
     const key = tileKey(z, x, y);
     let image = this.images.get(key);
     if (!image) {
-      image = { z, x, y, canvas: newCanvas(), painted: null, loading: null, failed: false };
+      image = { z, x, y, canvas: newCanvas(), painted: null, loading: null, failedAt: -Infinity };
       this.images.set(key, image);
     }
     this.update(image);
@@ -103,22 +105,30 @@ export class TileImages {
     for (let x = minX; x <= maxX; ++x) {
       for (let y = minY; y <= maxY; ++y) {
         const image = this.images.get(tileKey(z, x, y));
-        if (image && !image.failed) this.update(image);
+        if (image) this.update(image);
       }
     }
   }
 
   private update(image: TileImage): void {
     if (image.loading || image.painted === this.wanted(image)) return;
-    const loading = this.bringUpToDate(image).finally(() => {
+    if (performance.now() - image.failedAt < kRetryMs) return;
+    this.underWay += 1;
+    image.loading = this.fetch(image);
+  }
+
+  private async fetch(image: TileImage): Promise<void> {
+    try {
+      await this.bringUpToDate(image);
+      this.events.settled(null);
+    } catch (error) {
+      image.failedAt = performance.now();
+      if (!this.signal.aborted) this.events.settled(error);
+    } finally {
       image.loading = null;
       this.underWay -= 1;
       if (this.underWay === 0) this.events.idle();
-    });
-    this.underWay += 1;
-    image.loading = loading;
-    // Whoever waits for the first version hears of it; later ones are tried again.
-    loading.catch(() => (image.failed = true));
+    }
   }
 
   private async bringUpToDate(image: TileImage): Promise<void> {

@@ -8,10 +8,7 @@ import type { LayerName } from '../layers/layers';
 import type { Palette } from '../layers/palette';
 import { squareExtent, tileResolutions } from './grid';
 import type { MapSource } from './map_source';
-import { kImagesMax, TileImages } from './tile_images';
-
-/** A tile that the server keeps refusing is not asked for more often than this. */
-const kRetryMs = 3_000;
+import { kImagesMax, kRetryMs, TileImages } from './tile_images';
 
 export interface CellLayerOptions {
   projection: Projection;
@@ -21,6 +18,8 @@ export interface CellLayerOptions {
   signal: AbortSignal;
   /** Called when all that was asked for is there. */
   idle: () => void;
+  /** Told how each tile's request went: null, or what went wrong. */
+  settled: (error: unknown) => void;
 }
 
 export class CellLayer {
@@ -28,14 +27,22 @@ export class CellLayer {
   private readonly cells: CellTiles;
   private readonly images: TileImages;
   private generation = 0;
-  private retriedAt = -Infinity;
+  private retry = 0;
 
   constructor(
     private source: MapSource,
     readonly layer: LayerName,
-    { palette, signal, viewResolution, projection, idle }: CellLayerOptions,
+    { palette, signal, viewResolution, projection, idle, settled }: CellLayerOptions,
   ) {
-    this.images = new TileImages(source, layer, palette, signal, { painted: () => this.renew(), idle });
+    this.images = new TileImages(source, layer, palette, signal, {
+      painted: () => this.renew(),
+      idle,
+      settled: (error) => {
+        settled(error);
+        if (error !== null) this.renewLater();
+      },
+    });
+    signal.addEventListener('abort', () => clearTimeout(this.retry));
     this.cells = new CellTiles(source.cellSize, viewResolution, projection, this.images);
     this.tiles = new TileLayer({ source: this.cells });
     this.tiles.on('prerender', (event) => this.refresh(event));
@@ -67,11 +74,9 @@ export class CellLayer {
   }
 
   /** Tiles that could not be had are asked for again. */
-  retry(): void {
-    const now = performance.now();
-    if (now - this.retriedAt < kRetryMs || !this.images.takeFailures()) return;
-    this.retriedAt = now;
-    this.reload();
+  private renewLater(): void {
+    clearTimeout(this.retry);
+    this.retry = window.setTimeout(() => this.renew(), kRetryMs);
   }
 
   setPalette(palette: Palette): void {

@@ -41,6 +41,8 @@ export class Cursor {
       // A finger that is lifted still means the place that it touched.
       if (event.pointerType === 'mouse') this.pointAt(null);
     });
+    // Whoever steers by keys means the middle, wherever the pointer was left.
+    target.addEventListener('keydown', () => this.pointAt(null));
     for (const event of ['focus', 'blur']) target.addEventListener(event, () => this.update());
   }
 

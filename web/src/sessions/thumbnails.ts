@@ -1,7 +1,9 @@
 /** Pictures of the sessions' maps: only of those in view, only when they have changed, and only a few at a time. */
-import { fetchTileImage } from '../api/api';
+import { fetchChanges, fetchTileImage } from '../api/api';
 import type { Bounds, Session } from '../api/types';
+import type { LayerName } from '../layers/layers';
 import { colourise, colourTable, type Palette } from '../layers/palette';
+import { TileVersions } from '../map/versions';
 import { planThumbnail, type ThumbnailPlan } from './thumbnail_plan';
 
 /** Of the place in the row, CSS pixels; the style sheet gives it the same size. */
@@ -10,6 +12,8 @@ const kHeight = 40;
 /** However fast a map grows, and for a picture that cannot be had. */
 const kPaceMs = 10_000;
 const kAtOnce = 2;
+/** What the server draws where nobody has seen anything. */
+const kUnknownColour = '#808080';
 
 interface Thumbnail {
   session: Session;
@@ -18,6 +22,14 @@ interface Thumbnail {
   shown: string | null;
   triedAt: number;
   underWay: boolean;
+  tiles: KnownTiles;
+}
+
+/** What is known of a session's tiles, so that only those are asked for that have changed: the others are kept by the browser. */
+interface KnownTiles {
+  /** The session's. */
+  id: string;
+  byLayer: Map<LayerName, { revision: number; versions: TileVersions }>;
 }
 
 export class Thumbnails {
@@ -36,7 +48,8 @@ export class Thumbnails {
     if (known) {
       known.session = session;
     } else {
-      this.all.set(canvas, { session, inView: false, shown: null, triedAt: -Infinity, underWay: false });
+      const tiles = { id: session.id, byLayer: new Map() };
+      this.all.set(canvas, { session, inView: false, shown: null, triedAt: -Infinity, underWay: false, tiles });
       this.observer.observe(canvas);
     }
     const state = session.bounds === null ? 'empty' : 'map';
@@ -86,7 +99,8 @@ export class Thumbnails {
     thumbnail.triedAt = performance.now();
     this.underWay += 1;
     try {
-      const picture = await compose(session, session.bounds, table);
+      if (thumbnail.tiles.id !== session.id) thumbnail.tiles = { id: session.id, byLayer: new Map() };
+      const picture = await compose(session, session.bounds, thumbnail.tiles, table);
       // The old picture stays until the new one is there, and where that cannot be had.
       paint(canvas, picture);
       if (table === this.table) thumbnail.shown = versionOf(session);
@@ -109,28 +123,61 @@ function versionOf({ id, revision }: Session): string {
   return `${id} ${revision}`;
 }
 
-/** The map alone, in the page's colours, with as many pixels as the tiles have. */
-async function compose(session: Session, bounds: Bounds, table: Uint32Array): Promise<HTMLCanvasElement> {
+/** The map alone: what lasers saw, or where they saw nothing, sonars. */
+async function compose(
+  session: Session,
+  bounds: Bounds,
+  tiles: KnownTiles,
+  table: Uint32Array,
+): Promise<HTMLCanvasElement> {
   const plan = planThumbnail(bounds, session.cellSize);
+  for (const layer of ['occupancy', 'sonar'] as const) {
+    const versions = await versionsOf(session, layer, tiles);
+    if (plan.tiles.some(({ z, x, y }) => versions.get(z, x, y) !== undefined)) {
+      return composeLayer(session, layer, plan, versions, table);
+    }
+  }
+  return document.createElement('canvas');
+}
+
+/** Asks what has changed since the last time. */
+async function versionsOf(session: Session, layer: LayerName, { byLayer }: KnownTiles): Promise<TileVersions> {
+  const known = byLayer.get(layer) ?? { revision: 0, versions: new TileVersions() };
+  byLayer.set(layer, known);
+  const { signal } = new AbortController();
+  const changes = await fetchChanges(session.name, { layer, since: known.revision, weave: null }, signal);
+  known.versions.apply(changes.tiles);
+  known.revision = changes.revision;
+  return known.versions;
+}
+
+/** In the page's colours, with as many pixels as the tiles have. */
+async function composeLayer(
+  session: Session,
+  layer: LayerName,
+  plan: ThumbnailPlan,
+  versions: TileVersions,
+  table: Uint32Array,
+): Promise<HTMLCanvasElement> {
   const canvas = document.createElement('canvas');
   canvas.width = plan.width;
   canvas.height = plan.height;
   const context = contextOf(canvas);
-  await drawTiles(context, session, plan);
-  const image = context.getImageData(0, 0, plan.width, plan.height);
-  colourise(image.data, table);
-  context.putImageData(image, 0, 0);
-  return canvas;
-}
-
-async function drawTiles(context: CanvasRenderingContext2D, session: Session, plan: ThumbnailPlan): Promise<void> {
+  context.fillStyle = kUnknownColour;
+  context.fillRect(0, 0, plan.width, plan.height);
   const { signal } = new AbortController();
   const load = async ({ z, x, y, left, top }: ThumbnailPlan['tiles'][number]): Promise<void> => {
-    const bitmap = await fetchTileImage({ session, layer: 'occupancy', weave: null }, { z, x, y, revision: session.revision }, signal);
+    const revision = versions.get(z, x, y);
+    if (revision === undefined) return;
+    const bitmap = await fetchTileImage({ session, layer, weave: null }, { z, x, y, revision }, signal);
     context.drawImage(bitmap, left, top);
     bitmap.close();
   };
   await Promise.all(plan.tiles.map(load));
+  const image = context.getImageData(0, 0, plan.width, plan.height);
+  colourise(image.data, table);
+  context.putImageData(image, 0, 0);
+  return canvas;
 }
 
 /** As large as it fits, in the middle; cells that are blown up keep their edges. */

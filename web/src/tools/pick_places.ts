@@ -2,6 +2,7 @@
 import DoubleClickZoom from 'ol/interaction/DoubleClickZoom';
 import type OlMap from 'ol/Map';
 import type { Point } from '../api/types';
+import { byId } from '../dom';
 
 /**
  * @param target the map's element
@@ -12,6 +13,8 @@ export function pickPlaces(map: OlMap, target: HTMLElement, signal: AbortSignal,
   const press = (event: KeyboardEvent): void => {
     const centre = map.getView().getCenter();
     if (event.key !== 'Enter' || event.target !== target || !centre) return;
+    // The first one, after the pointer, only shows where the middle is.
+    if (byId('crosshair', HTMLElement).hidden) return;
     event.preventDefault();
     picked([centre[0] ?? 0, centre[1] ?? 0]);
   };
@@ -19,7 +22,7 @@ export function pickPlaces(map: OlMap, target: HTMLElement, signal: AbortSignal,
   const zooms = map.getInteractions().getArray().filter((each) => each instanceof DoubleClickZoom);
   for (const zoom of zooms) zoom.setActive(false);
   map.on('click', click);
-  target.addEventListener('keydown', press, { signal });
+  target.addEventListener('keydown', press, { signal, capture: true });
   target.classList.add('picking');
   signal.addEventListener('abort', () => {
     for (const zoom of zooms) zoom.setActive(true);

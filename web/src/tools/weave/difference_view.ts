@@ -43,6 +43,7 @@ export class DifferenceView {
   );
   private readonly layer = new ImageLayer<ImageStatic>({ zIndex: kOrder.difference });
   private readonly asking: NewestOnly;
+  private readonly saving: NewestOnly;
   private weave: string | null = null;
   private address: string | null = null;
 
@@ -58,6 +59,11 @@ export class DifferenceView {
         this.forget();
         this.outcome.complain(error);
       },
+    );
+    this.saving = new NewestOnly(
+      signal,
+      () => {},
+      (error) => outcome.complain(error),
     );
     this.element.hidden = true;
     context.map.addLayer(this.layer);
@@ -129,7 +135,7 @@ export class DifferenceView {
     const session = this.context.session();
     const query = this.query();
     if (!session || !query) return;
-    this.asking.run(async (signal) => {
+    this.saving.run(async (signal) => {
       const { png } = await fetchDifferencePicture(session.name, query, signal);
       saveBlob(png, `${session.name}-difference.png`);
     });

@@ -1,0 +1,175 @@
+/** What lies on the map: robots, scans, frontiers, goals; against a server that does what each test wants. */
+import assert from 'node:assert/strict';
+import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import {
+  colourAt,
+  colourOf,
+  countsPixels,
+  isLike,
+  keepPicture,
+  kWebDirectory,
+  launchBrowser,
+  openPage,
+  showsColour,
+  showsColourAt,
+  until,
+} from './browser.mjs';
+import { FakeServer } from './fake_server.mjs';
+import { FakeSession } from './fake_session.mjs';
+import { pixelOf } from './one_tile.mjs';
+
+describe('on the map', { timeout: 180_000 }, () => {
+  let browser;
+  let server;
+  let page;
+  let session;
+  let complaints = [];
+
+  const open = async (options) => ({ page, complaints } = await openPage(browser, server.address, options));
+
+  before(async () => (browser = await launchBrowser()));
+  after(() => browser?.close());
+  beforeEach(async () => {
+    server = await FakeServer.start(kWebDirectory);
+    session = server.add(new FakeSession('map', 'id-map'));
+  });
+  afterEach(async () => {
+    await page?.context().close();
+    await server.vanish().catch(() => {});
+    assert.deepEqual(complaints, []);
+  });
+
+  it('show the newest scan where its beams ended, unless it is not wanted', async () => {
+    session.paint(256, 255, 0);
+    session.scan = [
+      [3, 3],
+      [9.4, 9.4],
+    ];
+    session.move('r1', 6, 2, 0);
+    await open();
+    await showsColour(page, '--cell-free');
+    const colour = await colourOf(page, '--robot-0');
+    await showsAt(...pixelOf(3, 3), colour);
+    await showsAt(...pixelOf(9.4, 9.4), colour);
+    await page.uncheck('[data-switch=points]');
+    await showsNotAt(...pixelOf(3, 3), colour);
+  });
+
+  it('show a robot with the ground that its body takes, and its trail', async () => {
+    session.paint(256, 255, 0);
+    session.move('r1', 2, 6.4, 0);
+    session.move('r1', 10, 6.4, 0);
+    session.robots[0].body_radius = 1.5;
+    session.move('r1', 10, 6.4, 0);
+    await open();
+    const colour = await colourOf(page, '--robot-0');
+    await showsNear(...pixelOf(10, 7.9), colour);
+    await showsNear(...pixelOf(4, 6.4), colour);
+    await page.uncheck('[data-switch=trails]');
+    await showsNotAt(...pixelOf(4, 6.4), colour);
+    await page.uncheck('[data-switch=robots]');
+    await showsNoPixels(colour);
+  });
+
+  it('show frontiers as areas with their goals, as soon as they change, and only when wanted', async () => {
+    session.paint(256, 255, 0);
+    session.frontiers = [frontier([3, 3], [5, 5])];
+    await open();
+    await showsColour(page, '--cell-free');
+    const path = '/api/v1/sessions/map/frontiers.geojson';
+    assert.ok(!server.requests.includes(path));
+    const colour = await colourOf(page, '--class-frontier');
+    await page.check('[data-switch=frontiers]');
+    await showsAt(...pixelOf(3, 3), colour);
+    session.frontiers = [frontier([9, 9], [8, 5])];
+    session.move('r1', 1, 1, 0);
+    await showsAt(...pixelOf(9, 9), colour);
+    await showsNotAt(...pixelOf(3, 3), colour);
+    await keepPicture(page, 'frontiers');
+  });
+
+  it('survive frontiers that are none', async () => {
+    session.paint(256, 255, 0);
+    session.frontiers = [{ type: 'Feature', geometry: { type: '<b>x</b>', coordinates: 'nonsense' }, properties: {} }];
+    await open();
+    await page.check('[data-switch=frontiers]');
+    await page.waitForResponse(/frontiers\.geojson/);
+    session.frontiers = [frontier([3, 3], [5, 5])];
+    session.move('r1', 1, 1, 0);
+    await showsAt(...pixelOf(3, 3), await colourOf(page, '--class-frontier'));
+    assert.equal(await page.locator('#map b').count(), 0);
+  });
+
+  it('show where a robot is going, as soon as it is told, and forget it likewise', async () => {
+    session.paint(256, 255, 0);
+    session.move('r1', 1, 1, 0);
+    await open();
+    await showsColour(page, '--cell-free');
+    const path = '/api/v1/sessions/map/goals.geojson';
+    const colour = await colourOf(page, '--robot-0');
+    session.tellGoals([
+      feature({ role: 'way', robot: 'r1' }, { type: 'LineString', coordinates: [[1, 1], [1, 9], [9, 9]] }),
+      feature({ role: 'goal', robot: 'r1', target: [11, 9] }, { type: 'Point', coordinates: [9, 9] }),
+    ]);
+    const ring = pixelOf(9, 9);
+    await showsNear(ring[0], ring[1] - 7, colour);
+    await keepPicture(page, 'goals');
+    const asked = server.requests.filter((each) => each === path).length;
+    session.move('r1', 1, 2, 0);
+    await until(page, async () => (await colourAt(page, ...pixelOf(1, 2))) !== null);
+    assert.equal(server.requests.filter((each) => each === path).length, asked, 'what has not changed is not asked for');
+    session.tellGoals([]);
+    await showsNotAt(ring[0], ring[1] - 7, colour);
+    session.tellGoals([feature({ role: '<b>', robot: 'r1' }, { type: 'Point', coordinates: 'x' })]);
+    await page.waitForResponse(/goals\.geojson/);
+    session.tellGoals([feature({ role: 'goal', robot: 'r1', target: [5, 3] }, { type: 'Point', coordinates: [3, 3] })]);
+    const other = pixelOf(3, 3);
+    await showsNear(other[0], other[1] - 7, colour);
+    await page.uncheck('[data-switch=goals]');
+    await showsNotAt(other[0], other[1] - 7, colour);
+  });
+
+  it('begin with a layer that holds something', async () => {
+    session.layers = ['sonar'];
+    session.paint(256, 255, 100);
+    session.move('r1', 1, 1, 0);
+    await open();
+    await page.waitForSelector('[name=layer][value=sonar]:checked');
+    await showsColour(page, '--cell-occupied');
+  });
+
+  /** A square of 1 m around a place. */
+  function frontier([x, y], goal) {
+    const ring = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]].map(([dx, dy]) => [x + dx, y + dy]);
+    return {
+      type: 'Feature',
+      properties: { cells: 400, area: 1, centroid: [x, y], reachable: true, robot: 'r1', goal, length: 1, cost: 1 },
+      geometry: { type: 'MultiPolygon', coordinates: [[ring]] },
+    };
+  }
+
+  function feature(properties, geometry) {
+    return { type: 'Feature', properties, geometry };
+  }
+
+  function showsAt(x, y, colour) {
+    return showsColourAt(page, [x, y], colour);
+  }
+
+  function showsNotAt(x, y, colour) {
+    return showsColourAt(page, [x, y], colour, false);
+  }
+
+  /** Lines are thin: they may share a pixel with what lies below. */
+  async function showsNear(x, y, colour) {
+    const steps = [-2, -1, 0, 1, 2];
+    await until(page, async () => {
+      const seen = await Promise.all(steps.map((dy) => colourAt(page, x, y + dy)));
+      return seen.some((each) => each !== null && isLike(each, colour, 80));
+    });
+  }
+
+  function showsNoPixels(colour) {
+    return countsPixels(page, colour, (count) => count === 0);
+  }
+});
