@@ -21,6 +21,7 @@ export interface ChooserParts {
 export class Chooser {
   private robotPort: RobotPort | null = null;
   private refreshing = false;
+  private refreshedAt = -Infinity;
 
   constructor(private readonly parts: ChooserParts) {}
 
@@ -31,8 +32,9 @@ export class Chooser {
 
   /** Asks between two rounds; what goes wrong, the next round tells. */
   async refreshSoon(): Promise<void> {
-    if (this.refreshing) return;
+    if (this.refreshing || performance.now() - this.refreshedAt < kPace.visibleMs) return;
     this.refreshing = true;
+    this.refreshedAt = performance.now();
     await this.refresh(new AbortController().signal).catch(() => {});
     this.refreshing = false;
   }

@@ -108,7 +108,7 @@ function decodeRobot(json: unknown): Robot {
   };
 }
 
-function decodePose(json: unknown): Pose {
+export function decodePose(json: unknown): Pose {
   const pose = fields(json, 'pose');
   return { x: number(pose['x'], 'pose.x'), y: number(pose['y'], 'pose.y'), yaw: number(pose['yaw'], 'pose.yaw') };
 }

@@ -11,7 +11,7 @@ import {
 } from 'virtual:live-protocol';
 import { kNativeZoom } from '../map/grid';
 import type { LayerName } from '../layers/layers';
-import { MalformedAnswer } from './decode';
+import { decodePose, MalformedAnswer } from './decode';
 import type { Point, Pose, TileChange } from './types';
 
 const kTilesAcross = 2 ** kNativeZoom;
@@ -120,7 +120,7 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
     name: robot.name,
     connected: robot.connected,
     scans: robot.scan_count,
-    pose: robot.pose ? { ...robot.pose } : null,
+    pose: robot.pose ? decodePose(robot.pose) : null,
     bodyRadius: robot.body_radius ? robot.body_radius : null,
     trail: pointsOf(robot.trail, 0, 0),
     trailFrom: robot.trail_from,
@@ -129,7 +129,7 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
 }
 
 function decodeScan({ origin, points }: ScanPoints): LiveScan {
-  const pose = origin ? { ...origin } : { x: 0, y: 0, yaw: 0 };
+  const pose = origin ? decodePose(origin) : { x: 0, y: 0, yaw: 0 };
   return { origin: pose, points: pointsOf(points, pose.x, pose.y) };
 }
 

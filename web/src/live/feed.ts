@@ -1,5 +1,6 @@
 /** Everything the server has to tell about one session, as it happens. */
 import { fetchChanges, fetchSession, fetchTrajectory, livePath } from '../api/api';
+import { MalformedAnswer } from '../api/decode';
 import { Refused } from '../api/http';
 import type { LiveEvent } from '../api/live';
 import type { Session, TileChange } from '../api/types';
@@ -42,6 +43,8 @@ export class Feed {
   private behindSince: number | null = null;
   private revision = 0;
   private wantsPoints = true;
+  /** How often in a row events were of another session. */
+  private replaced = 0;
 
   constructor(
     private readonly name: string,
@@ -94,6 +97,8 @@ export class Feed {
     } catch (error) {
       if (!(error instanceof Replaced)) throw error;
       this.id = null;
+      // Once is a session made anew; again and again, the server contradicts itself.
+      if (this.replaced++ > 0) throw new MalformedAnswer('a live event of another session');
     } finally {
       this.socket = null;
     }
@@ -119,6 +124,7 @@ export class Feed {
 
   private hear(event: LiveEvent): void {
     if (event.id !== this.id) throw new Replaced();
+    this.replaced = 0;
     const gap = event.robots.filter(({ name, trail, trailFrom }) => !this.trails.merge(name, trailFrom, trail));
     if (gap.length > 0) void this.fillTrails(this.trails);
     for (const { layer, everything, tiles } of event.tiles) {

@@ -38,6 +38,8 @@ class WeaveCard {
   private polling = new AbortController();
   /** The weave that was asked for here: shown as soon as it is done. */
   private wanted: string | null = null;
+  /** The list could not be had the last time. */
+  private troubled = false;
 
   constructor(
     private readonly context: ToolContext,
@@ -119,8 +121,15 @@ class WeaveCard {
       },
       pace,
       signal,
-      (error) => error && this.outcome.complain(error),
+      (error) => this.settle(error),
     );
+  }
+
+  /** The list could not be had, or again. */
+  private settle(error: unknown): void {
+    if (error !== null) this.outcome.complain(error);
+    else if (this.troubled) this.outcome.say(this.wanted === null ? '' : 'The server weaves\u2026');
+    this.troubled = error !== null;
   }
 
   private hear(weaves: ListedWeave[], pace: Pace): void {
@@ -128,6 +137,7 @@ class WeaveCard {
     const wanted = weaves.find(({ id }) => id === this.wanted);
     if (wanted?.state === 'done') this.show(wanted);
     else if (wanted && !isUnderWay(wanted)) this.fail(wanted);
+    else if (!wanted && this.wanted !== null) this.lose();
     const wantedPace = weaves.some(isUnderWay) ? kBusyPace : kIdlePace;
     if (wantedPace !== pace) this.watch(wantedPace);
   }
@@ -139,6 +149,12 @@ class WeaveCard {
     this.comparison.show(session, weave, (error) => this.outcome.complain(error));
     this.outcome.say('Shown right of the line; drag it to compare.');
     this.markShown();
+  }
+
+  /** The server was started again, or forgot it for others. */
+  private lose(): void {
+    this.wanted = null;
+    this.outcome.complain(new Error('The server has this weave no longer; start it again'));
   }
 
   private fail({ state, reason }: ListedWeave): void {
