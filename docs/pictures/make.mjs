@@ -73,11 +73,10 @@ async function counters(page) {
 /** A third of the way through the run. */
 async function history(page) {
   await page.keyboard.press('t');
-  await page.waitForSelector('#time-slider:not([disabled])');
+  await page.waitForFunction(() => document.querySelector('#time-slider').max > 1);
   await page.$eval('#time-slider', (slider) => {
     slider.value = String(Math.round(slider.max / 3));
     slider.dispatchEvent(new Event('input', { bubbles: true }));
-    slider.dispatchEvent(new Event('change', { bubbles: true }));
   });
   await page.waitForFunction(() => /past/i.test(document.querySelector('#time-mode').textContent));
 }

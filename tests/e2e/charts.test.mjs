@@ -1,30 +1,21 @@
 /** The charts of the server: rates, latencies, what is not told, and restarts. */
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { colourOf, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
-import { FakeServer } from './fake_server.mjs';
+import { withFakeServer } from './fake_fixture.mjs';
 
 const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
 
 describe("the server's charts", { timeout: 180_000 }, () => {
-  let browser;
   let server;
   let page;
   let complaints = [];
+  const openPage = withFakeServer((fresh) => (server = fresh));
 
   const open = async (options) => {
-    ({ page, complaints } = await openPage(browser, server.address, options));
+    ({ page, complaints } = await openPage(options));
     await page.waitForSelector('#server-toggle', { state: 'attached' });
   };
-
-  before(async () => (browser = await launchBrowser()));
-  after(() => browser?.close());
-  beforeEach(async () => (server = await FakeServer.start(kWebDirectory)));
-  afterEach(async () => {
-    await page?.context().close();
-    await server.vanish().catch(() => {});
-    assert.deepEqual(complaints, []);
-  });
 
   it('ask for nothing until someone opens them, and no longer when they are closed', async () => {
     server.metrics = metrics({ scans: 0 });

@@ -1,6 +1,6 @@
 /** Layers, what lies on them, and how they are shown, against a server that does what each test wants. */
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
 import {
   colourAt,
@@ -8,55 +8,46 @@ import {
   countPixels,
   countsPixels,
   keepPicture,
-  kWebDirectory,
-  launchBrowser,
-  openPage,
   says,
   showsColour,
   showsColourAt,
   textOf,
 } from './browser.mjs';
-import { FakeServer } from './fake_server.mjs';
+import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { kMiddle, pixelOf } from './one_tile.mjs';
 
-const kLayers = ['occupancy', 'classification', 'himm', 'sonar'];
+const kLayers = ['occupancy', 'sonar', 'himm', 'classification'];
 describe('layers', { timeout: 180_000 }, () => {
-  let browser;
   let server;
   let page;
   let session;
   let complaints = [];
-
-  const open = async (options) => ({ page, complaints } = await openPage(browser, server.address, options));
-
-  before(async () => (browser = await launchBrowser()));
-  after(() => browser?.close());
-  beforeEach(async () => {
-    server = await FakeServer.start(kWebDirectory);
+  const openPage = withFakeServer((fresh) => {
+    server = fresh;
     session = server.add(new FakeSession('map', 'id-map'));
     session.layers = kLayers;
   });
-  afterEach(async () => {
-    await page?.context().close();
-    await server.vanish().catch(() => {});
-    assert.deepEqual(complaints, []);
-  });
+
+  const open = async (options) => ({ page, complaints } = await openPage(options));
 
   it('are stepped through by keys, each in its colours, and kept in the address', async () => {
     session.paint(256, 255, 4); // danger, counter 4, 4 %
     await open();
     await showsColour(page, '--cell-free');
     await page.keyboard.press('v');
+    await page.waitForSelector('[name=layer][value=sonar]:checked');
+    await page.keyboard.press('v');
+    await page.waitForSelector('[name=layer][value=himm]:checked');
+    await says(page, '#legend', /counter 0/);
+    await page.keyboard.press('V'); // Caps Lock
     await showsColour(page, '--class-danger');
     assert.match(page.url(), /layer=classification/);
     await says(page, '#legend', /danger/);
     await page.keyboard.press('v');
-    await page.waitForSelector('[name=layer][value=himm]:checked');
-    await says(page, '#legend', /counter 0/);
-    await page.keyboard.press('b');
-    await page.keyboard.press('b');
     await showsColour(page, '--cell-free');
+    await page.keyboard.press('b');
+    await page.keyboard.press('b');
     await page.keyboard.press('b');
     await page.waitForSelector('[name=layer][value=sonar]:checked');
     await page.reload();
@@ -69,10 +60,15 @@ describe('layers', { timeout: 180_000 }, () => {
     await showsColour(page, '--cell-free');
     await page.focus('[name=layer][value=occupancy]');
     await page.keyboard.press('v');
-    await page.waitForSelector('[name=layer][value=classification]:checked');
+    await page.waitForSelector('[name=layer][value=sonar]:checked');
     await page.focus('#beside');
     await page.keyboard.press('v');
-    await page.waitForSelector('[name=layer][value=classification]:checked');
+    await page.waitForSelector('[name=layer][value=sonar]:checked');
+    await page.focus('#map');
+    await page.uncheck('#single-keys');
+    await page.keyboard.press('v');
+    await page.check('#single-keys');
+    await page.waitForSelector('[name=layer][value=sonar]:checked');
   });
 
   it('never ask for tiles of a layer that is not shown', async () => {
@@ -80,7 +76,7 @@ describe('layers', { timeout: 180_000 }, () => {
     await open();
     await showsColour(page, '--cell-free');
     assert.ok(server.tileRequests.every((path) => path.includes('/occupancy/')), server.tileRequests.join('\n'));
-    await page.keyboard.press('v');
+    await page.keyboard.press('b');
     await showsColour(page, '--class-danger');
     const before = server.tileRequests.length;
     session.paint(256, 255, 3);
@@ -163,7 +159,7 @@ describe('layers', { timeout: 180_000 }, () => {
     await showsColour(page, '--cell-free');
     await page.mouse.move(...kMiddle);
     await says(page, '#cursor-value', /^3 % occupied$/);
-    await says(page, '#cursor-others', /Classesfrontier.*HIMMcounter 3.*Sonar3 % occupied/);
+    await says(page, '#cursor-others', /Sonar3 % occupied.*HIMMcounter 3.*Classificationfrontier/);
   });
 
   it('are measured by pointer and by keys', async () => {

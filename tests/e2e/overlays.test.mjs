@@ -1,43 +1,31 @@
 /** What lies on the map: robots, scans, frontiers, goals; against a server that does what each test wants. */
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import {
   colourAt,
   colourOf,
   countsPixels,
   isLike,
   keepPicture,
-  kWebDirectory,
-  launchBrowser,
-  openPage,
   showsColour,
   showsColourAt,
   until,
 } from './browser.mjs';
-import { FakeServer } from './fake_server.mjs';
+import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { pixelOf } from './one_tile.mjs';
 
 describe('on the map', { timeout: 180_000 }, () => {
-  let browser;
   let server;
   let page;
   let session;
   let complaints = [];
-
-  const open = async (options) => ({ page, complaints } = await openPage(browser, server.address, options));
-
-  before(async () => (browser = await launchBrowser()));
-  after(() => browser?.close());
-  beforeEach(async () => {
-    server = await FakeServer.start(kWebDirectory);
+  const openPage = withFakeServer((fresh) => {
+    server = fresh;
     session = server.add(new FakeSession('map', 'id-map'));
   });
-  afterEach(async () => {
-    await page?.context().close();
-    await server.vanish().catch(() => {});
-    assert.deepEqual(complaints, []);
-  });
+
+  const open = async (options) => ({ page, complaints } = await openPage(options));
 
   it('show the newest scan where its beams ended, unless it is not wanted', async () => {
     session.paint(256, 255, 0);

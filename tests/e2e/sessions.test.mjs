@@ -1,28 +1,19 @@
 /** The list of all sessions: found, sorted, pictured, made and deleted. */
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { colourOf, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
-import { FakeServer } from './fake_server.mjs';
+import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
 const kHostile = '"><img src=x onerror="document.title=1">';
 
 describe('the list of sessions', { timeout: 240_000 }, () => {
-  let browser;
   let server;
   let page;
   let complaints = [];
+  const openPage = withFakeServer((fresh) => (server = fresh));
 
-  const open = async (options) => ({ page, complaints } = await openPage(browser, server.address, options));
-
-  before(async () => (browser = await launchBrowser()));
-  after(() => browser?.close());
-  beforeEach(async () => (server = await FakeServer.start(kWebDirectory)));
-  afterEach(async () => {
-    await page?.context().close();
-    await server.vanish().catch(() => {});
-    assert.deepEqual(complaints, []);
-  });
+  const open = async (options) => ({ page, complaints } = await openPage(options));
 
   it('finds names by their parts, says how many of how many, and forgets the search on Escape', async () => {
     for (const name of ['lab-east', 'lab-west', 'hall']) painted(name);

@@ -1,19 +1,16 @@
 /** The tools of the viewer when the server refuses, is slow, or answers with what it never should. */
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
+import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
 import {
   colourOf,
   countsPixels,
   keepPicture,
-  kWebDirectory,
-  launchBrowser,
-  openPage,
   says,
   showsColour,
   showsColourAt,
 } from './browser.mjs';
-import { FakeServer } from './fake_server.mjs';
+import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { encodeGreyPng } from './png.mjs';
 
@@ -30,26 +27,17 @@ const kAreas = {
 };
 
 describe('tools that are refused', { timeout: 180_000 }, () => {
-  let browser;
   let server;
   let page;
   let session;
   let complaints = [];
-
-  before(async () => (browser = await launchBrowser()));
-  after(() => browser?.close());
-  beforeEach(async () => {
-    server = await FakeServer.start(kWebDirectory);
+  const openPage = withFakeServer(async (fresh) => {
+    server = fresh;
     session = server.add(new FakeSession('map', 'id-map'));
     session.paint(256, 255, 10);
     session.move('r1', 1, 1, 0);
-    ({ page, complaints } = await openPage(browser, server.address));
+    ({ page, complaints } = await openPage());
     await showsColour(page, '--cell-free');
-  });
-  afterEach(async () => {
-    await page?.context().close();
-    await server.vanish().catch(() => {});
-    assert.deepEqual(complaints, []);
   });
 
   const answer = (path, body, { status = 200, type = 'application/json', headers = {} } = {}) =>

@@ -98,6 +98,11 @@ export class Picture {
     return besideLayer && !this.comparison ? [layer, besideLayer] : [layer];
   }
 
+  /** Whether maps of an earlier time are shown. */
+  get isPast(): boolean {
+    return this.moment !== null;
+  }
+
   /** Whether there is a line between two sides now. */
   get isSwiping(): boolean {
     return this.state.mode === 'swipe' && this.beside !== null;

@@ -1,12 +1,12 @@
 /** The maps that a session has, in the order in which the keys step through them. */
 
-export const kLayers = ['occupancy', 'classification', 'himm', 'sonar'] as const;
+export const kLayers = ['occupancy', 'sonar', 'himm', 'classification'] as const;
 
 export type LayerName = (typeof kLayers)[number];
 
 export const kLayerTitles: Record<LayerName, string> = {
   occupancy: 'Occupancy',
-  classification: 'Classes',
+  classification: 'Classification',
   himm: 'HIMM',
   sonar: 'Sonar',
 };

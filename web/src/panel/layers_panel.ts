@@ -16,6 +16,9 @@ const kSwitches: [key: Switch, label: string][] = [
   ['counters', 'HIMM counters in cells'],
 ];
 
+/** What is told of the present only. */
+const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers'];
+
 export class LayersPanel {
   private readonly fields = {
     layers: byId('layers', HTMLElement),
@@ -92,6 +95,10 @@ export class LayersPanel {
     fields.opacity.value = String(Math.round(100 * opacity));
     fields.besideOpacity.value = String(Math.round(100 * besideOpacity));
     fields.besideOpacity.disabled = mode === 'swipe';
+    for (const key of kPresentOnly) {
+      const box = this.switches.get(key);
+      if (box) box.disabled = this.picture.isPast;
+    }
   }
 
   private showSwitches(settings: Settings): void {

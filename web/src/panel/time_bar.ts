@@ -117,12 +117,12 @@ export class TimeBar {
   private showWords(state: HistoryState): void {
     const { timeline, isKnown, index, shown, progress, trouble } = state;
     const { count } = timeline;
-    setText(this.mode, shown === null ? 'Live' : 'Past');
+    setText(this.mode, shown !== null ? 'Past' : index === null ? 'Live' : 'Going back');
     const at = index ?? count - 1;
     setText(this.place, count > 0 ? `${words.scanOf(timeline, at)}${this.gapBefore(timeline, at)}` : '');
     const date = count > 0 ? words.dateOf(timeline, at) : '';
     this.place.title = date;
-    setText(this.note, isKnown && count === 0 ? 'No scans yet.' : noteOf(shown !== null, date));
+    setText(this.note, isKnown && count === 0 ? 'No scans yet.' : shown === null && index !== null ? '' : noteOf(shown !== null, date));
     setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : 'Loading the history\u2026'));
     this.message.classList.toggle('trouble', trouble !== '');
     this.progress.hidden = progress === null;
@@ -155,5 +155,5 @@ export class TimeBar {
 function noteOf(isPast: boolean, date: string): string {
   if (!isPast) return 'The map as it is now.';
   const then = date === '' ? '' : `, ${date}`;
-  return `Map, robots and trails as they were then${then}; newest scans are hidden.`;
+  return `Map, robots and trails as they were then${then}; newest scans, goals and frontiers are hidden.`;
 }

@@ -13,6 +13,8 @@ const kLongMs = 300;
 /** Whether the shown maps are still there is asked as often as this, which also keeps them. */
 const kKeepMs = 10_000;
 const kRetryMs = 500;
+/** Moments that are kept to go back to: the server keeps a few dozen weaves, which are not all for this. */
+const kKeptMax = 12;
 
 export interface TravelEvents {
   arrived(revision: number, source: MapSource): void;
@@ -39,6 +41,8 @@ export class TimeTravel {
   private wanted: number | null = null;
   private shown: { revision: number; weave: string } | null = null;
   private underWay = false;
+  /** Weaves of moments that were shown, the newest last. */
+  private readonly kept = new Set<string>();
 
   constructor(
     private readonly weaver: Weaver,
@@ -47,6 +51,7 @@ export class TimeTravel {
     private readonly timer: Timer,
   ) {
     void this.keep();
+    signal.addEventListener('abort', () => this.forget(0));
   }
 
   go(revision: number): void {
@@ -95,7 +100,19 @@ export class TimeTravel {
     const source = await this.weaver.load(weave.id, (error) => void this.lose(error));
     if (this.isOver()) return;
     this.shown = { revision, weave: weave.id };
+    this.kept.delete(weave.id);
+    this.kept.add(weave.id);
+    this.forget(kKeptMax);
     this.events.arrived(revision, source);
+  }
+
+  /** Gives back to the server all but so many, the oldest first. */
+  private forget(keptMax: number): void {
+    for (const weave of this.kept) {
+      if (this.kept.size <= keptMax) return;
+      this.kept.delete(weave);
+      void this.weaver.cancel(weave).catch(() => {});
+    }
   }
 
   /** @returns null: it was given up, as something else is wanted */

@@ -9,7 +9,7 @@ export interface Weaver {
   /** The maps with the log's entries up to this revision. */
   start(revision: number): Promise<Weave>;
   progress(id: string): Promise<Weave>;
-  /** Gives up one that is not done. */
+  /** Gives up one that is not done, or is needed no more. */
   cancel(id: string): Promise<void>;
   /**
    * Maps that are done: with all that is known of the layers that are looked at now.

@@ -187,7 +187,7 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     map('csv', 'CSV', 'a number for each cell', `${base}.csv`),
     map('npy', 'NPY', 'for NumPy', `${base}.npy`),
     {
-      ...{ label: 'Paths (GeoJSON)', note: 'where the robots were, metres' },
+      ...{ label: 'Paths (GeoJSON)', note: 'where the robots were on the whole run, metres' },
       ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session) },
     },
     {

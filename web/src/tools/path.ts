@@ -9,6 +9,7 @@ import { el, setText } from '../dom';
 import * as format from '../format';
 import { kOrder } from '../map/order';
 import { shownWeave, type ToolContext } from './context';
+import { saveBlob } from './save_file';
 import { button, checkbox, choice, figures, labelled, numberInput } from './fields';
 import { Marks } from './marks';
 import { NewestOnly } from './newest_only';
@@ -181,7 +182,8 @@ class PathCard {
       ['Length', format.distance(way.length)],
       [`Cost, danger counting ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(way.cost, 2)],
     ];
-    this.result.replaceChildren(figures(rows));
+    const save = button('Save the way (GeoJSON)', () => saveWay(this.context.session()?.name ?? 'map', way));
+    this.result.replaceChildren(figures(rows), save);
     this.outcome.say('There is a way. Drag its ends, or click another end.');
   }
 
@@ -200,6 +202,13 @@ class PathCard {
     if (this.keepUp.checked) this.ask();
     else this.outcome.say('The map has grown since this way was found.');
   }
+}
+
+/** As the server's plan has it: metres of the map's frame. */
+function saveWay(session: string, { points, length, cost, revision }: Way): void {
+  const geometry = { type: 'LineString', coordinates: points };
+  const feature = { type: 'Feature', frame_id: 'map', units: 'm', revision, properties: { length, cost }, geometry };
+  saveBlob(new Blob([JSON.stringify(feature)], { type: 'application/geo+json' }), `${session}-way.geojson`);
 }
 
 function placeText([x, y]: Point): string {

@@ -1,6 +1,6 @@
-/** How a laser scan becomes evidence, as the server names it and as people do. */
+/** How a laser scan becomes evidence, as the server names it and as the field does. */
 export const kRayModels = [
-  ['inverse_sensor_model', 'Whole beams'],
-  ['bresenham', 'Lines to hits'],
-  ['traversal', 'All cells crossed'],
+  ['inverse_sensor_model', 'Inverse sensor model'],
+  ['bresenham', 'Bresenham'],
+  ['traversal', 'Traversal'],
 ] as const;

@@ -200,4 +200,20 @@ describe('travelling in time', () => {
     await world.settle();
     assert.deepEqual(world.told, []);
   });
+
+  it('gives back to the server all but the newest dozen of moments, and these in the end', async () => {
+    const world = new World();
+    for (let revision = 1; revision <= 14; ++revision) {
+      world.travel.go(revision);
+      await world.hears((line) => line === `arrived ${revision}`);
+    }
+    assert.deepEqual(cancelled(world), ['cancel 1', 'cancel 2']);
+    world.leave.abort();
+    await world.settle();
+    assert.equal(cancelled(world).length, 14);
+  });
 });
+
+function cancelled({ asked }: World): string[] {
+  return asked.filter((line) => line.startsWith('cancel'));
+}

@@ -9,7 +9,7 @@ import {
   type DifferencePicture,
   type DifferenceQuery,
 } from '../../api/difference';
-import { el } from '../../dom';
+import { el, setText } from '../../dom';
 import * as format from '../../format';
 import { kOrder } from '../../map/order';
 import { kProjection } from '../../map/projection';
@@ -33,12 +33,14 @@ const kLegend: [name: DifferenceName, label: string][] = [
 export class DifferenceView {
   private readonly onMap = checkbox('difference', false);
   private readonly numbers = el('div');
+  private readonly warning = el('p', { class: 'quiet' });
   private readonly save = button('Save picture', () => this.keep());
   readonly element = el(
     'section',
     { class: 'tool-difference', 'aria-label': 'Difference' },
     choice('Difference on the map', this.onMap),
     this.numbers,
+    this.warning,
     el('div', { class: 'tool-buttons' }, button('Compare again', () => this.compare(this.weave)), this.save),
   );
   private readonly layer = new ImageLayer<ImageStatic>({ zIndex: kOrder.difference });
@@ -79,6 +81,10 @@ export class DifferenceView {
     const session = this.context.session();
     this.weave = weave;
     this.element.hidden = weave === null;
+    const isPast = shownWeave(this.context) !== null;
+    const past = 'The map is of an earlier moment, the weave of all scans: what came later counts as a difference.';
+    setText(this.warning, isPast ? past : '');
+    this.warning.hidden = !isPast;
     const query = this.query();
     if (!session || !query) {
       this.asking.stop();

@@ -133,13 +133,19 @@ class WeaveCard {
   }
 
   private hear(weaves: ListedWeave[], pace: Pace): void {
-    this.rows.show(weaves);
+    this.rows.show(weaves.filter((weave) => !this.isMoment(weave) || weave.id === this.comparison.weave?.id));
     const wanted = weaves.find(({ id }) => id === this.wanted);
     if (wanted?.state === 'done') this.show(wanted);
     else if (wanted && !isUnderWay(wanted)) this.fail(wanted);
     else if (!wanted && this.wanted !== null) this.lose();
     const wantedPace = weaves.some(isUnderWay) ? kBusyPace : kIdlePace;
     if (wantedPace !== pace) this.watch(wantedPace);
+  }
+
+  /** The session as it was: made by the hundred when its history is played, and of no use here. */
+  private isMoment({ follows, config }: ListedWeave): boolean {
+    const own = this.context.session()?.config ?? {};
+    return !follows && Object.entries(config).every(([name, value]) => own[name] === value);
   }
 
   private show(weave: ListedWeave): void {
