@@ -15,6 +15,8 @@ export class FakeLive {
   constructor(socket, session) {
     Object.assign(this, { socket, session });
     this.told = 0;
+    /** Nothing comes any more, and nobody says so: as behind a router that forgot the connection. */
+    this.isMute = false;
   }
 
   /** Answers the upgrade, and tells all that there is. */
@@ -36,6 +38,7 @@ export class FakeLive {
 
   /** What is new since the last time. */
   tell() {
+    if (this.isMute) return;
     const writer = new PbfWriter();
     writeLiveEvent(this.session.liveEvent(this.told), writer);
     this.told = this.session.revision;

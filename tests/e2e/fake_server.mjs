@@ -60,6 +60,8 @@ export class FakeServer {
   tileRequests = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
   failure = null;
+  /** When set, the status of every tile. */
+  tileFailure = null;
   /** The same for requests that make or delete a session. */
   refusal = null;
   /** What was sent to make sessions, in order. */
@@ -202,6 +204,7 @@ export class FakeServer {
 
   answerTile(session, [layer, z, x, file], url, response) {
     this.tileRequests.push(url.pathname + url.search);
+    if (this.tileFailure) return problem(response, this.tileFailure, 'Too busy', 'try again soon');
     const [y, kind] = file.split('.');
     const code = session.tiles.get(`${z}/${x}/${y}`)?.code;
     const headers = { 'Cache-Control': url.searchParams.has('v') ? 'public, max-age=31536000, immutable' : 'no-cache' };
