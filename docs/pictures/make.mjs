@@ -64,8 +64,9 @@ async function counters(page) {
   await page.check('[data-switch=counters]');
   await page.mouse.move(780, 332);
   for (let step = 0; step < 6; ++step) {
+    const before = await page.getAttribute('#scale', 'style');
     await page.mouse.wheel(0, -240);
-    await page.waitForTimeout(400);
+    await page.waitForFunction((old) => document.querySelector('#scale').getAttribute('style') !== old, before);
   }
   await page.mouse.move(820, 380);
 }

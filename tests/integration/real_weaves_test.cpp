@@ -26,7 +26,9 @@ protected:
     static constexpr Revision kStep = 9; // entries
 
     void SetUp() override {
-        if (!std::filesystem::exists(intel_log())) GTEST_SKIP() << "there is no " << intel_log();
+        if (!std::filesystem::exists(intel_log())) {
+            GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << intel_log();
+        }
         const auto log = robot::read_whole_log(intel_log(), {.no_return = robot::NoReturn::kFree, .limits = {}},
                                                [](const robot::SkippedLine& line) { ADD_FAILURE() << line.reason; });
         ASSERT_TRUE(log) << log.error().message;
