@@ -1,7 +1,10 @@
 #pragma once
 
+#include "common/geometry/pose2.hpp"
+
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace scanloom::robot {
 
@@ -20,13 +23,23 @@ struct SectorRanges {
     double left = std::numeric_limits<double>::infinity();  ///< beams from 30 to 90 degrees
 };
 
+/// What a robot knows when it decides where to drive. The scan may be a control step old; the pose is not.
+struct Senses {
+    Pose2 pose;                    ///< T_map_robot, now
+    SectorRanges nearest;          ///< of the newest laser scan
+    std::vector<Point2> obstacles; ///< where its beams ended, metres in the map frame; beams without a return are none
+};
+
 /// Decides where to drive, one control step after the other. The same inputs give the same drive.
 class Behaviour {
 public:
     virtual ~Behaviour() = default;
 
-    /// The velocity until the next step, from the newest scan.
-    [[nodiscard]] virtual Velocity step(const SectorRanges& nearest) = 0;
+    /// The velocity until the next step.
+    [[nodiscard]] virtual Velocity step(const Senses& senses) = 0;
+
+    /// There is nothing left for it to do; from then on it stands still.
+    [[nodiscard]] virtual bool is_done() const { return false; }
 };
 
 } // namespace scanloom::robot

@@ -3,6 +3,7 @@
 #include "common/geometry/pose2.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace scanloom::robot {
@@ -21,6 +22,21 @@ SectorRanges sector_ranges(const Scan& scan, const Sensor& sensor) {
         sector = std::min(sector, static_cast<double>(mm) / 1000.0);
     }
     return nearest;
+}
+
+std::vector<Point2> obstacles_of(const Scan& scan, const Sensor& sensor) {
+    const BeamAngles angles = angles_of(scan, sensor);
+    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    std::vector<Point2> obstacles;
+    obstacles.reserve(scan.ranges.size());
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+        const RangeMm mm = scan.ranges[i];
+        if (mm == kInvalidRange || mm == kNoReturn) continue;
+        const double range = static_cast<double>(mm) / 1000.0;
+        const double yaw = T_map_sensor.yaw + beam_angle(angles, i);
+        obstacles.emplace_back(T_map_sensor.x + range * std::cos(yaw), T_map_sensor.y + range * std::sin(yaw));
+    }
+    return obstacles;
 }
 
 } // namespace scanloom::robot

@@ -33,8 +33,8 @@ constexpr double kIslandTurn = -2.5 * std::numbers::pi; // more than a door post
 
 } // namespace
 
-Velocity WallFollower::step(const SectorRanges& nearest) {
-    const Velocity velocity = decide(nearest);
+Velocity WallFollower::step(const Senses& senses) {
+    const Velocity velocity = decide(senses.nearest);
     turned_ += velocity.turn / kStepsPerSecond;
     if (turned_ < kIslandTurn && mode_ != Mode::kSearching) mode_ = Mode::kLeaving;
     return velocity;

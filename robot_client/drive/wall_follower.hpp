@@ -18,7 +18,7 @@ namespace scanloom::robot {
 /// what makes the robot turn right by more than a full circle is an island, and it leaves it.
 class WallFollower final : public Behaviour {
 public:
-    [[nodiscard]] Velocity step(const SectorRanges& nearest) override;
+    [[nodiscard]] Velocity step(const Senses& senses) override;
 
 private:
     enum class Mode { kSearching, kFollowing, kRounding, kLeaving };

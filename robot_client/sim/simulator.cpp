@@ -36,13 +36,15 @@ Scan Simulator::next_scan() {
     scan.odometry = odometry_;
     const Pose2 T_map_laser = compose(pose_, options_.laser.mount);
     scan.ranges = sweep(options_.world, options_.laser, T_map_laser, options_.noise, random_);
-    nearest_ = sector_ranges(scan, options_.laser);
+    senses_.nearest = sector_ranges(scan, options_.laser);
+    senses_.obstacles = obstacles_of(scan, options_.laser);
     ++scans_;
     return scan;
 }
 
 void Simulator::control_step() {
-    const Velocity wanted = behaviour_->step(nearest_);
+    senses_.pose = pose_;
+    const Velocity wanted = behaviour_->step(senses_);
     const Motion motion = drive(options_.world, pose_, wanted);
     if (motion.forward == 0.0 && wanted.forward != 0.0) ++collisions_;
     pose_ = moved(pose_, motion);

@@ -48,7 +48,7 @@ private:
     Random random_;
     Pose2 pose_;
     Pose2 odometry_;
-    SectorRanges nearest_;
+    Senses senses_;
     std::uint64_t scans_ = 0;
     std::uint64_t collisions_ = 0;
 };

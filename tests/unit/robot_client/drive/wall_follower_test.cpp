@@ -11,7 +11,12 @@ namespace {
 
 constexpr double kTurnMax = std::numbers::pi / 4.0;
 
-Velocity first_step(const SectorRanges& nearest) { return WallFollower().step(nearest); }
+Velocity velocity_of(WallFollower& follower, const SectorRanges& nearest) { return follower.step({{}, nearest, {}}); }
+
+Velocity first_step(const SectorRanges& nearest) {
+    WallFollower follower;
+    return velocity_of(follower, nearest);
+}
 
 TEST(WallFollower, DrivesOnAndBearsRightInTheOpen) { EXPECT_EQ(first_step({5, 5, 5}), (Velocity{0.4, -0.05})); }
 
@@ -35,44 +40,44 @@ TEST(WallFollower, BacksOffFromWhatIsNear) {
 TEST(WallFollower, StopsWhenVeryNearAndRecoversAfterThirtyStops) {
     WallFollower follower;
     const SectorRanges blocked{0.2, 5, 5};
-    for (int i = 0; i < 31; ++i) EXPECT_EQ(follower.step(blocked), (Velocity{0.0, 0.0})) << i;
-    for (int i = 0; i < 40; ++i) EXPECT_EQ(follower.step(blocked), (Velocity{-0.08, -0.6 * kTurnMax})) << i;
-    EXPECT_EQ(follower.step(blocked), (Velocity{0.0, 0.0})) << "40 steps of recovery are enough";
+    for (int i = 0; i < 31; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << i;
+    for (int i = 0; i < 40; ++i) EXPECT_EQ(velocity_of(follower, blocked), (Velocity{-0.08, -0.6 * kTurnMax})) << i;
+    EXPECT_EQ(velocity_of(follower, blocked), (Velocity{0.0, 0.0})) << "40 steps of recovery are enough";
 }
 
 TEST(WallFollower, RecoveryEndsEarlyOnceThereIsRoom) {
     WallFollower follower;
-    for (int i = 0; i < 31; ++i) static_cast<void>(follower.step({0.2, 5, 5}));
-    EXPECT_EQ(follower.step({0.2, 5, 5}).forward, -0.08);
-    EXPECT_EQ(follower.step({0.45, 5, 5}).forward, -0.08);
-    EXPECT_EQ(follower.step({0.45, 5, 5}).forward, 0.4);
+    for (int i = 0; i < 31; ++i) static_cast<void>(velocity_of(follower, {0.2, 5, 5}));
+    EXPECT_EQ(velocity_of(follower, {0.2, 5, 5}).forward, -0.08);
+    EXPECT_EQ(velocity_of(follower, {0.45, 5, 5}).forward, -0.08);
+    EXPECT_EQ(velocity_of(follower, {0.45, 5, 5}).forward, 0.4);
 }
 
 TEST(WallFollower, StopsAreCountedInARow) {
     WallFollower follower;
     for (int round = 0; round < 3; ++round) {
-        for (int i = 0; i < 30; ++i) EXPECT_EQ(follower.step({0.2, 5, 5}), (Velocity{0.0, 0.0}));
-        EXPECT_EQ(follower.step({5, 5, 5}).forward, 0.4);
+        for (int i = 0; i < 30; ++i) EXPECT_EQ(velocity_of(follower, {0.2, 5, 5}), (Velocity{0.0, 0.0}));
+        EXPECT_EQ(velocity_of(follower, {5, 5, 5}).forward, 0.4);
     }
 }
 
 TEST(WallFollower, GoesAroundTheEndOfAWallUntilItIsNearAgain) {
     WallFollower follower;
-    EXPECT_EQ(follower.step({0.65, 5, 5}).forward, 0.4);
+    EXPECT_EQ(velocity_of(follower, {0.65, 5, 5}).forward, 0.4);
     for (const double right : {5.0, 0.71, 0.65}) {
-        const Velocity around = follower.step({right, 5, 5});
+        const Velocity around = velocity_of(follower, {right, 5, 5});
         EXPECT_EQ(around.forward, 0.3) << right;
         EXPECT_NEAR(around.forward / around.turn, -0.55, 1e-12) << "a circle around what is on the right hand";
     }
-    EXPECT_EQ(follower.step({0.59, 5, 5}).forward, 0.4);
-    EXPECT_EQ(follower.step({0.69, 5, 5}).forward, 0.4) << "a wall that is there is one up to 0.7 m";
+    EXPECT_EQ(velocity_of(follower, {0.59, 5, 5}).forward, 0.4);
+    EXPECT_EQ(velocity_of(follower, {0.69, 5, 5}).forward, 0.4) << "a wall that is there is one up to 0.7 m";
 }
 
 TEST(WallFollower, SearchesOnWhereNoWallComesAfterACorner) {
     WallFollower follower;
-    static_cast<void>(follower.step({0.6, 5, 5}));
-    for (int i = 0; i < 180; ++i) EXPECT_EQ(follower.step({5, 5, 5}).forward, 0.3) << i;
-    EXPECT_EQ(follower.step({5, 5, 5}), (Velocity{0.4, -0.05}));
+    static_cast<void>(velocity_of(follower, {0.6, 5, 5}));
+    for (int i = 0; i < 180; ++i) EXPECT_EQ(velocity_of(follower, {5, 5, 5}).forward, 0.3) << i;
+    EXPECT_EQ(velocity_of(follower, {5, 5, 5}), (Velocity{0.4, -0.05}));
 }
 
 TEST(WallFollower, LeavesWhatItHasGoneAround) {
@@ -81,12 +86,13 @@ TEST(WallFollower, LeavesWhatItHasGoneAround) {
     for (int step = 0; turned > -2.5 * std::numbers::pi; ++step) {
         ASSERT_LT(step, 400);
         const bool is_beside = step % 60 == 0; // a table: past each corner comes a side
-        turned += follower.step({is_beside ? 0.59 : 5.0, 5, 5}).turn / 20.0;
+        turned += velocity_of(follower, {is_beside ? 0.59 : 5.0, 5, 5}).turn / 20.0;
     }
-    for (const double right : {0.6, 0.5, 5.0}) EXPECT_EQ(follower.step({right, 5, 5}), (Velocity{0.4, 0.0})) << right;
-    EXPECT_EQ(follower.step({0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "here is another wall";
-    EXPECT_LT(follower.step({0.65, 5, 5}).turn, 0.0);
-    EXPECT_GT(follower.step({0.55, 5, 5}).turn, 0.0);
+    for (const double right : {0.6, 0.5, 5.0})
+        EXPECT_EQ(velocity_of(follower, {right, 5, 5}), (Velocity{0.4, 0.0})) << right;
+    EXPECT_EQ(velocity_of(follower, {0.6, 0.39, 5}), (Velocity{0.0, kTurnMax})) << "here is another wall";
+    EXPECT_LT(velocity_of(follower, {0.65, 5, 5}).turn, 0.0);
+    EXPECT_GT(velocity_of(follower, {0.55, 5, 5}).turn, 0.0);
 }
 
 TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
@@ -99,6 +105,19 @@ TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
     EXPECT_DOUBLE_EQ(nearest.right, 0.8);
     EXPECT_DOUBLE_EQ(nearest.front, 1.5);
     EXPECT_DOUBLE_EQ(nearest.left, 3.0);
+}
+
+TEST(Obstacles, AreWhereBeamsWithAReturnEnded) {
+    Sensor laser;
+    laser.mount = {0.5, 0.0, 0.0};
+    laser.angles = UniformAngles{0.0, std::numbers::pi / 2.0, 4};
+    Scan scan;
+    scan.pose = {1.0, 2.0, std::numbers::pi / 2.0};
+    scan.ranges = {1000, 2000, kNoReturn, 0};
+    const auto obstacles = obstacles_of(scan, laser);
+    ASSERT_EQ(obstacles.size(), 2U);
+    EXPECT_LT((obstacles[0] - Point2(1.0, 3.5)).norm(), 1e-9);
+    EXPECT_LT((obstacles[1] - Point2(-1.0, 2.5)).norm(), 1e-9);
 }
 
 } // namespace
