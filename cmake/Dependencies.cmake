@@ -12,7 +12,8 @@ find_package(RocksDB 7.8 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(prometheus-cpp REQUIRED)
-find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto SSL)
+find_package(zstd 1.5 CONFIG REQUIRED)
 
 # Asio and Beast, compiled once instead of in every file that includes them.
 add_library(scanloom_asio STATIC ${CMAKE_SOURCE_DIR}/cmake/asio.cpp)

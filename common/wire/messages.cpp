@@ -99,7 +99,7 @@ Result<Message> read_frame(const v1::Frame& frame) {
         const auto& limits = frame.welcome().limits();
         return Message(Welcome{frame.welcome().session_id(), frame.welcome().last_durable_seq(),
                                Limits{limits.frame_size_max(), limits.beams_max(), limits.scans_per_batch_max()},
-                               frame.welcome().credit_bytes()});
+                               frame.welcome().credit_bytes(), frame.welcome().zstd()});
     }
     case v1::Frame::kSensorDescription: {
         auto sensor = from_proto(frame.sensor_description());
@@ -126,6 +126,8 @@ Result<Message> read_frame(const v1::Frame& frame) {
     case v1::Frame::kGoalReply: return as_message("goal_reply.", from_proto(frame.goal_reply()));
     case v1::Frame::kCoverageRequest: return as_message("coverage_request.", from_proto(frame.coverage_request()));
     case v1::Frame::kCoverageReply: return as_message("coverage_reply.", from_proto(frame.coverage_reply()));
+    case v1::Frame::kCompressedScanBatch:
+        return Message(CompressedScanBatch{frame.compressed_scan_batch().size(), frame.compressed_scan_batch().zstd()});
     case v1::Frame::BODY_NOT_SET: break;
     }
     return Error{Errc::kMalformed, "a frame without a body this program knows; it may come from a newer version"};
@@ -153,6 +155,7 @@ struct ToProto {
         out.mutable_limits()->set_beams_max(welcome.limits.beams_max);
         out.mutable_limits()->set_scans_per_batch_max(welcome.limits.scans_per_batch_max);
         out.set_credit_bytes(welcome.credit_bytes);
+        out.set_zstd(welcome.zstd);
     }
     void operator()(const Sensor& sensor) const { to_proto(sensor, *frame.mutable_sensor_description()); }
     void operator()(const ScanBatch& batch) const {
@@ -184,17 +187,32 @@ struct ToProto {
     void operator()(const GoalReply& reply) const { to_proto(reply, *frame.mutable_goal_reply()); }
     void operator()(const CoverageRequest& request) const { to_proto(request, *frame.mutable_coverage_request()); }
     void operator()(const CoverageReply& reply) const { to_proto(reply, *frame.mutable_coverage_reply()); }
+    void operator()(const CompressedScanBatch& batch) const {
+        frame.mutable_compressed_scan_batch()->set_size(batch.size);
+        frame.mutable_compressed_scan_batch()->set_zstd(batch.zstd);
+    }
 };
 
 } // namespace
 
 std::string_view name_of(const Message& message) noexcept {
-    constexpr std::string_view kNames[] = {"hello",         "welcome",      "sensor_description",
-                                           "scan_batch",    "ack",          "error",
-                                           "ping",          "pong",         "goodbye",
-                                           "correction",    "plan_request", "plan_reply",
-                                           "goal_request",  "goal_reply",   "coverage_request",
-                                           "coverage_reply"};
+    constexpr std::string_view kNames[] = {"hello",
+                                           "welcome",
+                                           "sensor_description",
+                                           "scan_batch",
+                                           "ack",
+                                           "error",
+                                           "ping",
+                                           "pong",
+                                           "goodbye",
+                                           "correction",
+                                           "plan_request",
+                                           "plan_reply",
+                                           "goal_request",
+                                           "goal_reply",
+                                           "coverage_request",
+                                           "coverage_reply",
+                                           "compressed_scan_batch"};
     static_assert(std::size(kNames) == std::variant_size_v<Message>);
     return kNames[message.index()];
 }

@@ -46,6 +46,7 @@ struct Welcome {
     std::uint64_t last_durable_seq = 0;
     Limits limits;
     std::uint64_t credit_bytes = 0;
+    bool zstd = false; ///< whether CompressedScanBatch is understood
 
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
@@ -54,6 +55,14 @@ struct ScanBatch {
     std::vector<Scan> scans;
 
     friend bool operator==(const ScanBatch&, const ScanBatch&) = default;
+};
+
+/// A ScanBatch for slow links: see common/wire/compression.hpp.
+struct CompressedScanBatch {
+    std::uint32_t size = 0; ///< bytes of the frame body it holds
+    std::string zstd;
+
+    friend bool operator==(const CompressedScanBatch&, const CompressedScanBatch&) = default;
 };
 
 struct Ack {
@@ -196,8 +205,9 @@ struct CoverageReply {
     friend bool operator==(const CoverageReply&, const CoverageReply&) = default;
 };
 
-using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction,
-                             PlanRequest, PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply>;
+using Message =
+    std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction, PlanRequest,
+                 PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply, CompressedScanBatch>;
 
 /// Name of the frame a message travels in, as proto/ spells it ("scan_batch").
 [[nodiscard]] std::string_view name_of(const Message& message) noexcept;

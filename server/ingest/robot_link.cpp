@@ -1,6 +1,7 @@
 #include "server/ingest/robot_link.hpp"
 
 #include "common/scan/limits.hpp"
+#include "common/wire/compression.hpp"
 #include "server/ingest/entrance.hpp"
 
 #include <boost/asio/as_tuple.hpp>
@@ -146,7 +147,7 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
                                wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
                                             static_cast<std::uint32_t>(kBeamsMax),
                                             static_cast<std::uint32_t>(kScansPerBatchMax)},
-                               config_.credit_bytes},
+                               config_.credit_bytes, true},
                  shared_from_this());
     co_return Result<>();
 }
@@ -182,6 +183,12 @@ Result<> RobotLink::handle(wire::Message message) {
         if (auto ok = charge_description(); !ok) return ok.error();
         session_->submit(self, std::move(*sensor), frame_bytes_);
         return {};
+    }
+    if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
+        auto batch = wire::decompress(*compressed);
+        if (!batch) return batch.error();
+        frame_bytes_ = wire::bytes_under_way(*compressed);
+        message = std::move(*batch);
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
         services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));

@@ -1,4 +1,5 @@
 #include "common/scan/limits.hpp"
+#include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
 #include "tests/fuzz/check.hpp"
@@ -53,6 +54,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) wire::check_scan_batch(*batch);
+    if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&*message)) {
+        if (const auto inner = wire::decompress(*compressed)) wire::check_scan_batch(*inner);
+    }
     wire::check_requests_and_replies(*message);
 
     // Compared as bytes, not as values: a NaN in hello.create is for the server to refuse, and differs from itself.

@@ -1,4 +1,5 @@
 // Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record.
+#include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/log_codec.hpp"
 #include "common/wire/messages.hpp"
@@ -71,6 +72,12 @@ SessionOptions options() {
     return {.cell_size = 0.05, .ray_model = RayModel::kTraversal, .p_occupied = 0.9, .himm_increment = 3};
 }
 
+wire::CompressedScanBatch compressed() {
+    std::string frame;
+    wire::encode(wire::ScanBatch{std::vector<Scan>(10, plain_scan())}, frame);
+    return wire::Compressor().compress(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
+}
+
 std::vector<wire::Message> messages() {
     return {
         wire::Hello{wire::kProtocolVersion, "r1", "lab", "secret", options(), "scanloom-robot 0.1.0", "carmen:9f3a"},
@@ -93,6 +100,7 @@ std::vector<wire::Message> messages() {
         wire::GoalReply{2, 9, wire::Goal{wire::Exploration::kComplete, std::nullopt, std::nullopt}},
         wire::CoverageRequest{3, Point2(1.0, 2.0), 0.2, 0.4, {{0.0, 0.0}, {4.0, 0.0}, {0.0, 4.0}}},
         wire::CoverageReply{3, 9, wire::Coverage{wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}, 8.0, 7.5}},
+        compressed(),
     };
 }
 

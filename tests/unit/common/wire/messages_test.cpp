@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 std::vector<Message> one_of_each() {
     return {example_hello(),
-            Welcome{"00000000000000ff", 13631, Limits{1U << 20, 4096, 1024}, 2U << 20},
+            Welcome{"00000000000000ff", 13631, Limits{1U << 20, 4096, 1024}, 2U << 20, true},
             example_sensor(),
             example_batch(),
             Ack{17, 16, 1U << 21},
@@ -31,7 +31,8 @@ std::vector<Message> one_of_each() {
             example_goal_request(),
             GoalReply{18, 99, example_goal()},
             example_coverage_request(),
-            CoverageReply{19, 99, example_coverage()}};
+            CoverageReply{19, 99, example_coverage()},
+            CompressedScanBatch{5000, std::string("\x28\xb5\x2f\xfd\x00", 5)}};
 }
 
 TEST(Messages, EveryKindSurvivesTheWire) {
