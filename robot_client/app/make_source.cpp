@@ -46,7 +46,8 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
     const StampReport& stamps = log->stamps();
     if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", replay.file, order_text(stamps)));
     PreparedSource prepared{
-        nullptr, log->skipped_lines(), replay.speed, log->fingerprint(), stamps.file_order ? "file" : "time", {}};
+        nullptr, nullptr, log->skipped_lines(), replay.speed, log->fingerprint(), stamps.file_order ? "file" : "time",
+        {}};
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
     return prepared;
 }
@@ -58,7 +59,7 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
     auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
     if (!log) return log.error();
-    PreparedSource prepared{nullptr, 0, sonar.speed, log->fingerprint(), "file", {}};
+    PreparedSource prepared{nullptr, nullptr, 0, sonar.speed, log->fingerprint(), "file", {}};
     prepared.source = std::make_unique<SonarLog>(std::move(*log));
     return prepared;
 }
@@ -82,8 +83,8 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
-    PreparedSource prepared{nullptr, 0,          simulate.speed, fingerprint_of(simulator, simulate.drive, no_return),
-                            "time",  kBodyRadius};
+    PreparedSource prepared{
+        nullptr, nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return), "time", kBodyRadius};
     prepared.source = std::make_unique<SimulatedSource>(
         Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
     return prepared;

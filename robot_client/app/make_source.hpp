@@ -2,6 +2,7 @@
 
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/source/live_source.hpp"
 #include "robot_client/source/source.hpp"
 
 #include <memory>
@@ -12,7 +13,8 @@
 namespace scanloom::robot {
 
 struct PreparedSource {
-    std::unique_ptr<Source> source;
+    std::unique_ptr<Source> source;   ///< a recording or simulation, or
+    std::unique_ptr<LiveSource> live; ///< what comes when it comes: exactly one of the two
     std::size_t skipped_lines = 0;
     double speed = 0.0;
     std::string fingerprint;           ///< for Hello.source

@@ -27,7 +27,13 @@ constexpr const char* kFooter =
 struct Raw {
     std::string server = "127.0.0.1:7447";
     std::string no_return;
-    double give_up_after = 120.0;
+    std::optional<double> give_up_after;
+    double spool_mib = 256.0;
+    double memory_mib = 8.0;
+    std::string when_full = "drop-oldest";
+    double batch_delay = 0.0;
+    double batch_kib = 64.0;
+    std::string compression = "none";
 };
 
 std::string check_name(const std::string& name) {
@@ -66,9 +72,56 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
                    "Metres, of the robot's body, for viewers and as the default of planned ways. Default: that of the "
                    "simulated robot, for recordings none")
         ->check(check_above_up_to(0.0, kBodyRadiusMax));
-    app.add_option("--give-up-after", raw.give_up_after, "Seconds without progress until it fails; 0 = never")
-        ->check(check_not_negative)
+    app.add_option("--give-up-after", raw.give_up_after,
+                   "Seconds without progress until it fails; 0 = never. Default: 120, and 0 while a sensor gives scans")
+        ->check(check_not_negative);
+}
+
+void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
+    app.add_option("--spool", options.spool,
+                   "Directory that keeps the scans of a sensor until they are stored, so that neither minutes without "
+                   "a server nor the end of this program lose any. Recordings need none");
+    app.add_option("--spool-size", raw.spool_mib, "MiB, the most that the spool takes of the disk")
+        ->check(check_within(1.0, 1e6))
         ->capture_default_str();
+    app.add_option("--memory", raw.memory_mib,
+                   "MiB of scans held in memory until they are stored; recordings are read no further then")
+        ->check(check_within(0.1, 1e5))
+        ->capture_default_str();
+    app.add_option("--when-full", raw.when_full,
+                   "What goes when a sensor's scans have no room left in the spool, or without one in memory. Those "
+                   "that may have been sent never go")
+        ->check(CLI::IsMember({"drop-oldest", "drop-newest"}))
+        ->capture_default_str();
+}
+
+void add_wire_options(CLI::App& app, Raw& raw) {
+    app.add_option("--batch-delay", raw.batch_delay, "Seconds that a scan may wait for others to be sent with")
+        ->check(check_within(0.0, 60.0))
+        ->capture_default_str();
+    app.add_option("--batch-size", raw.batch_kib, "KiB of scans that are sent together at most")
+        ->check(check_within(1.0, 1000.0))
+        ->capture_default_str();
+    app.add_option("--compression", raw.compression, "For links that are slower than the scans")
+        ->check(CLI::IsMember({"none", "zstd"}))
+        ->capture_default_str();
+}
+
+/// Where `raw` has another shape than `options`.
+void sort_in(const Raw& raw, RobotOptions& options) {
+    constexpr double kKibibyte = 1024.0;
+    const auto bytes = [](double of) { return static_cast<std::uint64_t>(of); };
+    const auto milliseconds = [](double seconds) {
+        return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(seconds, 1e9) * 1e3));
+    };
+    if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
+    if (raw.give_up_after) options.give_up_after = milliseconds(*raw.give_up_after);
+    options.spool_bytes_max = bytes(raw.spool_mib * kKibibyte * kKibibyte);
+    options.memory_bytes_max = bytes(raw.memory_mib * kKibibyte * kKibibyte);
+    options.when_full = raw.when_full == "drop-newest" ? WhenFull::kDropNewest : WhenFull::kDropOldest;
+    options.batch_delay = milliseconds(raw.batch_delay);
+    options.batch_bytes_max = bytes(raw.batch_kib * kKibibyte);
+    options.compress = raw.compression == "zstd";
 }
 
 void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
@@ -161,6 +214,8 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     app.set_version_flag("--version", fmt::format("scanloom-robot {}", kVersion));
     add_link_options(app, options, raw);
     add_scan_options(app, options, raw);
+    add_waiting_options(app, options, raw);
+    add_wire_options(app, raw);
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
     add_simulate(app, simulate_options)->fallthrough();
@@ -181,9 +236,7 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
                                        "server takes; use larger cells, or a shorter range",
                                        *options.range_max, kReachCellsMax, *options.cell_size));
     }
-    if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
-    options.give_up_after =
-        std::chrono::milliseconds(static_cast<std::int64_t>(std::min(raw.give_up_after, 1e9) * 1e3));
+    sort_in(raw, options);
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");
         options.source = std::move(replay_options);

@@ -2,9 +2,11 @@
 
 #include "common/app/program.hpp"
 #include "robot_client/source/source.hpp"
+#include "robot_client/spool/spool.hpp"
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -46,7 +48,18 @@ struct RobotOptions {
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres
     std::optional<NoReturn> no_return;
-    std::chrono::milliseconds give_up_after{120'000};
+    std::optional<std::chrono::milliseconds> give_up_after; ///< 0: never
+
+    // what waits for the server
+    std::filesystem::path spool; ///< empty: none
+    std::uint64_t spool_bytes_max = 0;
+    WhenFull when_full = WhenFull::kDropOldest;
+    std::uint64_t memory_bytes_max = 0;
+
+    // how it travels
+    std::chrono::milliseconds batch_delay{0};
+    std::uint64_t batch_bytes_max = 0;
+    bool compress = false;
     std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;
 };
 

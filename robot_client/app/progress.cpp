@@ -5,7 +5,7 @@
 namespace scanloom::robot {
 
 std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
-                          std::chrono::duration<double> elapsed) {
+                          std::chrono::duration<double> elapsed, std::string_view remarks) {
     const double rate =
         elapsed.count() > 0.0 ? static_cast<double>(status.acknowledged - status.resumed_after) / elapsed.count() : 0.0;
     std::string text = total ? fmt::format("{} of {} scans stored", status.acknowledged, *total)
@@ -16,7 +16,11 @@ std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_
     } else if (total && rate > 0.0 && *total >= status.acknowledged) {
         text += fmt::format(", {} left", as_clock(static_cast<double>(*total - status.acknowledged) / rate));
     }
-    if (!status.is_linked) text += fmt::format(", not connected, {} waiting", status.last - status.acknowledged);
+    const std::uint64_t waiting = status.last - status.acknowledged + status.waiting;
+    if (!status.is_linked) text += fmt::format(", not connected, {} waiting", waiting);
+    if (status.is_linked && status.waiting > 0) text += fmt::format(", {} waiting", waiting);
+    if (status.dropped > 0) text += fmt::format(", {} DROPPED for want of room", status.dropped);
+    if (!remarks.empty()) text += fmt::format(", {}", remarks);
     return text;
 }
 

@@ -3,6 +3,8 @@
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/app/summary.hpp"
+#include "robot_client/uplink/live_feed.hpp"
+#include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 #include <boost/asio/as_tuple.hpp>
@@ -46,18 +48,19 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     UplinkOptions uplink;
     uplink.host = options.host;
     uplink.port = options.port;
-    uplink.speed = prepared.speed;
-    uplink.give_up_after = options.give_up_after;
+    const auto default_patience = prepared.live ? std::chrono::milliseconds(0) : uplink.give_up_after;
+    uplink.give_up_after = options.give_up_after.value_or(default_patience);
+    uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);
     uplink.backoff_seed = std::random_device{}();
     uplink.on_trouble = [&console, told = std::string()](const Error& error) mutable {
         if (error.message == told) return; // a server that is away for long is told once
         told = error.message;
         console.note(fmt::format("{}; trying again", error.message));
     };
-    uplink.on_resume = [&console, scan_count = prepared.source->scan_count()](std::uint64_t stored) {
-        console.note(resume_text(stored, scan_count));
-    };
-    uplink.on_long_pause = [&console](std::chrono::duration<double> pause) { console.note(pause_text(pause)); };
+    uplink.conversation.batch_delay = options.batch_delay;
+    uplink.conversation.batch_bytes_max = options.batch_bytes_max;
+    uplink.conversation.compress = options.compress;
+    uplink.conversation.buffer_bytes_max = options.memory_bytes_max;
     wire::Hello& hello = uplink.conversation.hello;
     hello.robot = options.robot;
     hello.session = options.session;
@@ -70,6 +73,36 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     return uplink;
 }
 
+RecordingFeedOptions recording_options(const PreparedSource& prepared, Console& console) {
+    RecordingFeedOptions feed;
+    feed.speed = prepared.speed;
+    feed.on_resume = [&console, scan_count = prepared.source->scan_count()](std::uint64_t stored) {
+        console.note(resume_text(stored, scan_count));
+    };
+    feed.on_long_pause = [&console](std::chrono::duration<double> pause) { console.note(pause_text(pause)); };
+    return feed;
+}
+
+/// Errors  those of Spool::open().
+Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const PreparedSource& prepared, Console& console) {
+    if (prepared.source) {
+        return std::unique_ptr<Feed>(
+            std::make_unique<RecordingFeed>(*prepared.source, recording_options(prepared, console)));
+    }
+    const auto tell = [&console](const std::string& text) { console.note(text); };
+    std::unique_ptr<Spool> spool;
+    if (!options.spool.empty()) {
+        const auto directory = options.spool / fmt::format("{}.{}", options.session, options.robot);
+        auto opened = Spool::open({directory, options.spool_bytes_max, options.when_full}, tell);
+        if (!opened) return opened.error();
+        spool = std::move(*opened);
+        if (spool->waiting() > 0)
+            console.note(fmt::format("{} scans wait in {}", spool->waiting(), directory.string()));
+    }
+    return std::unique_ptr<Feed>(
+        std::make_unique<LiveFeed>(*prepared.live, std::move(spool), LiveFeedOptions{options.when_full, tell}));
+}
+
 /// The first signal ends the source, the second everything.
 asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console& console) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
@@ -80,14 +113,15 @@ asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console
     io.stop();
 }
 
-asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, const Source& source,
-                                    Console& console) {
+asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, const Feed& feed,
+                                    const LiveSource* live, Console& console) {
     const auto begun = std::chrono::steady_clock::now();
     asio::steady_timer timer(io);
     for (;;) {
         timer.expires_after(console.progress_period());
         if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
-        console.progress(progress_text(uplink.status(), source.scan_count(), std::chrono::steady_clock::now() - begun));
+        console.progress(progress_text(uplink.status(), feed.scan_count(), std::chrono::steady_clock::now() - begun,
+                                       live != nullptr ? live->remarks() : std::string()));
     }
 }
 
@@ -104,12 +138,15 @@ ExitCode run(const RobotOptions& options) {
     auto prepared = make_source(options, console);
     if (!prepared) return fail(prepared.error());
 
+    const auto feed = make_feed(options, *prepared, console);
+    if (!feed) return fail(feed.error());
+
     asio::io_context io(1);
-    Uplink uplink(io, uplink_options(options, *token, *prepared, console), *prepared->source);
+    Uplink uplink(io, uplink_options(options, *token, *prepared, console), **feed);
     std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
-    asio::co_spawn(io, show_progress(io, uplink, *prepared->source, console), asio::detached);
+    asio::co_spawn(io, show_progress(io, uplink, **feed, prepared->live.get(), console), asio::detached);
     asio::co_spawn(io, uplink.run(), [&](std::exception_ptr failed, Result<> result) {
         if (failed) std::rethrow_exception(failed);
         outcome = std::move(result);
@@ -119,9 +156,10 @@ ExitCode run(const RobotOptions& options) {
 
     if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
+    if (prepared->live && !prepared->live->remarks().empty()) console.note(prepared->live->remarks());
     fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
                                      uplink.status(), prepared->skipped_lines, std::chrono::steady_clock::now() - begun,
-                                     prepared->source->scan_count(), *outcome ? "" : outcome->error().message}));
+                                     (*feed)->scan_count(), *outcome ? "" : outcome->error().message}));
     return *outcome ? kExitDone : fail(outcome->error());
 }
 

@@ -11,10 +11,10 @@ std::string summary_json(const Summary& summary) {
         summary.error.empty() ? "" : fmt::format(R"(,"error":{})", boost::json::serialize(summary.error));
     return fmt::format(
         R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},)"
-        R"("skipped_lines":{},"reconnects":{},"session":"{}","robot":"{}","source":"{}","order":"{}"{}}})",
+        R"("skipped_lines":{},"reconnects":{},"waiting":{},"dropped":{},"session":"{}","robot":"{}","source":"{}","order":"{}"{}}})",
         summary.scan_count.value_or(status.last), status.acknowledged, status.resumed_after, status.sent, status.bytes,
-        summary.elapsed.count(), summary.skipped_lines, status.reconnects, summary.session, summary.robot,
-        summary.source, summary.order, error);
+        summary.elapsed.count(), summary.skipped_lines, status.reconnects, status.waiting, status.dropped,
+        summary.session, summary.robot, summary.source, summary.order, error);
 }
 
 } // namespace scanloom::robot

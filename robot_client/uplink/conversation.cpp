@@ -43,7 +43,9 @@ wire::Limits with_defaults(wire::Limits limits) {
 } // namespace
 
 Conversation::Conversation(ConversationOptions options, Time now)
-    : options_(std::move(options)), buffer_(options_.buffer_bytes_max), progress_(now) {}
+    : options_(std::move(options)), buffer_(options_.buffer_bytes_max), progress_(now) {
+    if (options_.compress) compressor_.emplace();
+}
 
 void Conversation::open(Time now) {
     link_.emplace();
@@ -95,9 +97,11 @@ std::optional<wire::LinkError> Conversation::on_welcome(const wire::Welcome& wel
         if (buffer_.acknowledged() > acknowledged_before) progress_ = now;
     }
     session_id_ = welcome.session_id;
+    applied_ = std::max(applied_, welcome.last_durable_seq);
     requests_.rewind();
     link_->welcomed = true;
     link_->limits = with_defaults(welcome.limits);
+    link_->zstd = welcome.zstd;
     link_->credit.reset(welcome.credit_bytes);
     ++welcomes_;
     return std::nullopt;
@@ -112,6 +116,7 @@ std::optional<wire::LinkError> Conversation::on_ack(const wire::Ack& ack, Time n
         buffer_.acknowledge(ack.durable_seq);
         progress_ = now;
     }
+    applied_ = std::max(applied_, ack.applied_seq);
     link_->credit.durable(ack.durable_seq);
     link_->credit.set_credit(ack.credit_bytes);
     return std::nullopt;
@@ -121,12 +126,24 @@ std::optional<std::string> Conversation::next_frame(Time now) {
     auto message = next_message(now);
     if (!message) return std::nullopt;
     std::string frame;
-    wire::encode(*message, frame);
     if (const auto* batch = std::get_if<wire::ScanBatch>(&*message)) {
-        link_->credit.sent(batch->scans.back().seq, frame.size());
+        write_batch(*batch, frame);
+    } else {
+        wire::encode(*message, frame);
     }
     bytes_sent_ += frame.size();
     return frame;
+}
+
+/// Credit is of what the server has in the end, not of what travels.
+void Conversation::write_batch(const wire::ScanBatch& batch, std::string& frame) {
+    wire::encode(batch, frame);
+    link_->credit.sent(batch.scans.back().seq, frame.size());
+    if (!compressor_ || !link_->zstd) return;
+    const auto compressed = compressor_->compress(std::string_view(frame).substr(wire::kLengthPrefixBytes));
+    if (!compressed) return;
+    frame.clear();
+    wire::encode(*compressed, frame);
 }
 
 std::optional<wire::Message> Conversation::next_message(Time now) {
@@ -150,10 +167,10 @@ std::optional<wire::Message> Conversation::next_message(Time now) {
         return wire::Goodbye{"every scan is acknowledged"};
     }
     if (auto request = requests_.next()) return request; // somebody waits for the reply
-    return next_about_scans();
+    return next_about_scans(now);
 }
 
-std::optional<wire::Message> Conversation::next_about_scans() {
+std::optional<wire::Message> Conversation::next_about_scans(Time now) {
     if (buffer_.unsent_count() == 0) return std::nullopt;
     const auto& sensor = buffer_.unsent(0).sensor;
     auto& described = link_->described[sensor->id];
@@ -162,12 +179,19 @@ std::optional<wire::Message> Conversation::next_about_scans() {
         return *sensor;
     }
     const std::size_t count = scans_that_fit();
-    if (count == 0) return std::nullopt;
+    if (count == 0 || waits_for_others(count, now)) return std::nullopt;
     wire::ScanBatch batch;
     batch.scans.reserve(count);
     for (std::size_t i = 0; i < count; ++i) batch.scans.push_back(buffer_.unsent(i).scan);
     buffer_.mark_sent(count);
+    if (buffer_.unsent_count() == 0) unsent_since_.reset();
     return batch;
+}
+
+/// Whether more scans may come that share the batch with the `fitting` ones, and there is time for it.
+bool Conversation::waits_for_others(std::size_t fitting, Time now) const {
+    const bool is_all = fitting == buffer_.unsent_count() && !ended_ && fitting < link_->limits.scans_per_batch_max;
+    return is_all && unsent_since_ && now < *unsent_since_ + options_.batch_delay;
 }
 
 /// How many of the unsent scans go into the next batch: those whose sensor stands described, within the credit, the
@@ -218,16 +242,19 @@ Conversation::Time Conversation::ping_due() const {
     return std::max(link_->heard, link_->pinged.value_or(link_->heard)) + options_.ping_after;
 }
 
-Conversation::Time Conversation::deadline() const {
+Conversation::Time Conversation::deadline(Time now) const {
     if (!link_) return Time::max();
     if (!link_->welcomed) return link_->opened + options_.welcome_timeout;
     if (link_->said_goodbye) return link_->heard + options_.silence_max;
-    return std::min(ping_due(), link_->heard + options_.silence_max);
+    const Time of_link = std::min(ping_due(), link_->heard + options_.silence_max);
+    const Time batch_due = unsent_since_.value_or(now) + options_.batch_delay;
+    return batch_due > now ? std::min(of_link, batch_due) : of_link;
 }
 
 void Conversation::add(Observation observation, Time now) {
-    assert(resumed_after_ && !ended_);
+    assert(!ended_);
     if (buffer_.empty()) progress_ = now; // nothing waited until now
+    if (!unsent_since_) unsent_since_ = now;
     buffer_.push(std::move(observation));
 }
 

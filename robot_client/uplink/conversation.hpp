@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/wire/compression.hpp"
 #include "common/wire/messages.hpp"
 #include "robot_client/uplink/credit_window.hpp"
 #include "robot_client/uplink/open_requests.hpp"
@@ -20,6 +21,8 @@ struct ConversationOptions {
     wire::Hello hello;
     std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of scans not yet acknowledged; then the source waits
     std::size_t batch_bytes_max = std::size_t{64} << 10;  ///< of one ScanBatch of several scans
+    std::chrono::milliseconds batch_delay{0};             ///< how long a scan may wait for others to share its batch
+    bool compress = false;                                ///< batches, where the server understands it
     std::chrono::milliseconds welcome_timeout{10'000};    ///< from hello to welcome
     std::chrono::milliseconds ping_after{5'000};          ///< of silence
     std::chrono::milliseconds silence_max{15'000};        ///< then the link counts as dead
@@ -47,15 +50,18 @@ public:
     [[nodiscard]] std::optional<std::string> next_frame(Time now);
     /// What is wrong with the link by now.
     [[nodiscard]] std::optional<wire::LinkError> check(Time now) const;
-    /// Until then neither check() nor next_frame() changes its answer, unless something happens.
-    [[nodiscard]] Time deadline() const;
+    /// Until then neither check() nor next_frame(), which had nothing to give, changes its answer, unless something
+    /// happens.
+    [[nodiscard]] Time deadline(Time now) const;
 
     // The source
     /// How many scans the server held when it was first reached; nothing before that.
     [[nodiscard]] std::optional<std::uint64_t> resumed_after() const noexcept { return resumed_after_; }
     [[nodiscard]] bool has_room() const noexcept { return buffer_.has_room(); }
-    /// Pre: resumed_after(), has_room(), not ended.
+    /// Before the server was reached, too. Pre: has_room(), not ended.
     void add(Observation observation, Time now);
+    /// @return false where all there are may have been sent.
+    bool drop_oldest_unsent() noexcept { return buffer_.drop_oldest_unsent(); }
     void end() noexcept { ended_ = true; }
 
     // Questions
@@ -71,10 +77,14 @@ public:
     /// Every scan there will be is durable.
     [[nodiscard]] bool is_done() const noexcept { return ended_ && buffer_.empty(); }
     [[nodiscard]] bool said_goodbye() const noexcept { return link_ && link_->said_goodbye; }
+    /// Of Welcome: changes when the session is deleted and made anew; empty before the server was reached.
+    [[nodiscard]] const std::string& session_id() const noexcept { return session_id_; }
     [[nodiscard]] bool is_welcome() const noexcept { return link_ && link_->welcomed; }
     /// Since when something is waiting for the server without the server getting anywhere; nothing if nothing waits.
     [[nodiscard]] std::optional<Time> stalled_since() const;
     [[nodiscard]] std::uint64_t acknowledged() const noexcept { return buffer_.acknowledged(); }
+    /// Highest seq of this robot that is in the server's maps, as far as is known.
+    [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
     [[nodiscard]] std::uint64_t last() const noexcept { return buffer_.last(); }
     [[nodiscard]] std::uint64_t sent_ever() const noexcept { return buffer_.sent_ever(); }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
@@ -90,6 +100,7 @@ private:
         bool welcomed = false;
         bool said_goodbye = false;
         wire::Limits limits;
+        bool zstd = false;
         CreditWindow credit;
         std::map<std::uint32_t, std::shared_ptr<const Sensor>> described; ///< by Sensor::id
         std::deque<std::uint64_t> pings_to_answer;
@@ -99,8 +110,10 @@ private:
     [[nodiscard]] std::optional<wire::LinkError> on_welcome(const wire::Welcome& welcome, Time now);
     [[nodiscard]] std::optional<wire::LinkError> on_ack(const wire::Ack& ack, Time now);
     [[nodiscard]] std::optional<wire::Message> next_message(Time now);
-    [[nodiscard]] std::optional<wire::Message> next_about_scans();
+    [[nodiscard]] std::optional<wire::Message> next_about_scans(Time now);
     [[nodiscard]] std::size_t scans_that_fit();
+    [[nodiscard]] bool waits_for_others(std::size_t fitting, Time now) const;
+    void write_batch(const wire::ScanBatch& batch, std::string& frame);
     [[nodiscard]] Time ping_due() const;
 
     ConversationOptions options_;
@@ -110,6 +123,9 @@ private:
     std::optional<std::uint64_t> resumed_after_;
     std::string session_id_;
     Time progress_;
+    std::optional<Time> unsent_since_; ///< when the oldest scan came that may wait for others
+    std::optional<wire::Compressor> compressor_;
+    std::uint64_t applied_ = 0;
     bool ended_ = false;
     std::uint64_t nonce_ = 0;
     std::uint64_t bytes_sent_ = 0;

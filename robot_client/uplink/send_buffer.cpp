@@ -15,8 +15,9 @@ std::size_t wire_bytes_max(const Scan& scan) noexcept {
 }
 
 void SendBuffer::start_after(std::uint64_t seq) noexcept {
-    assert(last_ == 0 && scans_.empty());
+    assert(sent_ever_ == 0 && acknowledged_ == 0);
     acknowledged_ = sent_ = sent_ever_ = last_ = seq;
+    for (Observation& pushed : scans_) pushed.scan.seq = ++last_;
 }
 
 void SendBuffer::push(Observation observation) {
@@ -24,6 +25,15 @@ void SendBuffer::push(Observation observation) {
     observation.scan.seq = ++last_;
     bytes_ += wire_bytes_max(observation.scan);
     scans_.push_back(std::move(observation));
+}
+
+bool SendBuffer::drop_oldest_unsent() noexcept {
+    if (sent_ever_ == last_) return false;
+    const auto oldest = scans_.begin() + static_cast<std::ptrdiff_t>(sent_ever_ - acknowledged_);
+    bytes_ -= wire_bytes_max(oldest->scan);
+    for (auto next = scans_.erase(oldest); next != scans_.end(); ++next) --next->scan.seq;
+    --last_;
+    return true;
 }
 
 const Observation& SendBuffer::unsent(std::size_t index) const noexcept {

@@ -20,7 +20,7 @@ class SendBuffer {
 public:
     explicit SendBuffer(std::size_t bytes_max) : bytes_max_(bytes_max) {}
 
-    /// The server holds the scans up to `seq` from earlier runs. Pre: nothing was pushed.
+    /// The server holds the scans up to `seq` from earlier runs; those pushed already follow. Pre: nothing was sent.
     void start_after(std::uint64_t seq) noexcept;
 
     [[nodiscard]] bool has_room() const noexcept { return bytes_ < bytes_max_; }
@@ -28,6 +28,9 @@ public:
 
     /// Appends a scan and gives it the next seq. Pre: has_room().
     void push(Observation observation);
+
+    /// Drops the oldest scan that was never sent, and those behind it move up. @return false where there is none.
+    bool drop_oldest_unsent() noexcept;
 
     /// The scans not yet sent: unsent(0) is the next to go. Pre: index < unsent_count().
     [[nodiscard]] std::size_t unsent_count() const noexcept { return static_cast<std::size_t>(last_ - sent_); }

@@ -7,7 +7,6 @@
 #include <boost/asio/connect.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
@@ -23,26 +22,8 @@ namespace {
 
 constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 16384;
-constexpr std::uint64_t kScansBetweenYields = 32; // a fast source must not keep the acknowledgements waiting
 constexpr std::chrono::milliseconds kProgressPeriod{100};
 constexpr std::chrono::milliseconds kGoodbyeMax{1000};
-
-constexpr std::uint64_t kScansOfARobotMax = 1'000'000'000; // three years of ten a second
-
-/// Errors  kConflict: the server has more scans than there will be.
-Result<> check_resume(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
-    if (stored <= scan_count.value_or(kScansOfARobotMax)) return {};
-    if (!scan_count) {
-        return Error{Errc::kConflict, fmt::format("the server says that it has {} scans of this robot, more than any "
-                                                  "robot sends; check --server, or choose another --robot or --session",
-                                                  stored)};
-    }
-    return Error{
-        Errc::kConflict,
-        fmt::format("the server has {} scans of this robot already, and this run ends with scan {}; let a simulation "
-                    "run longer (--scans, --duration), or choose another --robot or --session",
-                    stored, *scan_count)};
-}
 
 double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -50,26 +31,28 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 } // namespace
 
-Uplink::Uplink(asio::io_context& io, UplinkOptions options, Source& source)
-    : io_(io), options_(std::move(options)), source_(source), conversation_(options_.conversation, Clock::now()),
-      pacer_(options_.speed), backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
+    : io_(io), options_(std::move(options)), feed_(feed), conversation_(options_.conversation, Clock::now()),
+      backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io), applied_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
-    co_await (keep_linked() || feed() || watch_progress());
+    co_await (keep_linked() || take_from_feed() || watch_progress());
     const bool is_cut_short = outcome_ && stopped_;
     co_return is_cut_short ? outcome_when_interrupted() : outcome_;
 }
 
 Result<> Uplink::outcome_when_interrupted() const {
     const auto interrupted = [](std::string what) { return Error{Errc::kShuttingDown, "interrupted " + what}; };
-    if (!conversation_.resumed_after()) return interrupted("before the server answered: " + what_is_wrong());
+    if (!conversation_.resumed_after()) {
+        const std::string spooled =
+            feed_.waiting() > 0 ? fmt::format(" with {} scans in the spool", feed_.waiting()) : std::string();
+        return interrupted(fmt::format("before the server answered{}: {}", spooled, what_is_wrong()));
+    }
     if (const std::uint64_t missing = conversation_.last() - conversation_.acknowledged(); missing > 0) {
         return interrupted(fmt::format("before {} scans were acknowledged", missing));
     }
-    const auto count = source_.scan_count();
-    if (!count || source_ended_) return {};
-    return interrupted(fmt::format("after scan {} of {}; what was sent is stored, and the same command sends the rest",
-                                   conversation_.last(), *count));
+    if (const auto why = feed_.unfinished(conversation_.last())) return interrupted(*why);
+    return {};
 }
 
 void Uplink::stop() {
@@ -91,68 +74,33 @@ UplinkStatus Uplink::status() const {
             conversation_.sent_ever() - conversation_.resumed_after().value_or(0),
             conversation_.bytes_sent(),
             welcomes > 0 ? welcomes - 1 : 0,
+            feed_.waiting(),
+            feed_.dropped(),
             conversation_.is_welcome(),
-            pause_ends_ ? std::optional<std::chrono::duration<double>>(*pause_ends_ - Clock::now()) : std::nullopt};
+            feed_.next_scan_in()};
 }
 
-// The source ----------------------------------------------------------------------------------------------------------
+// The feed ------------------------------------------------------------------------------------------------------------
 
-asio::awaitable<void> Uplink::feed() {
-    while (!conversation_.resumed_after()) co_await wait(feed_wake_, Clock::time_point::max());
-    Result<> fed = co_await pass_over(*conversation_.resumed_after());
-    if (fed) fed = co_await feed_scans();
-    if (!fed) {
-        outcome_ = fed.error();
-        co_return;
-    }
+asio::awaitable<void> Uplink::take_from_feed() {
+    const Result<> fed = co_await feed_.run(*this);
+    const auto cancellation = co_await asio::this_coro::cancellation_state;
+    if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has the outcome
+    if (!fed) outcome_ = fed.error();
+    if (!fed && conversation_.acknowledged() == conversation_.last()) co_return;
     conversation_.end();
     wake_all();
     for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the others tell when all is done
 }
 
-/// The server has them from an earlier run.
-asio::awaitable<Result<>> Uplink::pass_over(std::uint64_t scans) {
-    if (scans == 0) co_return Result<>{};
-    if (auto ok = check_resume(scans, source_.scan_count()); !ok) co_return ok;
-    options_.on_resume(scans);
-    for (std::uint64_t passed = 1; passed <= scans && !stopped_; ++passed) {
-        auto observation = source_.next();
-        if (!observation) co_return observation.error();
-        if (passed % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
-    }
-    co_return Result<>{};
+void Uplink::add(Observation observation) {
+    conversation_.add(std::move(observation), Clock::now());
+    write_wake_.cancel();
 }
 
-asio::awaitable<Result<>> Uplink::feed_scans() {
-    std::uint64_t scans_since_yield = 0;
-    while (!stopped_) {
-        if (!conversation_.has_room()) {
-            co_await wait(feed_wake_, Clock::time_point::max());
-            continue;
-        }
-        auto next = source_.next();
-        if (!next) co_return next.error();
-        std::optional<Observation>& observation = *next;
-        if (!observation) {
-            source_ended_ = true;
-            break;
-        }
-        co_await wait_until_due(pacer_.due(observation->scan.stamp, Clock::now()));
-        if (stopped_) break; // this scan was not due yet
-        conversation_.add(std::move(*observation), Clock::now());
-        write_wake_.cancel();
-        if (++scans_since_yield % kScansBetweenYields == 0) co_await asio::post(io_, kUse);
-    }
-    co_return Result<>{};
-}
-
-asio::awaitable<void> Uplink::wait_until_due(Clock::time_point due) {
-    if (const auto pause = due - Clock::now(); pause > kLongPause) {
-        pause_ends_ = due;
-        options_.on_long_pause(pause);
-    }
-    while (!stopped_ && due > Clock::now()) co_await wait(feed_wake_, due);
-    pause_ends_.reset();
+asio::awaitable<void> Uplink::until_applied() {
+    const std::uint64_t last = conversation_.last();
+    while (conversation_.applied() < last) co_await wait(applied_wake_, Clock::time_point::max());
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -181,9 +129,10 @@ std::optional<Error> Uplink::reason_to_give_up() const {
                                                  seconds(options_.drain_max), what_is_wrong())};
     }
     const auto since = conversation_.stalled_since();
-    if (since && options_.give_up_after.count() > 0 && now > *since + options_.give_up_after) {
-        return Error{Errc::kTimeout, fmt::format("gave up after {:g} s without progress: {}",
-                                                 seconds(options_.give_up_after), what_is_wrong())};
+    const auto patience = feed_.has_ended() ? options_.give_up_after_end : options_.give_up_after;
+    if (since && patience.count() > 0 && now > *since + patience) {
+        return Error{Errc::kTimeout,
+                     fmt::format("gave up after {:g} s without progress: {}", seconds(patience), what_is_wrong())};
     }
     return std::nullopt;
 }
@@ -284,6 +233,7 @@ std::optional<wire::LinkError> Uplink::take(std::string_view body) {
     if (conversation_.acknowledged() > acknowledged_before) {
         backoff_.reset();
         last_trouble_.reset();
+        feed_.acknowledged(conversation_.acknowledged());
     }
     wake_all();
     return failure;
@@ -300,7 +250,7 @@ asio::awaitable<wire::LinkError> Uplink::write_frames(Socket& socket) {
             socket.shutdown(tcp::socket::shutdown_send, ignored);
         }
         if (auto failure = conversation_.check(Clock::now())) co_return *failure;
-        co_await wait(write_wake_, conversation_.deadline());
+        co_await wait(write_wake_, conversation_.deadline(Clock::now()));
     }
 }
 
@@ -322,6 +272,7 @@ void Uplink::wake_all() {
     feed_wake_.cancel();
     write_wake_.cancel();
     progress_wake_.cancel();
+    applied_wake_.cancel();
 }
 
 } // namespace scanloom::robot

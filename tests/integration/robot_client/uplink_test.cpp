@@ -1,3 +1,4 @@
+#include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 #include "tests/integration/robot_client/fake_server.hpp"
@@ -52,7 +53,8 @@ protected:
     /// Runs until the uplink has its outcome.
     Result<> run(const UplinkOptions& made, std::size_t scans = kScans) {
         if (!source_) source_.emplace(recording(scans));
-        uplink_.emplace(io_, made, *source_);
+        feed_.emplace(*source_, pace_);
+        uplink_.emplace(io_, made, *feed_);
         Result<> outcome = Error{Errc::kTimeout, "it did not end"};
         boost::asio::co_spawn(io_, uplink_->run(), [&](std::exception_ptr failed, Result<> result) {
             EXPECT_FALSE(failed);
@@ -75,6 +77,8 @@ protected:
     boost::asio::io_context io_{1};
     std::optional<FakeServer> server_;
     std::optional<RecordedSource> source_;
+    RecordingFeedOptions pace_;
+    std::optional<RecordingFeed> feed_;
     std::optional<Uplink> uplink_;
     std::vector<std::string> troubles_;
 };
@@ -177,7 +181,7 @@ TEST_F(UplinkTest, AFreshProgramContinuesTheRecordingWhereTheServerStands) {
     server_->store_before(200);
     auto made = options();
     std::vector<std::uint64_t> resumed;
-    made.on_resume = [&](std::uint64_t stored) { resumed.push_back(stored); };
+    pace_.on_resume = [&](std::uint64_t stored) { resumed.push_back(stored); };
     EXPECT_TRUE(run(made));
     expect_all_stored_once(kScans, 200);
     EXPECT_EQ(uplink_->status().resumed_after, 200U);
@@ -280,7 +284,7 @@ TEST_F(UplinkTest, AServerThatComesLateIsFound) {
 TEST_F(UplinkTest, NoScanGoesBeforeItIsDue) {
     serve({{}});
     auto made = options();
-    made.speed = 200.0; // 5 ms a scan
+    pace_.speed = 200.0; // 5 ms a scan
     const auto begun = std::chrono::steady_clock::now();
     EXPECT_TRUE(run(made, 40));
     expect_all_stored_once(40);
@@ -293,9 +297,9 @@ TEST_F(UplinkTest, ALongPauseIsToldAndCutToTenMinutes) {
     scans[2].scan.stamp = 1e9; // the clock was set
     source_.emplace(std::move(scans));
     auto made = options();
-    made.speed = 5.0;
+    pace_.speed = 5.0;
     std::vector<double> pauses;
-    made.on_long_pause = [&](std::chrono::duration<double> pause) {
+    pace_.on_long_pause = [&](std::chrono::duration<double> pause) {
         pauses.push_back(pause.count());
         EXPECT_LE(uplink_->status().next_scan_in.value().count(), 120.0);
         uplink_->stop();
@@ -311,7 +315,7 @@ TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
     source_.emplace(recording());
     source_->pretend_to_be_endless();
     auto made = options();
-    made.speed = 50.0;
+    pace_.speed = 50.0;
     server_->on_stored = [&](std::size_t scans) {
         if (scans >= 5) uplink_->stop();
     };
@@ -328,7 +332,7 @@ TEST_F(UplinkTest, StopEndsTheSourceAndWaitsForWhatWasSent) {
 TEST_F(UplinkTest, ARecordingThatWasStoppedIsNotWhole) {
     serve({{}});
     auto made = options();
-    made.speed = 50.0;
+    pace_.speed = 50.0;
     server_->on_stored = [&](std::size_t scans) {
         if (scans >= 5) uplink_->stop();
     };
@@ -370,6 +374,7 @@ TEST_F(UplinkTest, AnImpossibleNumberOfStoredScansIsNotBelieved) {
         EXPECT_THAT(outcome.error().message, HasSubstr("18446744073709551615 scans of this robot"));
         EXPECT_EQ(uplink_->status().sent, 0U);
         uplink_.reset();
+        feed_.reset();
         server_.reset();
     }
 }

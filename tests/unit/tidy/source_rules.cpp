@@ -68,7 +68,9 @@ const std::vector<Folder> kFolders = {
     {.path = "robot_client/source",
      .may_include = {"common/error", "common/geometry", "common/hash", "common/scan", "robot_client/drive",
                      "robot_client/sim"}},
-    {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source"}},
+    {.path = "robot_client/spool",
+     .may_include = {"common/error", "common/scan", "common/wire", "robot_client/source"}},
+    {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source", "robot_client/spool"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
 
     // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
@@ -96,10 +98,11 @@ const std::vector<Package> kPackages = {
       "robot_client/app"}},
     {"boost/asio",
      {"server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "robot_client/uplink", "robot_client/app"}},
+      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/app"}},
     {"boost/beast", {"server/live", "server/http", "server/app"}},
     {"bzlib.h", {"robot_client/source"}},
-    {"zlib.h", {"robot_client/source", "server/tiles"}},
+    {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},
+    {"zstd.h", {"common/wire"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab"}},
 };
 

@@ -79,11 +79,36 @@ TEST_F(Options, DefaultsAreThoseOfTheContract) {
     const auto replay = parsed({"replay", "f", "--session", "s", "--robot", "r"});
     EXPECT_EQ(replay.host + ":" + replay.port, "127.0.0.1:7447");
     EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 0.0);
-    EXPECT_EQ(replay.give_up_after, std::chrono::seconds(120));
+    EXPECT_FALSE(replay.give_up_after) << "it depends on what is streamed";
+    EXPECT_TRUE(replay.spool.empty());
+    EXPECT_EQ(replay.when_full, WhenFull::kDropOldest);
+    EXPECT_FALSE(replay.compress);
     EXPECT_FALSE(replay.cell_size || replay.range_max || replay.no_return);
     const auto simulate = parsed({"simulate", "--session", "s", "--robot", "r"});
     EXPECT_EQ(std::get<SimulateOptions>(simulate.source).speed, 1.0);
     EXPECT_FALSE(std::get<SimulateOptions>(simulate.source).duration);
+}
+
+TEST_F(Options, WhatWaitsAndHowItTravelsCanBeSaid) {
+    const auto said = parsed({"simulate",     "--session",       "s",   "--robot",      "r",   "--spool",
+                              "/var/spool/x", "--spool-size",    "2",   "--memory",     "0.5", "--when-full",
+                              "drop-newest",  "--batch-delay",   "1.5", "--batch-size", "8",   "--compression",
+                              "zstd",         "--give-up-after", "0"});
+    EXPECT_EQ(said.spool, "/var/spool/x");
+    EXPECT_EQ(said.spool_bytes_max, 2U << 20);
+    EXPECT_EQ(said.memory_bytes_max, 1U << 19);
+    EXPECT_EQ(said.when_full, WhenFull::kDropNewest);
+    EXPECT_EQ(said.batch_delay, std::chrono::milliseconds(1500));
+    EXPECT_EQ(said.batch_bytes_max, 8U << 10);
+    EXPECT_TRUE(said.compress);
+    EXPECT_EQ(said.give_up_after, std::chrono::milliseconds(0));
+    for (const auto& wrong : {std::pair{"--spool-size", "0"},
+                              {"--memory", "nan"},
+                              {"--when-full", "wait"},
+                              {"--batch-delay", "-1"},
+                              {"--compression", "gzip"}}) {
+        EXPECT_EQ(left({"simulate", "--session", "s", "--robot", "r", wrong.first, wrong.second}).code, kExitUsage);
+    }
 }
 
 TEST_F(Options, ABodyIsStatedForAnySource) {

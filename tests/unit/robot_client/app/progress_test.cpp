@@ -19,6 +19,15 @@ TEST(ProgressText, TellsThatTheServerIsAway) {
     EXPECT_EQ(progress_text(status, std::nullopt, 10s), "600 scans stored, 60 a second, not connected, 300 waiting");
 }
 
+TEST(ProgressText, TellsWhatWaitsInTheSpoolWhatIsLostAndWhatTheSourceRemarks) {
+    UplinkStatus status{.last = 900, .acknowledged = 600, .waiting = 4000};
+    EXPECT_EQ(progress_text(status, std::nullopt, 10s), "600 scans stored, 60 a second, not connected, 4300 waiting");
+    status.is_linked = true;
+    status.dropped = 12;
+    EXPECT_EQ(progress_text(status, std::nullopt, 10s, "2 damaged packets"),
+              "600 scans stored, 60 a second, 4300 waiting, 12 DROPPED for want of room, 2 damaged packets");
+}
+
 TEST(ProgressText, TellsHowFarALogHasBeenRead) {
     EXPECT_EQ(reading_text("intel.log", {1'250'000, 20'000'000}), "intel.log: 1.2 of 20.0 MB read");
 }

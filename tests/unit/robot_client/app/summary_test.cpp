@@ -10,22 +10,28 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Summary kSummary{
-    "lab",
-    "r1",
-    "carmen:9f3a",
-    "time",
-    {.resumed_after = 10, .last = 30, .acknowledged = 25, .sent = 18, .bytes = 4321, .reconnects = 2},
-    3,
-    1500ms,
-    std::nullopt,
-    ""};
+const Summary kSummary{"lab",
+                       "r1",
+                       "carmen:9f3a",
+                       "time",
+                       {.resumed_after = 10,
+                        .last = 30,
+                        .acknowledged = 25,
+                        .sent = 18,
+                        .bytes = 4321,
+                        .reconnects = 2,
+                        .waiting = 7,
+                        .dropped = 1},
+                       3,
+                       1500ms,
+                       std::nullopt,
+                       ""};
 
 TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
     EXPECT_EQ(
         summary_json(kSummary),
         R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
-        R"("skipped_lines":3,"reconnects":2,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
+        R"("skipped_lines":3,"reconnects":2,"waiting":7,"dropped":1,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
 }
 
 TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
@@ -33,10 +39,11 @@ TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
     refused.status = {};
     refused.scan_count = 910;
     refused.error = "hello.session is \"lab\",\nwhich is full";
-    EXPECT_EQ(summary_json(refused),
-              R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
-              R"("reconnects":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
-              R"("error":"hello.session is \"lab\",\nwhich is full"})");
+    EXPECT_EQ(
+        summary_json(refused),
+        R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
+        R"("reconnects":0,"waiting":0,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
+        R"("error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
 TEST(SummaryJson, CountsAsTheProgressDoes) {

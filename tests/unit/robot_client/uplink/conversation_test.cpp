@@ -284,7 +284,7 @@ TEST_F(ConversationTest, AnswersPingsAndPingsInSilence) {
     EXPECT_EQ(said(), (std::vector<wire::Message>{wire::Pong{77}}));
     now_ += 4999ms;
     EXPECT_TRUE(said().empty());
-    EXPECT_EQ(conversation_.deadline(), now_ + 1ms);
+    EXPECT_EQ(conversation_.deadline(now_), now_ + 1ms);
     now_ += 1ms;
     EXPECT_TRUE(std::holds_alternative<wire::Ping>(said().at(0)));
     EXPECT_TRUE(said().empty()) << "one ping at a time";
@@ -306,7 +306,7 @@ TEST_F(ConversationTest, ASilentLinkIsDeadAndAnyFrameKeepsItAlive) {
 TEST_F(ConversationTest, AHelloWithoutAnswerIsADeadLink) {
     conversation_.open(now_);
     said();
-    EXPECT_EQ(conversation_.deadline(), kStart + 10s);
+    EXPECT_EQ(conversation_.deadline(now_), kStart + 10s);
     EXPECT_FALSE(conversation_.check(now_ + 9999ms));
     EXPECT_THAT(conversation_.check(now_ + 10s)->error.message, HasSubstr("did not answer the hello within 10 s"));
 }

@@ -1,0 +1,99 @@
+#include "robot_client/spool/segment.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr std::size_t kReadBytes = std::size_t{32} << 10;
+
+} // namespace
+
+Error file_error(std::string_view what, const std::filesystem::path& file) {
+    return {Errc::kStoreFailed, fmt::format("{} {}: {}", what, file.string(), std::strerror(errno))};
+}
+
+Result<SegmentWriter> SegmentWriter::create(std::filesystem::path file) {
+    FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
+    if (!handle) return file_error("cannot create", file);
+    SegmentWriter writer(std::move(file), std::move(handle));
+    if (auto ok = writer.append(kSegmentMagic); !ok) {
+        ::unlink(writer.file_.c_str());
+        return ok.error();
+    }
+    return writer;
+}
+
+Result<> SegmentWriter::append(std::string_view bytes) {
+    if (!handle_) return Error{Errc::kStoreFailed, fmt::format("{} cannot be written any more", file_.string())};
+    std::size_t written = 0;
+    while (written < bytes.size()) {
+        const ssize_t count = ::write(handle_.get(), bytes.data() + written, bytes.size() - written);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) {
+            Error failed = file_error("cannot write", file_);
+            if (::ftruncate(handle_.get(), static_cast<off_t>(bytes_)) != 0) handle_ = {};
+            return failed;
+        }
+        written += static_cast<std::size_t>(count);
+    }
+    bytes_ += bytes.size();
+    return {};
+}
+
+Result<SegmentReader> SegmentReader::open(std::filesystem::path file) {
+    FileHandle handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!handle) return file_error("cannot open", file);
+    SegmentReader reader(std::move(file), std::move(handle));
+    while (reader.buffer_.size() < kSegmentMagic.size()) {
+        const auto more = reader.read_more();
+        if (!more) return more.error();
+        if (!*more) break;
+    }
+    // A power cut may leave a file without its first bytes: it holds nothing.
+    if (!kSegmentMagic.starts_with(std::string_view(reader.buffer_).substr(0, kSegmentMagic.size()))) {
+        return Error{Errc::kMalformed, fmt::format("{} is no file of a spool", reader.file_.string())};
+    }
+    reader.consumed_ = std::min(kSegmentMagic.size(), reader.buffer_.size());
+    reader.position_ = reader.consumed_;
+    return reader;
+}
+
+Result<std::optional<Record>> SegmentReader::next() {
+    for (;;) {
+        auto record = read_record(std::string_view(buffer_).substr(consumed_));
+        if (!record) {
+            return prefixed(fmt::format("{} is damaged after {} bytes: ", file_.string(), position_), record.error());
+        }
+        if (*record) {
+            consumed_ += (*record)->bytes;
+            position_ += (*record)->bytes;
+            return record;
+        }
+        const auto more = read_more();
+        if (!more) return more.error();
+        if (!*more) return std::optional<Record>{};
+    }
+}
+
+/// @return whether there was more.
+Result<bool> SegmentReader::read_more() {
+    buffer_.erase(0, consumed_);
+    consumed_ = 0;
+    const std::size_t held = buffer_.size();
+    buffer_.resize(held + kReadBytes);
+    ssize_t count = -1;
+    do {
+        count = ::read(handle_.get(), buffer_.data() + held, kReadBytes);
+    } while (count < 0 && errno == EINTR);
+    buffer_.resize(held + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count < 0) return file_error("cannot read", file_);
+    return count > 0;
+}
+
+} // namespace scanloom::robot

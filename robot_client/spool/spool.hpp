@@ -1,0 +1,122 @@
+#pragma once
+
+#include "robot_client/source/source.hpp"
+#include "robot_client/spool/background_sync.hpp"
+#include "robot_client/spool/file_handle.hpp"
+#include "robot_client/spool/numbering.hpp"
+#include "robot_client/spool/segment.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace scanloom::robot {
+
+/// What goes when there is no room for a new scan. Scans that may have been sent already never go.
+enum class WhenFull { kDropOldest, kDropNewest };
+
+struct SpoolOptions {
+    std::filesystem::path directory; ///< for one robot in one session; made where it is missing
+    std::uint64_t bytes_max = std::uint64_t{256} << 20;
+    WhenFull when_full = WhenFull::kDropOldest; ///< the oldest go by whole files, each a sixteenth of bytes_max at most
+};
+
+/// The scans that a robot took and the server has not acknowledged, on disk. They survive the program that took them.
+///
+///     acknowledged | handed out by next(), perhaps sent | waiting | what append() adds
+///
+/// A scan is in its file before append() returns, and the disk is asked to keep it within a second or two. The scans
+/// stand in files of some MiB (see record.hpp), each beginning with the sensors it needs; a file goes once all of it is
+/// acknowledged. Which seq a scan has on the server is in the file `numbering`.
+/// Thread  one at a time. One program at a time uses the directory.
+class Spool {
+public:
+    static constexpr std::uint64_t kBytesMin = std::uint64_t{1} << 20;
+
+    /// Opens what an earlier run has left. `tell` hears sentences for people: of files that are damaged, of scans that
+    /// are lost.
+    /// Errors  kStoreFailed, kMalformed; kConflict: another program uses the directory.
+    [[nodiscard]] static Result<std::unique_ptr<Spool>> open(SpoolOptions options,
+                                                             std::function<void(const std::string&)> tell);
+
+    /// The server holds the robot's scans up to `durable_seq`: those of them that are here are passed over. Pre: once.
+    /// Errors  kConflict: it lost some that it had acknowledged, or has some that never came from here.
+    [[nodiscard]] Result<> begin(std::string_view session_id, std::uint64_t durable_seq);
+
+    /// Errors  kStoreFailed: it could not be written.
+    /// @return whether it is kept; not if there is no room and the newest go.
+    [[nodiscard]] Result<bool> append(const Observation& observation);
+
+    /// The next scan to send; nothing while none waits. Pre: begin() went well.
+    /// Errors  kStoreFailed.
+    [[nodiscard]] Result<std::optional<Observation>> next();
+
+    /// The server holds all scans up to `seq`.
+    void acknowledge(std::uint64_t seq);
+
+    /// Removes the files of acknowledged scans now that nothing is going to be appended.
+    void tidy_up();
+
+    [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_; } ///< scans not handed out
+    [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; } ///< scans, by this program
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }     ///< of all files
+    [[nodiscard]] const std::filesystem::path& directory() const noexcept { return options_.directory; }
+
+private:
+    struct Segment {
+        std::uint64_t first = 0; ///< number of its first scan
+        std::uint64_t scans = 0;
+        std::uint64_t bytes = 0;
+        std::uint64_t first_seq = 0; ///< known once it is entered
+    };
+
+    Spool(SpoolOptions options, std::function<void(const std::string&)> tell);
+    [[nodiscard]] Result<> load();
+    [[nodiscard]] Result<> lock();
+    [[nodiscard]] Result<> load(const std::filesystem::path& file);
+    [[nodiscard]] std::filesystem::path file_of(const Segment& segment) const;
+    [[nodiscard]] std::uint64_t segment_bytes_max() const noexcept;
+
+    [[nodiscard]] Result<> start_segment();
+    [[nodiscard]] bool make_room(std::size_t bytes);
+    [[nodiscard]] bool may_go(std::size_t index) const noexcept;
+    void remove(std::size_t index);
+
+    [[nodiscard]] Result<std::uint64_t> first_seq_where(std::uint64_t durable_seq) const;
+    [[nodiscard]] Result<> skip(std::uint64_t scans);
+    [[nodiscard]] Result<> enter();
+    void leave_damaged(const std::string& why);
+    void forget_acknowledged(bool also_the_newest);
+
+    SpoolOptions options_;
+    std::function<void(const std::string&)> tell_;
+    FileHandle lock_;
+    BackgroundSync sync_;
+    std::deque<Segment> segments_;
+    std::uint64_t bytes_ = 0;
+    std::uint64_t waiting_ = 0;
+    std::uint64_t dropped_ = 0;
+    bool told_of_dropping_ = false;
+
+    // appending, to the last segment
+    std::optional<SegmentWriter> writer_;
+    std::map<std::uint32_t, std::shared_ptr<const Sensor>> written_sensors_; ///< in that file
+    std::uint64_t next_number_ = 1;
+
+    // handing out
+    std::optional<Numbering> numbering_; ///< none before any server was reached
+    std::size_t reading_ = 0;            ///< index of the segment to read from
+    std::optional<SegmentReader> reader_;
+    std::map<std::uint32_t, std::shared_ptr<const Sensor>> read_sensors_; ///< of that file
+    std::uint64_t handed_out_ = 0;                                        ///< scans of that segment
+    std::uint64_t next_seq_ = 0;
+    std::uint64_t acknowledged_ = 0; ///< seq
+};
+
+} // namespace scanloom::robot

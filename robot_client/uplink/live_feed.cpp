@@ -1,0 +1,111 @@
+#include "robot_client/uplink/live_feed.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using namespace asio::experimental::awaitable_operators;
+
+LiveFeed::LiveFeed(LiveSource& source, std::unique_ptr<Spool> spool, LiveFeedOptions options)
+    : source_(source), spool_(std::move(spool)), options_(std::move(options)) {}
+
+asio::awaitable<Result<>> LiveFeed::run(Intake& intake) {
+    co_await (take(intake) || hand_over(intake));
+    co_return outcome_;
+}
+
+/// Ends only when it is cancelled: hand_over() ends the run.
+asio::awaitable<void> LiveFeed::take(Intake& intake) {
+    while (!ended_) {
+        auto next = co_await source_.next();
+        if (!next) {
+            outcome_ = next.error();
+            ended_ = true;
+        } else if (!*next) {
+            ended_ = true;
+        } else {
+            keep(intake, std::move(**next));
+        }
+        intake.wake();
+    }
+    asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
+    co_await never.async_wait(asio::as_tuple(asio::use_awaitable));
+}
+
+void LiveFeed::keep(Intake& intake, Observation observation) {
+    if (!spool_ || spool_given_up_) return keep_in_memory(intake, std::move(observation));
+    const auto kept = spool_->append(observation);
+    if (kept) return;
+    if (!std::exchange(told_of_spool_, true)) {
+        options_.tell(fmt::format("{}; scans are held in memory only, or dropped while others wait in the spool",
+                                  kept.error().message));
+    }
+    // Scans go in the order in which they were taken. Those that the spool never saw would upset its numbering, so that
+    // there is no way back to it for this program.
+    spool_given_up_ = begun_ && spool_->waiting() == 0;
+    if (spool_given_up_) return keep_in_memory(intake, std::move(observation));
+    ++dropped_;
+}
+
+void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
+    if (!intake.has_room()) {
+        if (!std::exchange(told_of_dropping_, true)) {
+            options_.tell(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
+                                      "--spool keeps them on disk",
+                                      options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
+        }
+        ++dropped_;
+        if (options_.when_full == WhenFull::kDropNewest || !intake.drop_oldest_unsent()) return;
+        if (!intake.has_room()) return; // scans are of different sizes
+    }
+    intake.add(std::move(observation));
+}
+
+asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
+    bool stopped = false;
+    for (;;) {
+        if (intake.is_stopped() && !std::exchange(stopped, true)) source_.stop();
+        if (spool_ && intake.resumed_after()) {
+            if (auto ok = hand_over_from_spool(intake); !ok) {
+                outcome_ = ok;
+                co_return;
+            }
+        }
+        if (ended_ && waiting() == 0) co_return;
+        co_await intake.news();
+    }
+}
+
+Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
+    if (!begun_) {
+        if (auto ok = spool_->begin(intake.session_id(), *intake.resumed_after()); !ok) return ok;
+        begun_ = true;
+    }
+    while (intake.has_room()) {
+        auto next = spool_->next();
+        if (!next) return next.error();
+        if (!*next) break;
+        intake.add(std::move(**next));
+    }
+    return {};
+}
+
+void LiveFeed::acknowledged(std::uint64_t seq) {
+    if (!spool_ || !begun_) return;
+    spool_->acknowledge(seq);
+    if (ended_) spool_->tidy_up();
+}
+
+std::optional<std::string> LiveFeed::unfinished(std::uint64_t) const {
+    if (waiting() == 0) return std::nullopt;
+    return fmt::format("with {} scans in the spool {}; the same command sends them", waiting(),
+                       spool_->directory().string());
+}
+
+} // namespace scanloom::robot

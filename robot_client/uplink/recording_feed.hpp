@@ -1,0 +1,48 @@
+#pragma once
+
+#include "robot_client/source/source.hpp"
+#include "robot_client/uplink/feed.hpp"
+#include "robot_client/uplink/pacer.hpp"
+
+#include <functional>
+
+namespace scanloom::robot {
+
+/// A pause between two scans that people are told of.
+inline constexpr std::chrono::seconds kLongPause{60};
+
+struct RecordingFeedOptions {
+    double speed = 0.0; ///< of the source's own pace; 0 = as fast as the server takes it
+    /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
+    std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
+    /// Hears how long nothing will be sent, when the next scan is due in more than kLongPause only.
+    std::function<void(std::chrono::duration<double>)> on_long_pause = [](std::chrono::duration<double>) {};
+};
+
+/// Hands over what can be had again: passes over the scans that the server holds from earlier runs, keeps the pace, and
+/// waits where there is no room.
+/// Errors of run()  kConflict: the server holds more scans than the source has; those of the source.
+class RecordingFeed final : public Feed {
+public:
+    RecordingFeed(Source& source, RecordingFeedOptions options);
+
+    [[nodiscard]] boost::asio::awaitable<Result<>> run(Intake& intake) override;
+    [[nodiscard]] std::optional<std::uint64_t> scan_count() const override { return source_.scan_count(); }
+    [[nodiscard]] std::optional<std::chrono::duration<double>> next_scan_in() const override;
+    [[nodiscard]] std::optional<std::string> unfinished(std::uint64_t last) const override;
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] boost::asio::awaitable<Result<>> pass_over(Intake& intake, std::uint64_t scans);
+    [[nodiscard]] boost::asio::awaitable<Result<>> hand_over(Intake& intake);
+    [[nodiscard]] boost::asio::awaitable<void> wait_until_due(Intake& intake, Clock::time_point due);
+
+    Source& source_;
+    RecordingFeedOptions options_;
+    Pacer pacer_;
+    std::optional<Clock::time_point> pause_ends_; ///< of a long pause
+    bool ended_ = false;
+};
+
+} // namespace scanloom::robot
