@@ -24,8 +24,8 @@ struct Summary {
 
 /// One line of JSON, without its line break. Scans are counted as in the progress, from the first of the recording or
 /// simulation: `scans` there are (of an endless one: were taken so far), `acknowledged` of them are stored,
-/// `stored_before` from earlier runs, and `sent` in this one; `waiting` are in the spool behind those, `dropped` were lost
-/// for want of room. A run that failed has an `error`, one sentence.
+/// `stored_before` from earlier runs, and `sent` in this one; `waiting` are in the spool behind those, `dropped` were
+/// lost for want of room. A run that failed has an `error`, one sentence.
 /// Pre  nothing in the texts but the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 

@@ -1,0 +1,389 @@
+#include "robot_client/spool/spool.hpp"
+
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+namespace scanloom::robot {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+
+/// Its number is told by its pose, so that no scan can be taken for another.
+Observation numbered(std::uint64_t number, std::uint32_t sensor_id = 0, std::size_t beams = 500) {
+    Sensor sensor;
+    sensor.id = sensor_id;
+    sensor.name = "laser";
+    sensor.angles = UniformAngles{0.0, 0.01, 500};
+    sensor.range_max = 10.0;
+    Observation made{std::make_shared<const Sensor>(sensor), {}};
+    made.scan.sensor = sensor_id;
+    made.scan.pose.x = static_cast<double>(number);
+    made.scan.ranges.assign(beams, static_cast<RangeMm>(number % 10'000));
+    return made;
+}
+
+class SpoolTest : public testing::Test {
+protected:
+    void open(std::uint64_t bytes_max = 64 * kMebibyte, WhenFull when_full = WhenFull::kDropOldest) {
+        spool_.reset();
+        spool_ = Spool::open({directory_.path(), bytes_max, when_full}, [&](const std::string& text) {
+                     told_.push_back(text);
+                 }).value();
+    }
+
+    /// Takes the scans first..last.
+    void take(std::uint64_t first, std::uint64_t last) {
+        for (std::uint64_t number = first; number <= last; ++number) {
+            ASSERT_TRUE(spool_->append(numbered(number)).value()) << number;
+        }
+    }
+
+    /// What next() gives, at most `count` of them.
+    std::vector<std::uint64_t> handed_out(std::size_t count = SIZE_MAX) {
+        std::vector<std::uint64_t> numbers;
+        while (numbers.size() < count) {
+            const auto next = spool_->next().value();
+            if (!next) break;
+            const auto number = static_cast<std::uint64_t>(next->scan.pose.x);
+            Observation expected = numbered(number, next->scan.sensor, next->scan.ranges.size());
+            expected.scan.seq = next->scan.seq;
+            EXPECT_EQ(next->scan, expected.scan);
+            EXPECT_EQ(*next->sensor, *expected.sensor);
+            numbers.push_back(number);
+        }
+        return numbers;
+    }
+
+    static std::vector<std::uint64_t> from_to(std::uint64_t first, std::uint64_t last) {
+        std::vector<std::uint64_t> numbers;
+        for (std::uint64_t number = first; number <= last; ++number) numbers.push_back(number);
+        return numbers;
+    }
+
+    std::vector<fs::path> files() const {
+        std::vector<fs::path> found;
+        for (const auto& entry : fs::directory_iterator(directory_.path())) {
+            if (entry.path().extension() == ".spool") found.push_back(entry.path());
+        }
+        std::ranges::sort(found);
+        return found;
+    }
+
+    TemporaryDirectory directory_;
+    std::vector<std::string> told_;
+    std::unique_ptr<Spool> spool_;
+};
+
+TEST_F(SpoolTest, HandsOutWhatItWasGivenInOrder) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 5);
+    EXPECT_EQ(spool_->waiting(), 5U);
+    EXPECT_EQ(handed_out(), from_to(1, 5));
+    EXPECT_EQ(spool_->waiting(), 0U);
+    take(6, 9);
+    EXPECT_EQ(handed_out(), from_to(6, 9)) << "what is written after it was read to its end is found, too";
+}
+
+TEST_F(SpoolTest, EachScanComesWithItsOwnSensor) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    for (std::uint64_t number = 1; number <= 40; ++number) {
+        ASSERT_TRUE(spool_->append(numbered(number, static_cast<std::uint32_t>(number % 3))).value());
+    }
+    EXPECT_EQ(handed_out(), from_to(1, 40));
+}
+
+TEST_F(SpoolTest, ScansTakenBeforeAnyServerWasReachedSurviveTheProgram) {
+    open();
+    take(1, 3000); // several files
+    EXPECT_GT(files().size(), 1U);
+    open();
+    EXPECT_EQ(spool_->waiting(), 3000U);
+    take(3001, 3100);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    EXPECT_EQ(handed_out(), from_to(1, 3100));
+}
+
+TEST_F(SpoolTest, AfterARestartOnlyWhatTheServerLacksIsHandedOutAgain) {
+    for (const std::uint64_t durable : {0U, 1U, 699U, 700U, 2500U, 2999U, 3000U}) {
+        fs::remove_all(directory_.path());
+        open();
+        ASSERT_TRUE(spool_->begin("a1", 0));
+        take(1, 3000);
+        EXPECT_EQ(handed_out(), from_to(1, 3000)) << "all may have been sent";
+        spool_->acknowledge(std::min<std::uint64_t>(durable, 700)); // of the rest no ack came back
+        open();
+        take(3001, 3010);
+        ASSERT_TRUE(spool_->begin("a1", durable)) << durable;
+        EXPECT_EQ(spool_->waiting(), 3010 - durable);
+        EXPECT_EQ(handed_out(), from_to(durable + 1, 3010)) << durable;
+        EXPECT_THAT(told_, IsEmpty());
+    }
+}
+
+TEST_F(SpoolTest, AcknowledgedFilesGo) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 5000);
+    const auto all = files().size();
+    const auto bytes = spool_->bytes();
+    EXPECT_EQ(handed_out(2500), from_to(1, 2500));
+    spool_->acknowledge(2500);
+    EXPECT_LT(files().size(), all);
+    EXPECT_LT(spool_->bytes(), bytes);
+    handed_out();
+    spool_->acknowledge(5000);
+    spool_->tidy_up();
+    EXPECT_THAT(files(), IsEmpty());
+    EXPECT_EQ(spool_->bytes(), 0U);
+    open();
+    take(5001, 5002);
+    ASSERT_TRUE(spool_->begin("a1", 5000)) << "the numbering goes on";
+    EXPECT_EQ(handed_out(), from_to(5001, 5002));
+}
+
+TEST_F(SpoolTest, ASteadyLinkNeedsLittleOfTheDisk) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    std::uint64_t most = 0;
+    for (std::uint64_t number = 1; number <= 10'000; ++number) {
+        take(number, number);
+        ASSERT_EQ(handed_out(), from_to(number, number));
+        spool_->acknowledge(number);
+        most = std::max(most, spool_->bytes());
+    }
+    EXPECT_LE(most, 2 * kMebibyte);
+    EXPECT_LE(files().size(), 1U);
+}
+
+TEST_F(SpoolTest, WhenFullTheOldestGoThatWereNeverSent) {
+    open(2 * kMebibyte);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 10);
+    EXPECT_EQ(handed_out(), from_to(1, 10)) << "sent, and not acknowledged";
+    take(11, 5000);
+    EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
+    EXPECT_GT(spool_->dropped(), 3000U);
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("the oldest unsent scans are dropped")));
+    const auto rest = handed_out();
+    ASSERT_FALSE(rest.empty());
+    EXPECT_EQ(rest.back(), 5000U);
+    EXPECT_EQ(spool_->dropped() + rest.size(), 4990U);
+    EXPECT_TRUE(std::ranges::is_sorted(rest));
+}
+
+TEST_F(SpoolTest, WhenFullTheNewestGoWhereThatIsWanted) {
+    open(2 * kMebibyte, WhenFull::kDropNewest);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    std::uint64_t kept = 0;
+    for (std::uint64_t number = 1; number <= 3000; ++number) kept += spool_->append(numbered(number)).value() ? 1 : 0;
+    EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
+    EXPECT_EQ(spool_->dropped(), 3000 - kept);
+    EXPECT_EQ(handed_out(), from_to(1, kept));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("the newest scans are dropped")));
+    spool_->acknowledge(kept);
+    EXPECT_TRUE(spool_->append(numbered(9999)).value()) << "there is room again";
+    EXPECT_EQ(handed_out(), from_to(9999, 9999));
+}
+
+TEST_F(SpoolTest, NumbersStayThoseOfTheServerWhereSomeWereDroppedAndTheProgramWasKilled) {
+    open(2 * kMebibyte);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 10);
+    handed_out();
+    take(11, 3000); // the oldest of these went
+    const std::uint64_t left = spool_->waiting();
+    open(2 * kMebibyte);
+    take(3001, 4000); // and more of them, with the server still away
+    EXPECT_LE(spool_->bytes(), 2 * kMebibyte);
+    ASSERT_TRUE(spool_->begin("a1", 7)) << "three of the ten had not arrived";
+    auto all = handed_out();
+    EXPECT_GT(left, 100U);
+    ASSERT_GT(all.size(), 100U);
+    EXPECT_THAT(std::vector(all.begin(), all.begin() + 3), ElementsAre(8, 9, 10));
+    EXPECT_EQ(all.back(), 4000U);
+}
+
+TEST_F(SpoolTest, AServerThatLostScansOrHasOthersIsAClearError) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 100));
+    take(1, 50);
+    handed_out();
+    spool_->acknowledge(120);
+    spool_.reset();
+    for (const auto& [durable, text] : {std::pair{99U, "had acknowledged"}, {151U, "another program sent scans"}}) {
+        open();
+        const auto refused = spool_->begin("a1", durable);
+        ASSERT_FALSE(refused) << durable;
+        EXPECT_EQ(refused.error().code, Errc::kConflict);
+        EXPECT_THAT(refused.error().message, HasSubstr(text));
+    }
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 150)) << "all of them arrived";
+    EXPECT_THAT(handed_out(), IsEmpty());
+}
+
+TEST_F(SpoolTest, ScansOfOthersInBetweenDoNotTakeThePlaceOfThoseThatWereNeverSent) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 5);
+    handed_out();
+    spool_->acknowledge(5);
+    spool_->tidy_up();
+    open();
+    take(6, 9);
+    ASSERT_TRUE(spool_->begin("a1", 300)) << "295 scans were sent without a spool";
+    EXPECT_EQ(handed_out(), from_to(6, 9));
+}
+
+TEST_F(SpoolTest, ASessionMadeAnewGetsWhatIsLeft) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 50);
+    handed_out(20);
+    open();
+    ASSERT_TRUE(spool_->begin("b2", 0));
+    EXPECT_EQ(handed_out(), from_to(1, 50));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("the 50 scans of the spool go to the new one")));
+}
+
+TEST_F(SpoolTest, TwoProgramsCannotUseOneDirectory) {
+    open();
+    const auto second = Spool::open({directory_.path()}, [](const std::string&) {});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, Errc::kConflict);
+    EXPECT_THAT(second.error().message, HasSubstr("another program uses the spool"));
+}
+
+TEST_F(SpoolTest, WhatAPowerCutLeftOfTheLastScanIsLeftOut) {
+    open();
+    take(1, 10);
+    spool_.reset();
+    const auto file = files().at(0);
+    const auto whole = fs::file_size(file);
+    for (const std::uintmax_t cut : {1U, 100U, 1500U}) {
+        fs::resize_file(file, whole - cut);
+        open();
+        EXPECT_EQ(spool_->waiting(), 9U) << cut;
+    }
+    take(10, 12);
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    EXPECT_EQ(handed_out(), from_to(1, 12));
+    spool_.reset();
+    fs::resize_file(file, 3);
+    open();
+    EXPECT_EQ(spool_->waiting(), 3U) << "less than a file begins with";
+}
+
+TEST_F(SpoolTest, DamageIsToldAndWhatStandsBeforeItAndInOtherFilesIsKept) {
+    open();
+    take(1, 400); // two files and more
+    const auto count = files().size();
+    ASSERT_GE(count, 1U);
+    take(401, 5000);
+    spool_.reset();
+    const auto file = files().at(0);
+    std::mt19937 random(5);
+    for (int round = 0; round < 20; ++round) {
+        std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+        const auto at = static_cast<std::streamoff>(100 + random() % (fs::file_size(file) - 100));
+        bytes.seekg(at);
+        const int was = bytes.get();
+        bytes.seekp(at);
+        bytes.put(static_cast<char>(was ^ 0x20));
+        bytes.close();
+        told_.clear();
+        open();
+        ASSERT_TRUE(spool_->begin("a1", 0));
+        const auto kept = handed_out();
+        EXPECT_LT(kept.size(), 5000U);
+        EXPECT_EQ(kept.back(), 5000U) << "other files are whole";
+        for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_GT(kept[i], kept[i - 1]);
+        EXPECT_THAT(told_, Contains(HasSubstr("is damaged after")));
+        spool_.reset();
+        fs::remove(directory_.path() / "numbering");
+        std::fstream mended(file, std::ios::in | std::ios::out | std::ios::binary);
+        mended.seekp(at);
+        mended.put(static_cast<char>(was));
+    }
+}
+
+TEST_F(SpoolTest, FilesThatAreNotItsOwnAreRefused) {
+    std::ofstream(directory_.path() / "00000000000000000001.spool") << "something else, and long enough";
+    const auto refused = Spool::open({directory_.path()}, [](const std::string&) {});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("is no file of a spool"));
+    fs::remove(directory_.path() / "00000000000000000001.spool");
+    std::ofstream(directory_.path() / "numbering") << "1 2 3";
+    const auto damaged = Spool::open({directory_.path()}, [](const std::string&) {});
+    ASSERT_FALSE(damaged);
+    EXPECT_THAT(damaged.error().message, HasSubstr("numbering is damaged"));
+}
+
+TEST_F(SpoolTest, ADirectoryThatCannotBeMadeIsAClearError) {
+    std::ofstream(directory_.path() / "file") << "x";
+    const auto refused = Spool::open({directory_.path() / "file" / "spool"}, [](const std::string&) {});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("cannot create"));
+}
+
+/// Random use against a list in memory: takes, sends, acknowledgements that arrive or do not, kills.
+TEST_F(SpoolTest, NoScanIsLostOrDoubledInAnyOrderOfEvents) {
+    for (std::uint32_t seed = 1; seed <= 30; ++seed) {
+        spool_.reset();
+        fs::remove_all(directory_.path());
+        std::mt19937 random(seed);
+        std::vector<std::uint64_t> server; // durable, in order
+        std::uint64_t taken = 0;
+        open();
+        bool is_begun = false;
+        for (int event = 0; event < 300; ++event) {
+            switch (random() % 6) {
+            case 0:
+            case 1: {
+                const std::uint64_t count = random() % 40;
+                take(taken + 1, taken + count);
+                taken += count;
+                break;
+            }
+            case 2:
+                if (!std::exchange(is_begun, true)) {
+                    ASSERT_TRUE(spool_->begin("a1", server.size()));
+                }
+                break;
+            case 3:
+            case 4:
+                if (is_begun) {
+                    for (const auto number : handed_out(random() % 60)) server.push_back(number);
+                }
+                if (is_begun && random() % 2 == 0) spool_->acknowledge(server.size());
+                break;
+            default:
+                if (random() % 8 == 0) {
+                    open();
+                    is_begun = false;
+                }
+            }
+        }
+        if (!is_begun) {
+            ASSERT_TRUE(spool_->begin("a1", server.size()));
+        }
+        for (const auto number : handed_out()) server.push_back(number);
+        ASSERT_EQ(server, from_to(1, taken)) << "seed " << seed;
+    }
+}
+
+} // namespace
+} // namespace scanloom::robot
