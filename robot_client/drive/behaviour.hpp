@@ -3,7 +3,7 @@
 #include "common/geometry/pose2.hpp"
 
 #include <limits>
-#include <numbers>
+#include <string>
 #include <vector>
 
 namespace scanloom::robot {
@@ -40,6 +40,12 @@ public:
 
     /// There is nothing left for it to do; from then on it stands still.
     [[nodiscard]] virtual bool is_done() const { return false; }
+
+    /// Whether it comes to an end by itself, some time.
+    [[nodiscard]] virtual bool has_an_end() const { return false; }
+
+    /// What people should know of how it went so far, a sentence; empty: nothing.
+    [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 
 } // namespace scanloom::robot

@@ -36,6 +36,7 @@ public:
     [[nodiscard]] const World& world() const noexcept { return options_.world; }
     [[nodiscard]] const Pose2& pose() const noexcept { return pose_; }
     [[nodiscard]] const Sensor& laser() const noexcept { return options_.laser; }
+    [[nodiscard]] const Behaviour& behaviour() const noexcept { return *behaviour_; }
     /// Control steps in which a solid or a person kept the robot from advancing.
     [[nodiscard]] std::uint64_t collisions() const noexcept { return collisions_; }
 

@@ -2,18 +2,10 @@
 
 #include "common/geometry/pose2.hpp"
 #include "robot_client/drive/behaviour.hpp"
+#include "robot_client/drive/body.hpp"
 #include "robot_client/sim/world.hpp"
 
-#include <numbers>
-
 namespace scanloom::robot {
-
-/// The reference robot's body: a disc with a differential drive. (Wheelbase 0.230 m, wheel radius 0.035 m; the
-/// unicycle model needs neither.)
-inline constexpr double kBodyRadius = 0.15;          ///< metres
-inline constexpr double kForwardMax = 0.70;          ///< metres a second
-inline constexpr double kTurnMax = std::numbers::pi; ///< radians a second
-inline constexpr double kControlPeriod = 0.05;       ///< seconds: 20 Hz
 
 /// What a body did in one step, as its wheels would tell: along its heading and around itself.
 struct Motion {

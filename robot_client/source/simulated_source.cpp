@@ -4,16 +4,20 @@
 #include <cmath>
 
 namespace scanloom::robot {
-namespace {
-
-/// Scans taken at 0, p, 2 p, ... before `duration`.
 std::uint64_t scans_within(double duration) {
     const double scans =
         std::ceil(duration / kScanPeriod - 1e-6); // 0.3 s are three periods of 0.1 s, rounded as they are
     return scans < 1e15 ? static_cast<std::uint64_t>(scans) : std::numeric_limits<std::uint64_t>::max();
 }
 
-} // namespace
+Observation observed(Simulator& simulator, const std::shared_ptr<const Sensor>& laser, NoReturn no_return) {
+    Observation observation{laser, simulator.next_scan()};
+    if (no_return == NoReturn::kDrop) {
+        auto& ranges = observation.scan.ranges;
+        std::replace(ranges.begin(), ranges.end(), kNoReturn, kInvalidRange);
+    }
+    return observation;
+}
 
 SimulatedSource::SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return)
     : simulator_(std::move(simulator)), limits_(limits), no_return_(no_return),
@@ -22,17 +26,14 @@ SimulatedSource::SimulatedSource(Simulator simulator, SimulationLimits limits, N
 }
 
 Result<std::optional<Observation>> SimulatedSource::next() {
-    if (scans_ == limits_.scans) return std::optional<Observation>{};
+    if (scans_ == limits_.scans || is_done()) return std::optional<Observation>{};
     ++scans_;
-    Observation observation{laser_, simulator_.next_scan()};
-    if (no_return_ == NoReturn::kDrop) {
-        auto& ranges = observation.scan.ranges;
-        std::replace(ranges.begin(), ranges.end(), kNoReturn, kInvalidRange);
-    }
-    return std::optional(std::move(observation));
+    return std::optional(observed(simulator_, laser_, no_return_));
 }
 
 std::optional<std::uint64_t> SimulatedSource::scan_count() const {
+    if (is_done() || scans_ == limits_.scans) return scans_;
+    if (simulator_.behaviour().has_an_end()) return std::nullopt;
     if (limits_.scans == std::numeric_limits<std::uint64_t>::max()) return std::nullopt;
     return limits_.scans;
 }

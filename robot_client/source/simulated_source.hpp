@@ -12,15 +12,26 @@ struct SimulationLimits {
     std::uint64_t scans = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// A simulated robot as a source; it ends at the first of its limits, or never.
+/// How many scans, taken at 0, p, 2 p, ..., there are before `duration` seconds have passed.
+[[nodiscard]] std::uint64_t scans_within(double duration);
+
+/// The next scan of a simulated robot.
+[[nodiscard]] Observation observed(Simulator& simulator, const std::shared_ptr<const Sensor>& laser,
+                                   NoReturn no_return);
+
+/// A simulated robot as a source; it ends at the first of its limits, or when its behaviour is done, or never.
 class SimulatedSource final : public Source {
 public:
     SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return);
 
     [[nodiscard]] Result<std::optional<Observation>> next() override;
+    /// Not known before its end where its behaviour has one.
     [[nodiscard]] std::optional<std::uint64_t> scan_count() const override;
+    [[nodiscard]] std::string remarks() const override { return simulator_.behaviour().remarks(); }
 
 private:
+    [[nodiscard]] bool is_done() const { return scans_ > 0 && simulator_.behaviour().is_done(); }
+
     Simulator simulator_;
     SimulationLimits limits_;
     NoReturn no_return_;

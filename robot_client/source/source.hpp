@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace scanloom::robot {
 
@@ -32,8 +33,11 @@ public:
     /// Errors  a recording that cannot be read on.
     [[nodiscard]] virtual Result<std::optional<Observation>> next() = 0;
 
-    /// Scans this source will have given in the end; nothing where it is endless.
+    /// Scans this source will have given in the end; nothing where it is endless, or that is not known.
     [[nodiscard]] virtual std::optional<std::uint64_t> scan_count() const = 0;
+
+    /// What people should know of it beside its scans, a few words; empty: nothing.
+    [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 
 } // namespace scanloom::robot

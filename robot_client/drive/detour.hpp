@@ -1,0 +1,67 @@
+#pragma once
+
+#include "robot_client/drive/behaviour.hpp"
+#include "robot_client/drive/ground.hpp"
+#include "robot_client/drive/path_follower.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// What the newest scan shows and the plan does not: more than a hand from all that stands still, metres in the map
+/// frame.
+[[nodiscard]] std::vector<Point2> unexpected_obstacles(const Ground& ground, const Senses& senses);
+
+/// A way around something unexpected that stands in a line, in three parts: a step aside, past it beside the line, and
+/// back to the line as soon as nothing stands there any more.
+class Detour {
+public:
+    enum class State { kUnderWay, kBackOnLine, kPastEnd, kFailed };
+
+    /// Chooses the side that is nearer, of those where the ground and what stands around leave room.
+    /// @param end  of the line from where the robot is
+    /// @return nothing where neither side does
+    [[nodiscard]] static std::optional<Detour> plan(const Ground& ground, const Senses& senses, const Point2& end);
+
+    [[nodiscard]] Velocity step(const Ground& ground, const Senses& senses);
+
+    /// kPastEnd: beside the line's end, where nothing let it back. kFailed: something has stood in its way for some
+    /// time.
+    [[nodiscard]] State state() const noexcept { return state_; }
+
+private:
+    enum class Part { kAside, kPast, kBack };
+
+    /// A frame whose x axis is the line.
+    struct Line {
+        Point2 begin;
+        Point2 ahead;
+        double length = 0.0; // metres
+        [[nodiscard]] Point2 to_line(const Point2& point) const;
+        [[nodiscard]] Point2 to_map(const Point2& point) const;
+    };
+
+    struct Seen {
+        Point2 place; // on the line's frame
+        int step;
+    };
+
+    Detour(const Line& line, double offset, double first_obstacle);
+    static std::optional<double> side(const Ground& ground, const Line& line, const std::vector<Point2>& obstacles,
+                                      double first);
+    void remember(const Ground& ground, const Senses& senses);
+    void begin_next_part(const Ground& ground, const Point2& position);
+    [[nodiscard]] bool may_return(const Ground& ground, const Point2& on_line) const;
+
+    Line line_;
+    double offset_;         // metres to the left of the line
+    double first_obstacle_; // metres along the line
+    Part part_ = Part::kAside;
+    State state_ = State::kUnderWay;
+    PathFollower follower_;
+    std::vector<Seen> seen_;
+    int step_ = 0;
+};
+
+} // namespace scanloom::robot

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "common/geometry/pose2.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Which cells of a map are free of whatever stands still. Cell (0, 0) has its lower-left corner at the map's origin.
+struct FloorPlan {
+    double cell_size = 0.0;   ///< metres
+    std::int32_t i_begin = 0; ///< of the lowest, leftmost cell
+    std::int32_t j_begin = 0;
+    std::int32_t width = 0; ///< cells
+    std::int32_t height = 0;
+    std::vector<std::uint8_t> is_free; ///< width * height of 0 or 1, bottom row first
+};
+
+/// A cell of a floor plan, counted from its lower-left one.
+struct Spot {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+
+    friend bool operator==(const Spot&, const Spot&) = default;
+};
+
+/// Where of a floor plan a body's centre may be: in the free cells whose centre is at least a clearance away from every
+/// cell that is not free.
+class Ground {
+public:
+    Ground(FloorPlan plan, double clearance_m);
+
+    [[nodiscard]] const FloorPlan& plan() const noexcept { return plan_; }
+
+    /// The same, and no place within `clearance_m` of any of some points.
+    [[nodiscard]] Ground without(std::span<const Point2> obstacles, double clearance_m) const;
+
+    [[nodiscard]] bool holds(Spot spot) const noexcept {
+        return spot.x >= 0 && spot.y >= 0 && spot.x < plan_.width && spot.y < plan_.height;
+    }
+    [[nodiscard]] std::size_t index_of(Spot spot) const noexcept {
+        return static_cast<std::size_t>(spot.y) * static_cast<std::size_t>(plan_.width) +
+               static_cast<std::size_t>(spot.x);
+    }
+    /// Beyond the plan nothing is free and nothing fits.
+    [[nodiscard]] bool is_free(Spot spot) const noexcept { return holds(spot) && plan_.is_free[index_of(spot)] != 0; }
+    [[nodiscard]] bool fits(Spot spot) const noexcept { return holds(spot) && fits_[index_of(spot)] != 0; }
+
+    [[nodiscard]] Spot spot_of(const Point2& point) const noexcept;
+    [[nodiscard]] Point2 centre_of(Spot spot) const noexcept;
+
+    /// Whether a body's centre may go straight from one point to another.
+    [[nodiscard]] bool fits_along(const Point2& from, const Point2& to) const noexcept;
+
+    /// Whether a point is on a cell that is not free, or so near to one; what lies beyond the plan is.
+    [[nodiscard]] bool is_near_solid(const Point2& point, double metres) const noexcept;
+
+private:
+    void take_out_around(Spot centre, double radius_m);
+
+    FloorPlan plan_;
+    std::vector<std::uint8_t> fits_; // as plan_.is_free
+};
+
+} // namespace scanloom::robot

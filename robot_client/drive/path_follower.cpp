@@ -1,0 +1,84 @@
+#include "robot_client/drive/path_follower.hpp"
+
+#include "robot_client/drive/body.hpp"
+#include "robot_client/drive/steering.hpp"
+#include "robot_client/drive/way_ahead.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+// metres
+constexpr double kAhead = 0.3;
+constexpr double kAtCorner = 0.05;
+constexpr double kNearEnd = 0.10;
+constexpr double kShort = 0.01; // what is left of the way ahead of something that is in it
+// radians
+constexpr double kGentleCorner = 0.35;
+
+Point2 along(const Point2& from, const Point2& to) {
+    const double length = (to - from).norm();
+    return length > 0.0 ? Point2((to - from) / length) : Point2(0.0, 0.0);
+}
+
+} // namespace
+
+PathFollower::PathFollower(std::vector<Point2> way) : way_(std::move(way)) {}
+
+Velocity PathFollower::step(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    pass_corners(position);
+    if (has_arrived()) return {};
+    const double to_corner = (way_[passed_ + 1] - position).norm();
+    double speed = kForwardMax;
+    if (stops_at_next_corner()) speed = std::min(speed, braking_speed(to_corner));
+    const double yaw = direction(position, aim(position));
+    const Velocity velocity = drive_towards(senses, yaw, speed);
+    const bool is_turning = std::abs(normalize_angle(yaw - senses.pose.yaw)) > kGentleCorner;
+    if (is_turning || free_ahead(senses, senses.pose.yaw) > kShort) {
+        blocked_steps_ = 0;
+        return velocity;
+    }
+    if (passed_ + 2 == way_.size() && to_corner < kNearEnd) passed_ += 1;
+    blocked_steps_ += 1;
+    return {0.0, velocity.turn};
+}
+
+double PathFollower::left(const Point2& position) const {
+    if (has_arrived()) return 0.0;
+    double metres = (way_[passed_ + 1] - position).norm();
+    for (std::size_t n = passed_ + 1; n + 1 < way_.size(); ++n) metres += (way_[n + 1] - way_[n]).norm();
+    return metres;
+}
+
+/// A corner is passed where the robot is at it, or beside it and beyond.
+void PathFollower::pass_corners(const Point2& position) {
+    while (!has_arrived()) {
+        const Point2& end = way_[passed_ + 1];
+        const Point2 left = end - position;
+        const bool is_beyond = left.norm() < kNearEnd && left.dot(along(way_[passed_], end)) <= 0.0;
+        if (left.norm() > kAtCorner && !is_beyond) return;
+        passed_ += 1;
+    }
+}
+
+Point2 PathFollower::aim(const Point2& position) const {
+    const Point2& begin = way_[passed_];
+    const Point2& end = way_[passed_ + 1];
+    const Point2 ahead = along(begin, end);
+    const double length = (end - begin).norm();
+    const double foot = (position - begin).dot(ahead);
+    return begin + std::clamp(foot + kAhead, 0.0, length) * ahead;
+}
+
+bool PathFollower::stops_at_next_corner() const {
+    if (passed_ + 2 >= way_.size()) return true;
+    const Point2 before = along(way_[passed_], way_[passed_ + 1]);
+    const Point2 after = along(way_[passed_ + 1], way_[passed_ + 2]);
+    return before.dot(after) < std::cos(kGentleCorner);
+}
+
+} // namespace scanloom::robot

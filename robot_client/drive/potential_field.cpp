@@ -1,0 +1,47 @@
+#include "robot_client/drive/potential_field.hpp"
+
+#include "robot_client/drive/body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kReach = 0.5;        // rho_0, metres
+constexpr double kRepulsion = 0.002;  // eta
+constexpr double kAttraction = 1.0;   // k, for each metre
+constexpr double kDistanceMin = 0.02; // metres from the rim: nearer counts as that
+constexpr std::size_t kDirections = 24;
+
+std::size_t direction_of(const Point2& offset) {
+    const double turn = std::atan2(offset.y(), offset.x()) / (2.0 * std::numbers::pi) + 0.5; // 0 .. 1
+    return std::min(static_cast<std::size_t>(turn * kDirections), kDirections - 1);
+}
+
+Point2 repulsion(const Point2& offset) {
+    const double rho = std::max(offset.norm() - kBodyRadius, kDistanceMin);
+    if (rho >= kReach) return {0.0, 0.0};
+    return -kRepulsion * (1.0 / rho - 1.0 / kReach) / (rho * rho) * offset.normalized();
+}
+
+} // namespace
+
+Point2 potential_force(const Senses& senses, const Point2& goal) {
+    const Point2 position{senses.pose.x, senses.pose.y};
+    std::array<Point2, kDirections> nearest;
+    nearest.fill({kReach + kBodyRadius, 0.0}); // too far to count
+    for (const Point2& obstacle : senses.obstacles) {
+        const Point2 offset = obstacle - position;
+        Point2& known = nearest[direction_of(offset)];
+        if (offset.norm() < known.norm()) known = offset;
+    }
+    Point2 force = kAttraction * (goal - position);
+    if (force.norm() > 1.0) force.normalize();
+    for (const Point2& offset : nearest) force += repulsion(offset);
+    return force;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,85 @@
+#include "robot_client/drive/waypoints.hpp"
+
+#include "robot_client/drive/body.hpp"
+#include "robot_client/drive/potential_field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kArrived = 0.15;   // metres
+constexpr double kProgress = 0.10;  // metres nearer, to count as some
+constexpr int kPatienceSteps = 300; // 15 seconds
+constexpr double kForceMin = 1e-9;  // shorter ones point nowhere
+
+} // namespace
+
+Waypoints::Waypoints(std::vector<Point2> goals, TourStart start) : goals_(std::move(goals)), start_(start) {}
+
+Velocity Waypoints::step(const Senses& senses) {
+    if (!has_begun_) begin(position_of(senses.pose));
+    if (is_done()) return {};
+    if (is_turning_) {
+        const Velocity velocity = turn_.step(senses.pose);
+        if (!turn_.is_done()) return velocity;
+        reached_ += 1;
+        go_on_to_next();
+        return {};
+    }
+    return go(senses);
+}
+
+std::string Waypoints::remarks() const {
+    std::string text = fmt::format("waypoints: {} of {} reached", reached_, goals_.size());
+    if (given_up_ > 0) text += fmt::format(", {} given up", given_up_);
+    return text;
+}
+
+void Waypoints::begin(const Point2& position) {
+    has_begun_ = true;
+    if (start_ == TourStart::kFirst) return;
+    const auto nearest =
+        std::ranges::min_element(goals_, {}, [&](const Point2& goal) { return (goal - position).norm(); });
+    std::ranges::rotate(goals_, nearest);
+}
+
+void Waypoints::go_on_to_next() {
+    next_ += 1;
+    is_turning_ = false;
+    steps_no_nearer_ = -1;
+}
+
+Velocity Waypoints::go(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    const double distance = (goals_[next_] - position).norm();
+    if (distance < kArrived) {
+        is_turning_ = true;
+        turn_ = FullTurn();
+        return turn_.step(senses.pose);
+    }
+    if (!has_progress(distance)) {
+        given_up_ += 1;
+        go_on_to_next();
+        return {};
+    }
+    const Point2 force = potential_force(senses, goals_[next_]);
+    if (force.norm() < kForceMin) return {};
+    const double speed = std::min(kForwardMax * std::min(1.0, force.norm()), braking_speed(distance));
+    return drive_towards(senses, direction({0.0, 0.0}, force), speed);
+}
+
+bool Waypoints::has_progress(double distance) {
+    if (steps_no_nearer_ < 0 || distance < nearest_ - kProgress) {
+        nearest_ = distance;
+        steps_no_nearer_ = 0;
+        return true;
+    }
+    steps_no_nearer_ += 1;
+    return steps_no_nearer_ < kPatienceSteps;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "robot_client/drive/behaviour.hpp"
+#include "robot_client/drive/steering.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Where a queue of waypoints is begun.
+enum class TourStart {
+    kFirst,   ///< at the first of them
+    kNearest, ///< a round tour: at the one nearest to the robot, and the ones before it at the end
+};
+
+/// Goes from waypoint to waypoint, drawn by a potential field, and turns once around itself at each. A field has places
+/// where it holds a robot; a waypoint that it comes no nearer to for 15 seconds is given up, and so it ends.
+class Waypoints final : public Behaviour {
+public:
+    /// @param goals  metres in the map frame
+    explicit Waypoints(std::vector<Point2> goals, TourStart start = TourStart::kFirst);
+
+    [[nodiscard]] Velocity step(const Senses& senses) override;
+    [[nodiscard]] bool is_done() const override { return next_ == goals_.size(); }
+    [[nodiscard]] bool has_an_end() const override { return true; }
+    [[nodiscard]] std::string remarks() const override;
+
+    [[nodiscard]] std::size_t reached() const noexcept { return reached_; }
+    [[nodiscard]] std::size_t given_up() const noexcept { return given_up_; }
+
+private:
+    void begin(const Point2& position);
+    void go_on_to_next();
+    [[nodiscard]] Velocity go(const Senses& senses);
+    [[nodiscard]] bool has_progress(double distance);
+
+    std::vector<Point2> goals_;
+    TourStart start_;
+    bool has_begun_ = false;
+    std::size_t next_ = 0;
+    std::size_t reached_ = 0;
+    std::size_t given_up_ = 0;
+    bool is_turning_ = false; // at the next one
+    FullTurn turn_;
+    double nearest_ = 0.0;     // metres from it, so far
+    int steps_no_nearer_ = -1; // -1: has not begun to go there
+};
+
+} // namespace scanloom::robot

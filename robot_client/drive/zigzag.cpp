@@ -1,0 +1,176 @@
+#include "robot_client/drive/zigzag.hpp"
+
+#include "robot_client/drive/ground_paths.hpp"
+#include "robot_client/drive/steering.hpp"
+#include "robot_client/drive/way_ahead.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scanloom::robot {
+namespace {
+
+// metres
+constexpr double kStopBefore = 0.25;
+constexpr double kLaneEndSlack = 0.05;
+constexpr double kAlongLane = 0.2; // radians: so far aside it still heads along the lane
+// control steps
+constexpr int kPatienceSteps = 40;
+constexpr int kLanePatienceSteps = 200;
+constexpr int kDetoursMax = 4;
+constexpr int kWaysAroundMax = 3;
+
+/// Lanes overlap by a cell: how straight they are driven does not matter then.
+double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - plan.cell_size, plan.cell_size); }
+
+} // namespace
+
+Zigzag::Zigzag(FloorPlan plan) : ground_(std::move(plan), kLaneClearance) {}
+
+Velocity Zigzag::step(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (task_ == Task::kBegin) begin(position);
+    meter_.pass(ground_, position);
+    switch (task_) {
+    case Task::kGo: return go(senses);
+    case Task::kSweep: return sweep(senses);
+    case Task::kDetour: return go_around(senses);
+    case Task::kBegin:
+    case Task::kDone: break;
+    }
+    return {};
+}
+
+std::string Zigzag::remarks() const {
+    std::string text = fmt::format("swept {:.1f} % of the {:.0f} m2 within reach, in {} lanes", 100.0 * coverage(),
+                                   meter_.reachable_m2(), lanes_swept_);
+    if (detours_ > 0) text += fmt::format(", {} detours", detours_);
+    if (given_up_ > 0) text += fmt::format(", {} lanes given up", given_up_);
+    return text;
+}
+
+void Zigzag::begin(const Point2& position) {
+    const auto places = reachable_from(ground_, position);
+    meter_ = CoverageMeter(ground_, places);
+    blocks_ = lanes_over(ground_, places, spacing_of(ground_.plan()));
+    begin_next_lane(position);
+}
+
+/// The block with the nearest end of its first or last lane; its lanes in the order from there.
+void Zigzag::choose_block(const Point2& position) {
+    std::vector<Point2> entries; // four of each block
+    for (const Block& block : blocks_) {
+        for (const Lane& lane : {block.front(), block.back()}) {
+            entries.push_back(lane.west);
+            entries.push_back(lane.east);
+        }
+    }
+    const auto nearest = nearest_by_way(ground_, position, entries);
+    if (!nearest) return;
+    const auto chosen = blocks_.begin() + static_cast<std::ptrdiff_t>(*nearest / 4);
+    lanes_.assign(chosen->begin(), chosen->end());
+    if (*nearest % 4 >= 2) std::ranges::reverse(lanes_);
+    blocks_.erase(chosen);
+}
+
+void Zigzag::begin_next_lane(const Point2& position) {
+    for (;;) {
+        if (lanes_.empty()) choose_block(position);
+        if (lanes_.empty()) break; // all are swept, or none that is left can be got to
+        const Lane lane = lanes_.front();
+        lanes_.pop_front();
+        const bool from_west = (lane.west - position).norm() <= (lane.east - position).norm();
+        lane_begin_ = from_west ? lane.west : lane.east;
+        lane_end_ = from_west ? lane.east : lane.west;
+        lane_detours_ = 0;
+        ways_around_ = 0;
+        if (auto way = find_way(ground_, position, lane_begin_)) {
+            follower_ = PathFollower(std::move(*way));
+            task_ = Task::kGo;
+            return;
+        }
+        given_up_ += 1;
+    }
+    for (const Block& block : blocks_) given_up_ += static_cast<int>(block.size());
+    blocks_.clear();
+    task_ = Task::kDone;
+}
+
+Velocity Zigzag::go(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (follower_.has_arrived()) {
+        sweep_on(lane_begin_);
+        return sweep(senses);
+    }
+    const Velocity velocity = follower_.step(senses);
+    if (follower_.blocked_steps() < kPatienceSteps) return velocity;
+    ways_around_ += 1;
+    const auto around =
+        find_way(ground_.without(unexpected_obstacles(ground_, senses), kLaneClearance), position, lane_begin_);
+    if (ways_around_ > kWaysAroundMax || !around) {
+        give_up_lane(position);
+    } else {
+        follower_ = PathFollower(*around);
+    }
+    return {};
+}
+
+Velocity Zigzag::sweep(const Senses& senses) {
+    const Point2 position = position_of(senses.pose);
+    if (follower_.has_arrived()) {
+        lanes_swept_ += 1;
+        begin_next_lane(position);
+        return {};
+    }
+    const double yaw = direction(position, lane_end_);
+    const bool is_along = std::abs(normalize_angle(senses.pose.yaw - yaw)) < kAlongLane;
+    const double free = free_ahead(senses, yaw);
+    if (!is_along || free > kStopBefore || free > follower_.left(position) - kLaneEndSlack) {
+        blocked_steps_ = 0;
+        return follower_.step(senses);
+    }
+    blocked_steps_ += 1;
+    if (blocked_steps_ % kPatienceSteps == 0 && lane_detours_ < kDetoursMax) {
+        detour_ = Detour::plan(ground_, senses, lane_end_);
+        if (detour_) {
+            lane_detours_ += 1;
+            task_ = Task::kDetour;
+        }
+    }
+    if (blocked_steps_ > kLanePatienceSteps) give_up_lane(position);
+    return {};
+}
+
+Velocity Zigzag::go_around(const Senses& senses) {
+    const Velocity velocity = detour_->step(ground_, senses);
+    const Point2 position = position_of(senses.pose);
+    switch (detour_->state()) {
+    case Detour::State::kUnderWay: return velocity;
+    case Detour::State::kBackOnLine:
+        detours_ += 1;
+        sweep_on(position);
+        break;
+    case Detour::State::kPastEnd:
+        detours_ += 1;
+        lanes_swept_ += 1;
+        begin_next_lane(position);
+        break;
+    case Detour::State::kFailed: give_up_lane(position); break;
+    }
+    return {};
+}
+
+void Zigzag::sweep_on(const Point2& position) {
+    task_ = Task::kSweep;
+    blocked_steps_ = 0;
+    follower_ = PathFollower({position, lane_end_});
+}
+
+void Zigzag::give_up_lane(const Point2& position) {
+    given_up_ += 1;
+    begin_next_lane(position);
+}
+
+} // namespace scanloom::robot

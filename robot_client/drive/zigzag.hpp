@@ -1,0 +1,65 @@
+#pragma once
+
+#include "robot_client/drive/behaviour.hpp"
+#include "robot_client/drive/body.hpp"
+#include "robot_client/drive/coverage_meter.hpp"
+#include "robot_client/drive/detour.hpp"
+#include "robot_client/drive/ground.hpp"
+#include "robot_client/drive/lanes.hpp"
+#include "robot_client/drive/path_follower.hpp"
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Sweeps the free cells of a known map to and fro, lane by lane, block by block, the nearest block next. What stands
+/// in a lane and not in the map stops it; it waits two seconds for it to go, then goes around it (Detour), or gives up
+/// the rest of the lane where there is no way around. On the way to a lane it goes around by another way.
+class Zigzag final : public Behaviour {
+public:
+    /// Metres from what the plan knows that lanes keep.
+    static constexpr double kLaneClearance = kBodyRadius + 0.10;
+
+    explicit Zigzag(FloorPlan plan);
+
+    [[nodiscard]] Velocity step(const Senses& senses) override;
+    [[nodiscard]] bool is_done() const override { return task_ == Task::kDone; }
+    [[nodiscard]] bool has_an_end() const override { return true; }
+    [[nodiscard]] std::string remarks() const override;
+
+    [[nodiscard]] double coverage() const noexcept { return meter_.share(); } ///< 0 .. 1, of what it can reach
+    [[nodiscard]] int detours() const noexcept { return detours_; }
+    [[nodiscard]] int lanes_given_up() const noexcept { return given_up_; }
+
+private:
+    enum class Task { kBegin, kGo, kSweep, kDetour, kDone };
+
+    void begin(const Point2& position);
+    void choose_block(const Point2& position);
+    void begin_next_lane(const Point2& position);
+    [[nodiscard]] Velocity go(const Senses& senses);
+    [[nodiscard]] Velocity sweep(const Senses& senses);
+    [[nodiscard]] Velocity go_around(const Senses& senses);
+    void sweep_on(const Point2& position);
+    void give_up_lane(const Point2& position);
+
+    Ground ground_;
+    CoverageMeter meter_;
+    std::vector<Block> blocks_; // not begun
+    std::deque<Lane> lanes_;    // of the block that is being swept, those not begun
+    Point2 lane_begin_{0.0, 0.0};
+    Point2 lane_end_{0.0, 0.0};
+    Task task_ = Task::kBegin;
+    PathFollower follower_;
+    std::optional<Detour> detour_;
+    int blocked_steps_ = 0; // in a lane
+    int lane_detours_ = 0;  // begun in this lane
+    int ways_around_ = 0;   // tried to get to this lane
+    int lanes_swept_ = 0;
+    int detours_ = 0; // that came back to their lane
+    int given_up_ = 0;
+};
+
+} // namespace scanloom::robot

@@ -1,0 +1,104 @@
+#include "robot_client/source/exploring_source.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+#include <variant>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using namespace asio::experimental::awaitable_operators;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr int kFailuresMax = 10;
+constexpr double kAskAgainAfter = 1.0; // seconds of the simulation
+constexpr int kTimesBlockedMax = 30;
+
+} // namespace
+
+ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed)
+    : ExploringSource(std::move(options), limits, no_return, speed, std::make_unique<Explore>()) {}
+
+ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
+                                 std::unique_ptr<Explore> explore)
+    : explore_(explore.get()), simulator_(std::move(options), std::move(explore)), limits_(limits),
+      no_return_(no_return), speed_(speed), laser_(std::make_shared<const Sensor>(simulator_.laser())) {
+    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration));
+}
+
+asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
+    assert(next_goal_);
+    wake_.emplace(co_await asio::this_coro::executor);
+    if (is_stopped_ || resumed_after_ + scans_ >= limits_.scans) co_return std::optional<Observation>{};
+    if (explore_->is_asking()) {
+        if (auto asked = co_await ask(); !asked) co_return asked.error();
+    }
+    if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
+    Observation observation = observed(simulator_, laser_, no_return_);
+    observation.scan.stamp += static_cast<double>(resumed_after_) * kScanPeriod;
+    scans_ += 1;
+    co_await wait_until_due();
+    co_return std::optional(std::move(observation));
+}
+
+void ExploringSource::stop() {
+    is_stopped_ = true;
+    if (wake_) wake_->cancel();
+}
+
+asio::awaitable<Result<>> ExploringSource::ask() {
+    if (explore_->times_blocked() > kTimesBlockedMax) {
+        const Pose2& pose = simulator_.pose();
+        co_return Error{
+            Errc::kNoPath,
+            fmt::format("something is in the robot's way at ({:.2f}, {:.2f}), wherever it is sent; see what "
+                        "stands there, or give another --seed",
+                        pose.x, pose.y)};
+    }
+    auto answer = co_await (next_goal_() || until_stopped());
+    due_ = Clock::time_point::min(); // the world stood still meanwhile
+    if (is_stopped_ || answer.index() != 0) co_return Result<>{};
+    co_return take(std::get<0>(std::move(answer)));
+}
+
+Result<> ExploringSource::take(Result<NextStop> answer) {
+    if (!answer) {
+        failures_ += 1;
+        if (failures_ >= kFailuresMax) return answer.error();
+        explore_->wait(kAskAgainAfter);
+        return {};
+    }
+    failures_ = 0;
+    switch (answer->outcome) {
+    case NextStop::Outcome::kGoal: explore_->go(std::move(answer->path), answer->target); break;
+    case NextStop::Outcome::kTakenByOthers: explore_->wait(kAskAgainAfter); break;
+    case NextStop::Outcome::kComplete: explore_->finish(); break;
+    }
+    return {};
+}
+
+/// A scan comes when it would be taken; time that was lost is not made up for.
+asio::awaitable<void> ExploringSource::wait_until_due() {
+    if (speed_ <= 0.0) co_return;
+    const std::chrono::duration<double> period(kScanPeriod / speed_);
+    due_ = std::max(due_, Clock::now());
+    wake_->expires_at(due_);
+    due_ += std::chrono::duration_cast<Clock::duration>(period);
+    if (!is_stopped_) co_await wake_->async_wait(kUse);
+}
+
+asio::awaitable<void> ExploringSource::until_stopped() {
+    wake_->expires_at(Clock::time_point::max());
+    co_await wake_->async_wait(kUse);
+}
+
+} // namespace scanloom::robot
