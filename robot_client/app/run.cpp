@@ -90,6 +90,7 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
             std::make_unique<RecordingFeed>(*prepared.source, recording_options(prepared, console)));
     }
     const auto tell = [&console](const std::string& text) { console.note(text); };
+    const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
     std::unique_ptr<Spool> spool;
     if (!options.spool.empty()) {
         const auto directory = options.spool / fmt::format("{}.{}", options.session, options.robot);
@@ -99,8 +100,8 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
         if (spool->waiting() > 0)
             console.note(fmt::format("{} scans wait in {}", spool->waiting(), directory.string()));
     }
-    return std::unique_ptr<Feed>(
-        std::make_unique<LiveFeed>(*prepared.live, std::move(spool), LiveFeedOptions{options.when_full, tell}));
+    return std::unique_ptr<Feed>(std::make_unique<LiveFeed>(*prepared.live, std::move(spool),
+                                                            LiveFeedOptions{options.when_full, on_resume, tell}));
 }
 
 /// The first signal ends the source, the second everything.

@@ -47,9 +47,10 @@ public:
     /// Who tells where to go. To be called before the first next().
     void ask_with(NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
-    /// So many scans of an earlier run are stored: stamps go on behind theirs, and limits count them. The robot itself
-    /// begins where it always begins. To be called before the first next().
-    void resume_after(std::uint64_t scans) { resumed_after_ = scans; }
+    [[nodiscard]] bool can_wait() const override { return true; }
+    /// Stamps go on behind those of the scans that are stored, and limits count them. The robot itself begins where it
+    /// always begins.
+    void resume_after(std::uint64_t scans) override { resumed_after_ = scans; }
 
     /// Errors  the last of ten answers that were errors. kNoPath: something blocks the robot wherever it is sent.
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;

@@ -4,6 +4,7 @@
 
 #include <boost/asio/awaitable.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,12 @@ public:
     /// The next scan, once there is one; nothing when there will be no more.
     /// Errors  a sensor that cannot be read any more.
     [[nodiscard]] virtual boost::asio::awaitable<Result<std::optional<Observation>>> next() = 0;
+
+    /// Whether time stands still for it while next() is not called, as in a simulation: nothing is lost by waiting
+    /// then.
+    [[nodiscard]] virtual bool can_wait() const { return false; }
+    /// The server holds so many of its scans from earlier runs. Only where it can wait, before the first next().
+    virtual void resume_after(std::uint64_t scans) { static_cast<void>(scans); }
 
     /// No more is wanted: next() comes to its end soon, and after it gives nothing.
     virtual void stop() = 0;

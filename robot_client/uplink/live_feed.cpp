@@ -2,7 +2,6 @@
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
@@ -12,17 +11,29 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using namespace asio::experimental::awaitable_operators;
 
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+
+} // namespace
+
 LiveFeed::LiveFeed(LiveSource& source, std::unique_ptr<Spool> spool, LiveFeedOptions options)
     : source_(source), spool_(std::move(spool)), options_(std::move(options)) {}
 
 asio::awaitable<Result<>> LiveFeed::run(Intake& intake) {
+    taking_.emplace(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
     co_await (take(intake) || hand_over(intake));
     co_return outcome_;
 }
 
 /// Ends only when it is cancelled: hand_over() ends the run.
 asio::awaitable<void> LiveFeed::take(Intake& intake) {
+    if (source_.can_wait()) {
+        while (!intake.resumed_after()) co_await taking_->async_wait(kUse);
+        source_.resume_after(*intake.resumed_after());
+    }
     while (!ended_) {
+        if (source_.can_wait()) co_await wait_for_room(intake);
         auto next = co_await source_.next();
         if (!next) {
             outcome_ = next.error();
@@ -34,8 +45,11 @@ asio::awaitable<void> LiveFeed::take(Intake& intake) {
         }
         intake.wake();
     }
-    asio::steady_timer never(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
-    co_await never.async_wait(asio::as_tuple(asio::use_awaitable));
+    for (;;) co_await taking_->async_wait(kUse);
+}
+
+asio::awaitable<void> LiveFeed::wait_for_room(Intake& intake) {
+    while (!intake.has_room() && !intake.is_stopped()) co_await taking_->async_wait(kUse);
 }
 
 void LiveFeed::keep(Intake& intake, Observation observation) {
@@ -69,7 +83,11 @@ void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
 
 asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
     bool stopped = false;
+    bool resumed = false;
     for (;;) {
+        if (intake.resumed_after() && !std::exchange(resumed, true) && *intake.resumed_after() > 0) {
+            options_.on_resume(*intake.resumed_after());
+        }
         if (intake.is_stopped() && !std::exchange(stopped, true)) source_.stop();
         if (spool_ && intake.resumed_after()) {
             if (auto ok = hand_over_from_spool(intake); !ok) {
@@ -78,6 +96,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             }
         }
         if (ended_ && waiting() == 0) co_return;
+        taking_->cancel();
         co_await intake.news();
     }
 }

@@ -4,18 +4,25 @@
 #include "robot_client/spool/spool.hpp"
 #include "robot_client/uplink/feed.hpp"
 
+#include <boost/asio/steady_timer.hpp>
+
 #include <functional>
+#include <memory>
+#include <optional>
 
 namespace scanloom::robot {
 
 struct LiveFeedOptions {
     WhenFull when_full = WhenFull::kDropOldest; ///< without a spool; that has its own
+    /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
+    std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
     /// Hears sentences for people: that scans are being dropped, that the spool cannot be written.
     std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 
 /// Hands over what cannot be had again. It takes scans whether there is a server or not: into the spool, and from there
-/// as there is room; without a spool into the uplink's memory, and drops some where that is full.
+/// as there is room; without a spool into the uplink's memory, and drops some where that is full. A source that can
+/// wait is asked for nothing before the server was reached, nor while there is no room.
 /// Errors of run()  those of the source, once what it gave before is handed over; those of Spool::begin().
 class LiveFeed final : public Feed {
 public:
@@ -31,6 +38,7 @@ public:
 
 private:
     [[nodiscard]] boost::asio::awaitable<void> take(Intake& intake);
+    [[nodiscard]] boost::asio::awaitable<void> wait_for_room(Intake& intake);
     void keep(Intake& intake, Observation observation);
     void keep_in_memory(Intake& intake, Observation observation);
     [[nodiscard]] boost::asio::awaitable<void> hand_over(Intake& intake);
@@ -39,6 +47,7 @@ private:
     LiveSource& source_;
     std::unique_ptr<Spool> spool_;
     LiveFeedOptions options_;
+    std::optional<boost::asio::steady_timer> taking_; ///< while run() goes on: cancelled when there may be room
     Result<> outcome_;
     std::uint64_t dropped_ = 0; ///< not by the spool
     bool told_of_dropping_ = false;

@@ -99,6 +99,8 @@ void Uplink::add(Observation observation) {
 }
 
 asio::awaitable<void> Uplink::until_applied() {
+    const auto all_handed_over = [&] { return conversation_.resumed_after() && feed_.waiting() == 0; };
+    while (!all_handed_over()) co_await wait(applied_wake_, Clock::now() + kProgressPeriod);
     const std::uint64_t last = conversation_.last();
     while (conversation_.applied() < last) co_await wait(applied_wake_, Clock::time_point::max());
 }

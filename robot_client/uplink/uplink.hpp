@@ -66,7 +66,7 @@ public:
     /// Conversation::ask(), sent as soon as there is a link. `answered` is called on the thread of `io`.
     [[nodiscard]] bool ask(Request request, Answered answered);
 
-    /// Completes when all scans that were handed over by now are in the server's maps.
+    /// Completes when all scans that were taken by now are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
     [[nodiscard]] UplinkStatus status() const;
