@@ -20,4 +20,4 @@ add_library(scanloom_asio STATIC ${CMAKE_SOURCE_DIR}/cmake/asio.cpp)
 target_compile_features(scanloom_asio PUBLIC cxx_std_20)
 target_compile_definitions(scanloom_asio PUBLIC BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION
                                                 BOOST_ASIO_NO_DEPRECATED)
-target_link_libraries(scanloom_asio PUBLIC Boost::headers Threads::Threads)
+target_link_libraries(scanloom_asio PUBLIC Boost::headers OpenSSL::SSL Threads::Threads)

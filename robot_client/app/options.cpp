@@ -66,6 +66,10 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--robot", options.robot, "Name of this robot within the session")->required()->check(check_name);
     app.add_option("--token-file", options.token_file, "File that holds the token of this robot")
         ->check(CLI::ExistingFile);
+    app.add_flag("--tls", options.tls, "Encrypt the link, and check that the server is the one that --server names");
+    app.add_option("--tls-ca", options.tls_ca_file,
+                   "File with the certificates to trust, in PEM, instead of the system's; means --tls")
+        ->check(CLI::ExistingFile);
     app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
         ->check(check_within(0.01, 1.0));
     app.add_option("--body-radius", options.body_radius,
@@ -114,6 +118,7 @@ void sort_in(const Raw& raw, RobotOptions& options) {
     const auto milliseconds = [](double seconds) {
         return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(seconds, 1e9) * 1e3));
     };
+    options.tls = options.tls || !options.tls_ca_file.empty();
     if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
     if (raw.give_up_after) options.give_up_after = milliseconds(*raw.give_up_after);
     options.spool_bytes_max = bytes(raw.spool_mib * kKibibyte * kKibibyte);

@@ -43,7 +43,9 @@ struct RobotOptions {
     std::string port;
     std::string session;
     std::string robot;
-    std::string token_file;            ///< empty: no token
+    std::string token_file; ///< empty: no token
+    bool tls = false;
+    std::string tls_ca_file;           ///< empty: what the system trusts
     std::optional<double> cell_size;   ///< metres
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres

@@ -142,8 +142,15 @@ ExitCode run(const RobotOptions& options) {
     const auto feed = make_feed(options, *prepared, console);
     if (!feed) return fail(feed.error());
 
+    UplinkOptions carried = uplink_options(options, *token, *prepared, console);
+    if (options.tls) {
+        auto tls = net::client_tls(options.tls_ca_file);
+        if (!tls) return fail(tls.error());
+        carried.tls = std::move(*tls);
+    }
+
     asio::io_context io(1);
-    Uplink uplink(io, uplink_options(options, *token, *prepared, console), **feed);
+    Uplink uplink(io, std::move(carried), **feed);
     std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);

@@ -169,14 +169,33 @@ asio::awaitable<void> Uplink::keep_linked() {
 }
 
 asio::awaitable<wire::LinkError> Uplink::use_one_link() {
-    Socket socket(io_);
+    net::LinkStream::Socket socket(io_);
     if (auto failure = co_await connect(socket)) co_return *failure;
+    net::LinkStream stream =
+        options_.tls ? net::LinkStream(std::move(socket), *options_.tls) : net::LinkStream(std::move(socket));
+    if (auto failure = co_await shake_hands(stream)) co_return *failure;
     conversation_.open(Clock::now());
-    const auto ended = co_await (read_frames(socket) || write_frames(socket) || watch_link());
+    const auto ended = co_await (read_frames(stream) || write_frames(stream) || watch_link());
     co_return std::visit([](const wire::LinkError& failure) { return failure; }, ended);
 }
 
-asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(Socket& socket) {
+asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStream& stream) {
+    if (!options_.tls) co_return std::nullopt;
+    stream.expect_host(options_.host);
+    asio::steady_timer timer(io_);
+    const auto shaken = co_await (stream.async_handshake(net::LinkStream::Role::kClient, kUse) ||
+                                  wait(timer, Clock::now() + options_.connect_timeout));
+    if (shaken.index() != 0) {
+        co_return lost(fmt::format("{}:{} did not answer with TLS within {:g} s", options_.host, options_.port,
+                                   seconds(options_.connect_timeout)));
+    }
+    const auto [failed] = std::get<0>(shaken);
+    if (!failed) co_return std::nullopt;
+    co_return lost(
+        fmt::format("no encrypted link to {}:{}: {}", options_.host, options_.port, net::handshake_text(failed)));
+}
+
+asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream::Socket& socket) {
     const std::string where = fmt::format("{}:{}", options_.host, options_.port);
     tcp::resolver resolver(io_);
     const auto [unresolved, addresses] = co_await resolver.async_resolve(options_.host, options_.port, kUse);
@@ -201,12 +220,12 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(Socket& socket) 
     co_return std::nullopt;
 }
 
-asio::awaitable<wire::LinkError> Uplink::read_frames(Socket& socket) {
+asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
     wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
         const auto room = decoder.prepare(kReadBytes);
-        const auto [failed, count] = co_await socket.async_read_some(asio::buffer(room.data(), room.size()), kUse);
-        if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+        const auto [failed, count] = co_await stream.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        if (failed) co_return closed(failed);
         decoder.commit(count);
         for (;;) {
             auto body = decoder.next();
@@ -215,6 +234,14 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(Socket& socket) {
             if (auto failure = take(**body)) co_return *failure;
         }
     }
+}
+
+wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
+    if (conversation_.is_welcome() || options_.tls || failed != asio::error::eof) {
+        return lost(fmt::format("the connection was lost: {}", failed.message()));
+    }
+    return lost(fmt::format("{}:{} hung up without an answer; where it wants encrypted links, give --tls", options_.host,
+                            options_.port));
 }
 
 /// Bytes that are no frames of a server. Before the welcome it is another program that listens there.
@@ -241,16 +268,13 @@ std::optional<wire::LinkError> Uplink::take(std::string_view body) {
     return failure;
 }
 
-asio::awaitable<wire::LinkError> Uplink::write_frames(Socket& socket) {
+asio::awaitable<wire::LinkError> Uplink::write_frames(net::LinkStream& stream) {
     for (;;) {
         while (const auto frame = conversation_.next_frame(Clock::now())) {
-            const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(*frame), kUse);
+            const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(*frame), kUse);
             if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
         }
-        if (conversation_.said_goodbye()) {
-            boost::system::error_code ignored; // the reader sees how the link ends
-            socket.shutdown(tcp::socket::shutdown_send, ignored);
-        }
+        if (conversation_.said_goodbye()) stream.shutdown_send(); // the reader sees how the link ends
         if (auto failure = conversation_.check(Clock::now())) co_return *failure;
         co_await wait(write_wake_, conversation_.deadline(Clock::now()));
     }

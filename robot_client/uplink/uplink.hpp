@@ -1,12 +1,13 @@
 #pragma once
 
+#include "common/net/link_stream.hpp"
+#include "common/net/tls.hpp"
 #include "robot_client/uplink/backoff.hpp"
 #include "robot_client/uplink/conversation.hpp"
 #include "robot_client/uplink/feed.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <chrono>
@@ -19,6 +20,7 @@ namespace scanloom::robot {
 struct UplinkOptions {
     std::string host;
     std::string port;
+    net::TlsContext tls; ///< none: the link is not encrypted
     ConversationOptions conversation;
     std::chrono::milliseconds connect_timeout{10'000};
     std::chrono::milliseconds give_up_after{120'000};     ///< without progress; 0 = never
@@ -73,7 +75,6 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    using Socket = boost::asio::ip::tcp::socket;
 
     // Intake
     [[nodiscard]] std::optional<std::uint64_t> resumed_after() const override { return conversation_.resumed_after(); }
@@ -89,10 +90,12 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> keep_linked();
     [[nodiscard]] boost::asio::awaitable<void> watch_progress();
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
-    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> connect(Socket& socket);
-    [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(Socket& socket);
-    [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(Socket& socket);
+    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> connect(net::LinkStream::Socket& socket);
+    [[nodiscard]] boost::asio::awaitable<std::optional<wire::LinkError>> shake_hands(net::LinkStream& stream);
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(net::LinkStream& stream);
+    [[nodiscard]] boost::asio::awaitable<wire::LinkError> write_frames(net::LinkStream& stream);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> watch_link();
+    [[nodiscard]] wire::LinkError closed(const boost::system::error_code& failed) const;
     [[nodiscard]] wire::LinkError unreadable(const Error& error) const;
     [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;

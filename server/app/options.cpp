@@ -47,6 +47,12 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
            "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
         ->delimiter(',')
         ->allow_extra_args(false);
+    auto* certificate =
+        app.add_option("--robot-tls-cert", options.tls_certificate,
+                       "Certificate chain in PEM: robots must speak TLS, and may check whom they speak to");
+    auto* key = app.add_option("--robot-tls-key", options.tls_key, "Its private key in PEM, without a password");
+    certificate->needs(key);
+    key->needs(certificate);
     app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
     app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
         ->check(CLI::Range(1, 256))

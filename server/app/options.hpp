@@ -18,7 +18,9 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
-    std::filesystem::path web;           ///< the viewer's files
+    std::filesystem::path web;             ///< the viewer's files
+    std::filesystem::path tls_certificate; ///< of the robot port; empty: robots speak plainly
+    std::filesystem::path tls_key;
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::string log_level = "info";

@@ -86,6 +86,11 @@ Result<> Server::listen() {
     ingest::IngestConfig robots;
     robots.links_max = limits_.robots;
     robots.greeting_max = limits_.greeting;
+    if (!options_.tls_certificate.empty()) {
+        auto tls = net::server_tls(options_.tls_certificate, options_.tls_key);
+        if (!tls) return tls.error();
+        robots.tls = std::move(*tls);
+    }
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest(), desk_},

@@ -50,7 +50,9 @@ void IngestServer::take(asio::ip::tcp::socket socket) {
     if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
     if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room_for_greeting();
-    auto link = std::make_shared<RobotLink>(std::move(socket), services_, config_.link);
+    net::LinkStream stream =
+        config_.tls ? net::LinkStream(std::move(socket), *config_.tls) : net::LinkStream(std::move(socket));
+    auto link = std::make_shared<RobotLink>(std::move(stream), services_, config_.link);
     const auto guest = std::make_shared<Guest>(Guest{link, full ? Standing::kLeaving : Standing::kGreeting});
     if (!full) greeting_.push_back(guest);
     ++count(guest->standing);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/net/tls.hpp"
 #include "server/ingest/robot_link.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -16,6 +17,7 @@ namespace scanloom::ingest {
 struct IngestConfig {
     LinkConfig link;
     std::size_t links_max = 10'000; ///< that said hello; more are refused with an Error
+    net::TlsContext tls;            ///< none: robots speak plainly
     std::size_t greeting_max = 256; ///< that did not yet; one more, and the oldest is cut off
 };
 

@@ -11,8 +11,8 @@
 namespace scanloom::ingest {
 namespace asio = boost::asio;
 
-Outbox::Outbox(asio::ip::tcp::socket& socket, std::function<void(std::uint64_t)> told)
-    : socket_(socket), told_(std::move(told)), emptied_(socket.get_executor()) {
+Outbox::Outbox(net::LinkStream& stream, std::function<void(std::uint64_t)> told)
+    : stream_(stream), told_(std::move(told)), emptied_(stream.get_executor()) {
     emptied_.expires_at(std::chrono::steady_clock::time_point::max());
 }
 
@@ -54,7 +54,7 @@ std::string Outbox::take_bytes() {
 
 void Outbox::start(std::shared_ptr<void> owner) {
     if (std::exchange(writing_, true)) return;
-    asio::co_spawn(socket_.get_executor(), write(std::move(owner)), asio::detached);
+    asio::co_spawn(stream_.get_executor(), write(std::move(owner)), asio::detached);
 }
 
 /// Writes until nothing is left. Acks that come meanwhile collapse into the newest.
@@ -64,7 +64,7 @@ asio::awaitable<void> Outbox::write([[maybe_unused]] std::shared_ptr<void> owner
         const bool answering = bytes_.empty();
         const std::string sending = answering ? std::exchange(answers_.front().frame, {}) : take_bytes();
         const auto [error, written] =
-            co_await asio::async_write(socket_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
+            co_await asio::async_write(stream_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
         if (answering) answers_.pop_front();
         if (error) break;
     }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "common/net/link_stream.hpp"
 #include "common/wire/messages.hpp"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <cstddef>
@@ -27,7 +27,7 @@ class Outbox {
 public:
     /// `socket` must outlive this. `owner` keeps both alive while something is being written.
     /// `told` is called with the durable_seq of each ack that is handed to the socket.
-    Outbox(boost::asio::ip::tcp::socket& socket, std::function<void(std::uint64_t)> told);
+    Outbox(net::LinkStream& stream, std::function<void(std::uint64_t)> told);
 
     void send(const wire::Message& message, std::shared_ptr<void> owner);
     void send_bytes(std::string_view bytes, std::shared_ptr<void> owner);
@@ -56,7 +56,7 @@ private:
     void start(std::shared_ptr<void> owner);
     [[nodiscard]] boost::asio::awaitable<void> write(std::shared_ptr<void> owner);
 
-    boost::asio::ip::tcp::socket& socket_;
+    net::LinkStream& stream_;
     std::function<void(std::uint64_t)> told_;
     std::string bytes_;
     struct Answer {

@@ -50,18 +50,18 @@ bool is_retryable(Errc code) noexcept {
            code == Errc::kOutOfOrder || code == Errc::kOverloaded;
 }
 
-RobotLink::RobotLink(asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config)
-    : socket_(std::move(socket)), services_(services), config_(config), unacknowledged_(services.counters),
-      outbox_(socket_,
+RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config)
+    : stream_(std::move(stream)), services_(services), config_(config), unacknowledged_(services.counters),
+      outbox_(stream_,
               [this](std::uint64_t durable_seq) {
                   unacknowledged_.acknowledge(durable_seq, std::chrono::steady_clock::now());
               }),
-      settled_(socket_.get_executor(), std::chrono::steady_clock::time_point::max()),
-      deadline_timer_(socket_.get_executor()) {
+      settled_(stream_.get_executor(), std::chrono::steady_clock::time_point::max()),
+      deadline_timer_(stream_.get_executor()) {
     boost::system::error_code ignored;
-    const auto endpoint = socket_.remote_endpoint(ignored);
+    const auto endpoint = stream_.socket().remote_endpoint(ignored);
     peer_ = fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
-    socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+    stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
 }
 
 asio::awaitable<void> RobotLink::run() {
@@ -89,21 +89,29 @@ std::string RobotLink::who_ended() const {
 }
 
 void RobotLink::cut_off() {
-    asio::post(socket_.get_executor(), [self = shared_from_this()] {
-        boost::system::error_code ignored;
-        self->socket_.close(ignored);
-    });
+    asio::post(stream_.get_executor(), [self = shared_from_this()] { self->stream_.close(); });
 }
 
 asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
     expect_something_within(config_.farewell_deadline);
     start_watch();
-    co_await farewell(std::move(why));
+    const bool can_be_told = co_await shake_hands();
+    if (can_be_told) co_await farewell(std::move(why));
     hang_up();
+}
+
+/// @return whether frames can be read and written.
+asio::awaitable<bool> RobotLink::shake_hands() {
+    const auto [failed] = co_await stream_.async_handshake(
+        net::LinkStream::Role::kServer, asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
+    if (failed) spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
+    co_return !failed;
 }
 
 /// The conversation, in the order in which it happens.
 asio::awaitable<Result<>> RobotLink::serve() {
+    const bool is_open = co_await shake_hands();
+    if (!is_open) co_return Error{Errc::kUnreachable, "the TLS handshake failed"};
     auto first = co_await receive();
     if (!first) co_return first.error();
     auto* hello = std::get_if<wire::Hello>(&*first);
@@ -166,7 +174,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
             co_return wire::decode(**body);
         }
         const auto room = decoder_.prepare(kReadBytes);
-        const auto [error, bytes] = co_await socket_.async_read_some(
+        const auto [error, bytes] = co_await stream_.async_read_some(
             asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
         if (error) {
             if (ended_by_) co_return *ended_by_;
@@ -236,7 +244,7 @@ Result<> RobotLink::ask(Request request) {
         return {};
     }
     auto done = [self = shared_from_this()](std::string frame, std::shared_ptr<const void> slot) {
-        asio::post(self->socket_.get_executor(), [self, frame = std::move(frame), slot = std::move(slot)]() mutable {
+        asio::post(self->stream_.get_executor(), [self, frame = std::move(frame), slot = std::move(slot)]() mutable {
             self->answer(std::move(frame), std::move(slot));
         });
     };
@@ -275,7 +283,7 @@ Result<> RobotLink::charge_description() {
 }
 
 void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
-    asio::post(socket_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
+    asio::post(stream_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
         self->under_way_ -= std::min(bytes, self->under_way_);
         self->described_ = std::min(self->described_, self->under_way_);
         self->outbox_.acknowledge({durable_seq, durable_seq, self->config_.credit_bytes}, self);
@@ -284,7 +292,7 @@ void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
 }
 
 void RobotLink::on_failed(const Error& error) {
-    asio::post(socket_.get_executor(), [self = shared_from_this(), error] { self->end(error); });
+    asio::post(stream_.get_executor(), [self = shared_from_this(), error] { self->end(error); });
 }
 
 void RobotLink::end(const Error& error) {
@@ -312,24 +320,22 @@ asio::awaitable<void> RobotLink::part() {
     expect_something_within(config_.farewell_deadline);
     outbox_.close();
     co_await outbox_.emptied();
-    boost::system::error_code ignored;
-    socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    stream_.shutdown_send();
     for (;;) {
         const auto room = decoder_.prepare(kReadBytes);
-        const auto [failed, bytes] = co_await socket_.async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
+        const auto [failed, bytes] = co_await stream_.async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
         if (failed) co_return;
     }
 }
 
 void RobotLink::hang_up() {
     deadline_timer_.cancel();
-    boost::system::error_code ignored;
-    socket_.close(ignored);
+    stream_.close();
 }
 
 void RobotLink::start_watch() {
     asio::co_spawn(
-        socket_.get_executor(), [self = shared_from_this()] { return self->watch_deadline(); }, asio::detached);
+        stream_.get_executor(), [self = shared_from_this()] { return self->watch_deadline(); }, asio::detached);
 }
 
 void RobotLink::expect_something_within(std::chrono::steady_clock::duration time) {
@@ -340,13 +346,12 @@ void RobotLink::expect_something_within(std::chrono::steady_clock::duration time
 /// One timer a link, looked at when it runs out: a busy link moves only a time point.
 asio::awaitable<void> RobotLink::watch_deadline() {
     const auto self = shared_from_this();
-    while (socket_.is_open()) {
+    while (stream_.is_open()) {
         deadline_timer_.expires_at(deadline_);
         co_await deadline_timer_.async_wait(kAsTuple);
-        if (!socket_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
-        boost::system::error_code ignored;
+        if (!stream_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
         if (ended_by_ || parting_) { // the farewell took too long
-            socket_.close(ignored);
+            stream_.close();
             co_return;
         }
         expect_something_within(config_.farewell_deadline);

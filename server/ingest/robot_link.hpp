@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/net/link_stream.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
 #include "server/ingest/outbox.hpp"
@@ -11,7 +12,6 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/cancellation_signal.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 
@@ -45,13 +45,13 @@ struct LinkServices {
 /// go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which what is under
 /// way is still acknowledged; an error; or the end of the connection. A fault ends this link with an Error frame and
 /// disturbs no other.
-/// Thread  run() and everything private on the socket's strand; the listener's calls from any thread.
+/// Thread  run() and everything private on the stream's strand; the listener's calls from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
-    /// Pre: the socket's executor is a strand.
-    RobotLink(boost::asio::ip::tcp::socket socket, LinkServices services, const LinkConfig& config);
+    /// Pre: the stream's executor is a strand.
+    RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config);
 
-    [[nodiscard]] boost::asio::any_io_executor executor() { return socket_.get_executor(); }
+    [[nodiscard]] boost::asio::any_io_executor executor() { return stream_.get_executor(); }
 
     /// `told` is called once when the robot has said hello, on the link's strand. Pre: before run().
     void when_greeted(std::function<void()> told) { greeted_ = std::move(told); }
@@ -70,6 +70,7 @@ public:
 
 private:
     boost::asio::awaitable<Result<>> serve();
+    boost::asio::awaitable<bool> shake_hands();
     boost::asio::awaitable<Result<>> settle();
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
@@ -89,7 +90,7 @@ private:
     void end(const Error& error);
     void expect_something_within(std::chrono::steady_clock::duration time);
 
-    boost::asio::ip::tcp::socket socket_;
+    net::LinkStream stream_;
     LinkServices services_;
     LinkConfig config_;
     std::string peer_;
