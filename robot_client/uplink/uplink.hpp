@@ -72,6 +72,7 @@ public:
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
     [[nodiscard]] UplinkStatus status() const;
+    [[nodiscard]] boost::asio::io_context::executor_type executor() const { return io_.get_executor(); }
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -1,5 +1,6 @@
 #include "tests/integration/robot_client/fake_server.hpp"
 
+#include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
 
 #include <boost/asio/as_tuple.hpp>
@@ -26,7 +27,7 @@ constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 } // namespace
 
 struct FakeServer::Link {
-    Socket socket;
+    net::LinkStream socket;
     LinkScript script;
     std::set<std::uint32_t> sensors;
     std::uint64_t scans = 0;
@@ -76,20 +77,33 @@ asio::awaitable<void> FakeServer::accept() {
 }
 
 asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
-    Link link{std::move(socket), std::move(script), {}, 0, 0, 0, 0, false};
+    net::LinkStream stream = tls_ ? net::LinkStream(std::move(socket), *tls_) : net::LinkStream(std::move(socket));
+    Link link{std::move(stream), std::move(script), {}, 0, 0, 0, 0, false};
+    const auto [refused] = co_await link.socket.async_handshake(net::LinkStream::Role::kServer, kUse);
+    if (refused) co_return;
     wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
         const auto room = decoder.prepare(4096);
         const auto [failed, count] = co_await link.socket.async_read_some(asio::buffer(room.data(), room.size()), kUse);
         if (failed) co_return;
         decoder.commit(count);
-        for (auto body = decoder.next(); body && *body; body = decoder.next()) {
-            const auto message = wire::decode(**body);
+        for (;;) {
+            const auto body = decoder.next();
+            if (!body) co_return; // no frames: the robot speaks something else
+            if (!*body) break;
+            auto message = wire::decode(**body);
+            std::size_t frame_bytes = (*body)->size() + wire::kLengthPrefixBytes;
+            if (const auto* compressed = message ? std::get_if<wire::CompressedScanBatch>(&*message) : nullptr) {
+                ++compressed_batches_;
+                frame_bytes = wire::bytes_under_way(*compressed);
+                auto batch = wire::decompress(*compressed);
+                message = batch ? Result<wire::Message>(std::move(*batch)) : Result<wire::Message>(batch.error());
+            }
             if (!message) {
                 faults_.push_back(message.error().message);
                 co_return;
             }
-            if (!co_await answer(link, *message, (*body)->size() + wire::kLengthPrefixBytes)) co_return;
+            if (!co_await answer(link, *message, frame_bytes)) co_return;
         }
     }
 }
@@ -125,7 +139,7 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
     durable_ = stored_.size(); // what was stored without being acknowledged survived
     // Messages have names here: g++ 12 destroys temporaries of aggregate types twice when a co_await follows them.
     const wire::Message welcome =
-        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes};
+        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes, link.script.zstd};
     co_return co_await link.send(welcome);
 }
 
@@ -139,6 +153,7 @@ asio::awaitable<bool> FakeServer::meet(Link& link, const wire::PlanRequest& requ
 
 asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes) {
     const LinkScript& script = link.script;
+    ++batches_;
     largest_batch_ = std::max(largest_batch_, batch.scans.size());
     link.unacknowledged_bytes += frame_bytes;
     if (link.unacknowledged_bytes > script.credit_bytes) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/net/link_stream.hpp"
+#include "common/net/tls.hpp"
 #include "common/wire/messages.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -26,6 +28,7 @@ struct LinkScript {
     std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
+    bool zstd = false;
 };
 
 /// Enough of a server to try a robot on: welcomes, stores, acknowledges, and fails as its scripts say, one a link;
@@ -35,7 +38,9 @@ class FakeServer {
 public:
     FakeServer(boost::asio::io_context& io, std::vector<LinkScript> scripts);
 
-    [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+    [[nodiscard]] std::uint16_t port() const { return endpoint_.port(); }
+    /// From now on links are encrypted.
+    void encrypt_with(net::TlsContext tls) { tls_ = std::move(tls); }
     /// Every connection is closed at once and no new one is taken, until reopen().
     void close();
     void reopen();
@@ -44,10 +49,17 @@ public:
     [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
     [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
     [[nodiscard]] const std::vector<wire::PlanRequest>& plans() const noexcept { return plans_; }
+    /// Batches that came compressed, of all.
+    [[nodiscard]] std::uint64_t compressed_batches() const noexcept { return compressed_batches_; }
+    [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
     [[nodiscard]] int goodbyes() const noexcept { return goodbyes_; }
     [[nodiscard]] std::size_t largest_batch() const noexcept { return largest_batch_; }
     /// Called after every scan stored, with their number.
     std::function<void(std::size_t)> on_stored = [](std::size_t) {};
+    void forget() { // everything stored
+        stored_.clear();
+        durable_ = 0;
+    }
     void store_before(std::uint64_t scans); ///< pretend that so many came in earlier runs
 
 private:
@@ -66,12 +78,15 @@ private:
     boost::asio::ip::tcp::acceptor acceptor_;
     boost::asio::ip::tcp::endpoint endpoint_;
     std::vector<LinkScript> scripts_;
+    net::TlsContext tls_;
     std::size_t links_ = 0;
     std::vector<Scan> stored_;
     std::uint64_t durable_ = 0;
     std::vector<std::string> faults_;
     std::vector<wire::Hello> hellos_;
     std::vector<wire::PlanRequest> plans_;
+    std::uint64_t compressed_batches_ = 0;
+    std::uint64_t batches_ = 0;
     int goodbyes_ = 0;
     std::size_t largest_batch_ = 0;
 };

@@ -1,0 +1,179 @@
+#include "common/net/tls.hpp"
+#include "robot_client/uplink/recording_feed.hpp"
+#include "robot_client/uplink/uplink.hpp"
+#include "tests/integration/robot_client/fake_server.hpp"
+#include "tests/support/recorded_source.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/support/test_certificate.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// Links that are encrypted, compressed, or both.
+namespace scanloom::robot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing_support::CertificateFiles;
+using testing_support::write_certificate;
+
+std::vector<Observation> recording(std::size_t scans) {
+    const auto sensor = std::make_shared<const Sensor>(
+        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 300}, 0.0, 0.0, 10.0});
+    std::vector<Observation> made(scans, Observation{sensor, {}});
+    for (std::size_t i = 0; i < scans; ++i) {
+        made[i].scan.pose.x = static_cast<double>(i + 1);
+        for (RangeMm beam = 0; beam < 300; ++beam) made[i].scan.ranges.push_back(2000 + beam * beam % 97);
+    }
+    return made;
+}
+
+class LinkKinds : public testing::Test {
+protected:
+    /// A server on 127.0.0.1 whose certificate is for `host`, or none.
+    void serve(const std::string& host, LinkScript script = {}) {
+        server_.emplace(io_, std::vector{script});
+        if (host.empty()) return;
+        files_ = write_certificate(directory_.path(), host);
+        server_->encrypt_with(net::server_tls(files_.certificate, files_.key).value());
+    }
+
+    UplinkOptions options() {
+        UplinkOptions made;
+        made.host = "127.0.0.1";
+        made.port = std::to_string(server_->port());
+        made.conversation.hello.robot = "r1";
+        made.conversation.hello.session = "s1";
+        made.give_up_after = 20s;
+        made.on_trouble = [this](const Error& error) {
+            troubles_.push_back(error.message);
+            uplink_->stop(); // once is enough
+        };
+        return made;
+    }
+
+    Result<> run(UplinkOptions made, std::size_t scans = 200) {
+        RecordedSource source(recording(scans));
+        RecordingFeed feed(source, {});
+        uplink_.emplace(io_, std::move(made), feed);
+        Result<> outcome = Error{Errc::kTimeout, "it did not end"};
+        boost::asio::co_spawn(io_, uplink_->run(), [&](std::exception_ptr failed, Result<> result) {
+            EXPECT_FALSE(failed);
+            outcome = std::move(result);
+            io_.stop();
+        });
+        io_.run();
+        status_ = uplink_->status();
+        uplink_.reset();
+        return outcome;
+    }
+
+    void expect_all_stored(std::size_t scans = 200) {
+        EXPECT_THAT(server_->faults(), IsEmpty());
+        ASSERT_EQ(server_->stored().size(), scans);
+        for (std::size_t i = 0; i < scans; ++i) EXPECT_EQ(server_->stored()[i].pose.x, static_cast<double>(i + 1));
+    }
+
+    boost::asio::io_context io_{1};
+    TemporaryDirectory directory_;
+    CertificateFiles files_;
+    std::optional<FakeServer> server_;
+    std::optional<Uplink> uplink_;
+    UplinkStatus status_;
+    std::vector<std::string> troubles_;
+};
+
+TEST_F(LinkKinds, EncryptedItCarriesEverythingToTheServerItTrusts) {
+    serve("127.0.0.1");
+    auto made = options();
+    made.tls = net::client_tls(files_.certificate).value();
+    const auto outcome = run(made);
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_all_stored();
+    EXPECT_EQ(server_->goodbyes(), 1);
+}
+
+TEST_F(LinkKinds, AnotherHostsCertificateIsRefusedBeforeAnythingIsSaid) {
+    serve("another.example");
+    auto made = options();
+    made.tls = net::client_tls(files_.certificate).value();
+    EXPECT_FALSE(run(made));
+    ASSERT_THAT(troubles_, testing::SizeIs(1));
+    EXPECT_THAT(troubles_[0], HasSubstr("its certificate is not one to be trusted for that name"));
+    EXPECT_THAT(server_->hellos(), IsEmpty());
+}
+
+TEST_F(LinkKinds, ACertificateThatNobodyTrustsIsRefused) {
+    serve("127.0.0.1");
+    const auto other = write_certificate(directory_.path(), "localhost");
+    auto made = options();
+    made.tls = net::client_tls(other.certificate).value();
+    EXPECT_FALSE(run(made));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("--tls-ca"));
+    EXPECT_THAT(server_->hellos(), IsEmpty());
+}
+
+TEST_F(LinkKinds, WhereOnlyOneSideEncryptsEachIsToldWhatToDo) {
+    serve("127.0.0.1");
+    EXPECT_FALSE(run(options()));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("give --tls"));
+    const auto trusted = files_.certificate;
+    server_.reset();
+    io_.restart();
+    serve("");
+    auto made = options();
+    made.tls = net::client_tls(trusted).value();
+    EXPECT_FALSE(run(made));
+    EXPECT_THAT(troubles_.at(1), HasSubstr("leave --tls out"));
+}
+
+TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
+    serve("127.0.0.1");
+    EXPECT_THAT(net::client_tls(files_.key).error().message, HasSubstr("127.0.0.1.key: no certificate"));
+    EXPECT_THAT(net::client_tls("/nowhere").error().message, HasSubstr("/nowhere"));
+    EXPECT_THAT(net::server_tls(files_.key, files_.key).error().message, HasSubstr("no certificate"));
+    EXPECT_THAT(net::server_tls(files_.certificate, files_.certificate).error().message, HasSubstr("no private key"));
+    const auto other = write_certificate(directory_.path(), "localhost");
+    EXPECT_EQ(net::server_tls(files_.certificate, other.key).error().code, Errc::kConflict);
+}
+
+TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {
+    serve("", {.zstd = true});
+    auto made = options();
+    EXPECT_TRUE(run(made));
+    const auto plain_bytes = status_.bytes;
+    EXPECT_EQ(server_->compressed_batches(), 0U);
+    expect_all_stored();
+    server_.reset();
+    io_.restart();
+    serve("", {.zstd = true});
+    made = options();
+    made.conversation.compress = true;
+    EXPECT_TRUE(run(made));
+    expect_all_stored();
+    EXPECT_EQ(server_->compressed_batches(), server_->batches());
+    EXPECT_LT(3 * status_.bytes, plain_bytes);
+}
+
+TEST_F(LinkKinds, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
+    serve("", {.credit_bytes = 5000, .zstd = true}); // the server finds fault with more
+    auto made = options();
+    made.conversation.compress = true;
+    EXPECT_TRUE(run(made));
+    expect_all_stored();
+}
+
+TEST_F(LinkKinds, AServerThatDoesNotUnderstandCompressionGetsNone) {
+    serve("", {.zstd = false});
+    auto made = options();
+    made.conversation.compress = true;
+    EXPECT_TRUE(run(made));
+    expect_all_stored();
+    EXPECT_EQ(server_->compressed_batches(), 0U);
+}
+
+} // namespace
+} // namespace scanloom::robot
