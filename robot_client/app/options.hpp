@@ -3,6 +3,7 @@
 #include "common/app/program.hpp"
 #include "robot_client/source/source.hpp"
 #include "robot_client/spool/spool.hpp"
+#include "robot_client/uplink/server_address.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -39,8 +40,7 @@ struct SonarReplayOptions {
 };
 
 struct RobotOptions {
-    std::string host;
-    std::string port;
+    ServerAddress server;
     std::string session;
     std::string robot;
     std::string token_file; ///< empty: no token

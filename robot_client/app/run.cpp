@@ -46,8 +46,7 @@ std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_
 UplinkOptions uplink_options(const RobotOptions& options, std::string token, const PreparedSource& prepared,
                              Console& console) {
     UplinkOptions uplink;
-    uplink.host = options.host;
-    uplink.port = options.port;
+    uplink.server = options.server;
     const auto default_patience = prepared.live ? std::chrono::milliseconds(0) : uplink.give_up_after;
     uplink.give_up_after = options.give_up_after.value_or(default_patience);
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);

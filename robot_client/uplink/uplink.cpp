@@ -33,7 +33,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
     : io_(io), options_(std::move(options)), feed_(feed), conversation_(options_.conversation, Clock::now()),
-      backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io), applied_wake_(io) {}
+      backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());
@@ -100,9 +100,15 @@ void Uplink::add(Observation observation) {
 
 asio::awaitable<void> Uplink::until_applied() {
     const auto all_handed_over = [&] { return conversation_.resumed_after() && feed_.waiting() == 0; };
-    while (!all_handed_over()) co_await wait(applied_wake_, Clock::now() + kProgressPeriod);
+    while (!all_handed_over()) co_await acked_.wait(Clock::now() + kProgressPeriod);
     const std::uint64_t last = conversation_.last();
-    while (conversation_.applied() < last) co_await wait(applied_wake_, Clock::time_point::max());
+    while (conversation_.applied() < last) co_await acked_.wait();
+}
+
+asio::awaitable<void> Uplink::until_stored() {
+    while (feed_.waiting() > 0 || conversation_.acknowledged() < conversation_.last()) {
+        co_await acked_.wait(Clock::now() + kProgressPeriod); // scans may be dropped, too
+    }
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -145,7 +151,7 @@ std::string Uplink::what_is_wrong() const {
                (last_trouble_ ? fmt::format(" (before this link: {})", last_trouble_->message) : std::string());
     }
     if (last_trouble_) return last_trouble_->message;
-    return fmt::format("no answer from {}:{} yet", options_.host, options_.port);
+    return fmt::format("no answer from {}:{} yet", options_.server.host, options_.server.port);
 }
 
 // Links ---------------------------------------------------------------------------------------------------------------
@@ -181,24 +187,25 @@ asio::awaitable<wire::LinkError> Uplink::use_one_link() {
 
 asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStream& stream) {
     if (!options_.tls) co_return std::nullopt;
-    stream.expect_host(options_.host);
+    stream.expect_host(options_.server.host);
     asio::steady_timer timer(io_);
     const auto shaken = co_await (stream.async_handshake(net::LinkStream::Role::kClient, kUse) ||
                                   wait(timer, Clock::now() + options_.connect_timeout));
     if (shaken.index() != 0) {
-        co_return lost(fmt::format("{}:{} did not answer with TLS within {:g} s", options_.host, options_.port,
-                                   seconds(options_.connect_timeout)));
+        co_return lost(fmt::format("{}:{} did not answer with TLS within {:g} s", options_.server.host,
+                                   options_.server.port, seconds(options_.connect_timeout)));
     }
     const auto [failed] = std::get<0>(shaken);
     if (!failed) co_return std::nullopt;
-    co_return lost(
-        fmt::format("no encrypted link to {}:{}: {}", options_.host, options_.port, net::handshake_text(failed)));
+    co_return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
+                               net::handshake_text(failed)));
 }
 
 asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream::Socket& socket) {
-    const std::string where = fmt::format("{}:{}", options_.host, options_.port);
+    const std::string where = fmt::format("{}:{}", options_.server.host, options_.server.port);
     tcp::resolver resolver(io_);
-    const auto [unresolved, addresses] = co_await resolver.async_resolve(options_.host, options_.port, kUse);
+    const auto [unresolved, addresses] =
+        co_await resolver.async_resolve(options_.server.host, options_.server.port, kUse);
     if (unresolved) {
         co_return lost(fmt::format("cannot find {}: {}; check --server", where, unresolved.message()));
     }
@@ -240,8 +247,8 @@ wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
     if (conversation_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }
-    return lost(fmt::format("{}:{} hung up without an answer; where it wants encrypted links, give --tls", options_.host,
-                            options_.port));
+    return lost(fmt::format("{}:{} hung up without an answer; where it wants encrypted links, give --tls",
+                            options_.server.host, options_.server.port));
 }
 
 /// Bytes that are no frames of a server. Before the welcome it is another program that listens there.
@@ -250,7 +257,7 @@ wire::LinkError Uplink::unreadable(const Error& error) const {
     return {
         {Errc::kMalformed, fmt::format("what listens at {}:{} does not speak Scanloom's robot link; give the server's "
                                        "robot port to --server",
-                                       options_.host, options_.port)},
+                                       options_.server.host, options_.server.port)},
         false};
 }
 
@@ -298,7 +305,7 @@ void Uplink::wake_all() {
     feed_wake_.cancel();
     write_wake_.cancel();
     progress_wake_.cancel();
-    applied_wake_.cancel();
+    acked_.ring();
 }
 
 } // namespace scanloom::robot

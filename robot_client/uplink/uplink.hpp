@@ -3,8 +3,10 @@
 #include "common/net/link_stream.hpp"
 #include "common/net/tls.hpp"
 #include "robot_client/uplink/backoff.hpp"
+#include "robot_client/uplink/bell.hpp"
 #include "robot_client/uplink/conversation.hpp"
 #include "robot_client/uplink/feed.hpp"
+#include "robot_client/uplink/server_address.hpp"
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
@@ -18,8 +20,7 @@
 namespace scanloom::robot {
 
 struct UplinkOptions {
-    std::string host;
-    std::string port;
+    ServerAddress server;
     net::TlsContext tls; ///< none: the link is not encrypted
     ConversationOptions conversation;
     std::chrono::milliseconds connect_timeout{10'000};
@@ -71,6 +72,9 @@ public:
     /// Completes when all scans that were taken by now are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
+    /// Completes when all scans that were taken are durable.
+    [[nodiscard]] boost::asio::awaitable<void> until_stored();
+
     [[nodiscard]] UplinkStatus status() const;
     [[nodiscard]] boost::asio::io_context::executor_type executor() const { return io_.get_executor(); }
 
@@ -114,7 +118,7 @@ private:
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;
     boost::asio::steady_timer progress_wake_;
-    boost::asio::steady_timer applied_wake_;
+    Bell acked_;
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;

@@ -94,8 +94,8 @@ protected:
 
     UplinkOptions uplink_options() {
         UplinkOptions made;
-        made.host = "127.0.0.1";
-        made.port = std::to_string(server_.port());
+        made.server.host = "127.0.0.1";
+        made.server.port = std::to_string(server_.port());
         made.conversation.hello.robot = "r1";
         made.conversation.hello.session = "s1";
         made.conversation.buffer_bytes_max = 100'000;

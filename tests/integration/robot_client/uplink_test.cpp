@@ -41,8 +41,8 @@ protected:
 
     UplinkOptions options() {
         UplinkOptions made;
-        made.host = "127.0.0.1";
-        made.port = std::to_string(server_->port());
+        made.server.host = "127.0.0.1";
+        made.server.port = std::to_string(server_->port());
         made.conversation.hello.robot = "r1";
         made.conversation.hello.session = "s1";
         made.give_up_after = 20s;

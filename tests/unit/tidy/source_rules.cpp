@@ -48,8 +48,8 @@ const std::vector<Folder> kFolders = {
     {.path = "server/metrics", .may_include = {"common/error"}},
     {.path = "server/sockets", .may_include = {}},
     {.path = "server/ingest",
-     .may_include = {"common", "server/guide", "server/mapping", "server/metrics", "server/planning",
-                     "server/session", "server/sockets", "server/store"}},
+     .may_include = {"common", "server/guide", "server/mapping", "server/metrics", "server/planning", "server/session",
+                     "server/sockets", "server/store"}},
     {.path = "server/live/core",
      .may_include = {"common/error", "common/geometry", "common/scan", "common/wire", "server/grid", "server/mapping",
                      "server/tiles"},
@@ -72,6 +72,8 @@ const std::vector<Folder> kFolders = {
     {.path = "robot_client/spool",
      .may_include = {"common/error", "common/scan", "common/wire", "robot_client/source"}},
     {.path = "robot_client/uplink", .may_include = {"common", "robot_client/source", "robot_client/spool"}},
+    {.path = "robot_client/client",
+     .may_include = {"common", "robot_client/source", "robot_client/spool", "robot_client/uplink"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
 
     // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
@@ -99,7 +101,7 @@ const std::vector<Package> kPackages = {
       "robot_client/app"}},
     {"boost/asio",
      {"common/net", "server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/app"}},
+      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app"}},
     {"boost/beast", {"server/live", "server/http", "server/app"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},

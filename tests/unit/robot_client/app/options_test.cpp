@@ -67,8 +67,8 @@ TEST_F(Options, MayStandBeforeOrBehindTheSubcommand) {
                                    "r"},
           std::vector<std::string>{"--session", "s", "replay", "--speed=2", "--robot=r", "f.clf", "--server=h:1"}}) {
         const auto options = parsed(words);
-        EXPECT_EQ(options.host, "h");
-        EXPECT_EQ(options.port, "1");
+        EXPECT_EQ(options.server.host, "h");
+        EXPECT_EQ(options.server.port, "1");
         EXPECT_EQ(options.session, "s");
         EXPECT_EQ(std::get<ReplayOptions>(options.source).file, "f.clf");
         EXPECT_EQ(std::get<ReplayOptions>(options.source).speed, 2.0);
@@ -77,7 +77,7 @@ TEST_F(Options, MayStandBeforeOrBehindTheSubcommand) {
 
 TEST_F(Options, DefaultsAreThoseOfTheContract) {
     const auto replay = parsed({"replay", "f", "--session", "s", "--robot", "r"});
-    EXPECT_EQ(replay.host + ":" + replay.port, "127.0.0.1:7447");
+    EXPECT_EQ(replay.server.host + ":" + replay.server.port, "127.0.0.1:7447");
     EXPECT_EQ(std::get<ReplayOptions>(replay.source).speed, 0.0);
     EXPECT_FALSE(replay.give_up_after) << "it depends on what is streamed";
     EXPECT_TRUE(replay.spool.empty());

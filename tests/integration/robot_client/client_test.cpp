@@ -1,0 +1,213 @@
+#include "robot_client/client/client.hpp"
+
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <limits>
+#include <thread>
+
+/// The library that a robot's own program links, at a real server.
+namespace scanloom::robot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+std::shared_ptr<const Sensor> laser() {
+    Sensor sensor;
+    sensor.name = "laser";
+    sensor.angles = UniformAngles{-1.0, 0.01, 200};
+    sensor.range_max = 10.0;
+    return std::make_shared<const Sensor>(sensor);
+}
+
+Scan numbered(int number) {
+    Scan scan;
+    scan.stamp = 0.1 * number;
+    scan.pose = {0.01 * number, 0.0, 0.001 * number};
+    scan.ranges.assign(200, static_cast<RangeMm>(2000 + number % 50));
+    return scan;
+}
+
+class ClientTest : public testing::Test {
+protected:
+    void serve(std::uint16_t robot_port = 0) {
+        server_.reset();
+        server_.emplace(directory_.path() / "store", directory_.path() / "log", robot_port);
+    }
+
+    ClientOptions options(const std::string& session = "lab") {
+        ClientOptions made;
+        made.server = server_ ? server_->robot_address() : made.server;
+        made.session = session;
+        made.robot = "r1";
+        made.cell_size = 0.1;
+        return made;
+    }
+
+    static void send(Client& client, int first, int last) {
+        for (int number = first; number <= last; ++number) {
+            const auto sent = client.send(laser(), numbered(number));
+            ASSERT_TRUE(sent) << sent.error().message;
+        }
+    }
+
+    std::string digest_of(const std::string& session) {
+        return server_->get(fmt::format("/api/v1/sessions/{}/digest", session)).body;
+    }
+
+    TemporaryDirectory directory_;
+    std::optional<test::RunningServer> server_;
+};
+
+TEST_F(ClientTest, WhatIsSentIsStoredOnceFlushed) {
+    serve();
+    const auto client = Client::start(options()).value();
+    send(*client, 1, 300);
+    const auto flushed = client->flush(20s);
+    ASSERT_TRUE(flushed) << flushed.error().message;
+    const auto status = client->status();
+    EXPECT_EQ(status.acknowledged, 300U);
+    EXPECT_EQ(status.waiting, 0U);
+    EXPECT_TRUE(status.is_linked);
+    send(*client, 301, 310);
+    EXPECT_TRUE(client->close(20s));
+    EXPECT_EQ(client->send(laser(), numbered(311)).error().code, Errc::kGone);
+    EXPECT_EQ(client->status().acknowledged, 310U);
+    const auto map = server_->get("/api/v1/sessions/lab/map.csv?layer=occupancy");
+    EXPECT_EQ(map.status, 200U);
+}
+
+TEST_F(ClientTest, ASecondProgramGoesOnBehindTheFirst) {
+    serve();
+    for (int round = 0; round < 3; ++round) {
+        const auto client = Client::start(options()).value();
+        send(*client, 1 + 50 * round, 50 + 50 * round);
+        ASSERT_TRUE(client->close(20s));
+        EXPECT_EQ(client->status().acknowledged, static_cast<std::uint64_t>(50 + 50 * round));
+    }
+    const auto other = Client::start(options("undisturbed")).value();
+    send(*other, 1, 150);
+    ASSERT_TRUE(other->close(20s));
+    EXPECT_EQ(digest_of("lab"), digest_of("undisturbed"));
+}
+
+TEST_F(ClientTest, AServerKilledMeanwhileLosesNothing) {
+    serve();
+    const auto port = server_->robot_port();
+    const auto client = Client::start(options()).value();
+    send(*client, 1, 200);
+    server_->process().signal(SIGKILL);
+    server_->process().wait();
+    send(*client, 201, 400);
+    serve(port);
+    const auto closed = client->close(30s);
+    ASSERT_TRUE(closed) << closed.error().message;
+    const auto other = Client::start(options("undisturbed")).value();
+    send(*other, 1, 400);
+    ASSERT_TRUE(other->close(20s));
+    EXPECT_EQ(digest_of("lab"), digest_of("undisturbed"));
+}
+
+TEST_F(ClientTest, WhatASpoolHoldsIsSentByTheNextProgram) {
+    auto made = options();
+    made.server = "127.0.0.1:1"; // nobody
+    made.spool = directory_.path() / "spool";
+    {
+        const auto client = Client::start(made).value();
+        send(*client, 1, 80);
+        EXPECT_EQ(client->flush(50ms).error().code, Errc::kTimeout);
+        EXPECT_EQ(client->status().waiting, 80U);
+    }
+    serve();
+    made.server = server_->robot_address();
+    const auto client = Client::start(made).value();
+    send(*client, 81, 100);
+    ASSERT_TRUE(client->close(20s));
+    EXPECT_EQ(client->status().acknowledged, 100U);
+}
+
+TEST_F(ClientTest, ScansThatNoServerTakesAreRefusedAtOnceAndNamed) {
+    const auto client = Client::start(options()).value();
+    const auto refusal = [&](auto&& change, const std::shared_ptr<const Sensor>& sensor) {
+        Scan scan = numbered(1);
+        change(scan);
+        const auto sent = client->send(sensor, std::move(scan));
+        return sent ? std::string("taken") : sent.error().message;
+    };
+    EXPECT_THAT(refusal([](Scan& scan) { scan.pose.x = std::numeric_limits<double>::quiet_NaN(); }, laser()),
+                HasSubstr("pose.x is nan"));
+    EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }, laser()), HasSubstr("ranges is empty"));
+    EXPECT_THAT(refusal([](Scan& scan) { scan.sensor = 3; }, laser()), HasSubstr("of sensor 3, the sensor given is 0"));
+    EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(4097); }, laser()), HasSubstr("4097 beams"));
+    EXPECT_THAT(refusal([](Scan&) {}, nullptr), HasSubstr("needs its sensor"));
+    Sensor without_range = *laser();
+    without_range.range_max = 0.0;
+    EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(without_range)), HasSubstr("range_max"));
+    EXPECT_EQ(refusal([](Scan&) {}, laser()), "taken");
+}
+
+TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
+    const auto refusal = [&](auto&& change) {
+        auto made = options();
+        change(made);
+        const auto started = Client::start(std::move(made));
+        return started ? std::string("started") : started.error().message;
+    };
+    EXPECT_THAT(refusal([](auto& made) { made.server = "here"; }), HasSubstr("'here' is not HOST:PORT"));
+    EXPECT_THAT(refusal([](auto& made) { made.session = "a/b"; }), HasSubstr("'a/b' is no name"));
+    EXPECT_THAT(refusal([](auto& made) { made.robot = ""; }), HasSubstr("'' is no name"));
+    EXPECT_THAT(refusal([](auto& made) { made.body_radius = -1.0; }), HasSubstr("body_radius"));
+    EXPECT_THAT(refusal([](auto& made) { made.tls_ca_file = "/nowhere"; }), HasSubstr("/nowhere"));
+    EXPECT_THAT(refusal([](auto& made) { made.spool = "/proc/spool"; }), HasSubstr("/proc/spool"));
+    EXPECT_EQ(refusal([](auto&) {}), "started");
+}
+
+TEST_F(ClientTest, WhatTheServerRefusesForGoodEndsTheClientWithItsSentence) {
+    serve();
+    const auto first = Client::start(options()).value();
+    send(*first, 1, 1);
+    ASSERT_TRUE(first->flush(20s));
+    auto made = options();
+    made.cell_size = 0.2; // the session has another
+    const auto second = Client::start(made).value();
+    send(*second, 1, 1);
+    const auto flushed = second->flush(20s);
+    ASSERT_FALSE(flushed);
+    EXPECT_EQ(flushed.error().code, Errc::kConflict);
+    EXPECT_EQ(second->send(laser(), numbered(2)).error().code, Errc::kConflict);
+}
+
+TEST_F(ClientTest, WaysAndGoalsAreAnswered) {
+    serve();
+    const auto client = Client::start(options()).value();
+    send(*client, 1, 5);
+    const auto goal = client->next_goal(20s);
+    ASSERT_TRUE(goal) << goal.error().message;
+    ASSERT_EQ(goal->outcome, ExplorationGoal::Outcome::kGoal);
+    EXPECT_FALSE(goal->path.empty());
+    const auto way = client->plan({1.0, 0.0}, 20s);
+    ASSERT_TRUE(way) << way.error().message;
+    EXPECT_LT((way->back() - Point2(1.0, 0.0)).norm(), 0.2);
+    EXPECT_EQ(client->plan({50.0, 0.0}, 20s).error().code, Errc::kNoPath);
+}
+
+TEST_F(ClientTest, ManyThreadsMaySend) {
+    serve();
+    const auto client = Client::start(options()).value();
+    std::vector<std::jthread> threads;
+    for (int thread = 0; thread < 4; ++thread) {
+        threads.emplace_back([&client, thread] { send(*client, 1 + 100 * thread, 100 + 100 * thread); });
+    }
+    threads.clear();
+    ASSERT_TRUE(client->close(20s));
+    EXPECT_EQ(client->status().acknowledged, 400U);
+}
+
+} // namespace
+} // namespace scanloom::robot
