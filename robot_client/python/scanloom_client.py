@@ -146,7 +146,7 @@ class Timing:
     welcome: float = 10.0  # from hello to welcome
     ping_after: float = 5.0  # of silence
     silence_max: float = 15.0  # then the link counts as dead
-    backoff_first: float = 0.2  # before the next attempt; doubles up to backoff_max; up to half of it is left out by lot
+    backoff_first: float = 0.2  # before the next attempt; doubles up to backoff_max; lot leaves out up to half
     backoff_max: float = 10.0
     give_up_after: float = 120.0  # without the server getting anywhere while something waits; math.inf: never
     goodbye: float = 1.0  # how long the server may take to close; all is durable then
@@ -740,6 +740,7 @@ class _Connection:
         self._sock = sock
         self._bell = bell
         self._out = b""
+        self._is_broken = False  # for writing
         self._in = bytearray()
         self._may_hold_more = False
         self._selector = selectors.DefaultSelector()
@@ -750,11 +751,12 @@ class _Connection:
         self._selector.close()
         self._sock.close()
 
-    def is_written(self) -> bool:
-        return not self._out
+    def is_writable(self) -> bool:
+        return not self._out and not self._is_broken
 
     def write(self, frame: bytes) -> None:
         self._out += frame
+        self._send()
 
     def turn(self, timeout: float) -> Iterator[bytes]:
         """Waits until bytes come or can go, or the bell rings, and yields the frames that are whole."""
@@ -777,7 +779,8 @@ class _Connection:
         except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
             pass
         except OSError:
-            self._out = b""  # reading tells how the link ended, perhaps in the server's words
+            self._out = b""
+            self._is_broken = True  # reading tells how the link ended, perhaps in the server's words
 
     def _receive(self) -> str:
         """Returns how the link ended, if it did."""
@@ -1189,7 +1192,7 @@ class Client:
                 raise self._lost_patience()
             if self._is_aborted:
                 raise self._given_up()
-            while connection.is_written():
+            while connection.is_writable():
                 frame = self._conversation.next_frame(now)
                 if frame is None:
                     break
