@@ -257,8 +257,7 @@ def _millimetres(range_m: float) -> int:
     mm = range_m * 1000.0
     if mm >= _NO_RETURN - 0.5:
         return _NO_RETURN
-    whole = math.floor(mm)
-    return whole + (mm - whole >= 0.5)
+    return math.floor(mm + 0.5)
 
 
 def _numbers(field: str, values: Any, convert: Callable[[Any], Any]) -> List[Any]:
@@ -731,7 +730,7 @@ class _Backoff:
 class _Connection:
     """A connected socket that never blocks, and the frames in its bytes."""
 
-    _READ_BYTES = 64 << 10
+    _READ_BYTES = 64 << 10  # more than a TLS record, so that none is left where select() does not see it
     _READS_MAX = 16  # in one turn
     _SELECT_MAX = 60.0  # seconds; an endless time cannot be waited for
 
@@ -742,7 +741,6 @@ class _Connection:
         self._out = b""
         self._is_broken = False  # for writing
         self._in = bytearray()
-        self._may_hold_more = False
         self._selector = selectors.DefaultSelector()
         self._selector.register(bell, selectors.EVENT_READ)
         self._selector.register(sock, selectors.EVENT_READ)
@@ -762,7 +760,7 @@ class _Connection:
         """Waits until bytes come or can go, or the bell rings, and yields the frames that are whole."""
         self._send()
         self._selector.modify(self._sock, selectors.EVENT_READ | (selectors.EVENT_WRITE if self._out else 0))
-        self._selector.select(0.0 if self._may_hold_more else min(max(timeout, 0.0), self._SELECT_MAX))
+        self._selector.select(min(max(timeout, 0.0), self._SELECT_MAX))
         try:
             self._bell.recv(4096)
         except BlockingIOError:
@@ -790,9 +788,8 @@ class _Connection:
                 if not received:
                     return "the server closed it"
                 self._in += received
-            self._may_hold_more = True
         except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
-            self._may_hold_more = False
+            pass
         except OSError as error:
             return error.strerror or str(error)
         return ""

@@ -1,4 +1,5 @@
 """How the client behaves on links that are slow, cut, or at odds with it."""
+import socket
 import threading
 import unittest
 
@@ -169,6 +170,21 @@ class Refusing(LinkTest):
 
 
 class Reading(LinkTest):
+    def test_any_split_of_the_bytes_yields_the_same_frames(self):
+        frames = [b"one", b"x" * 300, b"3"]
+        data = b"".join(len(frame).to_bytes(4, "big") + frame for frame in frames)
+        for step in (1, 2, 3, 5, 300, len(data)):
+            (server, robot), (ringer, bell) = socket.socketpair(), socket.socketpair()
+            bell.setblocking(False)
+            with server, bell, ringer:
+                connection = scanloom_client._Connection(robot, bell)
+                read = []
+                for i in range(0, len(data), step):
+                    server.sendall(data[i : i + step])
+                    read += connection.turn(0.0)
+                connection.close()
+            self.assertEqual(read, frames)
+
     def test_frames_may_come_byte_by_byte(self):
         self.start(split=True)
         with self.client() as robot:

@@ -1,4 +1,5 @@
 """The programs of the build under test, as processes of a test, and the client of this checkout."""
+import faulthandler
 import json
 import os
 import pathlib
@@ -13,6 +14,9 @@ PROGRAMS = pathlib.Path(os.environ.get("SCANLOOM_BIN_DIR", SOURCE / "build/bin")
 
 sys.path.insert(0, str(CLIENT.parent))
 import scanloom_client  # noqa: E402  the tests take it from here
+
+
+faulthandler.dump_traceback_later(200, exit=True)  # a test that hangs says where
 
 
 class RunningServer:

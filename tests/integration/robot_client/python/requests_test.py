@@ -2,7 +2,6 @@
 import threading
 import unittest
 
-from fake_server import well
 from fixture import LinkTest
 
 
@@ -47,9 +46,13 @@ class Requests(LinkTest):
         self.assertEqual(paths[1.0].revision, 5)
 
     def test_no_more_than_four_are_under_way(self):
+        four_came, fifth_was_tried = threading.Event(), threading.Event()
+
         def counts(link):
             link.greet()
             first = collect(link, 4)
+            four_came.set()
+            fifth_was_tried.wait()
             link.send(ping={"nonce": 1})
             fifth = []
             link.serve(until=lambda frame: frame.WhichOneof("body") == "pong" or fifth.append(frame))
@@ -61,10 +64,14 @@ class Requests(LinkTest):
 
         self.start(counts)
         with self.client() as robot:
-            paths, threads = self.ask_in_threads(robot, [1.0, 2.0, 3.0, 4.0, 5.0])
+            paths, threads = self.ask_in_threads(robot, [1.0, 2.0, 3.0, 4.0])
+            four_came.wait()
+            self.assert_fails("TIMEOUT", robot.plan, (5.0, 1.0), timeout=0.02)
+            fifth_was_tried.set()
+            self.assertEqual(robot.plan((5.0, 1.0)).points[-1], (5.0, 1.0))
             for thread in threads:
                 thread.join()
-        self.assertEqual(sorted(paths), [1.0, 2.0, 3.0, 4.0, 5.0])
+        self.assertEqual(sorted(paths), [1.0, 2.0, 3.0, 4.0])
         self.assertEqual(self.server.faults, [])
 
     def test_what_was_asked_on_a_broken_link_is_asked_again(self):
