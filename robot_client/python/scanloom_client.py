@@ -1,0 +1,1321 @@
+#!/usr/bin/env python3
+"""Scanloom's client for robots that speak Python. Copy this file to the robot; it needs Python 3.9 or newer and
+protobuf (Debian: python3-protobuf; elsewhere: pip install protobuf), nothing else.
+
+    import math, scanloom_client
+
+    with scanloom_client.Client("127.0.0.1:7447", session="lab", robot="r1", cell_size=0.05) as robot:
+        laser = robot.laser(angle_min=-math.pi / 2, angle_increment=math.pi / 360, count=361, range_max=10.0)
+        robot.send(laser, ranges, pose=(x, y, yaw), stamp=t)  # inf: nothing within range; nan: no valid reading
+
+Leaving the block waits until every scan is durable: the server keeps it through kill -9 and power loss. Meanwhile the
+client reconnects as often as it takes and sends again what was not acknowledged.
+
+Units are metres, radians counter-clockwise and seconds. A pose is (x, y, yaw), a point (x, y). Every function may be
+called from any thread. What fails raises ScanloomError; an argument that cannot be sent raises ValueError.
+
+As a program it reads scans from standard input, one JSON object a line; --help says how.
+"""
+from __future__ import annotations
+
+import argparse
+import base64
+import collections
+import dataclasses
+import json
+import logging
+import math
+import random
+import re
+import selectors
+import signal
+import socket
+import ssl
+import sys
+import threading
+import time
+import zlib
+from typing import Any, Callable, Deque, Dict, Iterator, List, NoReturn, Optional, Sequence, Set, Tuple
+
+try:
+    from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+    from google.protobuf.message import DecodeError
+except ImportError as missing:
+    raise ImportError("scanloom_client needs protobuf; install python3-protobuf, or protobuf with pip") from missing
+
+__version__ = "0.1.0"
+__all__ = ["BufferFull", "Client", "Coverage", "Goal", "Path", "ScanloomError", "Sensor", "Status", "Timing"]
+
+Point = Tuple[float, float]
+Pose = Tuple[float, float, float]
+
+_log = logging.getLogger("scanloom")
+
+
+# What callers see -----------------------------------------------------------------------------------------------------
+
+
+class ScanloomError(Exception):
+    """What the server or the link answered.
+
+    code       the server's ErrorCode without its prefix ("INVALID_FIELD"), or this client's own: UNREACHABLE, TIMEOUT,
+               LOST_SCANS, BUFFER_FULL, CLOSED, INTERNAL
+    message    one sentence: what was wrong, where, what to do
+    retryable  whether the same may succeed later
+    """
+
+    def __init__(self, code: str, message: str, retryable: bool = False) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+        self.retryable = retryable
+
+
+class BufferFull(ScanloomError):
+    """send() had no room for the scan within its time; the scan was not taken."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Sensor:
+    """A sensor of one Client, made by its laser() or sonar()."""
+
+    id: int
+    name: str
+    angles: Optional[Tuple[float, ...]]  # of its beams; None where they are evenly spaced
+    angle_increment: float  # 0 where they are not
+    _description: bytes = dataclasses.field(repr=False)
+
+
+@dataclasses.dataclass(frozen=True)
+class Path:
+    """Straight from point to point. cost is in metres, those in danger counting more."""
+
+    points: List[Point]
+    length: float
+    cost: float
+    revision: int  # of the session's maps it was found on
+
+
+@dataclasses.dataclass(frozen=True)
+class Goal:
+    """What to explore next: stand at the end of the path, turn to the target, scan, ask again.
+
+    exploration  "GOAL", "TAKEN_BY_OTHERS" or "COMPLETE"; path and target are there with "GOAL" only
+    given_up     cells of frontiers that count no more, as robots looked at them in vain
+    in_danger    the place to stand is near an obstacle: there was no other
+    """
+
+    exploration: str
+    path: Optional[Path]
+    target: Optional[Point]
+    given_up: int
+    in_danger: bool
+    revision: int
+
+
+@dataclasses.dataclass(frozen=True)
+class Coverage:
+    """A way over all free ground. Areas are in square metres; unreachable holds runs (row, first column, count) of
+    cells that no path reaches, cell (i, j) being the square from (i, j) * cell_size on."""
+
+    path: Path
+    free_area: float
+    covered_area: float
+    unreachable: List[Tuple[int, int, int]]
+    cell_size: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Status:
+    """How far a Client is."""
+
+    stored_before: int  # scans of this robot that the server held when it was first reached
+    scans: int  # number of the newest scan, those stored before included
+    sent: int  # scans that went out in this run, each counted once
+    acknowledged: int  # number of the newest scan that is durable
+    bytes: int  # sent, those sent again included
+    reconnects: int
+    is_linked: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Timing:
+    """Seconds. The defaults suit a robot on Wi-Fi."""
+
+    connect: float = 10.0  # until a connection stands
+    welcome: float = 10.0  # from hello to welcome
+    ping_after: float = 5.0  # of silence
+    silence_max: float = 15.0  # then the link counts as dead
+    backoff_first: float = 0.2  # before the next attempt; doubles up to backoff_max; lot leaves out up to half
+    backoff_max: float = 10.0
+    give_up_after: float = 120.0  # without the server getting anywhere while something waits; math.inf: never
+    goodbye: float = 1.0  # how long the server may take to close; all is durable then
+
+
+# The protocol's messages ----------------------------------------------------------------------------------------------
+
+# What protoc makes of proto/scanloom/v1/frame.proto, compressed: robot_client/python/embed_protocol.py writes it.
+_PROTOCOL = """
+eNq1WM1zI1cRj6zvliWPx19a7yYkSgiLU9kQJ5ACiir0MV6JlSXVk5xkc2BqLI3twdKMMpJ27eTCMcUN7imquHGgiisXTrly4p/gT+BId7830sxYu0Uq
+cJp53b9+H/3688Hfc7A/G1ru2PMm7z17/z36fzT1vbmnFwL6o2fvV34M6Z43s4/1TUjclBOvJx4mROKGRrflDTm61TVI3lrPy0ke02/lKRTPXOfC8ydV
+93Jsz/RdSF84/myuppAD/QHkHXfo2xPbnavpVgSSGXoL5NDERSEHlYdQMm6mY2fozNXc+5Cx+A8nT+IUalT5XQKgZlvBFn4C2YXcE2+icHz4KHTSR5H9
+Nl8RAVj/KeRstSDvsXB8PyIY3Q1KLuG1PGRnU2vouJeVrzdgu2+7M89v2LOh70znjufS1mdM5C0VhRrp70Dq2nFHvF7p+CCynpzlCbIFg3QdUq41sVlN
+ecH/+kNIT1h3Kd6xHpmBb1RIgP7eUntphkYXW+kvUKt+CDlravvzhW+XM3xny7F+H/I+wmxz4rjlrGQy4dRxQ0zrppwLM62byu83INXHhcmYZvbnrI+U
+oF+yg9ncmkyVhchBSHXJiOrehtQUz/eSgzNffwQ5b+RN7Ll/q06+DrvE4LEzvNkZHjr5MFvb0NDSJEV/CwqOO8f1nbmDgCwCigwIk0Oazv1Xmq58CHlS
+Sc2aD6/0H6AWcCCNvHC8HbUJ/BeSf/QJwMpEUOkHfaPT7wrzSavTMM86/Z5Rb520jIb2ir6HNhlitqt9Q2iJOLnf7VSFtlFL/juROM9wkPgA/rUF9yIB
+xJ7N0KLXxZB/FqHYl+y65144l/rrkB/a47E5c76wZUQgtyFSHylfJRJ6BWBqesPhYurY0g0STQwO064iEQZvZGpe+La0/ERzQ6SnJzgk3gPITs2p76B5
+pJiZFJlpj8bELUN6yiaaZl4KTQINdMVB+2TLbqaJY90Q5xh07xxNbzi2zfmVM7x28UjSxpsZsR3wBgGLZB5C8Ryv1Vz6C1t9Mys2iVxVVEJ+RL5xa068
+kT0u59nr9yI3LKzbU2I2c+Q08p8E3wSwUCeTxdia22VAyVwzL0I0pc0rZ2761shZzMoF3gSIPNIEkwjzQyiNfG9qup7p27gtt7zJkxXEJtE7nmAqQY+g
+dOVMJuYqdhcRmm5uiiLRWwE5jB3ZAbbE2KLENuwQ9udwwNg1et7iPZfEHgG663T9PugsHFW4xnJbQiNeLab0X0B55rmWv27BbRbUxD4j1q74AexI8eiS
+Oktui21mxtf8EHal0Mq82d52WEpXUr3AzpXxvQmFQIrMdpfBOyIvwcp2wyCccY9Bu0uQnOmXsDkcW7OZOfMW/tAu77OtlSO2VidAn/nNPVEYroY0w7ug
+yRlCDnrAa+2LEnN6YS/9frCg8tUyQw8ESGjgsKhMCZMWEEx8j42lLLaZ2aTLD839DmyFhHj6Qxa4J4pLgWCFt2FzROHaNynQzMr3GXkoCpJaJ6JyWoVT
+/vKAd3xfKPGly9Q2AcxlHKsVoRBSCeV+deQaQM5U0aiWg4y8xODPuqntwc4aE6xpUIqaFi+4DBO84MrPebjy8to2bJlRh2ZS1HFXpKV/1g6hbL7ADXmn
+d72sdh/umS/ypNo+7Jpr/KR2AHvmOleolWDTDFl7dIz8LSiaYRuu7cC2GTfJEErdAu1jjYnVdNDMmBWxcNhY+C4iVnH0JeSCmKzfgz1RfWqedhtGO5Zi
+K/DaitXqfGyIvmGq7MpEzLcHsLPC1ISB7Gb1VNuIMgaiStLVtpY8+jUUQk6K2a5cx+Tdx1R9JupGbAuHsB/hduv1s161U38qU32E12ydnsZT/R8rcBBO
+9Rc+VphrEv3hCzqKwxcXCpWvspA+ofkwUaSvUNWeKs6jxViTOFgjSIj+I8g+t8dDrMxURb4bQX8ieVTEK5jeBV3Wh2joy/Kb64bC8WtryutQkY7TbM/u
+VO4fAZCUeU7FmSo29+/UZFy64QT52bKOewuS1vBalZxaRKI6vEYssUkbtu9j9ZJZow2DOKQNhmBlmJpii8G1SLww7CEDkQxgoIfA3Dqgp4D4Jf1eet7o
+/NbmWiSu38eSR/pVMGySYOj5vj1kvcKa+ra+ZKNcCIxZeHM6Rk369ucLGzvEAgtHM1IPAULyUbowXQ3pIpT4dHzLNUv8IqQwcukipsGA1r30rPFy3eKa
+dR8jILTu5WpI6ypxWre0Zl0prNa9DAZ6C/On98z2LeyEgrW3WPxBTGEStFp/axgl6XUohaaifWhrOtvVRHIvxWGYUMtA6twb3Vb+sAFp9jMsBTX2zqE3
+NhFJ7qr6062A/rEkU2/me+ee7IzzQg6wis4qN1dNaTAk/Ny7tl32GMTzAGvrDGYfKmDTa/Yf6R2EQlL/Nxw7VFBmeCo14r5QljZZSZcj6tHomEFSz6mu
+A4i4SumUa0Kwyp8SkFXhRH8VXV5uxXRGrJA8OraktEZYN2gYkufmaOFb55gBqYvd4C62RPSGJPexoX0HMmNn4sxnKgDtRI7bZpZQEP0NrJ98e4SJ/fx2
+jr1jiqcsSFqNSJUvICOF8JAljs5ckXAVKO9tk6nUXGEZSI04peIZAzYYkGMCMd/Fqpb6SBPztIxuDJNNtsasnu1zLKO+/TeQxLClfw8K4XPL7h1GqzMj
+wJpOx5TjV4oBRSJA/JzJu+e8hjSHPoyOqSEmXl6mFPM6RtSRKxhDtjjBO0JzVzYaDOn1yafWnrbIy+XEilB5ACkKnmSxrucO5WIZIQfM9V7IfQOyKkaS
+OaK9zpQHoTnKUeUzgFVExIALA1Qzli8jb7I2A6rniMGpNe0ihl5hfPuZwz4mlbkcV96kRzsHfeElj3aVX+EJrPkVbXBK4OXrmRwRfWy7l/MrJaJG9No0
+9GZz9drH/5UuZIV9sZhZ4//N1VR+uwGFUMzXS7ChXC4l8I+et7DO9IMHubiq8ABCAug5iEKv8rR1QOZj81S0MPY9Nxfutes9lwEqJzaZeCZp8RiSXhtD
+CBXUjqSojHq8ANVnIG1NpOFxSKzydQLyy8x1RwEvuX5O83iz6sixNI8MTvN09ZjmfXltqoCJpnl1pZTmFYyaGm8xp2hY+XMCCqH0+B2uKKbV5HqtHsH2
+he+5cwcVJKObIy8Js1LA4ACnOoZwFP9HAlK0V/1nUKDHWc+35kFSize/xoovwmBsZKVaN16gVqXUI8jgqS7t+UtMTiGwb8hdOs9s11xM1VGyPD6bUox2
+XGUQbGg5kXPcBo/ZNpbVxbe1jZA7bN+pV8g22B++k218k4CtWPnyf7ePV5dv7erFLyECArE5Dl+SStIyzMnRHTekXj14s/9rAnLBMZbXn3j59eO9UQdp
+WhjnVeTMEaGKY85xNB8mQebLGFpQNIa8DoWFiz/DK05LKdzstgiTaIXV42larhA8nVb+koBipN77VtbxAeSC2lBZyN7aSpJfawPFfBdLOfpbCvLLtECd
+qiEEdsZ17HhjXexrcBjinVbbJ11xajTME1E9NbCTjfKZag66XbNdFY8N7KWxEY/OfdbrdcUAZ6CuutXtaEnqo0MY7Nar7Rau0DLaDS0VW+Gs86TT/aSD
+vXyfpdNY4twP8RUdB52Tdqs+0DL0Fh8CdM8GZvfE7IqGIbRsbPa6MBqtgWl8WjeMBp4/hwash/iD1qmBE2h5eiMI0YXRa1frKACxCYPtNIy2gYfWCrHd
+9AddgWqrttrI3Ixpot88GwxancdmA0+sFWOiZ53q2aDZFa3PULREjyHhU6J2290qnWErttdWZ2CITrWtafG9qL2enLXb2nbs5J2u2asOmpp+9CUUQsGa
+5/i01+6K6oCEo9azC1qY+bhbpYcXurEQdVB9YnTM2lOzO2iiTaDRlGE3DKh3T3ukPi0ZeSH5Dy5zfXU=
+"""
+
+
+def _load_protocol() -> Dict[str, Any]:
+    """The classes of the messages by name, and the enums' descriptors. In a pool of their own, they meet no other
+    program's."""
+    pool = descriptor_pool.DescriptorPool()
+    files = descriptor_pb2.FileDescriptorSet.FromString(zlib.decompress(base64.b64decode(_PROTOCOL)))
+    for file in files.file:
+        pool.Add(file)
+    if hasattr(message_factory, "GetMessageClass"):
+        class_of = message_factory.GetMessageClass
+    else:
+        class_of = message_factory.MessageFactory(pool).GetPrototype
+    loaded: Dict[str, Any] = {}
+    for file in files.file:
+        for message in file.message_type:
+            loaded[message.name] = class_of(pool.FindMessageTypeByName(f"{file.package}.{message.name}"))
+        for enum in file.enum_type:
+            loaded[enum.name] = pool.FindEnumTypeByName(f"{file.package}.{enum.name}")
+    return loaded
+
+
+_messages = _load_protocol()
+_Frame = _messages["Frame"]
+_Scan = _messages["Scan"]
+_SensorDescription = _messages["SensorDescription"]
+
+_PROTOCOL_VERSION = 1
+_LENGTH_BYTES = 4
+_FRAME_BYTES_MAX = 1 << 20
+_BEAMS_MAX = 4096
+_SENSORS_MAX = 64
+_SCANS_PER_BATCH_MAX = 1024
+_BATCH_BYTES_MAX = 64 << 10  # of a batch of several scans
+_BATCH_OVERHEAD = _LENGTH_BYTES + 16  # fields around the scans of a batch
+_SCAN_OVERHEAD = 16  # a scan's seq, tag and length
+_REQUESTS_MAX = 4  # that a server meets at a time
+_PINGS_MAX = 16  # unanswered; who sends more is not the server
+_SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years of ten a second
+_NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
+_COORDINATE_MAX = 1e6  # metres
+_FULL_TURN = 2.0 * math.pi + 1e-6
+_SERVER_TEXT_MAX = 500  # characters that are shown
+
+
+def _enum_name(enum: str, number: int, prefix: str) -> str:
+    value = _messages[enum].values_by_number.get(number)
+    return str(value.name[len(prefix) :] if value else number)
+
+
+def _shown(text: str) -> str:
+    """A server's text without characters that change how others are shown."""
+    plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    return plain if len(plain) <= _SERVER_TEXT_MAX else plain[:_SERVER_TEXT_MAX] + "..."
+
+
+# From arguments to messages -------------------------------------------------------------------------------------------
+
+
+def _millimetres(range_m: float) -> int:
+    """Rounds as common/scan/scan.cpp does, halves upwards: 0 is an invalid reading."""
+    if not range_m > 0.0:
+        return 0
+    mm = range_m * 1000.0
+    if mm >= _NO_RETURN - 0.5:
+        return _NO_RETURN
+    return math.floor(mm + 0.5)
+
+
+def _numbers(field: str, values: Any, convert: Callable[[Any], Any]) -> List[Any]:
+    """Of a list, tuple, array or NumPy array."""
+    try:
+        return [convert(value) for value in (values.tolist() if hasattr(values, "tolist") else values)]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{field} holds something that is no number there: {error}") from None
+
+
+def _finite(field: str, value: Any, magnitude_max: float = math.inf) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{field} is {value!r}; a number is needed") from None
+    if not math.isfinite(number) or abs(number) > magnitude_max:
+        limit = f", at most {magnitude_max:g} either way" if magnitude_max < math.inf else ""
+        raise ValueError(f"{field} is {number}; a finite number is needed{limit}")
+    return number
+
+
+def _set_coordinates(field: str, value: Any, names: Sequence[str], message: Any) -> None:
+    """Into a Point or Pose2, which counts as present afterwards also where all is 0."""
+    coordinates = list(value)
+    if len(coordinates) != len(names):
+        raise ValueError(f"{field} has {len(coordinates)} numbers; ({', '.join(names)}) are needed")
+    message.SetInParent()
+    for name, coordinate in zip(names, coordinates):
+        setattr(message, name, _finite(f"{field}.{name}", coordinate, _COORDINATE_MAX))
+
+
+def _set_pose(field: str, value: Any, message: Any) -> None:
+    _set_coordinates(field, value, ("x", "y", "yaw"), message)
+
+
+def _set_point(field: str, value: Any, message: Any) -> None:
+    _set_coordinates(field, value, ("x", "y"), message)
+
+
+def _check_count(field: str, count: int) -> None:
+    if not 1 <= count <= _BEAMS_MAX:
+        raise ValueError(f"{field} has {count} beams; 1 to {_BEAMS_MAX} are needed")
+
+
+def _check_span(increment: float, count: int) -> None:
+    if abs(increment) * (count - 1) > _FULL_TURN:
+        raise ValueError(f"{count} beams of angle_increment {increment:g} span more than a full turn")
+
+
+def _check_angles(angles: Any) -> List[float]:
+    checked = _numbers("angles", angles, lambda angle: _finite("an angle", angle, 2.0 * _FULL_TURN))
+    _check_count("angles", len(checked))
+    return checked
+
+
+def _uniform_angles(first: Any, increment: Any, count: Any, message: Any) -> None:
+    if first is None or increment is None or count is None:
+        raise ValueError("give angle_min, angle_increment and count, or the angles one by one")
+    message.first = _finite("angle_min", first, 2.0 * _FULL_TURN)
+    message.increment = _finite("angle_increment", increment)
+    if message.increment == 0.0:
+        raise ValueError("angle_increment is 0; the beams would all point one way")
+    _check_count("count", count)
+    _check_span(message.increment, count)
+    message.count = count
+
+
+def _describe(sensor: int, kind: str, name: str, mount: Pose, uniform: Tuple[Any, Any, Any], angles: Any,
+              aperture: float, range_min: float, range_max: float) -> Sensor:
+    description = _SensorDescription(sensor=sensor, name=name)
+    description.kind = _messages["SensorKind"].values_by_name[f"SENSOR_KIND_{kind}"].number
+    if len(name.encode()) > 64:
+        raise ValueError(f"the sensor's name {name!r} is longer than 64 bytes")
+    _set_pose("mount", mount, description.mount)
+    if angles is None:
+        _uniform_angles(*uniform, description.angles.uniform)
+    elif any(part is not None for part in uniform):
+        raise ValueError("give angles or angle_min, angle_increment and count, not both")
+    else:
+        description.angles.explicit.angles.extend(_check_angles(angles))
+    description.aperture = _finite("aperture", aperture)
+    if not 0.0 <= description.aperture <= math.pi:
+        raise ValueError(f"aperture is {aperture}; 0 to pi radians are possible")
+    description.range_min = _finite("range_min", range_min)
+    description.range_max = _finite("range_max", range_max)
+    if not 0.0 <= description.range_min < description.range_max <= 1000.0:
+        raise ValueError(f"range_min is {range_min}, range_max {range_max}; 0 <= range_min < range_max <= 1000 is "
+                         "needed")
+    return Sensor(sensor, name, tuple(description.angles.explicit.angles) or None,
+                  description.angles.uniform.increment if angles is None else 0.0, description.SerializeToString())
+
+
+def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry: Any, intensities: Any,
+                 angles: Any) -> bytes:
+    """A Scan without its seq, which is known when it is sent."""
+    scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp))
+    _set_pose("pose", pose, scan.pose)
+    if odometry is not None:
+        _set_pose("odometry", odometry, scan.odometry)
+    scan.ranges.extend(_numbers("ranges", ranges, _millimetres))
+    _check_count("ranges", len(scan.ranges))
+    if intensities is not None:
+        try:
+            scan.intensities.extend(_numbers("intensities", intensities, int))
+        except ValueError as error:
+            raise ValueError(f"intensities are whole numbers from 0 to 4294967295: {error}") from None
+        if len(scan.intensities) not in (0, len(scan.ranges)):
+            raise ValueError(f"intensities has {len(scan.intensities)} values for {len(scan.ranges)} ranges")
+    if angles is not None:
+        scan.angles.explicit.angles.extend(_check_angles(angles))
+    own = scan.angles.explicit.angles if angles is not None else sensor.angles
+    if own is None:
+        _check_span(sensor.angle_increment, len(scan.ranges))
+    elif len(own) != len(scan.ranges):
+        raise ValueError(f"ranges has {len(scan.ranges)} beams for {len(own)} angles")
+    return bytes(scan.SerializeToString())
+
+
+def _hello(session: str, robot: str, token: str, source: str, cell_size: Optional[float],
+           body_radius: Optional[float]) -> Any:
+    frame = _Frame()
+    hello = frame.hello
+    for field, name in (("session", session), ("robot", robot)):
+        if not re.fullmatch("[A-Za-z0-9_-]{1,64}", name):
+            raise ValueError(f"{field} is {name!r}; 1 to 64 letters, digits, '_' and '-' are possible")
+    if len(source.encode()) > 64:
+        raise ValueError(f"source {source!r} is longer than 64 bytes")
+    hello.protocol_version = _PROTOCOL_VERSION
+    hello.session, hello.robot, hello.token, hello.source = session, robot, token, source
+    hello.client = f"scanloom_client.py {__version__}"
+    hello.create.SetInParent()
+    if cell_size is not None:
+        hello.create.cell_size = _finite("cell_size", cell_size)
+    if body_radius is not None:
+        hello.body_radius = _finite("body_radius", body_radius)
+    return frame
+
+
+# The conversation: no socket, no clock, no thread ---------------------------------------------------------------------
+
+
+def _retry(code: str, message: str) -> ScanloomError:
+    return ScanloomError(code, message, retryable=True)
+
+
+@dataclasses.dataclass
+class _Request:
+    frame: Any
+    reply: Any = None
+    is_abandoned: bool = False
+
+
+@dataclasses.dataclass
+class _LinkState:
+    """What is true of one connection only."""
+
+    opened: float
+    heard: float  # when the newest frame came
+    pinged: float = -math.inf
+    said_hello: bool = False
+    is_welcome: bool = False
+    said_goodbye: Optional[float] = None
+    frame_bytes_max: int = _FRAME_BYTES_MAX
+    beams_max: int = _BEAMS_MAX
+    scans_per_batch_max: int = _SCANS_PER_BATCH_MAX
+    credit: int = 0
+    under_way: int = 0  # bytes sent and not durable
+    batches: Deque[Tuple[int, int]] = dataclasses.field(default_factory=collections.deque)  # last scan, bytes
+    described: Set[int] = dataclasses.field(default_factory=set)  # sensors
+    pings: Deque[int] = dataclasses.field(default_factory=collections.deque)  # to be answered
+    request: int = 0  # requests up to this id were sent
+
+
+class _Conversation:
+    """The robot's side of the link: what to say next, what to say again after a reconnect, how much may be under way.
+    It outlives its links. A ScanloomError that it raises ends the link, and if it is not retryable, all.
+
+    Scans are numbered from 1 in this run, the server's seq is stored_before more:
+        acknowledged <= sent <= sent_ever and last
+    """
+
+    def __init__(self, hello: Any, buffer_bytes: int, timing: Timing, now: float) -> None:
+        self.hello = hello
+        self.timing = timing
+        self.link: Optional[_LinkState] = None
+        self.stored_before: Optional[int] = None
+        self.session_id = ""
+        self.scans: Deque[Tuple[Sensor, bytes]] = collections.deque()  # acknowledged + 1 .. last
+        self.bytes_free = buffer_bytes
+        self.acknowledged = self.sent = self.sent_ever = self.last = 0
+        self.requests: Dict[int, _Request] = {}  # by id, which grows
+        self.request_ids = 0
+        self.nonce = 0
+        self.bytes_sent = 0
+        self.welcomes = 0
+        self.progress = now
+        self.is_ending = False
+
+    # What is to be sent
+
+    def waits(self) -> bool:
+        """Whether scans, or all, wait for the server."""
+        return self.stored_before is None or bool(self.scans)
+
+    def is_done(self) -> bool:
+        return self.is_ending and not self.waits() and not self.requests
+
+    def has_room(self) -> bool:
+        return self.bytes_free > 0
+
+    def add(self, sensor: Sensor, scan: bytes, now: float) -> None:
+        if not self.waits():
+            self.progress = now
+        self.scans.append((sensor, scan))
+        self.bytes_free -= len(scan)
+        self.last += 1
+
+    def ask(self, frame: Any) -> int:
+        self.request_ids += 1
+        getattr(frame, frame.WhichOneof("body")).id = self.request_ids
+        self.requests[self.request_ids] = _Request(frame)
+        return self.request_ids
+
+    def abandon(self, id: int) -> None:
+        """Nobody waits for the reply any more. The server still counts it until it was read."""
+        if self.link and id <= self.link.request:
+            self.requests[id].is_abandoned = True
+        else:
+            del self.requests[id]
+
+    # What comes
+
+    def open(self, now: float) -> None:
+        self.link = _LinkState(opened=now, heard=now)
+
+    def close(self) -> None:
+        self.link = None
+        self.requests = {id: request for id, request in self.requests.items() if not request.is_abandoned}
+
+    def receive(self, frame: Any, now: float) -> None:
+        assert self.link
+        self.link.heard = now
+        kind = frame.WhichOneof("body")
+        if kind == "error":
+            self._on_error(frame.error)
+        elif kind == "goodbye":
+            reason = _shown(frame.goodbye.reason) or "it gave no reason"
+            raise _retry("SHUTTING_DOWN", f"the server said goodbye: {reason}")
+        elif kind == "ping":
+            if len(self.link.pings) == _PINGS_MAX:
+                raise _retry("MALFORMED_FRAME", "the server sends pings faster than they can be answered")
+            self.link.pings.append(frame.ping.nonce)
+        elif kind == "pong" or (kind == "correction" and self.link.is_welcome):
+            pass  # poses are sent as they were given
+        elif kind == "welcome" and self.link.said_hello and not self.link.is_welcome:
+            self._on_welcome(frame.welcome, now)
+        elif kind == "ack" and self.link.is_welcome:
+            self._on_ack(frame.ack, now)
+        elif not (kind in ("plan_reply", "goal_reply", "coverage_reply") and self._on_reply(kind, frame)):
+            raise _retry("MALFORMED_FRAME", f"the server sent an unexpected {kind or 'frame of an unknown kind'}")
+
+    def _on_error(self, error: Any) -> None:
+        code = _enum_name("ErrorCode", error.code, "ERROR_CODE_")
+        message = _shown(error.message) or f"the server ended the link with the error {code} and did not say why"
+        raise ScanloomError(code, message, error.retryable)
+
+    def _on_welcome(self, welcome: Any, now: float) -> None:
+        assert self.link
+        if self.stored_before is None:
+            if welcome.last_durable_seq > _SCANS_OF_A_ROBOT_MAX:
+                raise ScanloomError("SESSION_CONFLICT", f"the server says that it has {welcome.last_durable_seq} scans "
+                                    "of this robot, more than any robot sends; check the server's address")
+            self.stored_before = welcome.last_durable_seq
+            self.progress = now
+        elif welcome.session_id != self.session_id and self.stored_before + self.acknowledged > 0:
+            raise ScanloomError("SESSION_DELETED", f"session {self.hello.hello.session} was deleted and made anew "
+                                f"while {self.stored_before + self.acknowledged} of this robot's scans were "
+                                "acknowledged; start again to fill the new one")
+        else:
+            self._rewind(welcome.last_durable_seq - self.stored_before, now)
+        self.session_id = welcome.session_id
+        self.link.is_welcome = True
+        self.link.frame_bytes_max = welcome.limits.frame_size_max or _FRAME_BYTES_MAX
+        self.link.beams_max = welcome.limits.beams_max or _BEAMS_MAX
+        self.link.scans_per_batch_max = welcome.limits.scans_per_batch_max or _SCANS_PER_BATCH_MAX
+        self.link.credit = welcome.credit_bytes
+        self.welcomes += 1
+
+    def _rewind(self, durable: int, now: float) -> None:
+        """A new link on which the server holds the scans up to `durable`: what follows counts as unsent."""
+        before = self.stored_before or 0
+        if durable < self.acknowledged:
+            raise ScanloomError("LOST_SCANS", f"the server holds {before + durable} scans of this robot but had "
+                                f"acknowledged {before + self.acknowledged}; the others are no longer held here: "
+                                "restore the server's store or use a new session")
+        if durable > self.sent_ever:
+            raise ScanloomError("SESSION_CONFLICT", f"the server holds {before + durable} scans of this robot, only "
+                                f"{before + self.sent_ever} were sent from here: another program uses the same session "
+                                "and robot")
+        self._acknowledge(durable, now)
+        self.sent = durable
+
+    def _on_ack(self, ack: Any, now: float) -> None:
+        assert self.link and self.stored_before is not None
+        durable = ack.durable_seq - self.stored_before
+        if durable > self.sent:
+            raise _retry("MALFORMED_FRAME", f"the server acknowledged scan {ack.durable_seq}, only "
+                         f"{self.stored_before + self.sent} were sent")
+        self._acknowledge(durable, now)
+        while self.link.batches and self.link.batches[0][0] <= durable:
+            self.link.under_way -= self.link.batches.popleft()[1]
+        self.link.credit = ack.credit_bytes
+
+    def _acknowledge(self, durable: int, now: float) -> None:
+        while self.acknowledged < durable:
+            self.bytes_free += len(self.scans.popleft()[1])
+            self.acknowledged += 1
+            self.progress = now
+
+    def _on_reply(self, kind: str, frame: Any) -> bool:
+        assert self.link
+        reply = getattr(frame, kind)
+        request = self.requests.get(reply.id)
+        if not request or reply.id > self.link.request:
+            return False
+        is_of_it = request.frame.WhichOneof("body") == kind.replace("_reply", "_request")
+        if not is_of_it or reply.WhichOneof("outcome") is None:
+            return False
+        request.reply = reply
+        del self.requests[reply.id]
+        return True
+
+    # What to say
+
+    def next_frame(self, now: float) -> Optional[bytes]:
+        """Its length included; nothing while there is nothing to say, or no credit to say it."""
+        frame = self._next_message(now)
+        if frame is None:
+            return None
+        body: bytes = frame.SerializeToString()
+        size = _LENGTH_BYTES + len(body)
+        if frame.WhichOneof("body") == "scan_batch":
+            assert self.link
+            self.link.batches.append((self.sent, size))
+            self.link.under_way += size
+        self.bytes_sent += size
+        return len(body).to_bytes(_LENGTH_BYTES, "big") + body
+
+    def _next_message(self, now: float) -> Any:
+        link = self.link
+        if not link or link.said_goodbye is not None:
+            return None
+        if not link.said_hello:
+            link.said_hello = True
+            return self.hello
+        if not link.is_welcome:
+            return None
+        frame = _Frame()
+        if link.pings:
+            frame.pong.nonce = link.pings.popleft()
+            return frame
+        if now >= self._ping_due(link):
+            link.pinged = now
+            self.nonce += 1
+            frame.ping.nonce = self.nonce
+            return frame
+        if self.is_done():
+            link.said_goodbye = now
+            frame.goodbye.reason = "every scan is acknowledged"
+            return frame
+        for id, request in self.requests.items():
+            if id > link.request:
+                link.request = id
+                return request.frame
+        return self._next_about_scans(link, frame)
+
+    def _next_about_scans(self, link: _LinkState, frame: Any) -> Any:
+        if self.sent == self.last:
+            return None
+        sensor = self.scans[self.sent - self.acknowledged][0]
+        if sensor.id not in link.described:
+            link.described.add(sensor.id)
+            frame.sensor_description.MergeFromString(sensor._description)
+            return frame
+        for encoded in self._scans_that_fit(link):
+            self.sent += 1
+            scan = frame.scan_batch.scans.add()
+            scan.MergeFromString(encoded)
+            scan.seq = (self.stored_before or 0) + self.sent
+            if len(scan.ranges) > link.beams_max:
+                raise ScanloomError("FRAME_TOO_LARGE", f"scan {scan.seq} has {len(scan.ranges)} beams, the server "
+                                    f"takes at most {link.beams_max}")
+        self.sent_ever = max(self.sent_ever, self.sent)
+        return frame if frame.scan_batch.scans else None
+
+    def _scans_that_fit(self, link: _LinkState) -> List[bytes]:
+        """The next scans whose sensor stands described, within the credit, the server's limits and the wanted size of
+        a batch. The first may exceed the latter."""
+        chosen: List[bytes] = []
+        size = _BATCH_OVERHEAD
+        frame_bytes_max = link.frame_bytes_max + _LENGTH_BYTES
+        first = self.sent - self.acknowledged
+        for index in range(first, min(len(self.scans), first + link.scans_per_batch_max)):
+            sensor, encoded = self.scans[index]
+            size += len(encoded) + _SCAN_OVERHEAD
+            if not chosen and size > frame_bytes_max:
+                raise ScanloomError("FRAME_TOO_LARGE", f"a scan takes {size} bytes, the server takes frames of at most "
+                                    f"{link.frame_bytes_max}")
+            room = min(link.credit - link.under_way, frame_bytes_max)
+            if chosen:
+                room = min(room, _BATCH_BYTES_MAX)
+            if sensor.id not in link.described or size > room:
+                break
+            chosen.append(encoded)
+        return chosen
+
+    # Time
+
+    def _ping_due(self, link: _LinkState) -> float:
+        return max(link.heard, link.pinged) + self.timing.ping_after
+
+    def check(self, now: float) -> None:
+        """Raises what is wrong with the link by now."""
+        link = self.link
+        if not link:
+            return
+        if link.said_goodbye is not None and now >= link.said_goodbye + self.timing.goodbye:
+            raise _retry("TIMEOUT", "the server does not close the link")
+        if not link.is_welcome and now >= link.opened + self.timing.welcome:
+            raise _retry("TIMEOUT", f"the server did not answer the hello within {self.timing.welcome:g} s")
+        if link.is_welcome and now >= link.heard + self.timing.silence_max:
+            raise _retry("TIMEOUT", f"nothing came from the server for {self.timing.silence_max:g} s")
+
+    def deadline(self) -> float:
+        """Until then neither check() nor next_frame() changes its answer, unless something happens."""
+        link = self.link
+        assert link
+        if not link.is_welcome:
+            return link.opened + self.timing.welcome
+        if link.said_goodbye is not None:
+            return link.said_goodbye + self.timing.goodbye
+        return min(self._ping_due(link), link.heard + self.timing.silence_max)
+
+    def patience_ends(self) -> float:
+        return self.progress + self.timing.give_up_after if self.waits() else math.inf
+
+
+# One connection -------------------------------------------------------------------------------------------------------
+
+
+class _Backoff:
+    """How long to wait before the next attempt: doubling, each a random part from half to whole, so that many robots
+    do not come back at one moment."""
+
+    def __init__(self, timing: Timing, random_part: Callable[[], float] = random.random) -> None:
+        self._timing = timing
+        self._random_part = random_part
+        self._wait = timing.backoff_first
+
+    def next(self) -> float:
+        chosen = self._wait * (0.5 + 0.5 * self._random_part())
+        self._wait = min(2.0 * self._wait, self._timing.backoff_max)
+        return chosen
+
+    def reset(self) -> None:
+        """It went well: the next wait is a short one."""
+        self._wait = self._timing.backoff_first
+
+
+class _Connection:
+    """A connected socket that never blocks, and the frames in its bytes."""
+
+    _READ_BYTES = 64 << 10  # more than a TLS record, so that none is left where select() does not see it
+    _READS_MAX = 16  # in one turn
+    _SELECT_MAX = 60.0  # seconds; an endless time cannot be waited for
+
+    def __init__(self, sock: socket.socket, bell: socket.socket) -> None:
+        sock.setblocking(False)
+        self._sock = sock
+        self._bell = bell
+        self._out = b""
+        self._is_broken = False  # for writing
+        self._in = bytearray()
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(bell, selectors.EVENT_READ)
+        self._selector.register(sock, selectors.EVENT_READ)
+
+    def close(self) -> None:
+        self._selector.close()
+        self._sock.close()
+
+    def is_writable(self) -> bool:
+        return not self._out and not self._is_broken
+
+    def write(self, frame: bytes) -> None:
+        self._out += frame
+        self._send()
+
+    def turn(self, timeout: float) -> Iterator[bytes]:
+        """Waits until bytes come or can go, or the bell rings, and yields the frames that are whole."""
+        self._send()
+        self._selector.modify(self._sock, selectors.EVENT_READ | (selectors.EVENT_WRITE if self._out else 0))
+        self._selector.select(min(max(timeout, 0.0), self._SELECT_MAX))
+        try:
+            self._bell.recv(4096)
+        except BlockingIOError:
+            pass
+        ended = self._receive()
+        yield from self._frames()
+        if ended:
+            raise _retry("UNREACHABLE", f"the connection was lost: {ended}")
+
+    def _send(self) -> None:
+        try:
+            while self._out:
+                self._out = self._out[self._sock.send(self._out) :]
+        except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
+            pass
+        except OSError:
+            self._out = b""
+            self._is_broken = True  # reading tells how the link ended, perhaps in the server's words
+
+    def _receive(self) -> str:
+        """Returns how the link ended, if it did."""
+        try:
+            for _ in range(self._READS_MAX):
+                received = self._sock.recv(self._READ_BYTES)
+                if not received:
+                    return "the server closed it"
+                self._in += received
+        except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
+            pass
+        except OSError as error:
+            return error.strerror or str(error)
+        return ""
+
+    def _frames(self) -> Iterator[bytes]:
+        while len(self._in) >= _LENGTH_BYTES:
+            size = int.from_bytes(self._in[:_LENGTH_BYTES], "big")
+            if not 0 < size <= _FRAME_BYTES_MAX:
+                raise DecodeError(f"a frame of {size} bytes")
+            if len(self._in) < _LENGTH_BYTES + size:
+                return
+            yield bytes(self._in[_LENGTH_BYTES : _LENGTH_BYTES + size])
+            del self._in[: _LENGTH_BYTES + size]
+
+
+def _split_address(address: str) -> Tuple[str, int]:
+    match = re.fullmatch(r"(?:\[([^\]]+)\]|([^:\s]+)):(\d{1,5})", address)
+    if not match or not 1 <= int(match[3]) <= 65535:
+        raise ValueError(f"the server's address is {address!r}; HOST:PORT is needed")
+    return match[1] or match[2], int(match[3])
+
+
+def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float) -> socket.socket:
+    where = f"{host}:{port}"
+    try:
+        sock = socket.create_connection((host, port), timeout=timeout)
+    except socket.gaierror as error:
+        raise _retry("UNREACHABLE", f"cannot find {where}: {error.strerror}; check the server's address") from None
+    except socket.timeout:
+        raise _retry("UNREACHABLE", f"no connection to {where} within {timeout:g} s; check the network") from None
+    except OSError as error:
+        raise _retry("UNREACHABLE", f"cannot connect to {where}: {error.strerror or error}; is scanloom-server running "
+                     "there?") from None
+    try:
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return tls.wrap_socket(sock, server_hostname=host) if tls else sock
+    except ssl.SSLCertVerificationError as error:
+        sock.close()
+        raise ScanloomError("UNAUTHORIZED", f"the certificate of {where} is not trusted: {error.verify_message}; give "
+                            "tls= a context that knows who signed it") from None
+    except OSError as error:
+        sock.close()
+        raise _retry("UNREACHABLE", f"no TLS with {where}: {error.strerror or error}") from None
+
+
+# The client -----------------------------------------------------------------------------------------------------------
+
+
+class Client:
+    """Carries one robot's scans to a server, on a thread of its own.
+
+    server       "HOST:PORT" of the server's robot port
+    session      the map's name; the session is made if there is none
+    robot        unique within the session
+    cell_size    metres, of a session that is made; another than the session's is refused. None: the server's default
+    token        where the server asks for one
+    tls          for a server that wants TLS: ssl.create_default_context(), or one with cafile=
+    source       identifies what is streamed where the same scans can be streamed again, as of a recording. A live robot
+                 leaves it empty
+    body_radius  metres, of a disc around the robot's origin that holds all of it
+    buffer_bytes of scans that are not acknowledged yet; then send() waits
+
+    Scans not yet acknowledged are held in memory: close() the client, or use it in a with block, before the program
+    ends. Warnings about lost links go to the logger "scanloom".
+    """
+
+    def __init__(self, server: str, *, session: str, robot: str, cell_size: Optional[float] = None, token: str = "",
+                 tls: Optional[ssl.SSLContext] = None, source: str = "", body_radius: Optional[float] = None,
+                 buffer_bytes: int = 32 << 20, timing: Timing = Timing()) -> None:
+        self._host, self._port = _split_address(server)
+        self._tls = tls
+        self._timing = timing
+        self._conversation = _Conversation(_hello(session, robot, token, source, cell_size, body_radius), buffer_bytes,
+                                           timing, time.monotonic())
+        self._changed = threading.Condition()  # guards all below and the conversation
+        self._sensors: List[Sensor] = []
+        self._failure: Optional[ScanloomError] = None  # final
+        self._trouble = f"no answer from {server} yet"  # of the link before this one
+        self._is_aborted = False
+        self._has_ended = False  # the thread
+        self._bell_ringer, self._bell = socket.socketpair()
+        self._bell_ringer.setblocking(False)
+        self._bell.setblocking(False)
+        self._thread = threading.Thread(target=self._run, name=f"scanloom {session}/{robot}", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
+        if kind is None:
+            self.close()
+            return
+        try:  # what failed in the block is what is told; the scans before it are not given up for that
+            self.close(timeout=10.0)
+        except ScanloomError as failure:
+            _log.warning("%s", failure.message)
+
+    # Sensors
+
+    def laser(self, *, range_max: float, angle_min: Optional[float] = None, angle_increment: Optional[float] = None,
+              count: Optional[int] = None, angles: Optional[Sequence[float]] = None, range_min: float = 0.0,
+              mount: Pose = (0.0, 0.0, 0.0), aperture: float = 0.0, name: str = "laser") -> Sensor:
+        """Describes a laser: evenly spaced beams (angle_min, angle_increment, count), of which a scan may have more or
+        fewer, or angles one by one. Angles are in the sensor's frame; mount is the sensor in the robot's frame."""
+        return self._add_sensor("LASER", name, mount, (angle_min, angle_increment, count), angles, aperture, range_min,
+                                range_max)
+
+    def sonar(self, *, range_max: float, aperture: float, angle_min: Optional[float] = None,
+              angle_increment: Optional[float] = None, count: Optional[int] = None,
+              angles: Optional[Sequence[float]] = None, range_min: float = 0.0, mount: Pose = (0.0, 0.0, 0.0),
+              name: str = "sonar") -> Sensor:
+        """Describes a ring of sonars that share an origin, or one; aperture is the full width of a cone."""
+        return self._add_sensor("SONAR", name, mount, (angle_min, angle_increment, count), angles, aperture, range_min,
+                                range_max)
+
+    def _add_sensor(self, kind: str, name: str, *description: Any) -> Sensor:
+        with self._changed:
+            if len(self._sensors) == _SENSORS_MAX:
+                raise ValueError(f"a robot has at most {_SENSORS_MAX} sensors")
+            self._sensors.append(_describe(len(self._sensors), kind, name, *description))
+            return self._sensors[-1]
+
+    # Scans
+
+    def send(self, sensor: Sensor, ranges: Sequence[float], *, pose: Pose, stamp: Optional[float] = None,
+             odometry: Optional[Pose] = None, intensities: Optional[Sequence[int]] = None,
+             angles: Optional[Sequence[float]] = None, block: bool = True, timeout: Optional[float] = None) -> None:
+        """Takes a scan and returns; it is sent as soon as there is a link.
+
+        ranges       one a beam; inf, or range_max and more: nothing within range; nan, 0, below range_min: no valid
+                     reading
+        pose         of the robot in the map's frame
+        stamp        seconds since the epoch, or since any start the robot keeps to; None: now
+        odometry     of the robot in its odometry frame
+        intensities  the sensor's own scale, one a beam
+        angles       of this scan's beams, where they are not the sensor's
+
+        Waits while the buffer is full. Raises BufferFull if block is False then, or when timeout seconds have passed;
+        ScanloomError once the client has failed.
+        """
+        if sensor.id >= len(self._sensors) or self._sensors[sensor.id] is not sensor:
+            raise ValueError(f"{sensor.name} is not a sensor of this client")
+        stamp = time.time() if stamp is None else stamp
+        encoded = _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
+        with self._changed:
+            self._check_open()
+            waited = self._wait_for(self._conversation.has_room, timeout if block else 0.0)
+            if not waited:
+                raise BufferFull("BUFFER_FULL", f"the buffer is full: {self._unacknowledged()}", retryable=True)
+            self._check_open()  # somebody may have closed it meanwhile
+            self._conversation.add(sensor, encoded, time.monotonic())
+            self._ring()
+
+    def flush(self, timeout: Optional[float] = None) -> None:
+        """Waits until every scan given to send() so far is durable. Raises ScanloomError if that fails."""
+        with self._changed:
+            last = self._conversation.last
+            if not self._wait_for(lambda: self._conversation.acknowledged >= last, timeout):
+                raise ScanloomError("TIMEOUT", self._unacknowledged(), retryable=True)
+
+    def close(self, timeout: Optional[float] = None) -> None:
+        """Waits until every scan is durable and every request is answered, and leaves. Raises ScanloomError if that
+        fails, or takes longer than timeout seconds; what is not acknowledged then is given up."""
+        with self._changed:
+            self._conversation.is_ending = True
+            self._ring()
+            if not self._wait_for(lambda: self._has_ended, timeout):
+                self._is_aborted = True
+                self._ring()
+                raise ScanloomError("TIMEOUT", self._unacknowledged(), retryable=True)
+            self._check_failure()
+
+    # Requests
+
+    def plan(self, goal: Point, *, start: Optional[Point] = None, allow_unknown: bool = False,
+             body_radius: Optional[float] = None, danger_cost: Optional[float] = None,
+             timeout: Optional[float] = None) -> Path:
+        """The cheapest way to a point, from where the newest scan in the maps was taken, or from start. Raises
+        ScanloomError with NO_PATH where there is none, and TIMEOUT without an answer within timeout seconds."""
+        frame = _Frame()
+        request = frame.plan_request
+        _set_point("goal", goal, request.goal)
+        _set_options(request, start, body_radius)
+        request.allow_unknown = allow_unknown
+        if danger_cost is not None:
+            request.danger_cost = _finite("danger_cost", danger_cost)
+        reply = self._ask(frame, timeout)
+        return _path(reply.path, reply.revision)
+
+    def next_goal(self, *, start: Optional[Point] = None, body_radius: Optional[float] = None,
+                  frontier_size_min: int = 0, timeout: Optional[float] = None) -> Goal:
+        """What to explore next. Raises ScanloomError as plan() does."""
+        frame = _Frame()
+        request = frame.goal_request
+        request.SetInParent()
+        _set_options(request, start, body_radius)
+        request.frontier_size_min = frontier_size_min
+        reply = self._ask(frame, timeout)
+        goal = reply.goal
+        return Goal(exploration=_enum_name("Exploration", goal.exploration, "EXPLORATION_"),
+                    path=_path(goal.path, reply.revision) if goal.HasField("path") else None,
+                    target=(goal.target.x, goal.target.y) if goal.HasField("target") else None,
+                    given_up=goal.given_up, in_danger=goal.in_danger, revision=reply.revision)
+
+    def coverage(self, *, start: Optional[Point] = None, body_radius: Optional[float] = None,
+                 spacing: Optional[float] = None, region: Optional[Sequence[Point]] = None,
+                 timeout: Optional[float] = None) -> Coverage:
+        """A way over all free ground, or that within the polygon region. Raises ScanloomError as plan() does."""
+        frame = _Frame()
+        request = frame.coverage_request
+        request.SetInParent()
+        _set_options(request, start, body_radius)
+        if spacing is not None:
+            request.spacing = _finite("spacing", spacing)
+        for x, y in region or ():
+            request.region.extend((_finite("region", x, _COORDINATE_MAX), _finite("region", y, _COORDINATE_MAX)))
+        reply = self._ask(frame, timeout)
+        runs = list(reply.coverage.unreachable)
+        return Coverage(path=_path(reply.coverage.path, reply.revision), free_area=reply.coverage.free_area,
+                        covered_area=reply.coverage.covered_area, cell_size=reply.coverage.cell_size,
+                        unreachable=list(zip(runs[0::3], runs[1::3], runs[2::3])))
+
+    def _ask(self, frame: Any, timeout: Optional[float]) -> Any:
+        until = math.inf if timeout is None else time.monotonic() + timeout
+        late = ScanloomError("TIMEOUT", "the server did not answer the request in time", retryable=True)
+        with self._changed:
+            self._check_open()
+            conversation = self._conversation
+            if not self._wait_for(lambda: len(conversation.requests) < _REQUESTS_MAX, until - time.monotonic()):
+                raise late
+            self._check_open()
+            id = conversation.ask(frame)
+            request = conversation.requests[id]
+            self._ring()
+            try:
+                if not self._wait_for(lambda: request.reply is not None, until - time.monotonic()):
+                    raise late
+            finally:
+                if request.reply is None:
+                    conversation.abandon(id)
+        reply: Any = request.reply
+        if reply.WhichOneof("outcome") == "refusal":
+            code = _enum_name("ErrorCode", reply.refusal.code, "ERROR_CODE_")
+            raise ScanloomError(code, _shown(reply.refusal.message), code in ("OVERLOADED", "SHUTTING_DOWN"))
+        return reply
+
+    # How far it is
+
+    def stored_before(self, timeout: Optional[float] = None) -> int:
+        """How many scans of this robot the server held when it was first reached, which this waits for. Who streams a
+        recording leaves out so many."""
+        with self._changed:
+            if not self._wait_for(lambda: self._conversation.stored_before is not None, timeout):
+                raise ScanloomError("TIMEOUT", self._trouble, retryable=True)
+            return self._conversation.stored_before or 0
+
+    @property
+    def sent(self) -> int:
+        """Scans that went out in this run, each counted once."""
+        return self.status().sent
+
+    @property
+    def acknowledged(self) -> int:
+        """Scans of this run that are durable."""
+        with self._changed:
+            return self._conversation.acknowledged
+
+    def status(self) -> Status:
+        with self._changed:
+            is_linked = self._conversation.link is not None and self._conversation.link.is_welcome
+            before = self._conversation.stored_before or 0
+            return Status(stored_before=before, scans=before + self._conversation.last,
+                          sent=self._conversation.sent_ever, acknowledged=before + self._conversation.acknowledged,
+                          bytes=self._conversation.bytes_sent, reconnects=max(0, self._conversation.welcomes - 1),
+                          is_linked=is_linked)
+
+    # With the lock held
+
+    def _wait_for(self, condition: Callable[[], bool], timeout: Optional[float]) -> bool:
+        """Whether the condition came true in time. Raises what the client has failed with."""
+        if timeout == math.inf:
+            timeout = None
+        self._changed.wait_for(lambda: condition() or self._failure is not None, timeout)
+        if condition():
+            return True
+        self._check_failure()
+        return False
+
+    def _check_failure(self) -> None:
+        if self._failure:
+            raise ScanloomError(self._failure.code, self._failure.message, self._failure.retryable)
+
+    def _check_open(self) -> None:
+        self._check_failure()
+        if self._conversation.is_ending:
+            raise ScanloomError("CLOSED", "the client is closed")
+
+    def _unacknowledged(self) -> str:
+        count = self._conversation.last - self._conversation.acknowledged
+        return f"{count} scans are not acknowledged: {self._what_is_wrong()}"
+
+    def _what_is_wrong(self) -> str:
+        if self._conversation.link and self._conversation.link.is_welcome:
+            return "the server is connected but acknowledges nothing"
+        return self._trouble
+
+    def _ring(self) -> None:
+        """Has the thread look again."""
+        self._changed.notify_all()
+        if self._has_ended:
+            return
+        try:
+            self._bell_ringer.send(b"!")
+        except BlockingIOError:
+            pass  # it rings already
+
+    # The thread
+
+    def _run(self) -> None:
+        failure: Optional[ScanloomError] = None
+        try:
+            failure = self._keep_linked()
+        except Exception as error:  # pylint: disable=broad-except
+            _log.exception("the client failed")
+            failure = ScanloomError("INTERNAL", f"the client failed: {error!r}")
+        with self._changed:
+            self._failure = failure
+            self._has_ended = True
+            self._bell.close()
+            self._bell_ringer.close()
+            self._changed.notify_all()
+
+    def _keep_linked(self) -> Optional[ScanloomError]:
+        """Returns why there is no going on, unless all is done."""
+        backoff = _Backoff(self._timing)
+        while True:
+            acknowledged = self._conversation.acknowledged
+            failure = self._use_one_link()
+            with self._changed:
+                self._conversation.close()
+                if self._conversation.is_done():
+                    return None
+                if not failure.retryable:
+                    return failure
+                self._trouble = failure.message
+                _log.warning("%s; trying again", failure.message)
+                if self._conversation.acknowledged > acknowledged:
+                    backoff.reset()
+                until = time.monotonic() + backoff.next()
+                self._changed.wait_for(lambda: self._conversation.is_done() or self._is_aborted,
+                                       min(until, self._conversation.patience_ends()) - time.monotonic())
+                if self._conversation.is_done():
+                    return None
+                if self._is_aborted:
+                    return self._given_up()
+                if time.monotonic() >= self._conversation.patience_ends():
+                    return self._lost_patience()
+
+    def _lost_patience(self) -> ScanloomError:
+        return ScanloomError("TIMEOUT", f"gave up after {self._timing.give_up_after:g} s without progress: "
+                             f"{self._what_is_wrong()}")
+
+    def _given_up(self) -> ScanloomError:
+        return ScanloomError("CLOSED", f"the client was closed while {self._unacknowledged()}")
+
+    def _use_one_link(self) -> ScanloomError:
+        """Returns why it ended."""
+        try:
+            sock = _connect(self._host, self._port, self._tls, self._timing.connect)
+        except ScanloomError as failure:
+            return failure
+        connection = _Connection(sock, self._bell)
+        try:
+            with self._changed:
+                self._conversation.open(time.monotonic())
+            while True:
+                timeout = self._speak(connection)
+                for body in connection.turn(timeout):
+                    with self._changed:
+                        self._conversation.receive(_Frame.FromString(body), time.monotonic())
+                        self._changed.notify_all()
+        except ScanloomError as failure:
+            return failure
+        except DecodeError as error:
+            return self._unreadable(error)
+        finally:
+            connection.close()
+
+    def _speak(self, connection: _Connection) -> float:
+        """Writes what is to be said now; returns for how long that is all."""
+        with self._changed:
+            now = time.monotonic()
+            self._conversation.check(now)
+            patience_ends = self._conversation.patience_ends()
+            if now >= patience_ends:
+                raise self._lost_patience()
+            if self._is_aborted:
+                raise self._given_up()
+            while connection.is_writable():
+                frame = self._conversation.next_frame(now)
+                if frame is None:
+                    break
+                connection.write(frame)
+            return min(self._conversation.deadline(), patience_ends) - now
+
+    def _unreadable(self, error: DecodeError) -> ScanloomError:
+        if self._conversation.link and self._conversation.link.is_welcome:
+            return _retry("MALFORMED_FRAME", f"what the server sent cannot be read: {error}")
+        return ScanloomError("MALFORMED_FRAME", f"what listens at {self._host}:{self._port} does not speak Scanloom's "
+                             "robot link; give the server's robot port, and tls= if it wants TLS")
+
+
+def _set_options(request: Any, start: Optional[Point], body_radius: Optional[float]) -> None:
+    if start is not None:
+        _set_point("start", start, request.start)
+    if body_radius is not None:
+        request.body_radius = _finite("body_radius", body_radius)
+
+
+def _path(path: Any, revision: int) -> Path:
+    return Path(list(zip(path.points[0::2], path.points[1::2])), path.length, path.cost, revision)
+
+
+# The program ----------------------------------------------------------------------------------------------------------
+
+_USAGE = """reads scans from standard input and streams them to a server, one JSON object a line:
+
+  {"t": 12.5, "pose": [x, y, yaw], "ranges": [1.25, Infinity, null, ...]}
+
+t is in seconds, ranges are in metres: Infinity or range-max is nothing within range, null no valid reading. "odometry",
+"intensities" and "angles" may be there, too. At the end it waits until every scan is durable and prints a summary."""
+
+
+class _OneLineParser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"scanloom_client.py: {message}; --help tells more\n")
+
+
+def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
+    parser = _OneLineParser(prog="scanloom_client.py", description=_USAGE,
+                            formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+    parser.add_argument("--version", action="version", version=f"scanloom_client.py {__version__}")
+    parser.add_argument("--server", required=True, metavar="HOST:PORT", help="the server's robot port")
+    parser.add_argument("--session", required=True, help="the map's name")
+    parser.add_argument("--robot", required=True, help="this robot's name, unique within the session")
+    parser.add_argument("--cell-size", type=float, metavar="M", help="metres, of a session that is made")
+    parser.add_argument("--angle-min", type=float, metavar="RAD", default=-math.pi, help="of the first beam [-pi]")
+    parser.add_argument("--angle-increment", type=float, metavar="RAD",
+                        help="from beam to beam [a full turn by the first line's beams]")
+    parser.add_argument("--range-min", type=float, metavar="M", default=0.0, help="shorter readings are invalid [0]")
+    parser.add_argument("--range-max", type=float, metavar="M", required=True, help="how far the laser sees")
+    parser.add_argument("--token-file", metavar="FILE", help="holds the token that the server asks for")
+    parser.add_argument("--tls-ca", metavar="FILE", help="use TLS; the certificate that signed the server's")
+    parser.add_argument("--source", default="", metavar="NAME",
+                        help="the same lines may be streamed again: those the server has are passed over")
+    return parser.parse_args(arguments)
+
+
+def _open(options: argparse.Namespace) -> Client:
+    token = ""
+    if options.token_file:
+        with open(options.token_file, encoding="utf-8") as file:
+            token = file.read().strip()
+    tls = ssl.create_default_context(cafile=options.tls_ca) if options.tls_ca else None
+    return Client(options.server, session=options.session, robot=options.robot, cell_size=options.cell_size,
+                  token=token, tls=tls, source=options.source)
+
+
+def _send_line(robot: Client, laser: Optional[Sensor], line: str, options: argparse.Namespace) -> Sensor:
+    scan = json.loads(line)
+    if not isinstance(scan, dict) or not {"t", "pose", "ranges"} <= scan.keys():
+        raise ValueError('an object with "t", "pose" and "ranges" is needed')
+    ranges = [math.nan if value is None else value for value in scan["ranges"]]
+    if laser is None:
+        increment = 2.0 * math.pi / max(len(ranges), 1) if options.angle_increment is None else options.angle_increment
+        laser = robot.laser(angle_min=options.angle_min, angle_increment=increment, count=len(ranges),
+                            range_min=options.range_min, range_max=options.range_max)
+    robot.send(laser, ranges, pose=scan["pose"], stamp=scan["t"], odometry=scan.get("odometry"),
+               intensities=scan.get("intensities"), angles=scan.get("angles"))
+    return laser
+
+
+def _stream(robot: Client, lines: Any, options: argparse.Namespace) -> None:
+    """A first signal ends the input."""
+    laser: Optional[Sensor] = None
+    known = robot.stored_before() if options.source else 0
+    try:
+        for number, line in enumerate((line for line in lines if line.strip()), start=1):
+            if number <= known:
+                continue
+            try:
+                laser = _send_line(robot, laser, line, options)
+            except (ValueError, TypeError) as error:
+                raise ValueError(f"scan {number} of the input: {error}") from None
+    except KeyboardInterrupt:
+        print("interrupted: waiting for what was sent to be stored; interrupt again to leave at once", file=sys.stderr)
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    options = _parse_options(arguments)
+    logging.basicConfig(format="scanloom_client.py: %(message)s")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    started = time.monotonic()
+    problem = ""
+    try:
+        robot = _open(options)
+    except (ValueError, OSError) as error:
+        print(f"scanloom_client.py: {error}", file=sys.stderr)
+        return 2
+    try:
+        with robot:
+            _stream(robot, sys.stdin, options)
+    except (ScanloomError, ValueError) as error:
+        problem = str(error)
+    except KeyboardInterrupt:
+        problem = "interrupted before every scan was acknowledged"
+    summary = dataclasses.asdict(robot.status())
+    del summary["is_linked"]
+    summary.update(seconds=round(time.monotonic() - started, 3), session=options.session, robot=options.robot)
+    if problem:
+        summary["error"] = problem
+        print(f"scanloom_client.py: {problem}", file=sys.stderr)
+    print(json.dumps(summary))
+    return 1 if problem else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+"""A client at a fake server."""
+import logging
+import unittest
+
+from fake_server import FakeServer
+from programs import scanloom_client
+
+logging.getLogger("scanloom").addHandler(logging.NullHandler())  # lost links are what these tests are about
+
+QUICK = dict(backoff_first=0.001, backoff_max=0.01)
+
+
+class LinkTest(unittest.TestCase):
+    def start(self, *scripts, **options):
+        self.server = FakeServer(*scripts, **options)
+        self.addCleanup(self.server.stop)
+        return self.server
+
+    def client(self, timing=None, **options):
+        """One that is not waited for when the test fails."""
+        client = scanloom_client.Client(self.server.address, session="s", robot="r",
+                                        timing=scanloom_client.Timing(**{**QUICK, **(timing or {})}), **options)
+        self.addCleanup(self._abort, client)
+        return client
+
+    @staticmethod
+    def _abort(client):
+        try:
+            client.close(timeout=0.0)
+        except scanloom_client.ScanloomError:
+            pass  # the test has seen it, if it was to come
+
+    def laser(self, client, **options):
+        return client.laser(**{"angle_min": 0.0, "angle_increment": 0.01, "count": 50, "range_max": 10.0, **options})
+
+    def send(self, client, laser, count, first=0):
+        """Scans that can be told apart by their stamp."""
+        for i in range(first, first + count):
+            client.send(laser, [1.0 + 0.001 * i] * 50, pose=(0.1 * i, 0.0, 0.0), stamp=float(i))
+
+    def assert_stored(self, count):
+        self.assertEqual([scan.stamp for scan in self.server.stored], [float(i) for i in range(count)])
+        self.assertEqual([scan.seq for scan in self.server.stored], list(range(1, count + 1)))
+        self.assertEqual(self.server.faults, [])
+
+    def assert_fails(self, code, call, *arguments, **options):
+        """Returns the error."""
+        with self.assertRaises(scanloom_client.ScanloomError) as caught:
+            call(*arguments, **options)
+        self.assertEqual(caught.exception.code, code, caught.exception.message)
+        return caught.exception

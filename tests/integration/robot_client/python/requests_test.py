@@ -1,0 +1,171 @@
+"""Questions on the link: each reply finds who asked."""
+import threading
+import unittest
+
+from fixture import LinkTest
+
+
+def collect(link, count):
+    """So many requests, in the order in which they came."""
+    requests = []
+    link.serve(until=lambda frame: frame.WhichOneof("body").endswith("_request") and
+               (requests.append(frame) or len(requests) == count))
+    return requests
+
+
+def path_to(goal):
+    return {"points": [0.0, 0.0, goal.x, goal.y], "length": goal.x, "cost": goal.x}
+
+
+def reply_plan(link, request):
+    link.send(plan_reply={"id": request.id, "revision": 5, "path": path_to(request.goal)})
+
+
+class Requests(LinkTest):
+    def ask_in_threads(self, robot, goals):
+        """The paths by goal."""
+        paths = {}
+        threads = [threading.Thread(target=lambda x=x: paths.update({x: robot.plan((x, 1.0))})) for x in goals]
+        for thread in threads:
+            thread.start()
+        return paths, threads
+
+    def test_replies_in_another_order_reach_who_asked(self):
+        def backwards(link):
+            link.greet()
+            for frame in reversed(collect(link, 3)):
+                reply_plan(link, frame.plan_request)
+            link.serve()
+
+        self.start(backwards)
+        with self.client() as robot:
+            paths, threads = self.ask_in_threads(robot, [1.0, 2.0, 3.0])
+            for thread in threads:
+                thread.join()
+        self.assertEqual({x: path.points[-1] for x, path in paths.items()}, {x: (x, 1.0) for x in (1.0, 2.0, 3.0)})
+        self.assertEqual(paths[1.0].revision, 5)
+
+    def test_no_more_than_four_are_under_way(self):
+        four_came, fifth_was_tried = threading.Event(), threading.Event()
+
+        def counts(link):
+            link.greet()
+            first = collect(link, 4)
+            four_came.set()
+            fifth_was_tried.wait()
+            link.send(ping={"nonce": 1})
+            fifth = []
+            link.serve(until=lambda frame: frame.WhichOneof("body") == "pong" or fifth.append(frame))
+            link.server.faults += fifth
+            for frame in first:
+                reply_plan(link, frame.plan_request)
+            reply_plan(link, collect(link, 1)[0].plan_request)
+            link.serve()
+
+        self.start(counts)
+        with self.client() as robot:
+            paths, threads = self.ask_in_threads(robot, [1.0, 2.0, 3.0, 4.0])
+            four_came.wait()
+            self.assert_fails("TIMEOUT", robot.plan, (5.0, 1.0), timeout=0.02)
+            fifth_was_tried.set()
+            self.assertEqual(robot.plan((5.0, 1.0)).points[-1], (5.0, 1.0))
+            for thread in threads:
+                thread.join()
+        self.assertEqual(sorted(paths), [1.0, 2.0, 3.0, 4.0])
+        self.assertEqual(self.server.faults, [])
+
+    def test_what_was_asked_on_a_broken_link_is_asked_again(self):
+        def answers(link):
+            link.greet()
+            reply_plan(link, collect(link, 1)[0].plan_request)
+            link.serve()
+
+        self.start(lambda link: (link.greet(), collect(link, 1)), answers)
+        with self.client() as robot:
+            self.assertEqual(robot.plan((2.0, 1.0)).points, [(0.0, 0.0), (2.0, 1.0)])
+
+    def test_a_refusal_is_raised_and_the_link_goes_on(self):
+        def refuses(link):
+            link.greet()
+            id = collect(link, 1)[0].plan_request.id
+            link.send(plan_reply={"id": id, "refusal": {"code": 18, "message": "a wall is in the way"}})
+            link.serve()
+
+        self.start(refuses)
+        with self.client() as robot:
+            error = self.assert_fails("NO_PATH", robot.plan, (2.0, 1.0))
+            self.assertEqual((error.message, error.retryable), ("a wall is in the way", False))
+            self.send(robot, self.laser(robot), 2)
+        self.assert_stored(2)
+        self.assertEqual(self.server.links, 1)
+
+    def test_a_reply_that_comes_too_late_disturbs_nothing(self):
+        asked_twice = threading.Event()
+
+        def is_late(link):
+            link.greet()
+            late = collect(link, 1)[0].plan_request
+            asked_twice.wait()
+            reply_plan(link, late)
+            reply_plan(link, collect(link, 1)[0].plan_request)
+            link.serve()
+
+        self.start(is_late)
+        with self.client() as robot:
+            self.assertEqual(robot.stored_before(), 0)
+            paths = []
+            # The second is sent after the first was given up, and answered after the first's late reply.
+            self.assert_fails("TIMEOUT", robot.plan, (2.0, 1.0), timeout=0.05)
+            asking = threading.Thread(target=lambda: paths.append(robot.plan((3.0, 1.0))))
+            asking.start()
+            asked_twice.set()
+            asking.join()
+        self.assertEqual(paths[0].points[-1], (3.0, 1.0))
+        self.assertEqual(self.server.links, 1)
+
+    def test_a_reply_of_another_kind_ends_the_link_only(self):
+        def mistakes(link):
+            link.greet()
+            id = collect(link, 1)[0].plan_request.id
+            link.send(goal_reply={"id": id, "goal": {"exploration": 3}})
+            link.serve()
+
+        def answers(link):
+            link.greet()
+            reply_plan(link, collect(link, 1)[0].plan_request)
+            link.serve()
+
+        self.start(mistakes, answers)
+        with self.client() as robot:
+            self.assertEqual(robot.plan((2.0, 1.0)).points[-1], (2.0, 1.0))
+
+    def test_options_of_requests_are_sent_as_given(self):
+        asked = []
+
+        def notes(link):
+            link.greet()
+            for _ in range(3):
+                frame = collect(link, 1)[0]
+                asked.append(frame)
+                kind = frame.WhichOneof("body")
+                id = getattr(frame, kind).id
+                refusal = {"id": id, "refusal": {"code": 15, "message": "no time"}}
+                link.send(**{kind.replace("request", "reply"): refusal})
+            link.serve()
+
+        self.start(notes)
+        with self.client() as robot:
+            options = {"start": (0.0, 0.0), "allow_unknown": True, "danger_cost": 2.0}
+            self.assert_fails("OVERLOADED", robot.plan, (0.0, 0.0), **options)
+            self.assert_fails("OVERLOADED", robot.next_goal, body_radius=0.2, frontier_size_min=3)
+            self.assert_fails("OVERLOADED", robot.coverage, spacing=0.3, region=[(0, 0), (1, 0), (1, 1)])
+        plan, goal, coverage = asked[0].plan_request, asked[1].goal_request, asked[2].coverage_request
+        self.assertTrue(plan.HasField("start") and plan.HasField("goal") and plan.allow_unknown)
+        self.assertFalse(plan.HasField("body_radius"))
+        self.assertEqual((plan.danger_cost, goal.body_radius, goal.frontier_size_min), (2.0, 0.2, 3))
+        self.assertFalse(goal.HasField("start"))
+        self.assertEqual((coverage.spacing, list(coverage.region)), (0.3, [0, 0, 1, 0, 1, 1]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,47 @@
+"""Links over TLS."""
+import pathlib
+import shutil
+import ssl
+import tempfile
+import unittest
+
+from fixture import LinkTest
+from programs import run
+
+
+@unittest.skipUnless(shutil.which("openssl"), "openssl makes the certificates of this test; install it")
+class Tls(LinkTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.directory.cleanup)
+        cls.certificate = pathlib.Path(cls.directory.name) / "certificate.pem"
+        key = pathlib.Path(cls.directory.name) / "key.pem"
+        code, _, errors = run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1",
+                              "-nodes", "-days", "2", "-subj", "/CN=localhost",
+                              "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", cls.certificate)
+        assert code == 0, errors
+        cls.server_side = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        cls.server_side.load_cert_chain(cls.certificate, key)
+
+    def test_scans_arrive(self):
+        self.start(tls=self.server_side)
+        with self.client(tls=ssl.create_default_context(cafile=self.certificate)) as robot:
+            laser = self.laser(robot, count=4000, angle_increment=0.001)
+            for i in range(30):  # more than one read of a TLS record
+                robot.send(laser, [1.0] * 4000, pose=(0.0, 0.0, 0.0), stamp=float(i))
+        self.assert_stored(30)
+
+    def test_a_certificate_that_nobody_vouches_for_is_refused(self):
+        self.start(tls=self.server_side)
+        error = self.assert_fails("UNAUTHORIZED", self.client(tls=ssl.create_default_context()).close)
+        self.assertIn(f"the certificate of {self.server.address} is not trusted", error.message)
+
+    def test_a_server_that_speaks_no_tls_is_told(self):
+        self.start()
+        robot = self.client(tls=ssl.create_default_context(), timing={"connect": 0.05, "give_up_after": 0.05})
+        self.assertIn(f"no TLS with {self.server.address}", self.assert_fails("TIMEOUT", robot.close).message)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,141 @@
+"""From what callers give to what is sent."""
+import array
+import math
+import unittest
+
+from fixture import LinkTest
+from programs import scanloom_client
+
+NO_RETURN = 0xFFFFFFFF
+
+
+class Millimetres(unittest.TestCase):
+    def assert_rounds(self, cases):
+        self.assertEqual([scanloom_client._millimetres(metres) for metres in cases], list(cases.values()))
+
+    def test_readings_are_rounded_to_the_nearest_millimetre(self):
+        self.assert_rounds({1.0: 1000, 1.2344: 1234, 1.2346: 1235, 81.83: 81830, 2: 2000})
+        self.assert_rounds({0.0004: 0, 0.0005: 1, 0.0025: 3})
+
+    def test_what_is_no_length_is_invalid(self):
+        self.assert_rounds({0.0: 0, -1.0: 0, -math.inf: 0, math.nan: 0})
+
+    def test_what_is_too_long_for_millimetres_is_no_return(self):
+        self.assert_rounds({4294967.294: 4294967294})
+        self.assert_rounds(dict.fromkeys((4294967.295, 5e6, 1e300, math.inf), NO_RETURN))
+
+
+class Fields(LinkTest):
+    def sent(self, ranges, sensor=None, **options):
+        """The scan as it arrived."""
+        self.start()
+        with self.client() as robot:
+            laser = self.laser(robot, **(sensor or {}))
+            robot.send(laser, ranges, **{"pose": (1.0, 2.0, 3.0), "stamp": 4.5, **options})
+        return self.server.stored[0]
+
+    def test_all_that_is_given_arrives(self):
+        scan = self.sent([1.0, math.inf, math.nan], odometry=(4.0, 5.0, 6.0), intensities=[1.0, 255, 0],
+                         angles=[0.1, 0.3, 0.2])
+        self.assertEqual((scan.pose.x, scan.pose.y, scan.pose.yaw, scan.stamp), (1.0, 2.0, 3.0, 4.5))
+        self.assertEqual((scan.odometry.x, scan.odometry.y, scan.odometry.yaw), (4.0, 5.0, 6.0))
+        self.assertEqual(list(scan.ranges), [1000, NO_RETURN, 0])
+        self.assertEqual(list(scan.intensities), [1, 255, 0])
+        self.assertEqual(list(scan.angles.explicit.angles), [0.1, 0.3, 0.2])
+
+    def test_what_is_not_given_is_absent(self):
+        scan = self.sent([1.0], pose=(0, 0, 0))
+        self.assertTrue(scan.HasField("pose"))
+        self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities)
+
+    def test_arrays_are_taken_as_lists_are(self):
+        self.assertEqual(list(self.sent(array.array("f", [1.5, 2.5])).ranges), [1500, 2500])
+
+    def test_a_hello_says_who_it_is(self):
+        self.start()
+        with self.client(cell_size=0.1, token="secret", source="recording", body_radius=0.2):
+            pass
+        hello = self.server.hellos[0]
+        self.assertEqual((hello.protocol_version, hello.session, hello.robot), (1, "s", "r"))
+        self.assertEqual((hello.token, hello.source, hello.body_radius), ("secret", "recording", 0.2))
+        self.assertEqual(hello.create.cell_size, 0.1)
+        self.assertTrue(hello.client.startswith("scanloom_client.py "))
+
+    def test_a_session_is_made_also_without_a_cell_size(self):
+        self.start()
+        with self.client():
+            pass
+        self.assertTrue(self.server.hellos[0].HasField("create"))
+        self.assertFalse(self.server.hellos[0].create.HasField("cell_size"))
+
+
+class Refused(LinkTest):
+    def test_scans_that_no_server_takes_are_refused_by_name_and_disturb_nothing(self):
+        self.start()
+        with self.client() as robot:
+            laser = self.laser(robot)
+            fixed = robot.laser(angles=[0.0, 0.1], range_max=5.0)
+            good = {"sensor": laser, "ranges": [1.0, 2.0], "pose": (0.0, 0.0, 0.0), "stamp": 0.0}
+            for told, wrong in [
+                    ("ranges has 0 beams", {"ranges": []}),
+                    ("ranges has 4097 beams", {"ranges": [1.0] * 4097}),
+                    ("more than a full turn", {"ranges": [1.0] * 700}),
+                    ("ranges holds something that is no number", {"ranges": ["1", 2.0]}),
+                    ("for 2 angles", {"sensor": fixed, "ranges": [1.0]}),
+                    ("for 3 angles", {"angles": [0.0, 0.1, 0.2]}),
+                    ("an angle is nan", {"angles": [0.0, math.nan]}),
+                    ("intensities has 1 values", {"intensities": [1]}),
+                    ("intensities are whole numbers", {"intensities": [-1, 0]}),
+                    ("pose.yaw is nan", {"pose": (0.0, 0.0, math.nan)}),
+                    ("pose.x is 2000000.0", {"pose": (2e6, 0.0, 0.0)}),
+                    ("pose has 2 numbers", {"pose": (0.0, 0.0)}),
+                    ("odometry.y is inf", {"odometry": (0.0, math.inf, 0.0)}),
+                    ("stamp is 'now'", {"stamp": "now"})]:
+                with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                    robot.send(**{**good, **wrong})
+            robot.send(**good)
+        self.assertEqual(len(self.server.stored), 1)
+
+    def test_sensors_that_make_no_sense_are_refused_by_name(self):
+        self.start()
+        robot = self.client()
+        for told, wrong in [
+                ("angle_increment is 0", {"angle_increment": 0.0}),
+                ("more than a full turn", {"angle_increment": 1.0}),
+                ("count has 0 beams", {"count": 0}),
+                ("give angle_min", {"angle_min": None}),
+                ("not both", {"angles": [0.0]}),
+                ("range_max 1001", {"range_max": 1001.0}),
+                ("range_min is 11", {"range_min": 11.0}),
+                ("aperture is 4", {"aperture": 4.0}),
+                ("longer than 64 bytes", {"name": "n" * 65}),
+                ("mount.x is nan", {"mount": (math.nan, 0.0, 0.0)})]:
+            with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                self.laser(robot, **wrong)
+        for _ in range(64):
+            self.laser(robot)
+        with self.assertRaisesRegex(ValueError, "at most 64 sensors"):
+            self.laser(robot)
+
+    def test_a_sensor_of_another_client_is_refused(self):
+        self.start()
+        with self.client() as one:
+            stranger = self.laser(one)
+        with self.client() as other:
+            self.laser(other)
+            with self.assertRaisesRegex(ValueError, "not a sensor of this client"):
+                self.send(other, stranger, 1)
+
+    def test_names_and_addresses_that_cannot_be_are_refused(self):
+        for told, wrong in [("session is 'a b'", {"session": "a b"}), ("robot is ''", {"robot": ""}),
+                            ("source", {"source": "s" * 65}), ("HOST:PORT", {"server": "localhost"}),
+                            ("HOST:PORT", {"server": "localhost:0"}), ("cell_size is nan", {"cell_size": math.nan})]:
+            with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                scanloom_client.Client(**{"server": "127.0.0.1:1", "session": "s", "robot": "r", **wrong})
+
+    def test_addresses_may_be_of_version_6(self):
+        self.assertEqual(scanloom_client._split_address("[::1]:7447"), ("::1", 7447))
+
+
+if __name__ == "__main__":
+    unittest.main()
