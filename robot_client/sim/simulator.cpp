@@ -11,8 +11,8 @@ namespace {
 constexpr double kStartClearance = 0.5; // metres
 
 Pose2 choose_start(const World& world, Random& random) {
-    for (;;) { // every floor has free places, so this ends
-        const Box& floor = world.floors[random.index(world.floors.size())];
+    for (;;) { // there is a free place, so this ends
+        const Box& floor = world.starts[random.index(world.starts.size())];
         const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
         if (clearance(world, place) < kStartClearance) continue;
         return {place.x(), place.y(), random.uniform(-std::numbers::pi, std::numbers::pi)};

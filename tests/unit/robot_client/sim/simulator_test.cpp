@@ -145,7 +145,8 @@ TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandst
 
 INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
                          testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
-                                         Setting{"office", "reference", false}, Setting{"office", "lidar360", true}));
+                                         Setting{"office", "reference", false}, Setting{"office", "lidar360", true},
+                                         Setting{"hall", "reference", false}, Setting{"hall", "lidar360", true}));
 
 TEST(WallFollowerDrives, FiveMinutesWithAWalkerWithoutTouchingHim) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
