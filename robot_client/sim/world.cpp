@@ -22,11 +22,26 @@ World make_world(std::string name, std::vector<Box> solids, std::vector<Box> flo
     return world;
 }
 
+Box bounds_of(const World& world) {
+    Box all = world.solids.empty() ? world.floors.front() : world.solids.front();
+    for (const Box& box : world.solids) all = united(all, box);
+    for (const Box& box : world.floors) all = united(all, box);
+    return all;
+}
+
 double clearance(const World& world, const Point2& point) {
     if (world.obstacles->contain(point)) return 0.0;
     double nearest = world.obstacles->distance(point);
     for (const Walker& walker : world.walkers) nearest = std::min(nearest, distance(body_of(walker), point));
     return nearest;
+}
+
+std::vector<Disc> people_near(const World& world, const Point2& place, double radius) {
+    std::vector<Disc> people;
+    for (const Walker& walker : world.walkers) {
+        if (distance(body_of(walker), place) <= radius) people.push_back(body_of(walker));
+    }
+    return people;
 }
 
 void walk(World& world, const Point2& robot, double seconds) {

@@ -6,25 +6,26 @@
 namespace scanloom::robot {
 namespace {
 
-/// Scans taken at 0, p, 2 p, ... before `duration`.
-std::uint64_t scans_within(double duration) {
-    const double scans =
+/// Scans that so many sensors take at 0, p, 2 p, ... before `duration`.
+std::uint64_t scans_within(double duration, std::size_t sensors) {
+    const double moments =
         std::ceil(duration / kScanPeriod - 1e-6); // 0.3 s are three periods of 0.1 s, rounded as they are
+    const double scans = moments * static_cast<double>(sensors);
     return scans < 1e15 ? static_cast<std::uint64_t>(scans) : std::numeric_limits<std::uint64_t>::max();
 }
 
 } // namespace
 
 SimulatedSource::SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return)
-    : simulator_(std::move(simulator)), limits_(limits), no_return_(no_return),
-      laser_(std::make_shared<const Sensor>(simulator_.laser())) {
-    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration));
+    : simulator_(std::move(simulator)), limits_(limits), no_return_(no_return) {
+    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration, simulator_.sensors().size()));
 }
 
 Result<std::optional<Observation>> SimulatedSource::next() {
     if (scans_ == limits_.scans) return std::optional<Observation>{};
     ++scans_;
-    Observation observation{laser_, simulator_.next_scan()};
+    Observation observation{nullptr, simulator_.next_scan()};
+    observation.sensor = simulator_.sensor_of(observation.scan);
     if (no_return_ == NoReturn::kDrop) {
         auto& ranges = observation.scan.ranges;
         std::replace(ranges.begin(), ranges.end(), kNoReturn, kInvalidRange);

@@ -8,8 +8,8 @@
 namespace scanloom::robot {
 
 struct SimulationLimits {
-    double duration = std::numeric_limits<double>::infinity(); ///< seconds of the simulation's time
-    std::uint64_t scans = std::numeric_limits<std::uint64_t>::max();
+    double duration = std::numeric_limits<double>::infinity();       ///< seconds of the simulation's time
+    std::uint64_t scans = std::numeric_limits<std::uint64_t>::max(); ///< of all sensors
 };
 
 /// A simulated robot as a source; it ends at the first of its limits, or never.
@@ -24,7 +24,6 @@ private:
     Simulator simulator_;
     SimulationLimits limits_;
     NoReturn no_return_;
-    std::shared_ptr<const Sensor> laser_;
     std::uint64_t scans_ = 0;
 };
 
