@@ -38,7 +38,7 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
 CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
     auto* truth = app.add_subcommand("truth", "What a perfect map of a world would hold, as map.pgm and map.yaml");
     truth->add_option("--world", options.world, "Which world")
-        ->check(CLI::IsMember({"room", "office"}))
+        ->check(CLI::IsMember({"room", "office", "hall"}))
         ->capture_default_str();
     truth->add_option("--cell-size", options.cell_size, "Metres a cell")
         ->check(check_within(0.01, 1.0))

@@ -5,9 +5,7 @@
 
 #include "common/app/console.hpp"
 #include "common/app/machine.hpp"
-#include "robot_client/sim/truth_grid.hpp"
-#include "server/tiles/occupancy_percent.hpp"
-#include "server/tiles/ros_map.hpp"
+#include "robot_client/sim/truth_map.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
@@ -81,32 +79,16 @@ Result<std::string> run_one(const ExperimentOptions& options, Console& console) 
                        boost::json::serialize((directory->path() / kReportFile).string() + ".html"));
 }
 
-/// As a map that holds what is known: occupied, free, and unknown outside.
-tiles::MapImage image_of(const robot::TruthGrid& truth) {
-    tiles::MapImage image;
-    image.frame = {{truth.i_begin, truth.j_begin, truth.i_begin + truth.width, truth.j_begin + truth.height},
-                   truth.cell_size};
-    for (std::int32_t j = truth.j_begin + truth.height - 1; j >= truth.j_begin; --j) {
-        for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
-            switch (truth.at(i, j)) {
-            case robot::Truth::kOccupied: image.codes.push_back(100); break;
-            case robot::Truth::kFree: image.codes.push_back(0); break;
-            case robot::Truth::kOutside: image.codes.push_back(tiles::kUnknownPercent); break;
-            }
-        }
-    }
-    return image;
-}
-
 Result<std::string> run_one(const TruthOptions& options, Console&) {
     const auto world = robot::find_world(options.world);
     if (!world) return world.error();
     const auto directory = OutputDirectory::open(options.out);
     if (!directory) return directory.error();
-    const tiles::MapImage image = image_of(robot::truth_of(*world, options.cell_size));
-    if (auto written = directory->write("map.pgm", tiles::map_pgm(image, {})); !written) return written.error();
-    if (auto written = directory->write("map.yaml", tiles::map_yaml(image.frame)); !written) return written.error();
-    return fmt::format(R"({{"width":{},"height":{},"map":{}}})", image.frame.width(), image.frame.height(),
+    const robot::TruthGrid truth = robot::truth_of(*world, options.cell_size);
+    if (auto written = directory->write("map.pgm", robot::truth_pgm(truth)); !written) return written.error();
+    const std::string yaml = robot::truth_yaml(truth, "map.pgm");
+    if (auto written = directory->write("map.yaml", yaml); !written) return written.error();
+    return fmt::format(R"({{"width":{},"height":{},"map":{}}})", truth.width, truth.height,
                        boost::json::serialize((directory->path() / "map.yaml").string()));
 }
 

@@ -1,7 +1,5 @@
 #include "lab/visibility.hpp"
 
-#include "robot_client/sim/ray_casting.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,38 +12,32 @@ constexpr double kHairsBreadth = 1e-6; // metres: on this side of a wall or on t
 class Views {
 public:
     Views(const robot::World& world, const Sensor& laser, std::span<const Pose2> path)
-        : range_max_(laser.range_max), first_angle_(beam_angle(laser.angles, 0)),
-          last_angle_(beam_angle(laser.angles, beam_count(laser.angles) - 1)) {
-        for (const Pose2& pose : path) {
-            views_.push_back({pose, robot::segments_near(world.outlines, {pose.x, pose.y}, range_max_)});
-        }
-    }
+        : obstacles_(*world.obstacles), path_(path), range_max_(laser.range_max),
+          first_angle_(beam_angle(laser.angles, 0)),
+          last_angle_(beam_angle(laser.angles, beam_count(laser.angles) - 1)) {}
 
     [[nodiscard]] bool see(const Point2& point) const {
-        return std::any_of(views_.begin(), views_.end(), [&](const View& view) { return sees(view, point); });
+        return std::any_of(path_.begin(), path_.end(), [&](const Pose2& pose) { return sees(pose, point); });
     }
 
 private:
-    struct View {
-        Pose2 pose;
-        std::vector<robot::Segment> near;
-    };
-
-    [[nodiscard]] bool sees(const View& view, const Point2& point) const {
-        const double dx = point.x() - view.pose.x;
-        const double dy = point.y() - view.pose.y;
+    [[nodiscard]] bool sees(const Pose2& pose, const Point2& point) const {
+        const double dx = point.x() - pose.x;
+        const double dy = point.y() - pose.y;
         const double square = dx * dx + dy * dy;
         if (square >= range_max_ * range_max_) return false;
         const double yaw = std::atan2(dy, dx);
-        const double angle = normalize_angle(yaw - view.pose.yaw);
+        const double angle = normalize_angle(yaw - pose.yaw);
         if (angle < first_angle_ - kHairsBreadth || angle > last_angle_ + kHairsBreadth) return false;
-        return robot::cast_ray(view.near, {view.pose.x, view.pose.y}, yaw) >= std::sqrt(square) - kHairsBreadth;
+        const double length = std::sqrt(square);
+        return obstacles_.cast_ray({pose.x, pose.y}, yaw, length) >= length - kHairsBreadth;
     }
 
+    const robot::Obstacles& obstacles_;
+    std::span<const Pose2> path_;
     double range_max_;
     double first_angle_;
     double last_angle_;
-    std::vector<View> views_;
 };
 
 void see_free_cells(const robot::TruthGrid& truth, const Views& views, CellMask& seen) {

@@ -2,6 +2,7 @@
 #include "common/app/standard_streams.hpp"
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/run.hpp"
+#include "robot_client/app/truth.hpp"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ int main(int argc, char** argv) try {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
+    if (const auto* truth = std::get_if<scanloom::robot::TruthOptions>(&options)) return scanloom::robot::run(*truth);
     return scanloom::robot::run(std::get<scanloom::robot::RobotOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-robot: {}\n", error.what()));

@@ -23,8 +23,8 @@ struct PreparedSource {
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
-/// first few, and whether its stamps go back. Errors  those of CarmenLog::open() and SonarLog::open(); an unknown world
-/// or laser.
+/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open() and load_world();
+/// an unknown sensor, or one without a range.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

@@ -4,6 +4,7 @@
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
 #include "common/scan/limits.hpp"
+#include "robot_client/app/simulate_options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -18,7 +19,8 @@ constexpr const char* kAbout =
     "The same command again continues behind the scans that are stored already.\n"
     "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
     "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
-    "of JSON, with the reason (\"error\") where it exits 1.";
+    "of JSON, with the reason (\"error\") where it exits 1.\n"
+    "Without a server, truth writes the map that a perfect robot would make of a simulated world.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
@@ -43,10 +45,11 @@ std::string check_name(const std::string& name) {
 
 void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
-    app.add_option("--session", options.session, "Session to add to; made if it does not exist")
-        ->required()
+    // not required() by the parser: truth needs neither
+    app.add_option("--session", options.session, "Session to add to; made if it does not exist. Needed to stream")
         ->check(check_name);
-    app.add_option("--robot", options.robot, "Name of this robot within the session")->required()->check(check_name);
+    app.add_option("--robot", options.robot, "Name of this robot within the session. Needed to stream")
+        ->check(check_name);
     app.add_option("--token-file", options.token_file, "File that holds the token of this robot")
         ->check(CLI::ExistingFile);
     app.add_flag("--tls", options.tls, "Encrypt the link, and check that the server is the one that --server names");
@@ -154,48 +157,15 @@ CLI::App* add_sonar(CLI::App& app, SonarReplayOptions& options) {
     return sonar;
 }
 
-CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
-    auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
-    simulate->add_option("--world", options.world, "Where it drives")
-        ->check(CLI::IsMember({"room", "room_walker", "office"}))
-        ->capture_default_str();
-    simulate->add_option("--drive", options.drive, "How it drives")
-        ->check(CLI::IsMember({"wall_follower"}))
-        ->capture_default_str();
-    simulate->add_option("--laser", options.laser, "What it sees with")
-        ->check(CLI::IsMember({"reference", "lidar360", "wide"}))
-        ->capture_default_str();
-    simulate->add_option("--noise", options.noise, "What its measurements suffer from")
-        ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
-        ->capture_default_str();
-    simulate
-        ->add_option("--noise-width", options.noise_width,
-                     "Metres; uniform noise makes each reading too long by 0 up to this")
-        ->check(check_positive)
-        ->capture_default_str();
-    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
-        ->check(check_whole_number_from(0))
-        ->capture_default_str();
-    simulate
-        ->add_option("--duration", options.duration,
-                     "Seconds to simulate, earlier runs included; default: until interrupted")
-        ->check(check_positive);
-    simulate->add_option("--scans", options.scans, "Scans to take, earlier runs included; default: until interrupted")
-        ->check(check_whole_number_from(1));
-    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
-        ->check(check_not_negative)
-        ->capture_default_str();
-    return simulate;
-}
-
 } // namespace
 
-std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const char* const* argv) {
     RobotOptions options;
     Raw raw;
     ReplayOptions replay_options;
     SonarReplayOptions sonar_options;
     SimulateOptions simulate_options;
+    TruthOptions truth_options;
 
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
@@ -206,14 +176,24 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     add_wire_options(app, raw);
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
-    add_simulate(app, simulate_options)->fallthrough();
+    const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
+    const CLI::App* truth = add_truth(app, truth_options)->fallthrough();
     app.require_subcommand(1);
 
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate");
+        return leave_for(
+            app, reason,
+            "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate; or ask for the truth");
+    }
+    if (truth->parsed()) {
+        if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
+        return truth_options;
+    }
+    for (const char* needed : {"--session", "--robot"}) {
+        if (app.get_option(needed)->empty()) return usage_error(app, fmt::format("{} is required", needed));
     }
     const auto server = parse_server_address(raw.server);
     if (!server) return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
@@ -231,7 +211,8 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
         options.source = std::move(sonar_options);
-    } else {
+    } else if (simulate->parsed()) {
+        if (auto mistake = mistake_in(simulate_options)) return usage_error(app, *mistake);
         options.source = std::move(simulate_options);
     }
     return options;

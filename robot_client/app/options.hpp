@@ -20,15 +20,25 @@ struct ReplayOptions {
 };
 
 struct SimulateOptions {
-    std::string world = "office";
+    std::string world = "office"; ///< a name, or the YAML file of a ROS map
     std::string drive = "wall_follower";
     std::string noise = "none";
-    double noise_width = 0.05; ///< metres, of uniform noise
-    std::string laser = "reference";
+    double noise_width = 0.05;            ///< metres, of uniform noise
+    std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without
+    std::string laser = "reference";      ///< or none
+    std::string sonar = "none";
+    std::string pose = "true"; ///< or odometry
     std::uint64_t seed = 1;
     std::optional<double> duration; ///< seconds of the simulation
     std::optional<std::uint64_t> scans;
     double speed = 1.0; ///< 0 = as fast as the server takes it, 1 = real time
+};
+
+/// The truth of a world, as a map in files; no server is needed.
+struct TruthOptions {
+    std::string world;
+    double cell_size = 0.05; ///< metres
+    std::string output;      ///< the files' path without .pgm and .yaml
 };
 
 /// A recorded ring of sonars, see SonarLog.
@@ -67,6 +77,6 @@ struct RobotOptions {
 
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
 /// which beats the file.
-[[nodiscard]] std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

@@ -17,30 +17,6 @@ Sensor make_laser(std::string_view name, UniformAngles angles, double range_max)
     return {0, SensorKind::kLaser, std::string(name), Pose2{}, angles, 0.0, kRangeMin, range_max};
 }
 
-struct Visible {
-    std::vector<Segment> segments;
-    std::vector<Disc> discs;
-};
-
-Visible visible_from(const World& world, const Point2& origin, double range_max) {
-    Visible visible{segments_near(world.outlines, origin, range_max), {}};
-    for (const Walker& walker : world.walkers) {
-        if (distance(body_of(walker), origin) <= range_max) visible.discs.push_back(body_of(walker));
-    }
-    return visible;
-}
-
-double cast_ray(const Visible& visible, const Point2& origin, double yaw_rad) {
-    double nearest = robot::cast_ray(visible.segments, origin, yaw_rad);
-    for (const Disc& disc : visible.discs) nearest = std::min(nearest, robot::cast_ray(disc, origin, yaw_rad));
-    return nearest;
-}
-
-/// A return stays one: at least a millimetre inside the limits of the sensor.
-RangeMm as_return(double range, const Sensor& laser) {
-    return to_range_mm(std::clamp(range, laser.range_min + 0.001, laser.range_max - 0.001));
-}
-
 } // namespace
 
 Result<Sensor> find_laser(std::string_view name) {
@@ -53,19 +29,13 @@ Result<Sensor> find_laser(std::string_view name) {
 std::vector<RangeMm> sweep(const World& world, const Sensor& laser, const Pose2& T_map_laser,
                            const std::optional<Noise>& noise, Random& random) {
     const Point2 origin{T_map_laser.x, T_map_laser.y};
-    const auto visible = visible_from(world, origin, laser.range_max);
+    const auto people = people_near(world, origin, laser.range_max);
     std::vector<RangeMm> ranges(beam_count(laser.angles));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        double yaw = T_map_laser.yaw + beam_angle(laser.angles, i);
-        if (noise) yaw += random.gaussian(noise->beam_angle);
-        double range = cast_ray(visible, origin, yaw);
-        if (range >= laser.range_max) {
-            ranges[i] = kNoReturn;
-            continue;
-        }
-        if (noise) range += random.gaussian(noise->range);
-        if (noise && noise->range_uniform > 0.0) range += random.uniform(0.0, noise->range_uniform);
-        ranges[i] = as_return(range, laser);
+        const double yaw = true_direction(T_map_laser.yaw + beam_angle(laser.angles, i), noise, random);
+        double range = world.obstacles->cast_ray(origin, yaw, laser.range_max);
+        for (const Disc& person : people) range = std::min(range, cast_ray(person, origin, yaw));
+        ranges[i] = reading(range, laser, noise, random);
     }
     return ranges;
 }

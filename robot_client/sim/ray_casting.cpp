@@ -1,8 +1,6 @@
 #include "robot_client/sim/ray_casting.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 namespace scanloom::robot {
@@ -13,32 +11,36 @@ constexpr double kEndSlack = 1e-9;
 
 } // namespace
 
-std::vector<Segment> segments_near(std::span<const Segment> segments, const Point2& point, double radius) {
-    std::vector<Segment> near;
-    std::copy_if(segments.begin(), segments.end(), std::back_inserter(near),
-                 [&](const Segment& segment) { return distance(segment, point) <= radius; });
-    return near;
+Ray::Ray(const Point2& from, double yaw_rad)
+    : origin_x(from.x()), origin_y(from.y()), direction_x(std::cos(yaw_rad)), direction_y(std::sin(yaw_rad)) {}
+
+double cast_ray(const Segment& segment, const Ray& ray, double nearest) noexcept {
+    // origin + length * direction = a + share * (b - a), solved by Cramer's rule
+    const double along_x = segment.bx - segment.ax;
+    const double along_y = segment.by - segment.ay;
+    const double determinant = ray.direction_x * along_y - ray.direction_y * along_x;
+    if (determinant == 0.0) return nearest; // parallel: seen edge on, its neighbours at the corners stop the ray
+    const double to_x = segment.ax - ray.origin_x;
+    const double to_y = segment.ay - ray.origin_y;
+    const double length_part = to_x * along_y - to_y * along_x;
+    const double share_part = to_x * ray.direction_y - to_y * ray.direction_x;
+    // Most segments are behind the ray or clearly beside it, which is known without dividing.
+    constexpr double kClearly = 10.0 * kEndSlack;
+    const double square = determinant * determinant;
+    const double beside = share_part * determinant;
+    if (length_part * determinant < 0.0 || beside < -kClearly * square || beside > (1.0 + kClearly) * square) {
+        return nearest;
+    }
+    const double length = length_part / determinant;
+    if (length < 0.0 || length >= nearest) return nearest;
+    const double share = share_part / determinant;
+    return share >= -kEndSlack && share <= 1.0 + kEndSlack ? length : nearest;
 }
 
 double cast_ray(std::span<const Segment> segments, const Point2& origin, double yaw_rad) {
-    const double direction_x = std::cos(yaw_rad);
-    const double direction_y = std::sin(yaw_rad);
-    const double origin_x = origin.x();
-    const double origin_y = origin.y();
+    const Ray ray(origin, yaw_rad);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Segment& segment : segments) {
-        // origin + length * direction = a + share * (b - a), solved by Cramer's rule
-        const double along_x = segment.bx - segment.ax;
-        const double along_y = segment.by - segment.ay;
-        const double determinant = direction_x * along_y - direction_y * along_x;
-        if (determinant == 0.0) continue; // parallel: seen edge on, its neighbours at the corners stop the ray
-        const double to_x = segment.ax - origin_x;
-        const double to_y = segment.ay - origin_y;
-        const double length = (to_x * along_y - to_y * along_x) / determinant;
-        if (length < 0.0 || length >= nearest) continue;
-        const double share = (to_x * direction_y - to_y * direction_x) / determinant;
-        if (share >= -kEndSlack && share <= 1.0 + kEndSlack) nearest = length;
-    }
+    for (const Segment& segment : segments) nearest = cast_ray(segment, ray, nearest);
     return nearest;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace scanloom::robot {
 namespace {
@@ -22,12 +21,7 @@ std::int32_t end_cell(double metres, double cells_per_metre) {
 }
 
 TruthGrid blank_grid(const World& world, double cell_size_m) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Box all{kFar, kFar, -kFar, -kFar};
-    for (const Box& box : world.solids) {
-        all = {std::min(all.x_min, box.x_min), std::min(all.y_min, box.y_min), std::max(all.x_max, box.x_max),
-               std::max(all.y_max, box.y_max)};
-    }
+    const Box all = bounds_of(world);
     const double cells_per_metre = 1.0 / cell_size_m;
     TruthGrid grid{cell_size_m, first_cell(all.x_min, cells_per_metre), first_cell(all.y_min, cells_per_metre), 0, 0,
                    {}};
@@ -54,7 +48,13 @@ void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
     }
 }
 
-void mark_solids(const World& world, TruthGrid& grid) {
+/// Of a cell that holds unknown parts: no way leads through it. None is left in the end.
+constexpr Truth kClosed = static_cast<Truth>(3);
+
+void mark_unknown_and_solids(const World& world, TruthGrid& grid) {
+    for (const Box& box : world.unknown) {
+        for_cells_of(box, grid, [](Truth& cell, std::size_t) { cell = kClosed; });
+    }
     for (const Box& box : world.solids) {
         for_cells_of(box, grid, [](Truth& cell, std::size_t) { cell = Truth::kOccupied; });
     }
@@ -85,20 +85,23 @@ void mark_free(const World& world, TruthGrid& grid) {
 TruthGrid truth_of(const World& world, double cell_size_m) {
     TruthGrid grid = blank_grid(world, cell_size_m);
     const int parts = static_cast<int>(std::ceil(cell_size_m / kWayCellMax - 1e-9));
-    TruthGrid ways = blank_grid(world, cell_size_m / parts);
-    mark_solids(world, ways);
-    mark_free(world, ways);
-    if (parts == 1) return ways;
-    mark_solids(world, grid);
-    for (std::int32_t j = 0; j < grid.height; ++j) {
-        for (std::int32_t i = 0; i < grid.width; ++i) {
-            // nothing stands in the cell, so one part of it tells for all
-            Truth& cell = grid.cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.width) +
-                                     static_cast<std::size_t>(i)];
-            const bool is_reached = ways.at((grid.i_begin + i) * parts, (grid.j_begin + j) * parts) == Truth::kFree;
-            if (cell == Truth::kOutside && is_reached) cell = Truth::kFree;
+    mark_unknown_and_solids(world, grid);
+    if (parts == 1) {
+        mark_free(world, grid);
+    } else {
+        TruthGrid ways = blank_grid(world, cell_size_m / parts);
+        mark_unknown_and_solids(world, ways);
+        mark_free(world, ways);
+        std::size_t n = 0;
+        for (std::int32_t j = grid.j_begin; j < grid.j_begin + grid.height; ++j) {
+            for (std::int32_t i = grid.i_begin; i < grid.i_begin + grid.width; ++i, ++n) {
+                // nothing stands in the cell, so one part of it tells for all
+                const bool is_reached = ways.at(i * parts, j * parts) == Truth::kFree;
+                if (grid.cells[n] == Truth::kOutside && is_reached) grid.cells[n] = Truth::kFree;
+            }
         }
     }
+    std::ranges::replace(grid.cells, kClosed, Truth::kOutside);
     return grid;
 }
 

@@ -8,7 +8,7 @@
 namespace scanloom::robot {
 
 enum class Truth : std::uint8_t {
-    kOutside,  ///< beyond the walls, or shut in between solids: no way leads there from a floor
+    kOutside,  ///< beyond the walls, or shut in between solids: no way leads there from a floor; or not known
     kFree,     ///< nothing stands in the cell
     kOccupied, ///< a solid stands in the cell or in a part of it
 };
@@ -31,7 +31,8 @@ struct TruthGrid {
     }
 };
 
-/// The grid that covers all solids of the world. A solid whose side lies on the border of a cell does not stand in it.
+/// The grid that covers all solids and floors of the world. A solid whose side lies on the border of a cell does not
+/// stand in it.
 /// Pre     0.005 <= cell_size_m <= 1; openings that robots use are 0.2 m wide at least.
 /// Cost    the cells, at cells of 0.1 m or less.
 [[nodiscard]] TruthGrid truth_of(const World& world, double cell_size_m);

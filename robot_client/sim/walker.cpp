@@ -37,8 +37,4 @@ void walk(Walker& walker, const Point2& robot, double seconds) {
     walker = std::move(next);
 }
 
-double distance(const Disc& disc, const Point2& point) {
-    return std::max(0.0, (point - disc.centre).norm() - disc.radius);
-}
-
 } // namespace scanloom::robot

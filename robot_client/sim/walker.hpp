@@ -1,16 +1,10 @@
 #pragma once
 
-#include "common/geometry/pose2.hpp"
+#include "robot_client/sim/shapes.hpp"
 
 #include <vector>
 
 namespace scanloom::robot {
-
-/// Something round that lasers see and robots bump into. Metres, in the world frame.
-struct Disc {
-    Point2 centre{0.0, 0.0};
-    double radius = 0.0;
-};
 
 /// A person as lasers see one: a disc that goes round a closed path at a steady pace.
 struct Walker {
@@ -29,8 +23,5 @@ inline constexpr double kWalkerDistance = 0.7; // metres
 
 /// Lets the walker go on for some time, or wait where that would bring it too near to the robot.
 void walk(Walker& walker, const Point2& robot, double seconds);
-
-/// Metres from a point to the disc; 0 inside.
-[[nodiscard]] double distance(const Disc& disc, const Point2& point);
 
 } // namespace scanloom::robot

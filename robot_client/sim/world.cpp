@@ -3,40 +3,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace scanloom::robot {
 
 World make_world(std::string name, std::vector<Box> solids, std::vector<Box> floors) {
-    World world{std::move(name), std::move(solids), std::move(floors), {}, {}};
+    World world;
+    world.name = std::move(name);
+    world.solids = std::move(solids);
+    world.starts = floors;
+    world.floors = std::move(floors);
     for (const Box& box : world.solids) {
         world.outlines.push_back({box.x_min, box.y_min, box.x_max, box.y_min});
         world.outlines.push_back({box.x_max, box.y_min, box.x_max, box.y_max});
         world.outlines.push_back({box.x_max, box.y_max, box.x_min, box.y_max});
         world.outlines.push_back({box.x_min, box.y_max, box.x_min, box.y_min});
     }
+    world.obstacles = std::make_shared<const Obstacles>(world.outlines, world.solids);
     return world;
 }
 
-double distance(const Segment& segment, const Point2& point) {
-    const double along_x = segment.bx - segment.ax;
-    const double along_y = segment.by - segment.ay;
-    const double to_x = point.x() - segment.ax;
-    const double to_y = point.y() - segment.ay;
-    const double share =
-        std::clamp((to_x * along_x + to_y * along_y) / (along_x * along_x + along_y * along_y), 0.0, 1.0);
-    return std::hypot(to_x - share * along_x, to_y - share * along_y);
+Box bounds_of(const World& world) {
+    Box all = world.solids.empty() ? world.floors.front() : world.solids.front();
+    for (const Box& box : world.solids) all = united(all, box);
+    for (const Box& box : world.floors) all = united(all, box);
+    return all;
 }
 
 double clearance(const World& world, const Point2& point) {
-    for (const Box& box : world.solids) {
-        if (box.contains(point)) return 0.0;
-    }
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Segment& segment : world.outlines) nearest = std::min(nearest, distance(segment, point));
+    if (world.obstacles->contain(point)) return 0.0;
+    double nearest = world.obstacles->distance(point);
     for (const Walker& walker : world.walkers) nearest = std::min(nearest, distance(body_of(walker), point));
     return nearest;
+}
+
+std::vector<Disc> people_near(const World& world, const Point2& place, double radius) {
+    std::vector<Disc> people;
+    for (const Walker& walker : world.walkers) {
+        if (distance(body_of(walker), place) <= radius) people.push_back(body_of(walker));
+    }
+    return people;
 }
 
 void walk(World& world, const Point2& robot, double seconds) {
@@ -44,10 +49,13 @@ void walk(World& world, const Point2& robot, double seconds) {
 }
 
 Result<World> find_world(std::string_view name) {
-    if (name == "room") return make_room();
-    if (name == "room_walker") return make_room_walker();
-    if (name == "office") return make_office();
-    return Error{Errc::kNotFound, fmt::format("there is no world '{}'; choose room, room_walker or office", name)};
+    std::string names;
+    for (const NamedWorld& world : kWorlds) {
+        if (world.name == name) return world.make();
+        names += names.empty() ? "" : world.name == kWorlds.back().name ? " or " : ", ";
+        names += world.name;
+    }
+    return Error{Errc::kNotFound, fmt::format("there is no world '{}'; choose {}", name, names)};
 }
 
 } // namespace scanloom::robot

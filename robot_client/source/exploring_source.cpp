@@ -31,8 +31,8 @@ ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limi
 ExploringSource::ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed,
                                  std::unique_ptr<Explore> explore)
     : explore_(explore.get()), simulator_(std::move(options), std::move(explore)), limits_(limits),
-      no_return_(no_return), speed_(speed), laser_(std::make_shared<const Sensor>(simulator_.laser())) {
-    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration));
+      no_return_(no_return), speed_(speed) {
+    limits_.scans = std::min(limits_.scans, scans_within(limits_.duration, simulator_.sensors().size()));
 }
 
 asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
@@ -43,10 +43,11 @@ asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
         if (auto asked = co_await ask(); !asked) co_return asked.error();
     }
     if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
-    Observation observation = observed(simulator_, laser_, no_return_);
-    observation.scan.stamp += static_cast<double>(resumed_after_) * kScanPeriod;
+    Observation observation = observed(simulator_, no_return_);
+    const auto moments = static_cast<double>(resumed_after_ / simulator_.sensors().size());
+    observation.scan.stamp += moments * kScanPeriod;
     scans_ += 1;
-    co_await wait_until_due();
+    co_await wait_until_due(observation.scan.stamp);
     co_return std::optional(std::move(observation));
 }
 
@@ -87,12 +88,12 @@ Result<> ExploringSource::take(Result<NextStop> answer) {
 }
 
 /// A scan comes when it would be taken; time that was lost is not made up for.
-asio::awaitable<void> ExploringSource::wait_until_due() {
-    if (speed_ <= 0.0) co_return;
-    const std::chrono::duration<double> period(kScanPeriod / speed_);
+asio::awaitable<void> ExploringSource::wait_until_due(double stamp) {
+    const double passed = stamp - std::exchange(stamp_, stamp); // none between the sensors of one moment
+    if (speed_ <= 0.0 || passed <= 0.0) co_return;
     due_ = std::max(due_, Clock::now());
     wake_->expires_at(due_);
-    due_ += std::chrono::duration_cast<Clock::duration>(period);
+    due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(passed / speed_));
     if (!is_stopped_) co_await wake_->async_wait(kUse);
 }
 

@@ -67,7 +67,7 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<Result<>> ask();
     [[nodiscard]] Result<> take(Result<NextStop> answer);
-    [[nodiscard]] boost::asio::awaitable<void> wait_until_due();
+    [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
     [[nodiscard]] boost::asio::awaitable<void> until_stopped();
 
     Explore* explore_; // the simulator has it
@@ -75,10 +75,10 @@ private:
     SimulationLimits limits_;
     NoReturn no_return_;
     double speed_;
-    std::shared_ptr<const Sensor> laser_;
     NextGoal next_goal_;
     std::uint64_t resumed_after_ = 0;
     std::uint64_t scans_ = 0; // of this run
+    double stamp_ = -1.0;     // of the newest scan
     int failures_ = 0;        // in a row
     bool is_stopped_ = false;
     std::optional<boost::asio::steady_timer> wake_; // while next() waits

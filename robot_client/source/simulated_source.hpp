@@ -8,16 +8,15 @@
 namespace scanloom::robot {
 
 struct SimulationLimits {
-    double duration = std::numeric_limits<double>::infinity(); ///< seconds of the simulation's time
-    std::uint64_t scans = std::numeric_limits<std::uint64_t>::max();
+    double duration = std::numeric_limits<double>::infinity();       ///< seconds of the simulation's time
+    std::uint64_t scans = std::numeric_limits<std::uint64_t>::max(); ///< of all sensors
 };
 
-/// How many scans, taken at 0, p, 2 p, ..., there are before `duration` seconds have passed.
-[[nodiscard]] std::uint64_t scans_within(double duration);
+/// How many scans so many sensors take at 0, p, 2 p, ... before `duration` seconds have passed.
+[[nodiscard]] std::uint64_t scans_within(double duration, std::size_t sensors);
 
 /// The next scan of a simulated robot.
-[[nodiscard]] Observation observed(Simulator& simulator, const std::shared_ptr<const Sensor>& laser,
-                                   NoReturn no_return);
+[[nodiscard]] Observation observed(Simulator& simulator, NoReturn no_return);
 
 /// A simulated robot as a source; it ends at the first of its limits, or when its behaviour is done, or never.
 class SimulatedSource final : public Source {
@@ -35,7 +34,6 @@ private:
     Simulator simulator_;
     SimulationLimits limits_;
     NoReturn no_return_;
-    std::shared_ptr<const Sensor> laser_;
     std::uint64_t scans_ = 0;
 };
 

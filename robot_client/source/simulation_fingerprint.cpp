@@ -9,40 +9,68 @@
 namespace scanloom::robot {
 namespace {
 
-/// Doubles are written so that different ones differ.
-std::string text_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return) {
-    // The number is to be raised when the same options begin to give other scans: another drive, another simulator.
-    std::string text = fmt::format("simulation 2\nseed {}\ndrive {}\nno-return {}\n", options.seed, drive,
-                                   no_return == NoReturn::kFree ? "free" : "drop");
-    const auto add = [&](std::string_view what, auto... numbers) {
-        text += what;
-        (fmt::format_to(std::back_inserter(text), " {}", numbers), ...);
-        text += '\n';
-    };
-    for (const Box& box : options.world.solids) add("solid", box.x_min, box.y_min, box.x_max, box.y_max);
-    for (const Box& box : options.world.floors) add("floor", box.x_min, box.y_min, box.x_max, box.y_max);
-    const Sensor& laser = options.laser;
-    add("laser", laser.id, laser.mount.x, laser.mount.y, laser.mount.yaw, laser.range_min, laser.range_max);
-    for (std::size_t i = 0; i < beam_count(laser.angles); ++i) add("beam", beam_angle(laser.angles, i));
-    if (const auto& noise = options.noise) {
-        add("noise", noise->range, noise->beam_angle, noise->odometry_forward, noise->odometry_turn,
-            noise->odometry_drift);
-        if (noise->range_uniform > 0.0) add("uniform", noise->range_uniform);
+/// Hashes lines of a word and numbers. Doubles are written so that different ones differ.
+class Lines {
+public:
+    template <class... Numbers>
+    void add(std::string_view what, Numbers... numbers) {
+        line_ = what;
+        (fmt::format_to(std::back_inserter(line_), " {}", numbers), ...);
+        line_ += '\n';
+        hash_.update(line_);
     }
-    for (const Walker& walker : options.world.walkers) {
-        add("walker", walker.radius, walker.pace, walker.walked);
-        for (const Point2& corner : walker.loop) add("corner", corner.x(), corner.y());
+
+    void add_boxes(std::string_view what, const std::vector<Box>& boxes) {
+        for (const Box& box : boxes) add(what, box.x_min, box.y_min, box.x_max, box.y_max);
     }
-    if (const auto& start = options.start) add("start", start->x, start->y, start->yaw);
-    return text;
+
+    void add_sensor(std::string_view what, const Sensor& sensor) {
+        add(what, sensor.id, sensor.mount.x, sensor.mount.y, sensor.mount.yaw, sensor.range_min, sensor.range_max);
+        if (sensor.aperture > 0.0) add("aperture", sensor.aperture);
+        for (std::size_t i = 0; i < beam_count(sensor.angles); ++i) add("beam", beam_angle(sensor.angles, i));
+    }
+
+    [[nodiscard]] std::string hex() { return hash_.hex(); }
+
+private:
+    Sha256 hash_;
+    std::string line_;
+};
+
+void add_world(Lines& lines, const World& world) {
+    lines.add_boxes("solid", world.solids);
+    lines.add_boxes("floor", world.floors);
+    lines.add_boxes("unknown", world.unknown);
+    if (world.starts != world.floors) lines.add_boxes("start-box", world.starts);
+    if (world.start_clearance != kStartClearance) lines.add("start-clearance", world.start_clearance);
 }
 
 } // namespace
 
+// A line that there was not in older versions is there only where something of it is: what gave the same scans then has
+// the same fingerprint now.
 std::string fingerprint_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return) {
-    Sha256 hash;
-    hash.update(text_of(options, drive, no_return));
-    return "simulation:" + hash.hex().substr(0, 32);
+    Lines lines;
+    // The number is to be raised when the same options begin to give other scans: another drive, another simulator.
+    lines.add("simulation", 2);
+    lines.add("seed", options.seed);
+    lines.add("drive", drive);
+    lines.add("no-return", no_return == NoReturn::kFree ? "free" : "drop");
+    add_world(lines, options.world);
+    if (options.laser) lines.add_sensor("laser", *options.laser);
+    if (options.sonar) lines.add_sensor("sonar", *options.sonar);
+    if (options.pose == PoseSent::kOdometry) lines.add("pose", "odometry");
+    if (const auto& noise = options.noise) {
+        lines.add("noise", noise->range, noise->beam_angle, noise->odometry_forward, noise->odometry_turn,
+                  noise->odometry_drift);
+        if (noise->range_uniform > 0.0) lines.add("uniform", noise->range_uniform);
+    }
+    for (const Walker& walker : options.world.walkers) {
+        lines.add("walker", walker.radius, walker.pace, walker.walked);
+        for (const Point2& corner : walker.loop) lines.add("corner", corner.x(), corner.y());
+    }
+    if (const auto& start = options.start) lines.add("start", start->x, start->y, start->yaw);
+    return "simulation:" + lines.hex().substr(0, 32);
 }
 
 } // namespace scanloom::robot

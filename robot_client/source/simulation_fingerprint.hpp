@@ -8,8 +8,9 @@
 
 namespace scanloom::robot {
 
-/// Identifies the scans of a simulated robot: the same where the world, the drive, the laser, the noise, the seed and
-/// what becomes of beams without return are the same. At most 64 printable bytes.
+/// Identifies the scans of a simulated robot: the same where the world (of a map, its cells), the drive, the
+/// sensors, the noise, the seed, the pose that is sent and what becomes of beams without return are the same. At most
+/// 64 printable bytes.
 [[nodiscard]] std::string fingerprint_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return);
 
 } // namespace scanloom::robot

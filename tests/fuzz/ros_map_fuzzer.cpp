@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view input(reinterpret_cast<const char*>(data), size);
     const auto yaml = input.substr(0, input.find('\0'));
     const auto image = std::span(data, size).subspan(std::min(size, yaml.size() + 1));
-    const auto description = tiles::parse_ros_yaml(yaml);
+    const auto description = parse_ros_yaml(yaml);
     if (!description) {
         fuzz::check(!description.error().message.empty(), "every error says what is wrong");
         return 0;

@@ -1,5 +1,6 @@
 #include "server/http/handlers/import.hpp"
 
+#include "common/ros_map/description.hpp"
 #include "server/http/handlers/session_json.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/multipart.hpp"
@@ -54,7 +55,7 @@ Result<Response> import_map(session::SessionRegistry& sessions, const Call& call
     if (auto known = call.query.check_only({}); !known) return known.error();
     auto form = read_form(call.request);
     if (!form) return form.error();
-    const auto description = tiles::parse_ros_yaml(*form->yaml);
+    const auto description = parse_ros_yaml(*form->yaml);
     if (!description) return description.error();
     const auto* pixels = reinterpret_cast<const std::uint8_t*>(form->image->data());
     const auto patches = tiles::read_ros_image(*description, std::span(pixels, form->image->size()));

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 class Options : public testing::Test {
 protected:
-    std::variant<RobotOptions, Leave> parse(std::vector<std::string> words) {
+    std::variant<RobotOptions, TruthOptions, Leave> parse(std::vector<std::string> words) {
         std::vector<const char*> argv{"scanloom-robot"};
         for (const auto& word : words) argv.push_back(word.c_str());
         return parse_options(static_cast<int>(argv.size()), argv.data());
@@ -120,6 +120,26 @@ TEST_F(Options, ABodyIsStatedForAnySource) {
     }
 }
 
+TEST_F(Options, TheTruthNeedsNoServerSessionOrRobot) {
+    const auto result = parse({"truth", "--world", "a map.yaml", "--output", "x", "--cell-size", "0.2"});
+    ASSERT_TRUE(std::holds_alternative<TruthOptions>(result));
+    const auto& truth = std::get<TruthOptions>(result);
+    EXPECT_EQ(truth.world + " " + truth.output, "a map.yaml x");
+    EXPECT_EQ(truth.cell_size, 0.2);
+}
+
+TEST_F(Options, ASimulatedRobotHasSensorsNoiseAndAPoseToSend) {
+    const auto plain = std::get<SimulateOptions>(parsed({"simulate", "--session", "s", "--robot", "r"}).source);
+    EXPECT_EQ(plain.laser + " " + plain.sonar + " " + plain.pose, "reference none true");
+    EXPECT_FALSE(plain.odometry_noise);
+    const auto other = std::get<SimulateOptions>(
+        parsed({"simulate", "--session", "s", "--robot", "r", "--laser", "none", "--sonar", "ring16", "--pose",
+                "odometry", "--odometry-noise", "2.5", "--world", "m.yaml"})
+            .source);
+    EXPECT_EQ(other.laser + " " + other.sonar + " " + other.pose + " " + other.world, "none ring16 odometry m.yaml");
+    EXPECT_EQ(other.odometry_noise, 2.5);
+}
+
 TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
     const auto options = parsed({"sonar", "m.txt", "p.txt", "--aperture", "15", "--session", "s", "--robot", "r"});
     const auto& sonar = std::get<SonarReplayOptions>(options.source);
@@ -163,7 +183,7 @@ TEST_F(Options, AFileThatTheEnvironmentNamesMustBeThere) {
 
 TEST_F(Options, ServersAreHostAndPort) {
     const auto host = [&](const std::string& server) {
-        return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).host;
+        return parsed({"replay", "f", "--session", "s", "--robot", "r", "--server", server}).server.host;
     };
     EXPECT_EQ(host("maps.example:7447"), "maps.example");
     EXPECT_EQ(host("[::1]:7447"), "::1");
@@ -182,14 +202,25 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         return more;
     };
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
-        {{}, "--session"},
-        {{"--session", "s", "--robot", "r"}, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate;"},
+        {{}, "say what to stream"},
+        {{"--session", "s", "--robot", "r"},
+         "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate; or ask for the truth;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},
         {{"sonar", "m.txt", "--session", "s", "--robot", "r"}, "name two files"},
         {{"sonar", "m", "p", "--aperture", "181", "--session", "s", "--robot", "r"}, "--aperture"},
+        {{"simulate", "--session", "s"}, "--robot is required"},
         {with({"--world", "moon"}), "moon"},
+        {with({"--laser", "none"}), "blind"},
+        {with({"--sonar", "bat"}), "bat"},
+        {with({"--odometry-noise", "-1"}), "--odometry-noise"},
+        {with({"--pose", "wrong"}), "wrong"},
+        {{"truth", "--output", "x"}, "name the --world"},
+        {{"truth", "--world", "room"}, "--output PREFIX"},
+        {{"truth", "--world", "room", "--output", "folder/"}, "--output PREFIX"},
+        {{"truth", "--world", "moon", "--output", "x"}, "moon"},
+        {{"truth", "--world", "room", "--output", "x", "--cell-size", "0"}, "--cell-size"},
         {with({"--noise", "loud"}), "loud"},
         {with({"--noise-width", "0"}), "--noise-width"},
         {with({"--no-return", "maybe"}), "maybe"},

@@ -75,6 +75,53 @@ TEST(Simulator, OdometryWithNoiseDriftsButNotAway) {
     EXPECT_LT(drift, 2.0);
 }
 
+TEST(Simulator, TheSentPoseMayBeThatOfTheOdometry) {
+    SimulatorOptions options{make_room(), *find_laser("reference"), Noise{}, 2};
+    options.pose = PoseSent::kOdometry;
+    Simulator simulator(std::move(options), std::make_unique<WallFollower>());
+    auto truthful = make("room", 2, Noise{});
+    const Pose2 start = simulator.pose();
+    for (int i = 0; i < 300; ++i) {
+        const Scan scan = simulator.next_scan();
+        const Scan exact = truthful.next_scan();
+        EXPECT_EQ(scan.pose, compose(start, *scan.odometry));
+        EXPECT_EQ(scan.ranges, exact.ranges) << "where the robot is does not depend on what it believes";
+        EXPECT_EQ(simulator.pose(), exact.pose);
+        EXPECT_EQ(scan.pose == exact.pose, i == 0) << i;
+    }
+}
+
+TEST(Simulator, OdometryNoiseGrowsInProportionToItsScale) {
+    const auto drift_of = [](double scale) {
+        auto simulator = make("room", 2, with_odometry(Noise{.range = 0.0, .beam_angle = 0.0}, scale));
+        const Pose2 start = simulator.pose();
+        Scan scan;
+        for (int i = 0; i < 300; ++i) scan = simulator.next_scan();
+        const Pose2 believed = compose(start, *scan.odometry);
+        return std::hypot(believed.x - scan.pose.x, believed.y - scan.pose.y);
+    };
+    EXPECT_LT(drift_of(0.0), 1e-9);
+    EXPECT_NEAR(drift_of(0.02) / drift_of(0.01), 2.0, 0.1);
+    EXPECT_GT(drift_of(0.01), 1e-5);
+}
+
+TEST(Simulator, ALaserAndSonarsAreReadAtTheSameMomentsOneAfterTheOther) {
+    SimulatorOptions options{make_office(), *find_laser("reference"), std::nullopt, 4};
+    options.sonar = *find_sonar("ring16");
+    Simulator both(std::move(options), std::make_unique<WallFollower>());
+    auto alone = make("office", 4);
+    for (int i = 0; i < 100; ++i) {
+        const Scan scan = both.next_scan();
+        EXPECT_EQ(scan, alone.next_scan()) << "it steers by its laser";
+        const Scan heard = both.next_scan();
+        EXPECT_EQ(both.sensor_of(scan)->kind, SensorKind::kLaser);
+        EXPECT_EQ(both.sensor_of(heard)->kind, SensorKind::kSonar);
+        EXPECT_EQ(heard.stamp, scan.stamp);
+        EXPECT_EQ(heard.pose, scan.pose);
+        EXPECT_EQ(heard.ranges.size(), 16U);
+    }
+}
+
 /// How one simulated robot fared.
 struct Drive {
     double clearance_min = 10.0; // from what stands still
@@ -145,7 +192,21 @@ TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandst
 
 INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
                          testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
-                                         Setting{"office", "reference", false}, Setting{"office", "lidar360", true}));
+                                         Setting{"office", "reference", false}, Setting{"office", "lidar360", true},
+                                         Setting{"hall", "reference", false}, Setting{"hall", "lidar360", true}));
+
+TEST(WallFollowerDrives, ThreeMinutesBySonarAloneWithoutCollision) {
+    for (const char* name : {"room", "office", "hall"}) {
+        const World world = *find_world(name);
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            SimulatorOptions options{world, std::nullopt, std::nullopt, seed};
+            options.sonar = *find_sonar("ring16");
+            const Drive drive = watch(Simulator(std::move(options), std::make_unique<WallFollower>()), world, 180.0);
+            EXPECT_EQ(drive.collisions, 0U) << name << ' ' << seed;
+            EXPECT_GT(drive.path_length, 30.0) << name << ' ' << seed;
+        }
+    }
+}
 
 TEST(WallFollowerDrives, FiveMinutesWithAWalkerWithoutTouchingHim) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {

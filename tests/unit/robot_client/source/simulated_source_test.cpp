@@ -1,10 +1,13 @@
 #include "robot_client/source/simulated_source.hpp"
 
+#include "common/wire/messages.hpp"
 #include "robot_client/drive/wall_follower.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace scanloom::robot {
 namespace {
@@ -27,6 +30,44 @@ TEST(SimulatedSource, EndsAtTheFirstOfItsLimits) {
         EXPECT_EQ(source.scan_count(), expected);
         EXPECT_EQ(count(source), expected);
     }
+}
+
+/// A laser and sonars.
+SimulatedSource make_hearing(SimulationLimits limits, std::uint64_t seed, const char* world = "room_walker") {
+    SimulatorOptions options{*find_world(world), *find_laser("lidar360"), Noise{.range_uniform = 0.05}, seed};
+    options.sonar = *find_sonar("ring16");
+    options.pose = PoseSent::kOdometry;
+    return {Simulator(std::move(options), std::make_unique<WallFollower>()), limits, NoReturn::kFree};
+}
+
+TEST(SimulatedSource, EachSensorHasItsScansWithinTheDuration) {
+    auto source = make_hearing({.duration = 0.31}, 1);
+    EXPECT_EQ(source.scan_count(), 8U);
+    std::size_t of_sonars = 0;
+    while (const auto observation = *source.next()) {
+        EXPECT_EQ(observation->sensor->id, observation->scan.sensor);
+        EXPECT_EQ(observation->scan.ranges.size(), beam_count(observation->sensor->angles));
+        of_sonars += observation->sensor->kind == SensorKind::kSonar;
+    }
+    EXPECT_EQ(of_sonars, 4U);
+}
+
+/// The frames that an uplink would send.
+std::vector<std::string> frames_of(SimulatedSource source) {
+    std::vector<std::string> frames;
+    std::uint64_t seq = 0;
+    while (auto observation = *source.next()) {
+        observation->scan.seq = ++seq;
+        wire::encode(wire::ScanBatch{{observation->scan}}, frames.emplace_back());
+    }
+    return frames;
+}
+
+TEST(SimulatedSource, TheSameSeedGivesTheSameBytes) {
+    const auto frames = frames_of(make_hearing({.scans = 400}, 5));
+    EXPECT_EQ(frames.size(), 400U);
+    EXPECT_EQ(frames_of(make_hearing({.scans = 400}, 5)), frames);
+    EXPECT_NE(frames_of(make_hearing({.scans = 400}, 6)), frames);
 }
 
 TEST(SimulatedSource, WithoutLimitsItsLengthIsNotKnown) { EXPECT_EQ(make({}).scan_count(), std::nullopt); }

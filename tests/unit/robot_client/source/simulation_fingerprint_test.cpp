@@ -17,6 +17,10 @@ TEST(SimulationFingerprint, IsTheSameForTheSameSimulation) {
     EXPECT_LE(fingerprint(options()).size(), 64U);
 }
 
+TEST(SimulationFingerprint, WhatGaveTheSameScansInOlderVersionsHasTheFingerprintItHadThere) {
+    EXPECT_EQ(fingerprint(options()), "simulation:2c4e8578c71e4392b4c3715a4333a356");
+}
+
 TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
     std::set<std::string> seen{fingerprint(options()), fingerprint_of(options(), "another", NoReturn::kFree),
                                fingerprint_of(options(), "wall_follower", NoReturn::kDrop)};
@@ -25,8 +29,8 @@ TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
         [](SimulatorOptions& o) { o.world.solids.back().x_max += 1e-9; },
         [](SimulatorOptions& o) { o.world.floors.pop_back(); },
         [](SimulatorOptions& o) { o.laser = *find_laser("wide"); },
-        [](SimulatorOptions& o) { o.laser.range_max = 4.0; },
-        [](SimulatorOptions& o) { o.laser.mount.x = 0.1; },
+        [](SimulatorOptions& o) { o.laser->range_max = 4.0; },
+        [](SimulatorOptions& o) { o.laser->mount.x = 0.1; },
         [](SimulatorOptions& o) { o.noise.reset(); },
         [](SimulatorOptions& o) { o.noise->odometry_drift = 0.03; },
         [](SimulatorOptions& o) { o.noise->range_uniform = 0.1; },
@@ -35,6 +39,21 @@ TEST(SimulationFingerprint, DiffersWithEverythingThatDeterminesTheScans) {
             o.start = Pose2{1, 2, 0.5};
         },
         [](SimulatorOptions& o) { o.seed = 8; },
+        [](SimulatorOptions& o) { o.sonar = *find_sonar("ring16"); },
+        [](SimulatorOptions& o) { o.laser = *find_sonar("ring16"); },
+        [](SimulatorOptions& o) {
+            o.sonar = *find_sonar("ring16");
+            o.sonar->aperture = 0.3;
+        },
+        [](SimulatorOptions& o) { o.noise = with_odometry(Noise{}, 2.0); },
+        [](SimulatorOptions& o) { o.pose = PoseSent::kOdometry; },
+        [](SimulatorOptions& o) {
+            o.world.unknown = {{1, 2, 3, 4}};
+        },
+        [](SimulatorOptions& o) {
+            o.world.starts = {{1, 2, 3, 4}};
+        },
+        [](SimulatorOptions& o) { o.world.start_clearance = 0.3; },
     };
     for (const auto change : kChanges) {
         SimulatorOptions changed = options();

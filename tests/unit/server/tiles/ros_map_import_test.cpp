@@ -1,5 +1,6 @@
 #include "server/tiles/ros_map_import.hpp"
 
+#include "common/ros_map/description.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/ros_map.hpp"
@@ -17,7 +18,6 @@ namespace scanloom::tiles {
 namespace {
 
 using mapping::Layer;
-using testing::HasSubstr;
 
 Bytes bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
@@ -43,21 +43,6 @@ TEST(RosMapImport, GivesBackWhatWasExported) {
     EXPECT_TRUE(pgm == same);
     EXPECT_TRUE(pgm == map_pgm(render_map(again, Layer::kHimm, frame), again.config));
     EXPECT_EQ(again.robots.size(), 0U);
-}
-
-TEST(RosMapImport, GreysAreReadByTheThresholds) {
-    const RosMapDescription plain{.free_thresh = 0.25};
-    const Bytes image = bytes_of("P2\n# a comment\n6 1\n255\n0 100 150 205 206 254\n");
-    using enum MapCell;
-    EXPECT_THAT(read_ros_image(plain, image)->front().cells,
-                testing::ElementsAre(kOccupied, kUnknown, kUnknown, kUnknown, kFree, kFree));
-    auto scale = plain;
-    scale.is_trinary = false;
-    EXPECT_EQ(read_ros_image(scale, image)->front().cells[3], kFree);
-    auto negated = plain;
-    negated.negate = true;
-    EXPECT_THAT(read_ros_image(negated, image)->front().cells,
-                testing::ElementsAre(kFree, kUnknown, kUnknown, kUnknown, kOccupied, kOccupied));
 }
 
 TEST(RosMapImport, RowsComeFromTheBottomInPatchesOfWholeRows) {
@@ -98,38 +83,9 @@ TEST(RosMapImport, WallsSurviveLargerCellsAndFillSmallerOnes) {
     EXPECT_EQ(occupied(0.025), (std::pair{4L, 128UL}));
 }
 
-TEST(RosMapImport, ADescriptionThatIsNoneIsRefusedByKey) {
-    const std::string good = "image: map.pgm\nresolution: 0.05\norigin: [1, -2.5, 0]\n";
-    EXPECT_EQ(parse_ros_yaml(good).value(), (RosMapDescription{.resolution = 0.05, .origin_x = 1.0, .origin_y = -2.5}));
-    EXPECT_TRUE(parse_ros_yaml("resolution: 1\norigin: [0, 0]\nnegate: 1\nmode: scale\n"));
-    EXPECT_TRUE(parse_ros_yaml(good + "negate: true\n").value().negate);
-    EXPECT_FALSE(parse_ros_yaml(good + "negate: false\n").value().negate);
-    for (const auto& [yaml, why] : std::initializer_list<std::pair<std::string, std::string>>{
-             {"", "not a list of keys"},
-             {"[1, 2", "cannot be read"},
-             {"origin: [0, 0, 0]\n", "resolution is missing"},
-             {"resolution: -1\norigin: [0, 0, 0]\n", "resolution is -1"},
-             {"resolution: .nan\norigin: [0, 0, 0]\n", "resolution is not a number"},
-             {"resolution: 0.05\n", "origin"},
-             {"resolution: 0.05\norigin: 3\n", "origin"},
-             {"resolution: 0.05\norigin: [0, x, 0]\n", "origin is not a number"},
-             {"resolution: 0.05\norigin: [1e30, 0, 0]\n", "origin is too far"},
-             {"resolution: 0.05\norigin: [0, 0, 0.1]\n", "origin is turned"},
-             {good + "negate: 2\n", "negate"},
-             {good + "resolution: 0.1\n", "resolution is given twice"},
-             {good + "foo: [" + std::string(70'000, ',') + "]\n", "more than 65536"},
-             {good + "mode: raw\n", "mode"},
-             {good + "free_thresh: 0.7\n", "free_thresh"},
-             {good + "occupied_thresh: [1]\n", "occupied_thresh is not a number"}}) {
-        const auto refused = parse_ros_yaml(yaml);
-        ASSERT_FALSE(refused) << yaml;
-        EXPECT_THAT(refused.error().message, HasSubstr(why));
-    }
-}
-
 TEST(RosMapImport, AnImageThatIsNoneIsRefused) {
     const std::string pgm = "P5 2 2 255 abcd";
-    for (std::size_t size = 0; size < pgm.size() - 4; ++size) {
+    for (std::size_t size = 0; size < pgm.size(); ++size) {
         EXPECT_FALSE(read_ros_image({}, bytes_of(pgm.substr(0, size)))) << size;
     }
     for (const char* image : {"P6 2 2 255 abcdabcdabcd", "P5 0 2 255 ", "P5 -2 2 255 abcd", "P5 x", "GIF89a"}) {
@@ -138,11 +94,6 @@ TEST(RosMapImport, AnImageThatIsNoneIsRefused) {
     for (const char* image : {"P5 8001 8000 255 abcd", "P5 000000000130000 8000 255 a",
                               "P5 2000000000 2000000000 255 a", "P5 1000001 1 255 a"}) {
         EXPECT_EQ(read_ros_image({}, bytes_of(image)).error().code, Errc::kTooLarge) << image;
-    }
-    for (const char* image : {"P5 4 1 1 abcd", "P2 2 1 100 100 0", "P5 2 1 65535 abcd"}) {
-        const auto refused = read_ros_image({}, bytes_of(image));
-        EXPECT_EQ(refused.error().code, Errc::kInvalidField) << image;
-        EXPECT_THAT(refused.error().message, HasSubstr("maxval"));
     }
     Bytes png = bytes_of("\x89PNG\r\n\x1A\n");
     png.resize(40, 0xFF);

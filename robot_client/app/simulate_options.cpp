@@ -1,0 +1,112 @@
+#include "robot_client/app/simulate_options.hpp"
+
+#include "common/app/option_checks.hpp"
+#include "robot_client/source/world_file.hpp"
+
+namespace scanloom::robot {
+namespace {
+
+std::string check_world(const std::string& world) {
+    if (is_world_file(world)) return {};
+    const auto found = find_world(world);
+    return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
+}
+
+std::string world_help(std::string text) {
+    text += ": ";
+    for (const NamedWorld& world : kWorlds) text.append(world.name).append(", ");
+    return text + "or FILE.yaml, a map of ROS";
+}
+
+void add_sensors(CLI::App& simulate, SimulateOptions& options) {
+    simulate
+        .add_option("--laser", options.laser,
+                    "What it sees with: 684 beams over 180 degrees and 5 m; 360 all round and 12 m; 1081 over 270 "
+                    "degrees and 30 m")
+        ->check(CLI::IsMember({"reference", "lidar360", "wide", "none"}))
+        ->capture_default_str();
+    simulate
+        .add_option("--sonar", options.sonar, "What it hears with, beside a laser or alone: 16 sonars all round, 5 m")
+        ->check(CLI::IsMember({"none", "ring16"}))
+        ->capture_default_str();
+}
+
+void add_noise(CLI::App& simulate, SimulateOptions& options) {
+    simulate.add_option("--noise", options.noise, "What its measurements suffer from")
+        ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
+        ->capture_default_str();
+    simulate
+        .add_option("--noise-width", options.noise_width,
+                    "Metres; uniform noise makes each reading too long by 0 up to this")
+        ->check(check_positive)
+        ->capture_default_str();
+    simulate
+        .add_option(
+            "--odometry-noise", options.odometry_noise,
+            "How much its odometry errs, in proportion to its motion: 0 = not at all, 1 = 5 % of what it drives "
+            "and turns within a control step, and 0.02 rad a metre, 2 = twice that. Default: 1 with noise, 0 "
+            "without")
+        ->check(check_not_negative);
+    simulate
+        .add_option("--pose", options.pose,
+                    "Which pose it sends with its scans: the true one, or where its odometry leads from the true start")
+        ->check(CLI::IsMember({"true", "odometry"}))
+        ->capture_default_str();
+}
+
+} // namespace
+
+CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
+    auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
+    simulate->add_option("--world", options.world, world_help("Where it drives"))
+        ->check(check_world)
+        ->capture_default_str();
+    simulate->add_option("--drive", options.drive, "How it drives")
+        ->check(CLI::IsMember({"wall_follower"}))
+        ->capture_default_str();
+    add_sensors(*simulate, options);
+    add_noise(*simulate, options);
+    simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
+        ->check(check_whole_number_from(0))
+        ->capture_default_str();
+    simulate
+        ->add_option("--duration", options.duration,
+                     "Seconds to simulate, earlier runs included; default: until interrupted")
+        ->check(check_positive);
+    simulate->add_option("--scans", options.scans, "Scans to take, earlier runs included; default: until interrupted")
+        ->check(check_whole_number_from(1));
+    simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
+        ->check(check_not_negative)
+        ->capture_default_str();
+    return simulate;
+}
+
+CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
+    auto* truth = app.add_subcommand("truth", "Write what a perfect map of a world holds, without a server");
+    // not required() by the parser: an environment meant for several subcommands would then ask for them everywhere
+    truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
+    truth->add_option("--cell-size", options.cell_size, "Metres a cell")
+        ->check(check_within(0.01, 1.0))
+        ->capture_default_str();
+    truth
+        ->add_option("--output", options.output,
+                     "Writes PREFIX.pgm and PREFIX.yaml, as map_server and imports take them")
+        ->type_name("PREFIX");
+    return truth;
+}
+
+std::optional<std::string> mistake_in(const SimulateOptions& options) {
+    if (options.laser == "none" && options.sonar == "none") {
+        return "simulate: with --laser none the robot is blind; give it --sonar ring16";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> mistake_in(const TruthOptions& options) {
+    if (options.world.empty()) return "truth: name the --world";
+    if (options.output.empty() || options.output.ends_with('/'))
+        return "truth: name the files to write, --output PREFIX";
+    return std::nullopt;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,67 @@
+#include "robot_client/app/truth.hpp"
+
+#include "common/app/console.hpp"
+#include "common/app/standard_error.hpp"
+#include "common/ros_map/pgm.hpp"
+#include "robot_client/sim/truth_map.hpp"
+#include "robot_client/source/world_file.hpp"
+
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <span>
+
+namespace scanloom::robot {
+namespace {
+
+Result<> write_file(const std::string& path, std::span<const char> content) {
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(content.data(), static_cast<std::streamsize>(content.size()));
+    file.close();
+    if (file) return {};
+    return Error{Errc::kStoreFailed, fmt::format("{}: the file cannot be written; its folder has to be there, and room "
+                                                 "on the disk",
+                                                 path)};
+}
+
+/// Before memory is taken for the cells.
+Result<> check_size(const World& world, double cell_size) {
+    const Box box = bounds_of(world);
+    const double cells = (box.x_max - box.x_min) / cell_size * ((box.y_max - box.y_min) / cell_size);
+    if (cells <= static_cast<double>(kRosImagePixelsMax)) return {};
+    return Error{Errc::kTooLarge, fmt::format("the world has {:.0f} cells of {} m, more than {}; take a larger "
+                                              "--cell-size",
+                                              cells, cell_size, kRosImagePixelsMax)};
+}
+
+} // namespace
+
+Result<std::string> write_truth(const TruthOptions& options) {
+    const auto world = load_world(options.world);
+    if (!world) return world.error();
+    if (auto ok = check_size(*world, options.cell_size); !ok) return ok.error();
+    const TruthGrid truth = truth_of(*world, options.cell_size);
+    const std::string image = options.output + ".pgm";
+    const std::string yaml = options.output + ".yaml";
+    const auto pgm = truth_pgm(truth);
+    const std::span pixels(reinterpret_cast<const char*>(pgm.data()), pgm.size());
+    if (auto written = write_file(image, pixels); !written) return written.error();
+    const std::string description = truth_yaml(truth, std::filesystem::path(image).filename().string());
+    if (auto written = write_file(yaml, description); !written) return written.error();
+    return fmt::format(R"({{"width":{},"height":{},"map":{}}})", truth.width, truth.height,
+                       boost::json::serialize(yaml));
+}
+
+ExitCode run(const TruthOptions& options) {
+    const auto line = write_truth(options);
+    if (!line) {
+        Console(standard_error()).note("scanloom-robot: " + line.error().message);
+        return kExitFailed;
+    }
+    fmt::print("{}\n", *line);
+    return kExitDone;
+}
+
+} // namespace scanloom::robot

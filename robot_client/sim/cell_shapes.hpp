@@ -1,0 +1,28 @@
+#pragma once
+
+#include "common/ros_map/pgm.hpp"
+#include "robot_client/sim/shapes.hpp"
+
+#include <vector>
+
+namespace scanloom::robot {
+
+/// Where the cells of a map are.
+struct MapFrame {
+    double resolution = 0.05; ///< metres a cell
+    double origin_x = 0.0;    ///< metres: the lower-left corner of cell (0, 0)
+    double origin_y = 0.0;
+
+    [[nodiscard]] double x(std::size_t column) const noexcept {
+        return origin_x + static_cast<double>(column) * resolution;
+    }
+    [[nodiscard]] double y(std::size_t row) const noexcept { return origin_y + static_cast<double>(row) * resolution; }
+};
+
+/// The cells of one kind as few boxes that do not overlap: runs of a row, together with equal ones above.
+[[nodiscard]] std::vector<Box> boxes_of(const MapCells& map, MapCell kind, const MapFrame& frame);
+
+/// The border of the occupied cells, in pieces as long as they are straight, with the occupied side on their left.
+[[nodiscard]] std::vector<Segment> outlines_of(const MapCells& map, const MapFrame& frame);
+
+} // namespace scanloom::robot

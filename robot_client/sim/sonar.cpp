@@ -1,0 +1,51 @@
+#include "robot_client/sim/sonar.hpp"
+
+#include "robot_client/sim/cone.hpp"
+#include "robot_client/sim/unicycle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A cone and the nearest thing found in it so far, metres; where there is none, the sensor's range.
+struct Heard {
+    Cone cone;
+    double nearest;
+};
+
+} // namespace
+
+Result<Sensor> find_sonar(std::string_view name) {
+    if (name != "ring16") {
+        return Error{Errc::kNotFound, fmt::format("there are no sonars '{}'; choose ring16", name)};
+    }
+    const UniformAngles all_round{-kPi, kPi / 8.0, 16};
+    return Sensor{1, SensorKind::kSonar, std::string(name), Pose2{}, all_round, kPi / 6.0, kBodyRadius, 5.0};
+}
+
+std::vector<RangeMm> listen(const World& world, const Sensor& sonar, const Pose2& T_map_sonar,
+                            const std::optional<Noise>& noise, Random& random) {
+    const Point2 origin{T_map_sonar.x, T_map_sonar.y};
+    std::vector<Heard> beams;
+    for (std::size_t i = 0; i < beam_count(sonar.angles); ++i) {
+        const double yaw = true_direction(T_map_sonar.yaw + beam_angle(sonar.angles, i), noise, random);
+        beams.push_back({Cone(origin, yaw, sonar.aperture), sonar.range_max});
+    }
+    const auto hear = [&](const auto& shape) {
+        for (Heard& beam : beams) beam.nearest = std::min(beam.nearest, distance_within(beam.cone, shape));
+    };
+    const auto farthest = [&] { return std::ranges::max_element(beams, {}, &Heard::nearest)->nearest; };
+    world.obstacles->outlines().visit_outwards(origin, farthest, hear);
+    for (const Disc& person : people_near(world, origin, sonar.range_max)) hear(person);
+    std::vector<RangeMm> ranges;
+    for (const Heard& beam : beams) ranges.push_back(reading(beam.nearest, sonar, noise, random));
+    return ranges;
+}
+
+} // namespace scanloom::robot

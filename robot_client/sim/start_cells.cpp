@@ -1,0 +1,82 @@
+#include "robot_client/sim/start_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace scanloom::robot {
+namespace {
+
+/// How many cells away; saturates.
+using Steps = std::uint16_t;
+
+/// To the nearest occupied cell, of each: Chebyshev distance, which no other exceeds. Found in two passes: what is
+/// nearest lies before a cell or behind it.
+std::vector<Steps> steps_to_solids(const MapCells& map) {
+    constexpr int kFarthest = std::numeric_limits<Steps>::max();
+    const auto width = static_cast<std::ptrdiff_t>(map.width);
+    const auto height = static_cast<std::ptrdiff_t>(map.height());
+    const auto index = [&](std::ptrdiff_t i, std::ptrdiff_t j) { return static_cast<std::size_t>(j * width + i); };
+    std::vector<Steps> steps(map.cells.size());
+    for (std::size_t n = 0; n < steps.size(); ++n) steps[n] = map.cells[n] == MapCell::kOccupied ? 0 : kFarthest;
+    const auto look = [&](std::ptrdiff_t i, std::ptrdiff_t j, std::ptrdiff_t back) {
+        int nearest = steps[index(i, j)];
+        const auto come_from = [&](std::ptrdiff_t from_i, std::ptrdiff_t from_j) {
+            if (from_i < 0 || from_i >= width || from_j < 0 || from_j >= height) return;
+            nearest = std::min(nearest, steps[index(from_i, from_j)] + 1);
+        };
+        come_from(i + back, j);
+        for (const std::ptrdiff_t aside : {-1, 0, 1}) come_from(i + aside, j + back);
+        steps[index(i, j)] = static_cast<Steps>(nearest);
+    };
+    for (std::ptrdiff_t j = 0; j < height; ++j) {
+        for (std::ptrdiff_t i = 0; i < width; ++i) look(i, j, -1);
+    }
+    for (std::ptrdiff_t j = height; j-- > 0;) {
+        for (std::ptrdiff_t i = width; i-- > 0;) look(i, j, 1);
+    }
+    return steps;
+}
+
+/// So many cells away that every point of one is as far from every point of the other.
+int steps_for(double metres, double resolution) { return static_cast<int>(std::ceil(metres / resolution - 1e-9)) + 1; }
+
+} // namespace
+
+std::vector<std::size_t> start_cells(const MapCells& map, double resolution, double clearance_m, double passage_m) {
+    const auto steps = steps_to_solids(map);
+    const int wanted = steps_for(clearance_m, resolution);
+    const int passable = steps_for(passage_m, resolution);
+    std::vector<bool> is_open(map.cells.size()); // passable, and not yet reached
+    for (std::size_t n = 0; n < map.cells.size(); ++n) {
+        is_open[n] = map.cells[n] == MapCell::kFree && steps[n] >= passable;
+    }
+    std::vector<std::size_t> best;
+    std::vector<std::size_t> part;
+    std::vector<std::size_t> front;
+    for (std::size_t seed = 0; seed < map.cells.size(); ++seed) {
+        if (!is_open[seed]) continue;
+        part.clear();
+        const auto reach = [&](std::size_t at) {
+            if (!is_open[at]) return;
+            is_open[at] = false;
+            front.push_back(at);
+        };
+        reach(seed);
+        while (!front.empty()) {
+            const std::size_t at = front.back();
+            front.pop_back();
+            if (steps[at] >= wanted) part.push_back(at);
+            if (at % map.width > 0) reach(at - 1);
+            if (at % map.width + 1 < map.width) reach(at + 1);
+            if (at >= map.width) reach(at - map.width);
+            if (at + map.width < map.cells.size()) reach(at + map.width);
+        }
+        if (part.size() > best.size()) best.swap(part);
+    }
+    std::ranges::sort(best);
+    return best;
+}
+
+} // namespace scanloom::robot

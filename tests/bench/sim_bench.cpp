@@ -1,0 +1,149 @@
+#include "robot_client/drive/wall_follower.hpp"
+#include "robot_client/sim/map_world.hpp"
+#include "robot_client/sim/ray_casting.hpp"
+#include "robot_client/sim/simulator.hpp"
+#include "robot_client/sim/truth_map.hpp"
+#include "robot_client/source/world_file.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <vector>
+
+// The simulator, world by world. "depot" is a map of ../shared/data and is left out where that is absent.
+
+namespace scanloom::robot {
+namespace {
+
+/// A map of 40 x 40 m in cells of 2 cm in which nothing is straight: noise all over, kept clear of a few places.
+World ragged_map() {
+    constexpr std::size_t kSide = 2000;
+    Random random(1);
+    MapCells cells{kSide, std::vector<MapCell>(kSide * kSide, MapCell::kFree)};
+    for (std::size_t n = 0; n < cells.cells.size(); ++n) {
+        const bool is_clear = n % kSide % 400 < 200 && n / kSide % 400 < 200;
+        if (!is_clear && random.uniform(0.0, 1.0) < 0.009) cells.cells[n] = MapCell::kOccupied;
+    }
+    return world_of_map("ragged", {.resolution = 0.02}, cells).value();
+}
+
+/// The truth of the hall, as a map.
+World hall_map() {
+    const TruthGrid truth = truth_of(make_hall(), 0.05);
+    const auto map = parse_ros_yaml(truth_yaml(truth, "")).value();
+    return world_of_map("hall", map, read_ros_pgm(map, truth_pgm(truth)).value()).value();
+}
+
+World depot() {
+    auto world = load_world(SCANLOOM_SOURCE_DIR "/../shared/data/maps/depot/depot.yaml");
+    return world ? std::move(*world) : World{};
+}
+
+World (*const kMakers[])() = {make_office, make_hall, hall_map, ragged_map, depot};
+
+/// Of the benchmark's number; without outlines where it is not there.
+const World& world_of(benchmark::State& state) {
+    static std::vector<World> worlds(std::size(kMakers));
+    World& world = worlds[static_cast<std::size_t>(state.range(0))];
+    if (world.outlines.empty()) world = kMakers[state.range(0)]();
+    if (world.outlines.empty()) state.SkipWithError("recorded data, no part of the project, are not on this machine");
+    return world;
+}
+
+/// Places to scan from.
+std::vector<Pose2> places_in(const World& world) {
+    std::vector<Pose2> places;
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        places.push_back(
+            Simulator({world, find_laser("reference").value(), std::nullopt, seed}, std::make_unique<WallFollower>())
+                .pose());
+    }
+    return places;
+}
+
+void report(benchmark::State& state, const World& world) {
+    state.SetLabel(world.name + ", " + std::to_string(world.outlines.size()) + " outlines");
+}
+
+/// A scan of the reference laser, 684 beams.
+void BM_scan(benchmark::State& state) {
+    const World& world = world_of(state);
+    if (world.outlines.empty()) return;
+    const Sensor laser = find_laser("reference").value();
+    const auto places = places_in(world);
+    Random random(1);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(sweep(world, laser, places[n++ % places.size()], std::nullopt, random));
+    }
+    report(state, world);
+}
+BENCHMARK(BM_scan)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+/// The same by looking at every outline for every beam.
+void BM_scan_by_brute_force(benchmark::State& state) {
+    const World& world = world_of(state);
+    if (world.outlines.empty()) return;
+    const Sensor laser = find_laser("reference").value();
+    const auto places = places_in(world);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        const Pose2& place = places[n++ % places.size()];
+        for (std::size_t i = 0; i < beam_count(laser.angles); ++i) {
+            benchmark::DoNotOptimize(
+                cast_ray(world.outlines, {place.x, place.y}, place.yaw + beam_angle(laser.angles, i)));
+        }
+    }
+    report(state, world);
+}
+BENCHMARK(BM_scan_by_brute_force)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+/// One reading of all 16 sonars.
+void BM_sonars(benchmark::State& state) {
+    const World& world = world_of(state);
+    if (world.outlines.empty()) return;
+    const Sensor sonar = find_sonar("ring16").value();
+    const auto places = places_in(world);
+    Random random(1);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(listen(world, sonar, places[n++ % places.size()], std::nullopt, random));
+    }
+    report(state, world);
+}
+BENCHMARK(BM_sonars)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+/// As each control step asks.
+void BM_clearance(benchmark::State& state) {
+    const World& world = world_of(state);
+    if (world.outlines.empty()) return;
+    const auto places = places_in(world);
+    std::size_t n = 0;
+    for (auto _ : state) {
+        const Pose2& place = places[n++ % places.size()];
+        benchmark::DoNotOptimize(clearance(world, {place.x, place.y}));
+    }
+    report(state, world);
+}
+BENCHMARK(BM_clearance)->DenseRange(0, 4);
+
+/// A simulated tenth of a second, noise included: two control steps and a scan.
+void BM_simulator(benchmark::State& state) {
+    const World& world = world_of(state);
+    if (world.outlines.empty()) return;
+    Simulator simulator({world, find_laser("reference").value(), Noise{}, 1}, std::make_unique<WallFollower>());
+    for (auto _ : state) benchmark::DoNotOptimize(simulator.next_scan());
+    report(state, world);
+    state.counters["times_real_time"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kScanPeriod, benchmark::Counter::kIsRate);
+}
+BENCHMARK(BM_simulator)->DenseRange(0, 4)->Unit(benchmark::kMicrosecond);
+
+/// From cells to a world.
+void BM_world_of_map(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(ragged_map());
+}
+BENCHMARK(BM_world_of_map)->Unit(benchmark::kMillisecond);
+
+} // namespace
+} // namespace scanloom::robot

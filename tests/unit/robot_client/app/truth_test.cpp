@@ -1,0 +1,35 @@
+#include "robot_client/app/truth.hpp"
+
+#include "robot_client/sim/truth_grid.hpp"
+#include "robot_client/source/world_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace scanloom::robot {
+namespace {
+
+TEST(Truth, WhatIsWrittenIsAWorldOfTheSameTruth) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "scanloom truth_test";
+    std::filesystem::create_directories(folder);
+    const std::string prefix = (folder / "the room: 1").string();
+    const auto line = write_truth({"room", 0.1, prefix});
+    ASSERT_TRUE(line) << line.error().message;
+    EXPECT_EQ(*line, R"({"width":104,"height":104,"map":")" + prefix + R"(.yaml"})");
+    const auto world = load_world(prefix + ".yaml");
+    ASSERT_TRUE(world) << world.error().message;
+    EXPECT_EQ(truth_of(*world, 0.1).cells, truth_of(make_room(), 0.1).cells);
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Truth, WhatCannotBeWrittenIsSaid) {
+    EXPECT_THAT(write_truth({"room", 0.1, "/nonexistent/room"}).error().message,
+                testing::HasSubstr("/nonexistent/room.pgm: the file cannot be written"));
+    EXPECT_THAT(write_truth({"moon", 0.1, "/nonexistent/moon"}).error().message, testing::HasSubstr("moon"));
+    EXPECT_EQ(write_truth({"hall", 0.001, "/nonexistent/hall"}).error().code, Errc::kTooLarge);
+}
+
+} // namespace
+} // namespace scanloom::robot
