@@ -3,6 +3,8 @@
 #include "common/app/option_checks.hpp"
 #include "robot_client/source/world_file.hpp"
 
+#include <fmt/format.h>
+
 namespace scanloom::robot {
 namespace {
 
@@ -47,10 +49,12 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
             "and turns within a control step, and 0.02 rad a metre, 2 = twice that. Default: 1 with noise, 0 "
             "without")
         ->check(check_not_negative);
+    // not checked by the parser: a SCANLOOM_POSE that is meant for another subcommand is no mistake in this one
     simulate
-        .add_option("--pose", options.pose,
-                    "Which pose it sends with its scans: the true one, or where its odometry leads from the true start")
-        ->check(CLI::IsMember({"true", "odometry"}))
+        .add_option(
+            "--pose", options.pose,
+            "Which pose it sends with its scans: the true one, or odometry: where that leads from the true start")
+        ->type_name("TEXT:{true,odometry}")
         ->capture_default_str();
 }
 
@@ -98,6 +102,9 @@ CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
 std::optional<std::string> mistake_in(const SimulateOptions& options) {
     if (options.laser == "none" && options.sonar == "none") {
         return "simulate: with --laser none the robot is blind; give it --sonar ring16";
+    }
+    if (options.pose != "true" && options.pose != "odometry") {
+        return fmt::format("simulate: --pose: '{}' is neither true nor odometry", options.pose);
     }
     return std::nullopt;
 }

@@ -42,38 +42,41 @@ std::vector<Steps> steps_to_solids(const MapCells& map) {
 /// So many cells away that every point of one is as far from every point of the other.
 int steps_for(double metres, double resolution) { return static_cast<int>(std::ceil(metres / resolution - 1e-9)) + 1; }
 
+/// The open cells that four-connected ways through open ones reach from one of them; closes them.
+std::vector<std::size_t> take_part(std::size_t seed, std::size_t width, std::vector<bool>& is_open) {
+    std::vector<std::size_t> part;
+    const auto reach = [&](std::size_t at) {
+        if (!is_open[at]) return;
+        is_open[at] = false;
+        part.push_back(at);
+    };
+    reach(seed);
+    for (std::size_t n = 0; n < part.size(); ++n) {
+        const std::size_t at = part[n];
+        if (at % width > 0) reach(at - 1);
+        if (at % width + 1 < width) reach(at + 1);
+        if (at >= width) reach(at - width);
+        if (at + width < is_open.size()) reach(at + width);
+    }
+    return part;
+}
+
 } // namespace
 
 std::vector<std::size_t> start_cells(const MapCells& map, double resolution, double clearance_m, double passage_m) {
     const auto steps = steps_to_solids(map);
     const int wanted = steps_for(clearance_m, resolution);
     const int passable = steps_for(passage_m, resolution);
-    std::vector<bool> is_open(map.cells.size()); // passable, and not yet reached
+    std::vector<bool> is_open(map.cells.size());
     for (std::size_t n = 0; n < map.cells.size(); ++n) {
         is_open[n] = map.cells[n] == MapCell::kFree && steps[n] >= passable;
     }
     std::vector<std::size_t> best;
-    std::vector<std::size_t> part;
-    std::vector<std::size_t> front;
     for (std::size_t seed = 0; seed < map.cells.size(); ++seed) {
         if (!is_open[seed]) continue;
-        part.clear();
-        const auto reach = [&](std::size_t at) {
-            if (!is_open[at]) return;
-            is_open[at] = false;
-            front.push_back(at);
-        };
-        reach(seed);
-        while (!front.empty()) {
-            const std::size_t at = front.back();
-            front.pop_back();
-            if (steps[at] >= wanted) part.push_back(at);
-            if (at % map.width > 0) reach(at - 1);
-            if (at % map.width + 1 < map.width) reach(at + 1);
-            if (at >= map.width) reach(at - map.width);
-            if (at + map.width < map.cells.size()) reach(at + map.width);
-        }
-        if (part.size() > best.size()) best.swap(part);
+        auto part = take_part(seed, map.width, is_open);
+        std::erase_if(part, [&](std::size_t at) { return steps[at] < wanted; });
+        if (part.size() > best.size()) best = std::move(part);
     }
     std::ranges::sort(best);
     return best;

@@ -138,6 +138,8 @@ TEST_F(Options, ASimulatedRobotHasSensorsNoiseAndAPoseToSend) {
             .source);
     EXPECT_EQ(other.laser + " " + other.sonar + " " + other.pose + " " + other.world, "none ring16 odometry m.yaml");
     EXPECT_EQ(other.odometry_noise, 2.5);
+    set("SCANLOOM_POSE", "0,0,0"); // of another source
+    EXPECT_EQ(std::get<ReplayOptions>(parsed({"replay", "f", "--session", "s", "--robot", "r"}).source).file, "f");
 }
 
 TEST_F(Options, SonarTakesTwoFilesAndItsAperture) {
