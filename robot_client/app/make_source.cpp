@@ -1,5 +1,6 @@
 #include "robot_client/app/make_source.hpp"
 
+#include "robot_client/app/ld06_source.hpp"
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/sim/simulator.hpp"
 #include "robot_client/sim/unicycle.hpp"
@@ -87,6 +88,10 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     prepared.source = std::make_unique<SimulatedSource>(
         Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
     return prepared;
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06, Console& console) {
+    return prepare_ld06(options, ld06, console);
 }
 
 } // namespace

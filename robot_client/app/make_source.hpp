@@ -2,6 +2,7 @@
 
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/source/live_source.hpp"
 #include "robot_client/source/source.hpp"
 
 #include <memory>
@@ -12,17 +13,18 @@
 namespace scanloom::robot {
 
 struct PreparedSource {
-    std::unique_ptr<Source> source;
+    std::unique_ptr<Source> source; ///< or `live`
     std::size_t skipped_lines = 0;
     double speed = 0.0;
     std::string fingerprint;           ///< for Hello.source
     std::string_view order;            ///< of its scans: "file" or "time", a literal
     std::optional<double> body_radius; ///< metres, of the robot whose scans they are, where it is known
+    std::unique_ptr<LiveSource> live;  ///< or `source`
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
-/// first few, and whether its stamps go back. Errors  those of CarmenLog::open() and SonarLog::open(); an unknown world
-/// or laser.
+/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open() and
+/// prepare_ld06(); an unknown world or laser.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

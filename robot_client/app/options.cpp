@@ -14,7 +14,8 @@ namespace scanloom::robot {
 namespace {
 
 constexpr const char* kAbout =
-    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, or a simulated robot.\n"
+    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, a lidar,\n"
+    "or a simulated robot.\n"
     "The same command again continues behind the scans that are stored already.\n"
     "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
     "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
@@ -155,6 +156,7 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     ReplayOptions replay_options;
     SonarReplayOptions sonar_options;
     SimulateOptions simulate_options;
+    Ld06Options ld06_options;
 
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
@@ -163,6 +165,7 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     add_scan_options(app, options, raw);
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
+    const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
     add_simulate(app, simulate_options)->fallthrough();
     app.require_subcommand(1);
 
@@ -170,7 +173,8 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate");
+        return leave_for(app, reason,
+                         "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate");
     }
     if (!split_server(raw.server, options)) {
         return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
@@ -190,6 +194,9 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
         options.source = std::move(sonar_options);
+    } else if (ld06->parsed()) {
+        if (const auto wrong = complaint_about(ld06_options); !wrong.empty()) return usage_error(app, wrong);
+        options.source = std::move(ld06_options);
     } else {
         options.source = std::move(simulate_options);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/app/program.hpp"
+#include "robot_client/app/ld06_options.hpp"
 #include "robot_client/source/source.hpp"
 
 #include <chrono>
@@ -47,7 +48,7 @@ struct RobotOptions {
     std::optional<double> body_radius; ///< metres
     std::optional<NoReturn> no_return;
     std::chrono::milliseconds give_up_after{120'000};
-    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;
+    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions, Ld06Options> source;
 };
 
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,

@@ -40,7 +40,8 @@ inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::strin
         SteppedAngles stepped{2 * kPi / 396'000, {}};
         for (std::int32_t step = static_cast<std::int32_t>(below(900)); step < 396'000;) {
             stepped.steps.push_back(step);
-            step += static_cast<std::int32_t>(below(40) == 0 ? 11'000 : 2600 + below(300));
+            const unsigned kind = below(40); // holes of less and of more than four usual gaps
+            step += static_cast<std::int32_t>(kind == 0 ? 13'001 : kind == 1 ? 9'001 : 2600 + below(300));
         }
         return stepped;
     }
