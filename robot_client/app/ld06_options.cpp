@@ -2,6 +2,7 @@
 
 #include "common/app/option_checks.hpp"
 #include "common/scan/limits.hpp"
+#include "robot_client/app/host_port.hpp"
 #include "robot_client/source/range_median.hpp"
 
 #include <CLI/CLI.hpp>
@@ -87,6 +88,9 @@ CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
 
 std::string complaint_about(const Ld06Options& options) {
     if (options.input.empty()) return "ld06: name the INPUT: a serial device, tcp://HOST:PORT, or a capture file";
+    if (options.input.starts_with(kTcpScheme) && !split_host_port(options.input.substr(kTcpScheme.size()))) {
+        return fmt::format("ld06: '{}' is not tcp://HOST:PORT", options.input);
+    }
     if (options.pose.has_value() != options.poses.empty()) {
         return "ld06: say where the robot is, either with --pose X,Y,YAW or with --poses FILE";
     }

@@ -5,11 +5,16 @@
 #include <optional>
 #include <string>
 
+#include <string_view>
+
 namespace CLI {
 class App;
 }
 
 namespace scanloom::robot {
+
+/// What an input over the network begins with.
+inline constexpr std::string_view kTcpScheme = "tcp://";
 
 /// An LD06 lidar, or what one sent; see Ld06ScanOptions for the readings.
 struct Ld06Options {

@@ -1,10 +1,17 @@
 #include "robot_client/app/ld06_source.hpp"
 
+#include "robot_client/app/host_port.hpp"
 #include "robot_client/source/ld06_capture.hpp"
+#include "robot_client/source/ld06_live.hpp"
+#include "robot_client/source/pose_feed.hpp"
 #include "robot_client/source/pose_lines.hpp"
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
 #include <iostream>
 
 namespace scanloom::robot {
@@ -59,12 +66,59 @@ Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOp
     return prepared;
 }
 
+bool is_regular_standard_input() {
+    struct stat status {};
+    return ::fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+/// Poses of a device that come while it is read, or that are known from the begin.
+Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::size_t& skipped, Console& console) {
+    if (ld06.pose) {
+        live.poses = *ld06.pose;
+    } else if (ld06.poses == kStandardInput && !is_regular_standard_input()) {
+        live.poses = PoseTimeline();
+        live.pose_descriptor = open_standard_input_again();
+    } else {
+        auto lines = read_poses(ld06, console);
+        if (!lines) return lines.error();
+        skipped = lines->skipped;
+        live.poses = std::move(lines->poses);
+    }
+    return {};
+}
+
+Result<PreparedSource> prepare_device(const Ld06Options& ld06, const Ld06ScanOptions& scan, Ld06Endpoint endpoint,
+                                      Console& console) {
+    Ld06LiveOptions live;
+    live.device.endpoint = std::move(endpoint);
+    live.device.reopen_for = std::chrono::milliseconds(static_cast<std::int64_t>(ld06.reopen_for * 1e3));
+    live.device.note = [&console](const std::string& text) { console.note(text); };
+    live.scan = scan;
+    PreparedSource prepared{nullptr, 0, 0.0, "", "time", {}};
+    if (auto added = add_live_poses(ld06, live, prepared.skipped_lines, console); !added) return added.error();
+    prepared.live = std::make_unique<Ld06Live>(std::move(live));
+    return prepared;
+}
+
 } // namespace
 
 Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Options& ld06, Console& console) {
     const auto scan = scan_options(options, ld06);
     if (!scan) return scan.error();
-    return prepare_capture(ld06, *scan, console);
+    if (ld06.input.starts_with(kTcpScheme)) {
+        const auto peer = split_host_port(ld06.input.substr(kTcpScheme.size())).value(); // the options were checked
+        return prepare_device(ld06, *scan, TcpPeer{peer.host, peer.port}, console);
+    }
+    std::error_code failed;
+    const auto status = std::filesystem::status(ld06.input, failed);
+    if (std::filesystem::is_character_file(status)) {
+        return prepare_device(ld06, *scan, SerialDevice{ld06.input}, console);
+    }
+    if (std::filesystem::is_regular_file(status)) return prepare_capture(ld06, *scan, console);
+    return Error{Errc::kNotFound,
+                 std::filesystem::exists(status)
+                     ? fmt::format("{}: neither a serial device nor a file; name one", ld06.input)
+                     : fmt::format("{}: no such device or file; check the path, and the cable", ld06.input)};
 }
 
 } // namespace scanloom::robot

@@ -4,6 +4,7 @@
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
 #include "common/scan/limits.hpp"
+#include "robot_client/app/host_port.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -34,23 +35,6 @@ struct Raw {
 std::string check_name(const std::string& name) {
     if (is_valid_name(name)) return {};
     return fmt::format("'{}' is not a name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
-}
-
-/// HOST:PORT or [ADDRESS]:PORT.
-bool split_server(const std::string& server, RobotOptions& options) {
-    const std::size_t colon = server.rfind(':');
-    if (colon == std::string::npos) return false;
-    options.host = server.substr(0, colon);
-    options.port = server.substr(colon + 1);
-    if (options.host.size() > 2 && options.host.front() == '[' && options.host.back() == ']') {
-        options.host = options.host.substr(1, options.host.size() - 2);
-    } else if (options.host.find(':') != std::string::npos) {
-        return false; // an IPv6 address without brackets: which colon is the port's?
-    }
-    int port = 0;
-    const bool is_number = options.port.find_first_not_of("0123456789") == std::string::npos &&
-                           CLI::detail::lexical_cast(options.port, port);
-    return !options.host.empty() && is_number && port >= 1 && port <= 65535;
 }
 
 void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
@@ -176,9 +160,10 @@ std::variant<RobotOptions, Leave> parse_options(int argc, const char* const* arg
         return leave_for(app, reason,
                          "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate");
     }
-    if (!split_server(raw.server, options)) {
-        return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
-    }
+    const auto server = split_host_port(raw.server);
+    if (!server) return usage_error(app, fmt::format("--server: '{}' is not HOST:PORT", raw.server));
+    options.host = server->host;
+    options.port = server->port;
     if (options.cell_size && options.range_max.value_or(0.0) > kReachCellsMax * *options.cell_size) {
         return usage_error(app,
                            fmt::format("--max-range {} spans more than {} cells of --cell-size {}, the most that a "
