@@ -44,9 +44,9 @@ Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> byte
 }
 
 bool is_plausible(const Ld06Packet& packet) noexcept {
-    // The vendor's own test: a packet spans 12 samples' worth of turning, and half as much again. 4500 samples a second
-    // are the fewest that any of these sensors takes, so that the test holds for all of them.
-    constexpr double kSamplesPerSecond = 4500.0;
+    // The vendor's own test: a packet spans 12 samples' worth of turning, and half as much again. It counts on 4500
+    // samples a second, but the manual's example was taken at half as many.
+    constexpr double kSamplesPerSecond = 2250.0;
     constexpr double kSpanMargin = 1.5;
     const double degrees_max = packet.speed * kLd06PacketPoints / kSamplesPerSecond * kSpanMargin;
     return packet.start_angle <= kAnglesPerTurn && packet.end_angle <= kAnglesPerTurn &&
