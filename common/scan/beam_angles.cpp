@@ -4,6 +4,7 @@ namespace scanloom {
 
 std::size_t beam_count(const BeamAngles& angles) noexcept {
     if (const auto* uniform = std::get_if<UniformAngles>(&angles)) return uniform->count;
+    if (const auto* stepped = std::get_if<SteppedAngles>(&angles)) return stepped->steps.size();
     return std::get_if<ExplicitAngles>(&angles)->size();
 }
 
@@ -11,6 +12,7 @@ double beam_angle(const BeamAngles& angles, std::size_t index) noexcept {
     if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
         return uniform->first + static_cast<double>(index) * uniform->increment;
     }
+    if (const auto* stepped = std::get_if<SteppedAngles>(&angles)) return stepped->unit * stepped->steps[index];
     return (*std::get_if<ExplicitAngles>(&angles))[index];
 }
 

@@ -12,11 +12,10 @@ RangeMm to_range_mm(double range_m) noexcept {
 
 BeamAngles angles_of(const Scan& scan, const Sensor& sensor) {
     if (scan.angles) return *scan.angles;
-    BeamAngles angles = sensor.angles;
-    if (auto* uniform = std::get_if<UniformAngles>(&angles)) {
-        uniform->count = static_cast<std::uint32_t>(scan.ranges.size());
+    if (const auto* uniform = std::get_if<UniformAngles>(&sensor.angles)) {
+        return UniformAngles{uniform->first, uniform->increment, static_cast<std::uint32_t>(scan.ranges.size())};
     }
-    return angles;
+    return sensor.angles;
 }
 
 } // namespace scanloom

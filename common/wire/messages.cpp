@@ -247,9 +247,8 @@ Result<> check_scan(const Scan& scan, const Sensor& sensor) {
     }
     const std::size_t described = beam_count(sensor.angles);
     if (scan.ranges.size() == described) return {};
-    return invalid_field(
-        fmt::format("ranges has {} beams, sensor {} has {} explicit angles; send the scan's own angles",
-                    scan.ranges.size(), sensor.id, described));
+    return invalid_field(fmt::format("ranges has {} beams, sensor {} has {} angles; send the scan's own angles",
+                                     scan.ranges.size(), sensor.id, described));
 }
 
 } // namespace scanloom::wire

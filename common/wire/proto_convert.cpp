@@ -10,6 +10,50 @@
 namespace scanloom::wire {
 namespace {
 
+bool is_angle(double angle) { return std::isfinite(angle) && std::abs(angle) <= 2.0 * kFullTurn; }
+
+Result<> check_spacing(const UniformAngles& uniform) {
+    if (!is_angle(uniform.first)) {
+        return invalid_field(fmt::format("angles.uniform.first is {}; an angle in radians is needed", uniform.first));
+    }
+    if (!std::isfinite(uniform.increment) || uniform.increment == 0.0) {
+        return invalid_field(
+            fmt::format("angles.uniform.increment is {}; a finite angle other than 0 is needed", uniform.increment));
+    }
+    const double span = std::abs(uniform.increment) * static_cast<double>(uniform.count - 1);
+    if (span > kFullTurn) {
+        return invalid_field(
+            fmt::format("angles.uniform spans {:.3f} rad over {} beams, more than a full turn", span, uniform.count));
+    }
+    return {};
+}
+
+Result<> check_spacing(const ExplicitAngles& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (!is_angle(list[i])) {
+            return invalid_field(
+                fmt::format("angles.explicit.angles[{}] is {}; an angle in radians is needed", i, list[i]));
+        }
+    }
+    return {};
+}
+
+Result<> check_spacing(const SteppedAngles& stepped) {
+    if (!std::isfinite(stepped.unit) || stepped.unit == 0.0) {
+        return invalid_field(
+            fmt::format("angles.stepped.unit is {}; a finite angle other than 0 is needed", stepped.unit));
+    }
+    for (std::size_t i = 0; i < stepped.steps.size(); ++i) {
+        const double angle = stepped.unit * stepped.steps[i];
+        if (!is_angle(angle)) {
+            return invalid_field(fmt::format("angles.stepped.deltas lead beam {} to {} steps of {}, which is {}; an "
+                                             "angle in radians is needed",
+                                             i, stepped.steps[i], stepped.unit, angle));
+        }
+    }
+    return {};
+}
+
 Result<> check_angles(const BeamAngles& angles) {
     const std::size_t count = beam_count(angles);
     if (count == 0) return invalid_field("angles describe 0 beams; at least 1 is needed");
@@ -17,30 +61,33 @@ Result<> check_angles(const BeamAngles& angles) {
         return Error{Errc::kTooLarge,
                      fmt::format("angles describe {} beams, at most {} are allowed", count, kBeamsMax)};
     }
-    if (const auto* uniform = std::get_if<UniformAngles>(&angles)) {
-        if (!std::isfinite(uniform->first) || std::abs(uniform->first) > 2.0 * kFullTurn) {
-            return invalid_field(
-                fmt::format("angles.uniform.first is {}; an angle in radians is needed", uniform->first));
+    return std::visit([](const auto& spacing) { return check_spacing(spacing); }, angles);
+}
+
+/// Errors  kInvalidField: a sum that 32 bits do not hold.
+Result<BeamAngles> read_stepped(const v1::SteppedAngles& proto) {
+    SteppedAngles stepped{proto.unit(), {}};
+    stepped.steps.reserve(static_cast<std::size_t>(proto.deltas_size()));
+    std::int64_t step = 0;
+    for (const std::int32_t delta : proto.deltas()) {
+        step += delta;
+        if (step != static_cast<std::int32_t>(step)) {
+            return invalid_field(fmt::format("angles.stepped.deltas lead beam {} to {} steps; 32 bits must hold them",
+                                             stepped.steps.size(), step));
         }
-        if (!std::isfinite(uniform->increment) || uniform->increment == 0.0) {
-            return invalid_field(fmt::format("angles.uniform.increment is {}; a finite angle other than 0 is needed",
-                                             uniform->increment));
-        }
-        const double span = std::abs(uniform->increment) * static_cast<double>(count - 1);
-        if (span > kFullTurn) {
-            return invalid_field(
-                fmt::format("angles.uniform spans {:.3f} rad over {} beams, more than a full turn", span, count));
-        }
-        return {};
+        stepped.steps.push_back(static_cast<std::int32_t>(step));
     }
-    const auto& list = std::get<ExplicitAngles>(angles);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        if (!std::isfinite(list[i]) || std::abs(list[i]) > 2.0 * kFullTurn) {
-            return invalid_field(
-                fmt::format("angles.explicit.angles[{}] is {}; an angle in radians is needed", i, list[i]));
-        }
+    return BeamAngles(std::move(stepped));
+}
+
+void write_stepped(const SteppedAngles& stepped, v1::SteppedAngles& out) {
+    out.set_unit(stepped.unit);
+    out.mutable_deltas()->Reserve(static_cast<int>(stepped.steps.size()));
+    std::int32_t before = 0;
+    for (const std::int32_t step : stepped.steps) {
+        out.add_deltas(static_cast<std::int32_t>(std::int64_t{step} - before));
+        before = step;
     }
-    return {};
 }
 
 Result<BeamAngles> read_angles(const v1::BeamAngles& proto) {
@@ -52,8 +99,14 @@ Result<BeamAngles> read_angles(const v1::BeamAngles& proto) {
     case v1::BeamAngles::kExplicit:
         angles = ExplicitAngles(proto.explicit_().angles().begin(), proto.explicit_().angles().end());
         break;
+    case v1::BeamAngles::kStepped: {
+        auto stepped = read_stepped(proto.stepped());
+        if (!stepped) return stepped.error();
+        angles = std::move(*stepped);
+        break;
+    }
     case v1::BeamAngles::SPACING_NOT_SET:
-        return invalid_field("angles are neither uniform nor explicit; set one of them");
+        return invalid_field("angles are neither uniform, explicit nor stepped; set one of them");
     }
     if (auto ok = check_angles(angles); !ok) return ok.error();
     return angles;
@@ -66,6 +119,8 @@ void write_angles(const BeamAngles& angles, v1::BeamAngles& out) {
         out.mutable_uniform()->set_count(uniform->count);
         return;
     }
+    if (const auto* stepped = std::get_if<SteppedAngles>(&angles))
+        return write_stepped(*stepped, *out.mutable_stepped());
     const auto& list = std::get<ExplicitAngles>(angles);
     out.mutable_explicit_()->mutable_angles()->Add(list.begin(), list.end());
 }

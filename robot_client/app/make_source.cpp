@@ -1,5 +1,6 @@
 #include "robot_client/app/make_source.hpp"
 
+#include "robot_client/app/ld06_source.hpp"
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/sim/simulator.hpp"
 #include "robot_client/sim/unicycle.hpp"
@@ -47,9 +48,11 @@ Result<PreparedSource> make(const RobotOptions& options, const ReplayOptions& re
     if (!log) return log.error();
     const StampReport& stamps = log->stamps();
     if (stamps.steps_back > 0) console.note(fmt::format("{}: {}", replay.file, order_text(stamps)));
-    PreparedSource prepared{
-        nullptr, nullptr, log->skipped_lines(), replay.speed, log->fingerprint(), stamps.file_order ? "file" : "time",
-        {}};
+    PreparedSource prepared;
+    prepared.skipped_lines = log->skipped_lines();
+    prepared.speed = replay.speed;
+    prepared.fingerprint = log->fingerprint();
+    prepared.order = stamps.file_order ? "file" : "time";
     prepared.source = std::make_unique<CarmenLog>(std::move(*log));
     return prepared;
 }
@@ -61,7 +64,10 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     ring.aperture = sonar.aperture_deg * std::numbers::pi / 180.0;
     auto log = SonarLog::open(sonar.measurements, sonar.poses, ring);
     if (!log) return log.error();
-    PreparedSource prepared{nullptr, nullptr, 0, sonar.speed, log->fingerprint(), "file", {}};
+    PreparedSource prepared;
+    prepared.speed = sonar.speed;
+    prepared.fingerprint = log->fingerprint();
+    prepared.order = "file";
     prepared.source = std::make_unique<SonarLog>(std::move(*log));
     return prepared;
 }
@@ -118,11 +124,17 @@ Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& 
     if (simulate.duration) limits.duration = *simulate.duration;
     if (simulate.scans) limits.scans = *simulate.scans;
     const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
-    PreparedSource prepared{
-        nullptr, nullptr, 0, simulate.speed, fingerprint_of(simulator, simulate.drive, no_return), "time", kBodyRadius};
+    PreparedSource prepared;
+    prepared.speed = simulate.speed;
+    prepared.fingerprint = fingerprint_of(simulator, simulate.drive, no_return);
+    prepared.body_radius = kBodyRadius;
     prepared.source = std::make_unique<SimulatedSource>(
         Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
     return prepared;
+}
+
+Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06, Console& console) {
+    return prepare_ld06(options, ld06, console);
 }
 
 } // namespace

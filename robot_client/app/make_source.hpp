@@ -2,6 +2,7 @@
 
 #include "robot_client/app/options.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/source/exploring_source.hpp"
 #include "robot_client/source/live_source.hpp"
 #include "robot_client/source/source.hpp"
 
@@ -17,14 +18,15 @@ struct PreparedSource {
     std::unique_ptr<LiveSource> live; ///< what comes when it comes: exactly one of the two
     std::size_t skipped_lines = 0;
     double speed = 0.0;
-    std::string fingerprint;           ///< for Hello.source
-    std::string_view order;            ///< of its scans: "file" or "time", a literal
-    std::optional<double> body_radius; ///< metres, of the robot whose scans they are, where it is known
+    std::string fingerprint;              ///< for Hello.source
+    std::string_view order = "time";      ///< of its scans: "file" or "time", a literal
+    ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
+    std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
-/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open() and load_world();
-/// an unknown sensor, or one without a range.
+/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open(), load_world() and
+/// prepare_ld06(); an unknown sensor, or one without a range.
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

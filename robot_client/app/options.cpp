@@ -15,7 +15,8 @@ namespace scanloom::robot {
 namespace {
 
 constexpr const char* kAbout =
-    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, or a simulated robot.\n"
+    "Streams a robot's scans to a Scanloom server: a recorded log, recorded sonars, a lidar,\n"
+    "or a simulated robot.\n"
     "The same command again continues behind the scans that are stored already.\n"
     "Exits 0 when every scan is stored durably (a simulation without an end: every scan sent\n"
     "until it was interrupted), 1 when not, 2 when it was called wrongly; prints a summary as one line\n"
@@ -166,6 +167,7 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     SonarReplayOptions sonar_options;
     SimulateOptions simulate_options;
     TruthOptions truth_options;
+    Ld06Options ld06_options;
 
     CLI::App app(kAbout, "scanloom-robot");
     app.footer(kFooter);
@@ -176,6 +178,7 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     add_wire_options(app, raw);
     const CLI::App* replay = add_replay(app, replay_options)->fallthrough();
     const CLI::App* sonar = add_sonar(app, sonar_options)->fallthrough();
+    const CLI::App* ld06 = add_ld06(app, ld06_options)->fallthrough();
     const CLI::App* simulate = add_simulate(app, simulate_options)->fallthrough();
     const CLI::App* truth = add_truth(app, truth_options)->fallthrough();
     app.require_subcommand(1);
@@ -186,7 +189,7 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     } catch (const CLI::ParseError& reason) {
         return leave_for(
             app, reason,
-            "say what to stream: replay FILE, sonar MEASUREMENTS POSES, or simulate; or ask for the truth");
+            "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate; or ask for the truth");
     }
     if (truth->parsed()) {
         if (auto mistake = mistake_in(truth_options)) return usage_error(app, *mistake);
@@ -211,6 +214,9 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
     } else if (sonar->parsed()) {
         if (sonar_options.poses.empty()) return usage_error(app, "sonar: name two files, MEASUREMENTS and POSES");
         options.source = std::move(sonar_options);
+    } else if (ld06->parsed()) {
+        if (const auto wrong = complaint_about(ld06_options); !wrong.empty()) return usage_error(app, wrong);
+        options.source = std::move(ld06_options);
     } else if (simulate->parsed()) {
         if (auto mistake = mistake_in(simulate_options)) return usage_error(app, *mistake);
         options.source = std::move(simulate_options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/app/program.hpp"
+#include "robot_client/app/ld06_options.hpp"
 #include "robot_client/source/source.hpp"
 #include "robot_client/spool/spool.hpp"
 #include "robot_client/uplink/server_address.hpp"
@@ -72,7 +73,7 @@ struct RobotOptions {
     std::chrono::milliseconds batch_delay{0};
     std::uint64_t batch_bytes_max = 0;
     bool compress = false;
-    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions> source;
+    std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions, Ld06Options> source;
 };
 
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,

@@ -5,6 +5,13 @@
 
 namespace scanloom::robot {
 
+Pose2 interpolate(const StampedPose& from, const StampedPose& to, double stamp) {
+    const double gap = to.stamp - from.stamp;
+    const double share = gap > 0.0 ? (stamp - from.stamp) / gap : 0.0;
+    return {from.robot.x + share * (to.robot.x - from.robot.x), from.robot.y + share * (to.robot.y - from.robot.y),
+            normalize_angle(from.robot.yaw + share * normalize_angle(to.robot.yaw - from.robot.yaw))};
+}
+
 PosePath::PosePath(std::vector<StampedPose> samples) : samples_(std::move(samples)) {
     std::stable_sort(samples_.begin(), samples_.end(),
                      [](const StampedPose& a, const StampedPose& b) { return a.stamp < b.stamp; });
@@ -19,10 +26,7 @@ std::optional<Pose2> PosePath::at(double stamp) const {
     if (!has_after && !has_before) return std::nullopt;
     const StampedPose& from = has_before ? *(after - 1) : *after;
     const StampedPose& to = has_after ? *after : *(after - 1);
-    const double gap = to.stamp - from.stamp;
-    const double share = gap > 0.0 ? (stamp - from.stamp) / gap : 0.0;
-    return Pose2{from.robot.x + share * (to.robot.x - from.robot.x), from.robot.y + share * (to.robot.y - from.robot.y),
-                 normalize_angle(from.robot.yaw + share * normalize_angle(to.robot.yaw - from.robot.yaw))};
+    return interpolate(from, to, stamp);
 }
 
 } // namespace scanloom::robot

@@ -13,6 +13,10 @@ struct StampedPose {
     double stamp = 0.0; ///< seconds, finite
 };
 
+/// Between two poses, or beyond them, as if the robot moved evenly and turned the short way.
+/// @return `from` where both have the same stamp.
+[[nodiscard]] Pose2 interpolate(const StampedPose& from, const StampedPose& to, double stamp);
+
 /// A scan this far in time from the nearest recorded pose has none.
 inline constexpr double kPoseGapMax = 1.0; // seconds
 

@@ -6,6 +6,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/store/crc32c.hpp"
+#include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 
@@ -68,6 +69,14 @@ Scan full_scan() {
     return scan;
 }
 
+/// As an LD06 takes it.
+Scan stepped_scan() {
+    Scan scan = plain_scan();
+    scan.seq = 3;
+    scan.angles = SteppedAngles{1.5866e-5, {871, 1742, 2620, 11'000, 395'900}};
+    return scan;
+}
+
 SessionOptions options() {
     return {.cell_size = 0.05, .ray_model = RayModel::kTraversal, .p_occupied = 0.9, .himm_increment = 3};
 }
@@ -84,7 +93,7 @@ std::vector<wire::Message> messages() {
         wire::Welcome{"5f1c", 17, {1 << 20, 4096, 1024}, 1 << 22},
         laser(),
         sonar_ring(),
-        wire::ScanBatch{{plain_scan(), full_scan()}},
+        wire::ScanBatch{{plain_scan(), full_scan(), stepped_scan()}},
         wire::Ack{17, 16, 1 << 22},
         wire::LinkError{{Errc::kInvalidField, "scan_batch.scans[3].pose.x is nan"}, false},
         wire::Ping{42},
@@ -128,6 +137,7 @@ void write_log_entries(const std::filesystem::path& folder) {
     write_file(folder / "laser_described", wire::encode_entry(SensorDescribed{0, laser()}));
     write_file(folder / "sonar_described", wire::encode_entry(SensorDescribed{0, sonar_ring()}));
     write_file(folder / "scan_taken", wire::encode_entry(ScanTaken{0, full_scan()}));
+    write_file(folder / "stepped_scan_taken", wire::encode_entry(ScanTaken{0, stepped_scan()}));
     write_file(folder / "map_patch",
                wire::encode_entry(MapPatch{0.05, -1.0, 2.0, 2, {MapCell::kFree, MapCell::kOccupied}}));
     write_file(folder / "session", wire::encode_session({"lab", 1.7e9, options()}));
@@ -148,6 +158,27 @@ void write_log_files(const std::filesystem::path& folder) {
     write_file(folder / "whole", file);
     write_file(folder / "torn", std::string_view(file).substr(0, file.size() - 4));
     write_file(folder / "damaged", "!" + file.substr(1));
+}
+
+/// What an LD06 sends: turns, whole, split, and with what a bad line does to them.
+void write_ld06_streams(const std::filesystem::path& folder) {
+    using namespace testing_support;
+    const auto write = [&](const char* name, std::string_view head, const Bytes& bytes) {
+        write_file(folder / name, std::string(head).append(bytes.begin(), bytes.end()));
+    };
+    Ld06Spinner sensor(35'000, 29'950);
+    const Bytes turn = sensor.next_bytes(44);
+    write("a_turn", {"\0", 1}, turn);
+    write("a_turn_smoothed_and_split", "\x85\x01\x2e\x2f\x30\x07", turn);
+    Bytes damaged = turn;
+    for (std::size_t at = 30; at < damaged.size(); at += 400) damaged[at] ^= 0x20;
+    damaged.insert(damaged.begin() + 5 * 47, {0x54, 0x54, 0x2C});
+    damaged.erase(damaged.begin() + 900, damaged.begin() + 1100);
+    write("a_damaged_turn", {"\0", 1}, damaged);
+    Bytes jumps = Ld06Spinner(35'900, 5'000).next_bytes(3);
+    append(jumps, Ld06Spinner(10'000, 2'000).next_bytes(2));
+    append(jumps, Ld06Spinner(35'500, 9'000).next_bytes(3));
+    write("jumps", {"\0", 1}, jumps);
 }
 
 void append_text(std::string& out, std::string_view text) {
@@ -191,6 +222,7 @@ int main(int argc, char** argv) {
     write_streams(folder / "frame_decoder");
     write_log_entries(folder / "log_codec");
     write_log_files(folder / "log_file");
+    write_ld06_streams(folder / "ld06");
     write_checkpoint(folder / "checkpoint");
     return 0;
 }

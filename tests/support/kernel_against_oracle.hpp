@@ -51,7 +51,7 @@ inline Verdicts run_kernel(const Case& c) {
 }
 
 inline oracle::Scene scene_of(const Case& c) {
-    oracle::Scene scene{.explicit_angles = std::holds_alternative<ExplicitAngles>(c.angles),
+    oracle::Scene scene{.explicit_angles = !std::holds_alternative<UniformAngles>(c.angles),
                         .range_min = c.range_min,
                         .range_max = c.range_max,
                         .alpha = c.thickness,

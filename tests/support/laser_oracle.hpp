@@ -27,7 +27,7 @@ inline double metres_of(RangeMm mm) {
 inline Scene scene_of(const mapping::MapConfig& config, const Sensor& sensor, const Scan& scan, double alpha,
                       double beta) {
     const BeamAngles angles = angles_of(scan, sensor);
-    Scene scene{.explicit_angles = std::holds_alternative<ExplicitAngles>(angles),
+    Scene scene{.explicit_angles = !std::holds_alternative<UniformAngles>(angles),
                 .range_min = sensor.range_min,
                 .range_max = sensor.range_max,
                 .alpha = alpha,

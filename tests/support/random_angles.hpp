@@ -10,7 +10,7 @@
 /// Beam angles of every kind of sensor there is, and of some that there are not.
 namespace scanloom::testing_support {
 
-inline constexpr unsigned kAngleShapes = 11;
+inline constexpr unsigned kAngleShapes = 12;
 
 /// Pre: shape < kAngleShapes. `name` says which it is.
 inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::string& name) {
@@ -34,6 +34,16 @@ inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::strin
         ExplicitAngles list;
         for (int i = -60; i <= 60; ++i) list.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
         return list;
+    }
+    case 10: {
+        name = "a turn in steps, with holes";
+        SteppedAngles stepped{2 * kPi / 396'000, {}};
+        for (std::int32_t step = static_cast<std::int32_t>(below(900)); step < 396'000;) {
+            stepped.steps.push_back(step);
+            const unsigned kind = below(40); // holes of less and of more than four usual gaps
+            step += static_cast<std::int32_t>(kind == 0 ? 13'001 : kind == 1 ? 9'001 : 2600 + below(300));
+        }
+        return stepped;
     }
     default: {
         name = "any angles in any order";

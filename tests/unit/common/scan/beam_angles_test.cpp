@@ -27,9 +27,19 @@ TEST(BeamAngles, ExplicitOnesAreTakenInTheirOrder) {
     EXPECT_EQ(beam_angle(angles, 2), 7.0) << "not normalised";
 }
 
+TEST(BeamAngles, SteppedOnesAreMultiplesOfTheirUnit) {
+    const BeamAngles angles = SteppedAngles{-0.25, {4, -2, 0, 4}};
+    EXPECT_EQ(beam_count(angles), 4U);
+    EXPECT_EQ(beam_angle(angles, 0), -1.0);
+    EXPECT_EQ(beam_angle(angles, 1), 0.5);
+    EXPECT_EQ(beam_angle(angles, 2), 0.0);
+    EXPECT_EQ(beam_angle(angles, 3), -1.0) << "a multiple of the unit, not a sum of differences";
+}
+
 TEST(BeamAngles, NoneAreNoBeams) {
     EXPECT_EQ(beam_count(UniformAngles{}), 0U);
     EXPECT_EQ(beam_count(ExplicitAngles{}), 0U);
+    EXPECT_EQ(beam_count(SteppedAngles{}), 0U);
 }
 
 } // namespace

@@ -55,6 +55,8 @@ TEST(AnglesOf, ExplicitAnglesOfASensorAreUsedAsTheyAre) {
     Scan scan;
     scan.ranges = {1, 2, 3};
     EXPECT_EQ(angles_of(scan, sensor), sensor.angles);
+    sensor.angles = SteppedAngles{0.1, {3, -2, 1}};
+    EXPECT_EQ(angles_of(scan, sensor), sensor.angles);
 }
 
 } // namespace

@@ -135,6 +135,15 @@ const SpoiltAngles kSpoiltAngles[] = {
     {ExplicitAngles{0.0, kNan, 0.1}, "angles.explicit.angles[1] is nan;"},
     {ExplicitAngles{0.0, 0.1, kInfinity}, "angles.explicit.angles[2] is inf;"},
     {ExplicitAngles{-50.0, 0.1, 0.2}, "angles.explicit.angles[0] is -50;"},
+    {SteppedAngles{0.1, {}}, "angles describe 0 beams;"},
+    {SteppedAngles{0.1, std::vector<std::int32_t>(4097, 1)}, "angles describe 4097 beams, at most 4096",
+     Errc::kTooLarge},
+    {SteppedAngles{0.0, {0, 1, 2}}, "angles.stepped.unit is 0;"},
+    {SteppedAngles{kNan, {0, 1, 2}}, "angles.stepped.unit is nan;"},
+    {SteppedAngles{-kInfinity, {0, 1, 2}}, "angles.stepped.unit is -inf;"},
+    {SteppedAngles{0.5, {0, 1, -100}}, "angles.stepped.deltas lead beam 2 to -100 steps of 0.5, which is -50;"},
+    {SteppedAngles{1e300, {0, 2'000'000'000, 1}},
+     "angles.stepped.deltas lead beam 1 to 2000000000 steps of 1e+300, which is inf;"},
 };
 
 TEST(BadAngles, OfASensorAreRefusedByName) {
@@ -153,16 +162,35 @@ TEST(BadAngles, OfAScanAreRefusedByNameAndPlace) {
     }
 }
 
+TEST(BadAngles, StepsThatLeave32BitsAreRefused) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
+    auto& stepped = *frame.mutable_sensor_description()->mutable_angles()->mutable_stepped();
+    stepped.set_unit(1e-12);
+    stepped.add_deltas(INT32_MAX);
+    EXPECT_TRUE(decode(frame.SerializeAsString()));
+    for (const std::int32_t once_more : {1, INT32_MAX}) {
+        stepped.clear_deltas();
+        for (const std::int32_t delta : {INT32_MAX, once_more}) stepped.add_deltas(delta);
+        expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                       "sensor_description.angles.stepped.deltas lead beam 1 to ");
+    }
+    stepped.clear_deltas();
+    for (const std::int32_t delta : {INT32_MIN, -1}) stepped.add_deltas(delta);
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
+                   "sensor_description.angles.stepped.deltas lead beam 1 to -2147483649 steps; 32 bits must hold");
+}
+
 TEST(BadAngles, OfNeitherKindAreRefused) {
     v1::Frame frame;
     ASSERT_TRUE(frame.ParseFromString(body_of(example_sensor())));
     frame.mutable_sensor_description()->clear_angles();
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
-                   "sensor_description.angles are neither uniform nor explicit");
+                   "sensor_description.angles are neither uniform, explicit nor stepped");
     ASSERT_TRUE(frame.ParseFromString(body_of(example_batch())));
     frame.mutable_scan_batch()->mutable_scans(1)->mutable_angles()->Clear();
     expect_refused(frame.SerializeAsString(), Errc::kInvalidField,
-                   "scan_batch.scans[1].angles are neither uniform nor explicit");
+                   "scan_batch.scans[1].angles are neither uniform, explicit nor stepped");
 }
 
 TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
@@ -349,7 +377,9 @@ TEST(CheckScan, ExplicitAnglesOfTheSensorNeedARangeEach) {
     scan.ranges.pop_back();
     const auto refused = check_scan(scan, sensor);
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 2 beams, sensor 63 has 3 explicit angles;"));
+    EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 2 beams, sensor 63 has 3 angles;"));
+    sensor.angles = SteppedAngles{0.1, {1, 2, 4}};
+    EXPECT_FALSE(check_scan(scan, sensor));
     scan.angles = ExplicitAngles{0.1, 0.2};
     EXPECT_TRUE(check_scan(scan, sensor)) << "its own angles are what counts";
 }

@@ -16,8 +16,10 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 std::vector<LogEntry> one_of_each() {
+    Scan stepped = example_scan(18);
+    stepped.angles = SteppedAngles{1.5e-5, {395'000, 12, -7}};
     return {RobotJoined{3, "robot-1"}, RobotJoined{3, "robot-1", "carmen:12", 0.25},
-            SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}};
+            SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}, ScanTaken{3, stepped}};
 }
 
 TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {

@@ -84,6 +84,21 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     Sensor sensor = example_sensor();
     sensor.angles = ExplicitAngles{3.0, -1.0};
     EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
+    sensor.angles = SteppedAngles{-1e-9, {0, INT32_MAX, 1, -INT32_MAX, 0, -1}};
+    EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));
+}
+
+TEST(Messages, AStepBetweenTheBeamsOfASpinningSensorTakesTwoBytes) {
+    Scan scan = example_scan();
+    scan.intensities.clear();
+    scan.ranges.assign(450, 1000);
+    scan.angles = UniformAngles{0.5, 0.01, 450};
+    const std::size_t without = body_of(ScanBatch{{scan}}).size();
+    SteppedAngles stepped{0.01 / 11.0 * std::numbers::pi / 180.0, {}};
+    for (std::int32_t beam = 0; beam < 450; ++beam) stepped.steps.push_back(871 * beam + beam % 7);
+    scan.angles = stepped;
+    EXPECT_EQ(decode(body_of(ScanBatch{{scan}})).value(), Message(ScanBatch{{scan}}));
+    EXPECT_LE(body_of(ScanBatch{{scan}}).size(), without + 2 * 450);
 }
 
 TEST(Messages, EveryErrorCodeOfTheWireComesBackAsItself) {

@@ -76,7 +76,7 @@ TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
 
 TEST(WireBytesMax, IsNeverLessThanWhatTheScanTakes) {
     for (const std::size_t beams : {1U, 180U, 4096U}) {
-        for (int variant = 0; variant < 4; ++variant) {
+        for (int variant = 0; variant < 5; ++variant) {
             Scan scan;
             scan.seq = std::numeric_limits<std::uint64_t>::max();
             scan.stamp = 1e300;
@@ -86,6 +86,11 @@ TEST(WireBytesMax, IsNeverLessThanWhatTheScanTakes) {
             scan.ranges.assign(beams, kNoReturn);
             if (variant & 1) scan.intensities.assign(beams, std::numeric_limits<std::uint32_t>::max());
             if (variant & 2) scan.angles = ExplicitAngles(beams, 0.5);
+            if (variant == 4) {
+                SteppedAngles stepped{1e-12, std::vector<std::int32_t>(beams, 1 << 30)};
+                for (std::size_t beam = 0; beam < beams; beam += 2) stepped.steps[beam] = -(1 << 30);
+                scan.angles = std::move(stepped);
+            }
             if (variant == 1) scan.angles = UniformAngles{0.5, 0.001, static_cast<std::uint32_t>(beams)};
             std::string frame;
             wire::encode(wire::ScanBatch{{scan}}, frame);

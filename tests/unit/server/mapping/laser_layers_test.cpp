@@ -217,7 +217,7 @@ TEST(BeamIndex, FindsWhatTheLoopOverAllBeamsFinds) {
         for (int round = 0; round < 5; ++round) {
             std::string name;
             const BeamAngles angles = testing_support::random_angles(random, shape, name);
-            oracle::Scene scene{.explicit_angles = std::holds_alternative<ExplicitAngles>(angles)};
+            oracle::Scene scene{.explicit_angles = !std::holds_alternative<UniformAngles>(angles)};
             for (std::size_t b = 0; b < beam_count(angles); ++b) scene.beam_angles.push_back(beam_angle(angles, b));
             scene.sight = oracle::sight_of(scene);
             const oracle::BeamIndex index(scene);

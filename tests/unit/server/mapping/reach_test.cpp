@@ -24,6 +24,12 @@ Sensor sensor_of(std::mt19937& random) {
         ExplicitAngles angles(beams);
         for (auto& angle : angles) angle = 6.0 * unit(random) - 3.0;
         sensor.angles = angles;
+    } else if (random() % 3 == 0) {
+        SteppedAngles angles{0.003, {}};
+        for (std::uint32_t beam = 0; beam < beams; ++beam) {
+            angles.steps.push_back(static_cast<std::int32_t>(random() % 2000) - 1000);
+        }
+        sensor.angles = angles;
     }
     return sensor;
 }

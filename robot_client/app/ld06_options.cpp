@@ -1,0 +1,100 @@
+#include "robot_client/app/ld06_options.hpp"
+
+#include "common/app/option_checks.hpp"
+#include "common/scan/limits.hpp"
+#include "robot_client/source/range_median.hpp"
+#include "robot_client/uplink/server_address.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+/// X,Y,YAW.
+std::optional<Pose2> to_pose(const std::string& text) {
+    std::array<double, 3> numbers{};
+    const auto words = CLI::detail::split(text, ',');
+    if (words.size() != numbers.size()) return std::nullopt;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (!CLI::detail::lexical_cast(words[i], numbers[i]) || !(std::abs(numbers[i]) <= kCoordinateMax)) {
+            return std::nullopt;
+        }
+    }
+    return Pose2{numbers[0], numbers[1], normalize_angle(numbers[2])};
+}
+
+std::string check_pose(const std::string& text) {
+    if (to_pose(text)) return {};
+    return fmt::format("'{}' is not X,Y,YAW in metres and radians", text);
+}
+
+std::string check_window(const std::string& text) {
+    int window = 0;
+    if (CLI::detail::lexical_cast(text, window) && window % 2 == 1 && window >= kMedianWindowMin &&
+        window <= kMedianWindowMax) {
+        return {};
+    }
+    return fmt::format("'{}' is not an odd number from {} to {}", text, kMedianWindowMin, kMedianWindowMax);
+}
+
+std::string check_confidence(const std::string& text) {
+    int confidence = 0;
+    if (CLI::detail::lexical_cast(text, confidence) && confidence >= 0 && confidence <= 255) return {};
+    return fmt::format("'{}' is not a whole number from 0 to 255", text);
+}
+
+void add_poses(CLI::App& ld06, Ld06Options& options) {
+    ld06.add_option_function<std::string>(
+            "--pose", [&](const std::string& text) { options.pose = to_pose(text); },
+            "X,Y,YAW of a robot that stands: metres, and radians counter-clockwise")
+        ->check(check_pose);
+    ld06.add_option("--poses", options.poses,
+                    "File of lines: t x y yaw, '-' = stdin. t counts seconds from the first packet of a file, for a "
+                    "device it is Unix time. Between its lines a pose is interpolated; scans before the first and "
+                    "behind the last are passed over");
+    ld06.add_option_function<std::string>(
+            "--mount", [&](const std::string& text) { options.mount = *to_pose(text); },
+            "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0")
+        ->check(check_pose);
+}
+
+} // namespace
+
+CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
+    auto* ld06 = app.add_subcommand("ld06", "Read an LD06 or LD19 lidar, or what one has sent");
+    ld06->add_option("INPUT", options.input, "Serial device (/dev/ttyUSB0), tcp://HOST:PORT (ser2net), or capture file")
+        ->configurable(false);
+    add_poses(*ld06, options);
+    ld06->add_option("--min-range", options.range_min, "Metres; shorter readings are invalid. Default: 0.02")
+        ->check(check_within(0.0, kRangeMax));
+    ld06->add_option("--min-confidence", options.confidence_min, "0 to 255; readings of less are invalid. Default: 100")
+        ->check(check_confidence);
+    ld06->add_option("--median", options.median_window,
+                     "Beams; each reading becomes the median of so many neighbours. Odd, 3 to 51. Default: off")
+        ->check(check_window);
+    ld06->add_option("--speed", options.speed, "Of a capture file: 1 = as recorded, 0 = as fast as the server takes it")
+        ->check(check_not_negative)
+        ->capture_default_str();
+    ld06->add_option("--reopen-for", options.reopen_for,
+                     "Seconds for which a device that went away is tried again; 0 = not at all")
+        ->check(check_within(0.0, 1e6))
+        ->capture_default_str();
+    return ld06;
+}
+
+std::string complaint_about(const Ld06Options& options) {
+    if (options.input.empty()) return "ld06: name the INPUT: a serial device, tcp://HOST:PORT, or a capture file";
+    if (options.input.starts_with(kTcpScheme) && !parse_server_address(options.input.substr(kTcpScheme.size()))) {
+        return fmt::format("ld06: '{}' is not tcp://HOST:PORT", options.input);
+    }
+    if (options.pose.has_value() != options.poses.empty()) {
+        return "ld06: say where the robot is, either with --pose X,Y,YAW or with --poses FILE";
+    }
+    return {};
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,128 @@
+#include "robot_client/app/ld06_source.hpp"
+
+#include "robot_client/source/ld06_capture.hpp"
+#include "robot_client/source/ld06_live.hpp"
+#include "robot_client/source/pose_feed.hpp"
+#include "robot_client/source/pose_lines.hpp"
+#include "robot_client/uplink/server_address.hpp"
+
+#include <fmt/format.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr std::size_t kSkippedLinesShown = 5;
+constexpr std::string_view kStandardInput = "-";
+
+Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Options& ld06) {
+    Ld06ScanOptions scan;
+    scan.range_min = ld06.range_min.value_or(scan.range_min);
+    scan.range_max = options.range_max.value_or(scan.range_max);
+    scan.no_return = options.no_return.value_or(scan.no_return);
+    if (ld06.confidence_min) scan.confidence_min = static_cast<std::uint8_t>(*ld06.confidence_min);
+    scan.median_window = ld06.median_window;
+    scan.mount = ld06.mount;
+    if (scan.range_min < scan.range_max) return scan;
+    return Error{Errc::kInvalidField,
+                 fmt::format("--min-range is {} m, but --max-range only {} m; nothing lies between", scan.range_min,
+                             scan.range_max)};
+}
+
+Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
+    const std::string name = ld06.poses == kStandardInput ? "stdin" : ld06.poses;
+    std::size_t skipped = 0;
+    const auto tell = [&](const SkippedLine& line) {
+        if (++skipped <= kSkippedLinesShown) {
+            console.note(fmt::format("{}:{}: skipped: {}", name, line.line_number, line.reason));
+        }
+    };
+    auto lines = ld06.poses == kStandardInput ? read_pose_lines(std::cin, name, tell) : read_pose_lines(name, tell);
+    if (skipped > kSkippedLinesShown) {
+        console.note(fmt::format("{}: {} more lines skipped", name, skipped - kSkippedLinesShown));
+    }
+    return lines;
+}
+
+Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOptions& scan, Console& console) {
+    Ld06Poses poses = ld06.pose.value_or(Pose2{});
+    std::size_t skipped = 0;
+    if (!ld06.pose) {
+        auto lines = read_poses(ld06, console);
+        if (!lines) return lines.error();
+        skipped = lines->skipped;
+        poses = std::move(lines->poses);
+    }
+    auto capture = Ld06Capture::open(ld06.input, scan, std::move(poses));
+    if (!capture) return capture.error();
+    console.note(fmt::format("{}: {}", ld06.input, capture->remarks()));
+    PreparedSource prepared;
+    prepared.skipped_lines = skipped;
+    prepared.speed = ld06.speed;
+    prepared.fingerprint = capture->fingerprint();
+    prepared.source = std::make_unique<Ld06Capture>(std::move(*capture));
+    return prepared;
+}
+
+bool is_regular_standard_input() {
+    struct stat status {};
+    return ::fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+/// Poses of a device that come while it is read, or that are known from the begin.
+Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::size_t& skipped, Console& console) {
+    if (ld06.pose) {
+        live.poses = *ld06.pose;
+    } else if (ld06.poses == kStandardInput && !is_regular_standard_input()) {
+        live.poses = PoseTimeline();
+        live.pose_descriptor = open_standard_input_again();
+    } else {
+        auto lines = read_poses(ld06, console);
+        if (!lines) return lines.error();
+        skipped = lines->skipped;
+        live.poses = std::move(lines->poses);
+    }
+    return {};
+}
+
+Result<PreparedSource> prepare_device(const Ld06Options& ld06, const Ld06ScanOptions& scan, Ld06Endpoint endpoint,
+                                      Console& console) {
+    Ld06LiveOptions live;
+    live.device.endpoint = std::move(endpoint);
+    live.device.reopen_for = std::chrono::milliseconds(static_cast<std::int64_t>(ld06.reopen_for * 1e3));
+    live.device.note = [&console](const std::string& text) { console.note(text); };
+    live.scan = scan;
+    PreparedSource prepared;
+    if (auto added = add_live_poses(ld06, live, prepared.skipped_lines, console); !added) return added.error();
+    prepared.live = std::make_unique<Ld06Live>(std::move(live));
+    return prepared;
+}
+
+} // namespace
+
+Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Options& ld06, Console& console) {
+    const auto scan = scan_options(options, ld06);
+    if (!scan) return scan.error();
+    if (ld06.input.starts_with(kTcpScheme)) {
+        const auto peer =
+            parse_server_address(ld06.input.substr(kTcpScheme.size())).value(); // the options were checked
+        return prepare_device(ld06, *scan, TcpPeer{peer.host, peer.port}, console);
+    }
+    std::error_code failed;
+    const auto status = std::filesystem::status(ld06.input, failed);
+    if (std::filesystem::is_character_file(status)) {
+        return prepare_device(ld06, *scan, SerialDevice{ld06.input}, console);
+    }
+    if (std::filesystem::is_regular_file(status)) return prepare_capture(ld06, *scan, console);
+    return Error{Errc::kNotFound,
+                 std::filesystem::exists(status)
+                     ? fmt::format("{}: neither a serial device nor a file; name one", ld06.input)
+                     : fmt::format("{}: no such device or file; check the path, and the cable", ld06.input)};
+}
+
+} // namespace scanloom::robot

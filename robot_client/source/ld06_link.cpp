@@ -1,0 +1,110 @@
+#include "robot_client/source/ld06_link.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+using namespace asio::experimental::awaitable_operators;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr unsigned kBaud = 230'400;
+
+double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
+
+Result<> set_line(asio::serial_port& port) {
+    using Port = asio::serial_port;
+    error_code failed;
+    const auto set = [&](auto option) {
+        if (!failed) (void)port.set_option(option, failed);
+    };
+    set(Port::baud_rate(kBaud));
+    set(Port::character_size(8));
+    set(Port::parity(Port::parity::none));
+    set(Port::stop_bits(Port::stop_bits::one));
+    set(Port::flow_control(Port::flow_control::none));
+    if (!failed) return {};
+    return Error{Errc::kUnreachable,
+                 fmt::format("cannot be set to {} baud ({}); is it a serial device?", kBaud, failed.message())};
+}
+
+asio::awaitable<Result<Ld06Link>> open(SerialDevice device, std::chrono::milliseconds) {
+    asio::serial_port port(co_await asio::this_coro::executor);
+    error_code failed;
+    (void)port.open(device.path, failed);
+    if (failed) {
+        co_return Error{Errc::kUnreachable, fmt::format("cannot be opened ({}); check its cable and name, and that you "
+                                                        "may read it (group dialout)",
+                                                        failed.message())};
+    }
+    if (auto set = set_line(port); !set) co_return set.error();
+    co_return Ld06Link(std::move(port));
+}
+
+asio::awaitable<error_code> connect(tcp::socket& socket, const TcpPeer& peer) {
+    tcp::resolver resolver(co_await asio::this_coro::executor);
+    auto [unknown, addresses] = co_await resolver.async_resolve(peer.host, peer.port, kUse);
+    if (unknown) co_return unknown;
+    co_return std::get<0>(co_await asio::async_connect(socket, addresses, kUse));
+}
+
+asio::awaitable<Result<Ld06Link>> open(TcpPeer peer, std::chrono::milliseconds timeout) {
+    const auto executor = co_await asio::this_coro::executor;
+    tcp::socket socket(executor);
+    asio::steady_timer timer(executor, timeout);
+    const auto first = co_await (connect(socket, peer) || timer.async_wait(kUse));
+    const auto* connected = std::get_if<0>(&first);
+    if (connected != nullptr && !*connected) co_return Ld06Link(std::move(socket));
+    const std::string why =
+        connected != nullptr ? connected->message() : fmt::format("no answer for {:g} s", seconds(timeout));
+    co_return Error{Errc::kUnreachable,
+                    fmt::format("cannot be reached ({}); check the address, and that ser2net runs there", why)};
+}
+
+} // namespace
+
+std::string name_of(const Ld06Endpoint& endpoint) {
+    if (const auto* device = std::get_if<SerialDevice>(&endpoint)) return device->path;
+    const auto& peer = std::get<TcpPeer>(endpoint);
+    const bool is_bare_ipv6 = peer.host.find(':') != std::string::npos;
+    return is_bare_ipv6 ? fmt::format("tcp://[{}]:{}", peer.host, peer.port)
+                        : fmt::format("tcp://{}:{}", peer.host, peer.port);
+}
+
+asio::awaitable<Result<Ld06Link>> open_link(Ld06Endpoint endpoint, std::chrono::milliseconds timeout) {
+    auto link = co_await std::visit([&](auto& there) { return open(there, timeout); }, endpoint);
+    if (!link) co_return prefixed(name_of(endpoint) + ": ", link.error());
+    co_return link;
+}
+
+asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::uint8_t> bytes,
+                                               std::chrono::milliseconds timeout) {
+    asio::steady_timer timer(co_await asio::this_coro::executor, timeout);
+    const auto buffer = asio::buffer(bytes.data(), bytes.size());
+    const auto first = co_await (std::visit([&](auto& line) { return line.async_read_some(buffer, kUse); }, link) ||
+                                 timer.async_wait(kUse));
+    if (first.index() == 1) {
+        co_return Error{
+            Errc::kTimeout,
+            fmt::format("not a byte for {:g} s; does the sensor have power, and does it turn?", seconds(timeout))};
+    }
+    const auto [failed, count] = std::get<0>(first);
+    if (!failed) co_return count;
+    // a terminal without its other end says so with an I/O error
+    const bool hung_up = failed == asio::error::eof || failed == error_code(EIO, boost::system::system_category());
+    co_return Error{Errc::kUnreachable, hung_up ? "hung up; is it still plugged in?"
+                                                : fmt::format("cannot be read ({})", failed.message())};
+}
+
+} // namespace scanloom::robot

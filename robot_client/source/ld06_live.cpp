@@ -1,0 +1,267 @@
+#include "robot_client/source/ld06_live.hpp"
+
+#include "robot_client/source/ld06_clock.hpp"
+#include "robot_client/source/ld06_decoder.hpp"
+#include "robot_client/source/ld06_remarks.hpp"
+#include "robot_client/source/ld06_turns.hpp"
+#include "robot_client/source/pose_feed.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/bind_cancellation_slot.hpp>
+#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <unistd.h>
+
+#include <deque>
+#include <exception>
+#include <optional>
+#include <utility>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// Stops a coroutine from outside, as long as there is one: it may have ended, or its executor may be gone.
+struct StopSwitch {
+    asio::cancellation_signal signal;
+    bool is_running = false;
+
+    void press() {
+        if (is_running) signal.emit(asio::cancellation_type::terminal);
+    }
+};
+
+/// On a coroutine's frame, so that it knows when that is gone.
+class Running {
+public:
+    explicit Running(StopSwitch& stop) : stop_(stop) { stop_.is_running = true; }
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    ~Running() { stop_.is_running = false; }
+
+private:
+    StopSwitch& stop_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
+
+double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
+
+double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
+
+} // namespace
+
+/// What the reading coroutines and next() share. Timers and lines are on the coroutines' own frames, so that they never
+/// outlive their executor.
+class Ld06Live::State final : public Ld06Listener, public std::enable_shared_from_this<Ld06Live::State> {
+public:
+    explicit State(Ld06LiveOptions options)
+        : options_(std::move(options)), sensor_(ld06_sensor(options_.scan)),
+          are_poses_coming_(options_.pose_descriptor >= 0) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() override {
+        if (options_.pose_descriptor >= 0) ::close(options_.pose_descriptor); // never read
+    }
+
+    [[nodiscard]] asio::awaitable<Result<std::optional<Observation>>> next();
+    void stop();
+    [[nodiscard]] std::string remarks() const { return ld06_remarks(decoder_.counts(), turns_, losses_); }
+
+    void on_open() override;
+    bool on_bytes(std::span<const std::uint8_t> bytes) override;
+
+private:
+    struct Waiting {
+        Scan scan;
+        Clock::time_point until; ///< it waits for a pose
+    };
+
+    /// Where next() waits, while it does.
+    class Asleep {
+    public:
+        Asleep(asio::steady_timer*& place, asio::steady_timer& timer) : place_(place) { place_ = &timer; }
+        Asleep(const Asleep&) = delete;
+        Asleep& operator=(const Asleep&) = delete;
+        ~Asleep() { place_ = nullptr; }
+
+    private:
+        asio::steady_timer*& place_;
+    };
+
+    /// What a scan is told that asks for its pose.
+    struct Answer {
+        std::optional<Pose2> pose;
+        bool is_final = true;
+    };
+
+    void start(const asio::any_io_executor& executor);
+    template <class Body>
+    void spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body);
+    void add(const StampedPose& pose);
+    [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
+    [[nodiscard]] std::optional<Observation> take_ready();
+    void wake();
+
+    Ld06LiveOptions options_;
+    std::shared_ptr<const Sensor> sensor_;
+    Ld06Decoder decoder_;
+    Ld06LiveClock clock_;
+    Ld06Turns turns_;
+    std::deque<Waiting> waiting_;
+    bool are_poses_coming_;
+    Ld06Losses losses_;
+    std::optional<Error> ended_; ///< why nothing more comes from the sensor
+    bool is_started_ = false;
+    bool is_stopped_ = false;
+    asio::steady_timer* asleep_ = nullptr;
+    StopSwitch stop_sensor_;
+    StopSwitch stop_poses_;
+};
+
+// Reading -------------------------------------------------------------------------------------------------------------
+
+/// Runs `body` until it ends or is stopped.
+template <class Body>
+void Ld06Live::State::spawn(const asio::any_io_executor& executor, StopSwitch& stop, Body body) {
+    const auto run = [](std::shared_ptr<State> self, StopSwitch& own, Body inner) -> asio::awaitable<void> {
+        const Running running(own);
+        co_await inner(std::move(self));
+    };
+    const auto at_end = [self = shared_from_this()](std::exception_ptr failed) {
+        if (failed) std::rethrow_exception(failed);
+    };
+    asio::co_spawn(executor, run(shared_from_this(), stop, body),
+                   asio::bind_cancellation_slot(stop.signal.slot(), at_end));
+}
+
+void Ld06Live::State::start(const asio::any_io_executor& executor) {
+    is_started_ = true;
+    spawn(executor, stop_sensor_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
+        self->ended_ = co_await read_ld06_device(self->options_.device, *self);
+        self->wake();
+    });
+    if (!are_poses_coming_) return;
+    spawn(executor, stop_poses_, [](std::shared_ptr<State> self) -> asio::awaitable<void> {
+        const auto& note = self->options_.device.note;
+        const auto on_pose = [state = self.get()](const StampedPose& pose) { state->add(pose); };
+        const auto end = co_await feed_poses(std::exchange(self->options_.pose_descriptor, -1), on_pose, note);
+        if (!end.empty()) note(end + "; scans behind the last of them have none and are passed over");
+        self->are_poses_coming_ = false;
+        self->wake();
+    });
+}
+
+void Ld06Live::State::on_open() {
+    decoder_.restart();
+    clock_.restart();
+    turns_.restart();
+}
+
+bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
+    const double arrival = unix_now();
+    decoder_.feed(bytes);
+    bool is_packet = false;
+    while (const auto packet = decoder_.next()) {
+        is_packet = true;
+        turns_.add(*packet, clock_.stamp(packet->timestamp, arrival));
+    }
+    while (const auto turn = turns_.next()) {
+        waiting_.push_back({ld06_scan(*turn, options_.scan), Clock::now() + kPoseWait});
+        if (waiting_.size() > kScansWaitingMax) {
+            waiting_.pop_front();
+            ++losses_.too_many_waiting;
+        }
+        wake();
+    }
+    return is_packet;
+}
+
+void Ld06Live::State::add(const StampedPose& pose) {
+    auto* timeline = std::get_if<PoseTimeline>(&options_.poses);
+    if (timeline == nullptr) return;
+    timeline->insert(pose);
+    timeline->keep_newest(kPosesKept);
+    wake();
+}
+
+// Giving --------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
+    const auto self = shared_from_this();
+    const auto executor = co_await asio::this_coro::executor;
+    if (!is_started_ && !is_stopped_) start(executor);
+    asio::steady_timer timer(executor);
+    const Asleep asleep(asleep_, timer);
+    while (!is_stopped_) {
+        if (auto ready = take_ready()) co_return std::optional(std::move(*ready));
+        if (waiting_.empty() && ended_) co_return *ended_;
+        timer.expires_at(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
+        co_await timer.async_wait(kUse);
+    }
+    co_return std::optional<Observation>{};
+}
+
+/// The next scan whose pose is known; those that will have none are passed over.
+std::optional<Observation> Ld06Live::State::take_ready() {
+    while (!waiting_.empty()) {
+        const Answer answer = pose_for(waiting_.front());
+        if (!answer.is_final) return std::nullopt;
+        Scan scan = std::move(waiting_.front().scan);
+        waiting_.pop_front();
+        if (answer.pose) {
+            scan.pose = *answer.pose;
+            return Observation{sensor_, std::move(scan)};
+        }
+        ++losses_.without_pose;
+    }
+    return std::nullopt;
+}
+
+Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const {
+    if (const auto* fixed = std::get_if<Pose2>(&options_.poses)) return {*fixed};
+    const auto& timeline = std::get<PoseTimeline>(options_.poses);
+    const double stamp = waiting.scan.stamp;
+    if (const auto pose = timeline.at(stamp)) return {*pose};
+    const bool is_after_all = timeline.empty() || stamp > timeline.newest().stamp;
+    if (!is_after_all) return {};
+    if (are_poses_coming_ && Clock::now() < waiting.until) return {std::nullopt, false};
+    if (are_poses_coming_ && !timeline.empty() && stamp - timeline.newest().stamp <= seconds(kPoseWait)) {
+        return {timeline.newest().robot};
+    }
+    return {};
+}
+
+void Ld06Live::State::wake() {
+    if (asleep_ != nullptr) asleep_->cancel();
+}
+
+void Ld06Live::State::stop() {
+    is_stopped_ = true;
+    stop_sensor_.press();
+    stop_poses_.press();
+    wake();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+Ld06Live::Ld06Live(Ld06LiveOptions options) : state_(std::make_shared<State>(std::move(options))) {}
+
+Ld06Live::~Ld06Live() { state_->stop(); }
+
+asio::awaitable<Result<std::optional<Observation>>> Ld06Live::next() { return state_->next(); }
+
+void Ld06Live::stop() { state_->stop(); }
+
+std::string Ld06Live::remarks() const { return state_->remarks(); }
+
+} // namespace scanloom::robot

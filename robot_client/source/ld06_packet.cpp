@@ -1,0 +1,60 @@
+#include "robot_client/source/ld06_packet.hpp"
+
+#include <boost/endian/conversion.hpp>
+
+namespace scanloom::robot {
+namespace {
+
+constexpr int kAnglesPerTurn = 36'000; // of 0.01 degree
+
+constexpr std::array<std::uint8_t, 256> make_crc_table() {
+    constexpr unsigned kPolynomial = 0x4D;
+    std::array<std::uint8_t, 256> table{};
+    for (unsigned byte = 0; byte < table.size(); ++byte) {
+        unsigned crc = byte;
+        for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x80U) != 0 ? crc << 1 ^ kPolynomial : crc << 1;
+        table[byte] = static_cast<std::uint8_t>(crc);
+    }
+    return table;
+}
+
+constexpr auto kCrcTable = make_crc_table();
+
+int angles_spanned(const Ld06Packet& packet) {
+    return (packet.end_angle + kAnglesPerTurn - packet.start_angle) % kAnglesPerTurn;
+}
+
+} // namespace
+
+std::uint8_t ld06_crc(std::span<const std::uint8_t> bytes) noexcept {
+    std::uint8_t crc = 0;
+    for (const std::uint8_t byte : bytes) crc = kCrcTable[crc ^ byte];
+    return crc;
+}
+
+Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> bytes) noexcept {
+    const auto number_at = [&](std::size_t offset) { return boost::endian::load_little_u16(&bytes[offset]); };
+    Ld06Packet packet;
+    packet.speed = number_at(2);
+    packet.start_angle = number_at(4);
+    for (std::size_t i = 0; i < packet.points.size(); ++i) packet.points[i] = {number_at(6 + 3 * i), bytes[8 + 3 * i]};
+    packet.end_angle = number_at(42);
+    packet.timestamp = number_at(44);
+    return packet;
+}
+
+bool is_plausible(const Ld06Packet& packet) noexcept {
+    // The vendor's own test: a packet spans 12 samples' worth of turning, and half as much again. It counts on 4500
+    // samples a second, but the manual's example was taken at half as many.
+    constexpr double kSamplesPerSecond = 2250.0;
+    constexpr double kSpanMargin = 1.5;
+    const double degrees_max = packet.speed * kLd06PacketPoints / kSamplesPerSecond * kSpanMargin;
+    return packet.start_angle <= kAnglesPerTurn && packet.end_angle <= kAnglesPerTurn &&
+           packet.timestamp <= kLd06ClockWrap && angles_spanned(packet) / 100 <= degrees_max;
+}
+
+std::int32_t steps_spanned(const Ld06Packet& packet) noexcept {
+    return angles_spanned(packet) * kLd06StepsPerDegree / 100;
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+/// The packets of LDROBOT's spinning lidars LD06 and LD19 (D300 and D500 kits, STL-19P, STL-27L).
+/// Source  LDROBOT, LD06 development manual, and ldrobotSensorTeam/ldlidar_stl_ros2 for what it leaves open.
+namespace scanloom::robot {
+
+inline constexpr std::size_t kLd06PacketBytes = 47;
+inline constexpr std::size_t kLd06PacketPoints = 12;
+inline constexpr std::array<std::uint8_t, 2> kLd06Header{0x54, 0x2C};
+inline constexpr std::uint16_t kLd06ClockWrap = 30'000; ///< milliseconds
+
+/// Angles within a packet are start + i * span / 11 hundredths of a degree: whole multiples of 0.01 / 11 degree.
+inline constexpr std::int32_t kLd06StepsPerDegree = 1100;
+inline constexpr std::int32_t kLd06StepsPerTurn = 360 * kLd06StepsPerDegree;
+
+struct Ld06Point {
+    std::uint16_t distance = 0;  ///< millimetres; 0 = none was measured
+    std::uint8_t confidence = 0; ///< the sensor's own scale
+
+    friend bool operator==(const Ld06Point&, const Ld06Point&) = default;
+};
+
+struct Ld06Packet {
+    std::uint16_t speed = 0;       ///< degrees per second
+    std::uint16_t start_angle = 0; ///< of the first point; 0.01 degree, clockwise seen from above, 0 = ahead
+    std::array<Ld06Point, kLd06PacketPoints> points;
+    std::uint16_t end_angle = 0; ///< of the last point
+    std::uint16_t timestamp = 0; ///< milliseconds, wraps at kLd06ClockWrap
+
+    friend bool operator==(const Ld06Packet&, const Ld06Packet&) = default;
+};
+
+/// Polynomial 0x4D, from 0, not reflected. Over a whole packet it is 0.
+[[nodiscard]] std::uint8_t ld06_crc(std::span<const std::uint8_t> bytes) noexcept;
+
+/// Pre  the bytes begin with the header and their CRC is right.
+[[nodiscard]] Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> bytes) noexcept;
+
+/// False for what no sensor sends, though its CRC is right: one damaged packet in 256 has one that is.
+[[nodiscard]] bool is_plausible(const Ld06Packet& packet) noexcept;
+
+/// Steps from the first point to the last, clockwise.
+[[nodiscard]] std::int32_t steps_spanned(const Ld06Packet& packet) noexcept;
+
+} // namespace scanloom::robot

@@ -1,0 +1,26 @@
+#include "robot_client/source/ld06_remarks.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::robot {
+namespace {
+
+std::string counted(std::uint64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+} // namespace
+
+std::string ld06_remarks(const Ld06Counts& counts, const Ld06Turns& turns, const Ld06Losses& losses) {
+    std::string text = fmt::format("{}, {}", counted(counts.crc_failures + counts.implausible, "damaged packet"),
+                                   counted(turns.count(), "turn"));
+    const auto add = [&](std::uint64_t count, std::string_view noun, std::string_view what) {
+        if (count > 0) text += fmt::format(", {} {}", counted(count, noun), what);
+    };
+    add(turns.too_long(), "turn", "too slow to be used");
+    add(losses.without_pose, "scan", "without a pose passed over");
+    add(losses.too_many_waiting, "scan", "that nobody took in time");
+    return text;
+}
+
+} // namespace scanloom::robot

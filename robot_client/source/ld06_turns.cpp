@@ -1,0 +1,80 @@
+#include "robot_client/source/ld06_turns.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <cmath>
+
+namespace scanloom::robot {
+namespace {
+
+/// What angle and time may differ by: the time is in whole milliseconds (3.6 degrees at 10 turns a second), the speed
+/// changes while the sensor starts, and some packets are sent out of their place by a few degrees.
+constexpr std::int32_t kDisagreementMax = 20 * kLd06StepsPerDegree;
+
+} // namespace
+
+void Ld06Turns::add(const Ld06Packet& packet, double stamp) {
+    const auto followed = before_ ? follow(packet) : std::nullopt;
+    if (before_ && !followed) {
+        end_turn();
+        is_whole_ = true;
+    }
+    const std::int32_t span = steps_spanned(packet);
+    std::int32_t start = followed.value_or(packet.start_angle * kLd06StepsPerDegree / 100 % kLd06StepsPerTurn);
+    for (std::size_t i = 0; i < packet.points.size(); ++i) {
+        const auto gaps = static_cast<std::int32_t>(kLd06PacketPoints - 1);
+        std::int32_t step = start + span / gaps * static_cast<std::int32_t>(i);
+        while (step >= kLd06StepsPerTurn) {
+            end_turn();
+            is_whole_ = true;
+            start -= kLd06StepsPerTurn;
+            step -= kLd06StepsPerTurn;
+        }
+        add_point({step, packet.points[i]}, stamp);
+    }
+    before_ = Before{start, packet.timestamp};
+}
+
+/// Where the packet starts, in steps of the turn under way; nothing where that cannot be told.
+std::optional<std::int32_t> Ld06Turns::follow(const Ld06Packet& packet) const {
+    const int elapsed = (packet.timestamp - before_->timestamp + 2 * kLd06ClockWrap) % kLd06ClockWrap;
+    const std::int64_t expected = std::int64_t{elapsed} * packet.speed * kLd06StepsPerDegree / 1000;
+    if (elapsed >= kLd06ClockWrap / 2 || expected >= kLd06StepsPerTurn) return std::nullopt;
+    const auto start = packet.start_angle * kLd06StepsPerDegree / 100;
+    const double disagreement =
+        std::remainder(static_cast<double>(start - before_->start - expected), static_cast<double>(kLd06StepsPerTurn));
+    if (std::abs(disagreement) > kDisagreementMax) return std::nullopt;
+    return before_->start + static_cast<std::int32_t>(expected) + static_cast<std::int32_t>(disagreement);
+}
+
+void Ld06Turns::add_point(Ld06Beam beam, double stamp) {
+    if (beam.step < 0 || (!beams_.empty() && beam.step <= beams_.back().step)) return;
+    if (beams_.empty()) first_stamp_ = stamp;
+    last_stamp_ = stamp;
+    if (beams_.size() <= kBeamsMax) beams_.push_back(beam); // one too many tells that there were
+}
+
+void Ld06Turns::end_turn() {
+    if (beams_.size() > kBeamsMax) {
+        ++too_long_;
+    } else if (is_whole_ && !beams_.empty()) {
+        complete_.push_back({(first_stamp_ + last_stamp_) / 2.0, std::move(beams_)});
+        ++count_;
+    }
+    beams_.clear();
+}
+
+std::optional<Ld06Turn> Ld06Turns::next() {
+    if (complete_.empty()) return std::nullopt;
+    Ld06Turn turn = std::move(complete_.front());
+    complete_.pop_front();
+    return turn;
+}
+
+void Ld06Turns::restart() {
+    before_.reset();
+    is_whole_ = false;
+    beams_.clear();
+}
+
+} // namespace scanloom::robot

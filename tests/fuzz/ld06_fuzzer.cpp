@@ -1,0 +1,89 @@
+#include "common/wire/frame_decoder.hpp"
+#include "common/wire/messages.hpp"
+#include "robot_client/source/ld06_clock.hpp"
+#include "robot_client/source/ld06_decoder.hpp"
+#include "robot_client/source/ld06_scan.hpp"
+#include "robot_client/source/ld06_turns.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <algorithm>
+
+namespace scanloom::robot {
+namespace {
+
+struct Outcome {
+    std::vector<Ld06Packet> packets;
+    Ld06Counts counts;
+    std::vector<Ld06Turn> turns;
+
+    friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// Feeds the stream in pieces whose sizes are the bytes of `sizes` in turn, 0 standing for the rest.
+Outcome decode_stream(Bytes stream, Bytes sizes) {
+    Ld06Decoder decoder;
+    Ld06RecordingClock clock;
+    Ld06Turns turns;
+    Outcome outcome;
+    double last_stamp = 0.0;
+    for (std::size_t turn = 0; !stream.empty(); ++turn) {
+        const std::size_t wanted = sizes.empty() ? 0 : sizes[turn % sizes.size()];
+        const auto piece = stream.first(wanted == 0 ? stream.size() : std::min(wanted, stream.size()));
+        stream = stream.subspan(piece.size());
+        decoder.feed(piece);
+        while (const auto packet = decoder.next()) {
+            outcome.packets.push_back(*packet);
+            const double stamp = clock.stamp(packet->timestamp);
+            fuzz::check(stamp >= last_stamp, "time never goes back");
+            last_stamp = stamp;
+            turns.add(*packet, stamp);
+        }
+        while (auto complete = turns.next()) outcome.turns.push_back(std::move(*complete));
+    }
+    outcome.counts = decoder.counts();
+    return outcome;
+}
+
+bool is_welcome(const wire::Message& message) {
+    std::string frame;
+    wire::encode(message, frame);
+    const auto decoded = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes));
+    return decoded.has_value() && *decoded == message;
+}
+
+void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
+    fuzz::check(!turn.beams.empty() && turn.beams.front().step >= 0 && turn.beams.back().step < kLd06StepsPerTurn,
+                "a turn lies within 0 to 360 degrees");
+    for (std::size_t i = 1; i < turn.beams.size(); ++i) {
+        fuzz::check(turn.beams[i - 1].step < turn.beams[i].step, "no direction comes twice in a turn");
+    }
+    Scan scan = ld06_scan(turn, options);
+    scan.seq = 1;
+    fuzz::check(scan.ranges.size() == turn.beams.size(), "each point is a beam");
+    fuzz::check(is_welcome(wire::ScanBatch{{scan}}), "a scan that is sent is not refused");
+}
+
+} // namespace
+} // namespace scanloom::robot
+
+/// Input: a count, so many sizes of pieces, then what a sensor sends; the first byte also chooses the median's window.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    using namespace scanloom::robot;
+    if (size == 0) return 0;
+    const auto input = std::span(data, size).subspan(1);
+    const auto count = std::min<std::size_t>(data[0] % 16U, input.size());
+    const auto stream = input.subspan(count);
+
+    const auto whole = decode_stream(stream, {});
+    fuzz::check(whole == decode_stream(stream, input.first(count)), "any split of the bytes gives the same turns");
+    const auto& counts = whole.counts;
+    const std::size_t used = kLd06PacketBytes * (counts.packets + counts.implausible) + counts.skipped_bytes;
+    fuzz::check(used <= stream.size() && stream.size() - used < kLd06PacketBytes, "every byte is used once");
+    Ld06ScanOptions options{.confidence_min = 0};
+    if (data[0] >= 128) options.median_window = 3 + 2 * (data[0] % 25);
+    for (const auto& turn : whole.turns) check_turn(turn, options);
+    return 0;
+}

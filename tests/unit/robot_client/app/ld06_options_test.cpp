@@ -1,0 +1,140 @@
+#include "robot_client/app/ld06_options.hpp"
+
+#include "common/app/standard_error.hpp"
+#include "robot_client/app/ld06_source.hpp"
+#include "robot_client/app/options.hpp"
+#include "tests/support/ld06_bytes.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace scanloom::robot {
+namespace {
+
+using testing::HasSubstr;
+
+std::variant<RobotOptions, TruthOptions, Leave> parse(std::vector<std::string> words) {
+    std::vector<const char*> argv{"scanloom-robot", "--session", "s", "--robot", "r", "ld06"};
+    for (const auto& word : words) argv.push_back(word.c_str());
+    return parse_options(static_cast<int>(argv.size()), argv.data());
+}
+
+RobotOptions parsed(const std::vector<std::string>& words) {
+    auto result = parse(words);
+    if (auto* options = std::get_if<RobotOptions>(&result)) return *options;
+    ADD_FAILURE() << std::get<Leave>(result).text;
+    return {};
+}
+
+std::string refused(const std::vector<std::string>& words) {
+    const auto result = parse(words);
+    const auto* leave = std::get_if<Leave>(&result);
+    if (leave == nullptr) return "nothing was refused";
+    EXPECT_EQ(leave->code, kExitUsage);
+    return leave->text;
+}
+
+TEST(Ld06OptionsOf, TheCommandLineAreTaken) {
+    const auto options =
+        std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,7", "--mount=0.1,0,-1.5", "--min-range", "0.2",
+                                      "--min-confidence", "0", "--median", "5", "--speed", "1", "--reopen-for", "0"})
+                                  .source);
+    EXPECT_EQ(options.input, "/dev/ttyUSB0");
+    EXPECT_EQ(options.pose, (Pose2{-1.0, 2.5, normalize_angle(7.0)}));
+    EXPECT_EQ(options.mount, (Pose2{0.1, 0.0, -1.5}));
+    EXPECT_EQ(options.range_min, 0.2);
+    EXPECT_EQ(options.confidence_min, 0);
+    EXPECT_EQ(options.median_window, 5);
+    EXPECT_EQ(options.speed, 1.0);
+    EXPECT_EQ(options.reopen_for, 0.0);
+}
+
+TEST(Ld06OptionsOf, ACommandLineWithoutThemAreTheDefaults) {
+    const auto options = std::get<Ld06Options>(parsed({"f", "--poses", "-"}).source);
+    EXPECT_EQ(options.poses, "-");
+    EXPECT_FALSE(options.pose || options.range_min || options.confidence_min || options.median_window);
+    EXPECT_EQ(options.mount, Pose2{});
+    EXPECT_EQ(options.speed, 0.0);
+    EXPECT_EQ(options.reopen_for, 60.0);
+}
+
+TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
+    EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
+    EXPECT_THAT(refused({"f"}), HasSubstr("say where the robot is"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("say where the robot is"));
+    for (const auto* pose : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1e7,0,0", "1 2 3"}) {
+        EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
+        EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("is not X,Y,YAW")) << pose;
+    }
+    for (const auto* window : {"1", "4", "53", "-3", "3.5", "x"}) {
+        EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--median", window}), HasSubstr("is not an odd number")) << window;
+    }
+    for (const auto* confidence : {"-1", "256", "x"}) {
+        EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--min-confidence", confidence}), HasSubstr("from 0 to 255"));
+    }
+    EXPECT_THAT(refused({"tcp://lidar", "--pose", "0,0,0"}), HasSubstr("'tcp://lidar' is not tcp://HOST:PORT"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--reopen-for", "-1"}), HasSubstr("--reopen-for"));
+}
+
+class PreparedLd06 : public testing::Test {
+protected:
+    Result<PreparedSource> prepare(const std::vector<std::string>& words) {
+        const auto options = parsed(words);
+        return make_source(options, console_);
+    }
+
+    std::string file(const char* name, const std::string& text) {
+        const auto path = directory_.path() / name;
+        std::ofstream(path, std::ios::binary) << text;
+        return path;
+    }
+
+    std::string capture() {
+        const auto bytes = testing_support::Ld06Spinner().next_bytes(200);
+        return file("capture.bin", std::string(bytes.begin(), bytes.end()));
+    }
+
+private:
+    TemporaryDirectory directory_;
+    Console console_{standard_error()};
+};
+
+TEST_F(PreparedLd06, ACaptureFileIsARecording) {
+    const auto prepared = prepare({capture(), "--poses", file("poses", "0 0 0 0\noops\n9 9 0 0\n"), "--speed", "2",
+                                   "--max-range", "2", "--min-range", "1.5", "--mount", "1,0,0"});
+    ASSERT_TRUE(prepared) << prepared.error().message;
+    ASSERT_TRUE(prepared->source);
+    EXPECT_FALSE(prepared->live);
+    EXPECT_EQ(prepared->skipped_lines, 1U);
+    EXPECT_EQ(prepared->speed, 2.0);
+    EXPECT_EQ(prepared->source->scan_count(), 4U);
+    const auto observation = prepared->source->next().value().value();
+    EXPECT_EQ(observation.sensor->mount, (Pose2{1.0, 0.0, 0.0}));
+    EXPECT_EQ(observation.sensor->range_max, 2.0);
+    EXPECT_EQ(observation.scan.ranges.front(), kNoReturn);
+    EXPECT_EQ(observation.scan.ranges.back(), kInvalidRange);
+}
+
+TEST_F(PreparedLd06, ADeviceAndAnAddressAreRead) {
+    for (const auto* input : {"/dev/null", "tcp://127.0.0.1:4001"}) {
+        const auto prepared = prepare({input, "--pose", "0,0,0"});
+        ASSERT_TRUE(prepared) << prepared.error().message;
+        EXPECT_TRUE(prepared->live);
+        EXPECT_FALSE(prepared->source);
+        EXPECT_EQ(prepared->fingerprint, "") << "what was sent once cannot be sent again";
+    }
+}
+
+TEST_F(PreparedLd06, WhatIsNeitherIsAnError) {
+    EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
+    EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("neither a serial device nor a file"));
+    EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));
+    EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--min-range", "13"}).error().message,
+                HasSubstr("--min-range is 13 m, but --max-range only 12 m"));
+}
+
+} // namespace
+} // namespace scanloom::robot
