@@ -96,7 +96,7 @@ const std::vector<Package> kPackages = {
       "robot_client/app"}},
     {"boost/asio",
      {"server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "robot_client/uplink", "robot_client/app"}},
+      "robot_client/source", "robot_client/uplink", "robot_client/app"}},
     {"boost/beast", {"server/live", "server/http", "server/app"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source", "server/tiles"}},
