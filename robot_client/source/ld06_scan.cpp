@@ -20,7 +20,8 @@ public:
           no_return_(options.no_return == NoReturn::kFree ? kNoReturn : kInvalidRange) {}
 
     [[nodiscard]] RangeMm operator()(const Ld06Point& point) const {
-        if (point.distance == 0 || point.distance < min_ || point.confidence < confidence_min_) return kInvalidRange;
+        static_assert(kInvalidRange == 0, "a distance of 0 is none, whatever the least range is");
+        if (point.distance < min_ || point.confidence < confidence_min_) return kInvalidRange;
         return point.distance < max_ ? point.distance : no_return_;
     }
 
