@@ -158,7 +158,8 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
     };
     const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{
         {{}, "--session"},
-        {{"--session", "s", "--robot", "r"}, "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate;"},
+        {{"--session", "s", "--robot", "r"},
+         "say what to stream: replay FILE, sonar MEASUREMENTS POSES, ld06 INPUT, or simulate;"},
         {{"simulate", "--robot", "r"}, "--session is required"},
         {{"simulate", "--session", "a/b", "--robot", "r"}, "'a/b' is not a name"},
         {{"replay", "--session", "s", "--robot", "r"}, "name the FILE"},
