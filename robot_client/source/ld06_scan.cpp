@@ -3,7 +3,6 @@
 #include "robot_client/source/range_median.hpp"
 
 #include <numbers>
-#include <ranges>
 
 namespace scanloom::robot {
 namespace {
@@ -21,7 +20,8 @@ public:
           no_return_(options.no_return == NoReturn::kFree ? kNoReturn : kInvalidRange) {}
 
     [[nodiscard]] RangeMm operator()(const Ld06Point& point) const {
-        if (point.distance == 0 || point.distance < min_ || point.confidence < confidence_min_) return kInvalidRange;
+        static_assert(kInvalidRange == 0, "a distance of 0 is none, whatever the least range is");
+        if (point.distance < min_ || point.confidence < confidence_min_) return kInvalidRange;
         return point.distance < max_ ? point.distance : no_return_;
     }
 
@@ -51,10 +51,10 @@ Scan ld06_scan(const Ld06Turn& turn, const Ld06ScanOptions& options) {
     Scan scan;
     scan.stamp = turn.stamp;
     SteppedAngles angles{kRadiansPerStep, {}};
-    for (const Ld06Beam& beam : turn.beams | std::views::reverse) {
-        angles.steps.push_back(kLd06StepsPerTurn - beam.step);
-        scan.ranges.push_back(filter(beam.point));
-        scan.intensities.push_back(beam.point.confidence);
+    for (auto beam = turn.beams.rbegin(); beam != turn.beams.rend(); ++beam) {
+        angles.steps.push_back(kLd06StepsPerTurn - beam->step);
+        scan.ranges.push_back(filter(beam->point));
+        scan.intensities.push_back(beam->point.confidence);
     }
     if (options.median_window) {
         scan.ranges = median_filtered(scan.ranges, angles.steps, kLd06StepsPerTurn, *options.median_window);

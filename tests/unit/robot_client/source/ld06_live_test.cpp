@@ -1,124 +1,21 @@
-#include "robot_client/source/ld06_live.hpp"
+#include "tests/unit/robot_client/source/ld06_live_fixture.hpp"
 
-#include "tests/support/ld06_bytes.hpp"
-
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
-
-#include <fcntl.h>
-#include <stdlib.h>
-#include <termios.h>
-#include <unistd.h>
 
 namespace scanloom::robot {
 namespace {
 
-namespace asio = boost::asio;
 using asio::ip::tcp;
-
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing_support::Bytes;
-using testing_support::Ld06Spinner;
-
-double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
-
-/// The end of a pseudo-terminal where the sensor is.
-class PseudoTerminal {
-public:
-    PseudoTerminal() : descriptor_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
-        if (descriptor_ < 0 || ::grantpt(descriptor_) != 0 || ::unlockpt(descriptor_) != 0) {
-            throw std::runtime_error("no pseudo-terminal");
-        }
-        device_ = ::ptsname(descriptor_);
-    }
-    PseudoTerminal(const PseudoTerminal&) = delete;
-    PseudoTerminal& operator=(const PseudoTerminal&) = delete;
-    ~PseudoTerminal() {
-        hang_up();
-        if (other_end_ >= 0) ::close(other_end_);
-    }
-
-    /// What is sent before somebody opens the device waits there unchanged.
-    void keep_open() {
-        other_end_ = ::open(device_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-        termios raw{};
-        ASSERT_EQ(::tcgetattr(other_end_, &raw), 0);
-        ::cfmakeraw(&raw);
-        ASSERT_EQ(::tcsetattr(other_end_, TCSANOW, &raw), 0);
-    }
-
-    [[nodiscard]] const std::string& device() const { return device_; }
-    void send(const Bytes& bytes) const {
-        ASSERT_EQ(::write(descriptor_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
-    }
-    void hang_up() {
-        if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-    }
-
-private:
-    int descriptor_;
-    int other_end_ = -1;
-    std::string device_;
-};
-
-using Next = Result<std::optional<Observation>>;
-
-class Ld06Lives : public testing::Test {
-protected:
-    Ld06LiveOptions options(Ld06Endpoint endpoint, Ld06Poses poses = Pose2{1.0, 2.0, 0.5}) {
-        Ld06LiveOptions live;
-        live.device.endpoint = std::move(endpoint);
-        live.device.note = [this](const std::string& text) {
-            notes_.push_back(text);
-            if (on_note_) on_note_();
-        };
-        live.poses = std::move(poses);
-        return live;
-    }
-
-    /// Runs everything until next() is through; `meanwhile` runs once that has begun to wait.
-    Next next_of(
-        LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
-        std::optional<Next> result;
-        asio::co_spawn(io_, source.next(), [&](std::exception_ptr failed, Next next) {
-            if (failed) std::rethrow_exception(failed);
-            result = std::move(next);
-        });
-        io_.restart();
-        io_.poll();
-        meanwhile();
-        while (!result && io_.run_one() > 0) {
-        }
-        return result ? *result : Next(Error{Errc::kInternal, "next() never came to its end"});
-    }
-
-    /// A scan was given.
-    Scan scan_of(
-        LiveSource& source, const std::function<void()>& meanwhile = [] {}) {
-        const auto next = next_of(source, meanwhile);
-        if (next && *next) return (*next)->scan;
-        ADD_FAILURE() << (next ? "the source has ended" : next.error().message);
-        return {};
-    }
-
-    /// Bytes of the turn under way and of one whole turn behind it.
-    static Bytes one_turn() { return Ld06Spinner(35'000).next_bytes(40); }
-
-    asio::io_context io_{1};
-    std::vector<std::string> notes_;
-    std::function<void()> on_note_;
-};
 
 TEST_F(Ld06Lives, ASerialDeviceGivesATurnAsItComes) {
     const PseudoTerminal sensor;
@@ -306,95 +203,6 @@ TEST_F(Ld06OverTcp, OneThatIsSilentWentAway) {
     live.device.reopen_for = std::chrono::milliseconds(0);
     Ld06Live source(std::move(live));
     EXPECT_THAT(next_of(source).error().message, HasSubstr("not a byte for 0.02 s; does the sensor have power"));
-}
-
-// Poses ---------------------------------------------------------------------------------------------------------------
-
-class Ld06LivePoses : public Ld06Lives {
-protected:
-    void SetUp() override {
-        ASSERT_EQ(::pipe2(pipe_, O_CLOEXEC), 0);
-        auto live = options(SerialDevice{sensor_.device()}, PoseTimeline());
-        live.pose_descriptor = pipe_[0];
-        source_ = std::make_unique<Ld06Live>(std::move(live));
-    }
-    void TearDown() override { end_poses(); }
-
-    void write_pose(double t, double x) const { write(fmt::format("{:.6f} {} 0 0\n", t, x)); }
-    void write(const std::string& text) const {
-        ASSERT_EQ(::write(pipe_[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
-    }
-    void end_poses() {
-        if (pipe_[1] >= 0) ::close(std::exchange(pipe_[1], -1));
-    }
-
-    PseudoTerminal sensor_;
-    int pipe_[2]{-1, -1};
-    std::unique_ptr<Ld06Live> source_;
-};
-
-TEST_F(Ld06LivePoses, AScanTakesThePoseBetweenThoseAroundIt) {
-    const double now = unix_now();
-    const Scan scan = scan_of(*source_, [&] {
-        sensor_.send(one_turn());
-        write_pose(now - 100.0, 0.0);
-        write("what is this\n# a comment\n");
-        write_pose(now + 100.0, 200.0);
-    });
-    EXPECT_NEAR(scan.pose.x, 100.0 + scan.stamp - now, 1e-3);
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("line 2 of the poses is skipped")));
-}
-
-TEST_F(Ld06LivePoses, AScanWaitsForThePoseBehindIt) {
-    const double now = unix_now();
-    asio::steady_timer timer(io_);
-    const Scan scan = scan_of(*source_, [&] {
-        write_pose(now - 100.0, 0.0);
-        sensor_.send(one_turn());
-        timer.expires_after(std::chrono::milliseconds(50));
-        timer.async_wait([&](auto) { write_pose(now + 100.0, 200.0); });
-    });
-    EXPECT_NEAR(scan.pose.x, 100.0 + scan.stamp - now, 1e-3);
-}
-
-TEST_F(Ld06LivePoses, WhereNoneComesAScanTakesTheNewest) {
-    const Scan scan = scan_of(*source_, [&] {
-        write_pose(unix_now() - 0.2, 7.0);
-        sensor_.send(one_turn());
-    });
-    EXPECT_EQ(scan.pose.x, 7.0);
-}
-
-TEST_F(Ld06LivePoses, WithoutANewPoseAScanIsPassedOver) {
-    const double now = unix_now();
-    asio::steady_timer timer(io_);
-    const auto next = next_of(*source_, [&] {
-        write_pose(now - 100.0, 7.0);
-        sensor_.send(one_turn());
-        timer.expires_after(kPoseWait + std::chrono::milliseconds(100));
-        timer.async_wait([&](auto) { source_->stop(); });
-    });
-    EXPECT_FALSE(next.value());
-    EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan without a pose passed over");
-}
-
-TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {
-    on_note_ = [&] { sensor_.send(one_turn()); };
-    asio::steady_timer timer(io_);
-    const auto next = next_of(*source_, [&] {
-        end_poses();
-        timer.expires_after(std::chrono::milliseconds(100)); // less than a scan would wait
-        timer.async_wait([&](auto) { source_->stop(); });
-    });
-    EXPECT_FALSE(next.value());
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses have ended; scans behind the last of them have none")));
-    EXPECT_THAT(source_->remarks(), HasSubstr("1 scan without a pose"));
-}
-
-TEST_F(Ld06LivePoses, ALineWithoutAnEndIsNotReadOn) {
-    on_note_ = [&] { source_->stop(); };
-    EXPECT_FALSE(next_of(*source_, [&] { write(std::string(5000, '1')); }).value());
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("line 1 of the poses is longer than 4096 bytes")));
 }
 
 } // namespace

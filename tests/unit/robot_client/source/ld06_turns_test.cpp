@@ -137,6 +137,23 @@ TEST(Ld06Turns, NeverJoinTwoHalvesOfDifferentTurns) {
     }
 }
 
+TEST(Ld06Turns, NeverJoinTwoHalvesThoughTheSpeedIsALittleOff) {
+    Cutter cutter;
+    cutter.add({.speed = 3600, .start_angle = 35'900, .end_angle = 35'980, .timestamp = 0});
+    cutter.add({.speed = 3600, .start_angle = 200, .end_angle = 1080, .timestamp = 3});
+    cutter.add({.speed = 3600, .start_angle = 35'000, .end_angle = 35'880, .timestamp = 104}); // 363.6 degrees
+    ASSERT_EQ(cutter.complete.size(), 1U);
+    EXPECT_EQ(cutter.complete[0].beams.size(), 12U);
+}
+
+TEST(Ld06Turns, ATimeThatGoesBackEndsATurnHoweverSlowTheSensorIs) {
+    Cutter cutter;
+    cutter.add({.speed = 10, .start_angle = 35'999, .end_angle = 0, .timestamp = 9'998});
+    cutter.add({.speed = 10, .start_angle = 1, .end_angle = 12, .timestamp = 10'000});
+    cutter.add({.speed = 10, .start_angle = 24'000, .end_angle = 24'011, .timestamp = 4'000}); // 24 s, or 6 back
+    EXPECT_EQ(cutter.complete.size(), 1U);
+}
+
 TEST(Ld06Turns, ATimeThatGoesBackEndsATurn) {
     Ld06Spinner sensor(0, 10'000);
     Cutter cutter;
