@@ -22,6 +22,9 @@ struct PreparedSource {
     std::string_view order = "time";      ///< of its scans: "file" or "time", a literal
     ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
     std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
+
+    /// Those of the source.
+    [[nodiscard]] std::string remarks() const { return live ? live->remarks() : source->remarks(); }
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the

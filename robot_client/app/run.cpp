@@ -3,6 +3,7 @@
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/app/summary.hpp"
+#include "robot_client/uplink/guidance.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
@@ -114,14 +115,14 @@ asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console
 }
 
 asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, const Feed& feed,
-                                    const LiveSource* live, Console& console) {
+                                    const PreparedSource& prepared, Console& console) {
     const auto begun = std::chrono::steady_clock::now();
     asio::steady_timer timer(io);
     for (;;) {
         timer.expires_after(console.progress_period());
         if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
         console.progress(progress_text(uplink.status(), feed.scan_count(), std::chrono::steady_clock::now() - begun,
-                                       live != nullptr ? live->remarks() : std::string()));
+                                       prepared.live ? prepared.live->remarks() : std::string()));
     }
 }
 
@@ -150,10 +151,11 @@ ExitCode run(const RobotOptions& options) {
 
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);
+    if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kWayClearance));
     std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
-    asio::co_spawn(io, show_progress(io, uplink, **feed, prepared->live.get(), console), asio::detached);
+    asio::co_spawn(io, show_progress(io, uplink, **feed, *prepared, console), asio::detached);
     asio::co_spawn(io, uplink.run(), [&](std::exception_ptr failed, Result<> result) {
         if (failed) std::rethrow_exception(failed);
         outcome = std::move(result);
@@ -163,7 +165,7 @@ ExitCode run(const RobotOptions& options) {
 
     if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
-    if (prepared->live && !prepared->live->remarks().empty()) console.note(prepared->live->remarks());
+    if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
     fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
                                      uplink.status(), prepared->skipped_lines, std::chrono::steady_clock::now() - begun,
                                      (*feed)->scan_count(), *outcome ? "" : outcome->error().message}));
