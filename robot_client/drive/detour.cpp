@@ -82,7 +82,7 @@ std::optional<double> Detour::side(const Ground& ground, const Line& line, const
         }
     }
     const auto has_room = [&](double offset) {
-        const auto [low, high] = std::minmax(0.0, offset);
+        const auto [low, high] = std::minmax({0.0, offset});
         const double past = std::min(kPastMin, line.length);
         return std::abs(offset) <= kOffsetMax && ground.fits_along(line.to_map({0, 0}), line.to_map({0, offset})) &&
                ground.fits_along(line.to_map({0, offset}), line.to_map({past, offset})) &&
@@ -118,21 +118,34 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
     const Point2 place = line_.to_line(position);
     if (part_ == Part::kAside) {
         part_ = Part::kPast;
-        follower_ = PathFollower({line_.to_map({0.0, offset_}), line_.to_map({line_.length, offset_})});
+        room_ = room_beside(ground);
+        follower_ = PathFollower({line_.to_map({0.0, offset_}), line_.to_map({room_, offset_})});
     } else if (part_ == Part::kBack) {
         state_ = State::kBackOnLine;
     } else if (may_return(ground, place)) {
         part_ = Part::kBack;
         follower_ = PathFollower({position, line_.to_map({place.x(), 0.0})});
     } else {
-        state_ = State::kPastEnd;
+        state_ = room_ < line_.length ? State::kFailed : State::kPastEnd;
     }
+}
+
+/// How far the ground goes on beside the line, metres, up to the line's end.
+double Detour::room_beside(const Ground& ground) const {
+    const double step = ground.plan().cell_size;
+    double room = 0.0;
+    while (room < line_.length) {
+        const double next = std::min(room + step, line_.length);
+        if (!ground.fits_along(line_.to_map({room, offset_}), line_.to_map({next, offset_}))) break;
+        room = next;
+    }
+    return room;
 }
 
 void Detour::remember(const Ground& ground, const Senses& senses) {
     std::erase_if(seen_, [&](const Seen& seen) { return seen.step < step_ - kRememberedSteps; });
     if (step_ % 2 == 0) return; // a scan comes every other step
-    const auto [low, high] = std::minmax(0.0, offset_);
+    const auto [low, high] = std::minmax({0.0, offset_});
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {
         const Point2 place = line_.to_line(obstacle);
         if (place.y() > low - kBeside && place.y() < high + kBeside) seen_.push_back({place, step_});

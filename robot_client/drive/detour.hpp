@@ -52,11 +52,13 @@ private:
                                       double first);
     void remember(const Ground& ground, const Senses& senses);
     void begin_next_part(const Ground& ground, const Point2& position);
+    [[nodiscard]] double room_beside(const Ground& ground) const;
     [[nodiscard]] bool may_return(const Ground& ground, const Point2& on_line) const;
 
     Line line_;
     double offset_;         // metres to the left of the line
     double first_obstacle_; // metres along the line
+    double room_ = 0.0;     // metres beside the line
     Part part_ = Part::kAside;
     State state_ = State::kUnderWay;
     PathFollower follower_;

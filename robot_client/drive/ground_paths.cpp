@@ -101,7 +101,7 @@ std::optional<std::vector<Point2>> find_way(const Ground& ground, const Point2& 
     const auto start = nearest_fitting(ground, from);
     if (!start || !ground.fits(goal)) return std::nullopt;
     const auto estimate = [&](Spot spot) {
-        const auto [least, most] = std::minmax(std::abs(spot.x - goal.x), std::abs(spot.y - goal.y));
+        const auto [least, most] = std::minmax({std::abs(spot.x - goal.x), std::abs(spot.y - goal.y)});
         return static_cast<float>(most - least) + std::numbers::sqrt2_v<float> * static_cast<float>(least);
     };
     Search search(ground, *start);

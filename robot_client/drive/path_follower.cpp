@@ -13,11 +13,13 @@ namespace {
 
 // metres
 constexpr double kAhead = 0.3;
-constexpr double kAtCorner = 0.05;
+constexpr double kAtCorner = 0.03;
 constexpr double kNearEnd = 0.10;
-constexpr double kShort = 0.01; // what is left of the way ahead of something that is in it
+constexpr double kStopBefore = 0.2; // what stands in the way, beside kKeptClear
+constexpr double kSlack = 0.08;     // by so much a wall behind a corner may seem to stand before it
+constexpr double kShort = 0.01;
 // radians
-constexpr double kGentleCorner = 0.35;
+constexpr double kGentleCorner = 0.3;
 
 Point2 along(const Point2& from, const Point2& to) {
     const double length = (to - from).norm();
@@ -33,12 +35,15 @@ Velocity PathFollower::step(const Senses& senses) {
     pass_corners(position);
     if (has_arrived()) return {};
     const double to_corner = (way_[passed_ + 1] - position).norm();
+    const double yaw = direction(position, aim(position));
+    const double free = free_ahead(senses, senses.pose.yaw);
+    const bool is_in_the_way = free < to_corner - kSlack;
     double speed = kForwardMax;
     if (stops_at_next_corner()) speed = std::min(speed, braking_speed(to_corner));
-    const double yaw = direction(position, aim(position));
+    if (is_in_the_way) speed = std::min(speed, braking_speed(free - kStopBefore));
     const Velocity velocity = drive_towards(senses, yaw, speed);
     const bool is_turning = std::abs(normalize_angle(yaw - senses.pose.yaw)) > kGentleCorner;
-    if (is_turning || free_ahead(senses, senses.pose.yaw) > kShort) {
+    if (is_turning || free > (is_in_the_way ? kStopBefore : kShort)) {
         blocked_steps_ = 0;
         return velocity;
     }

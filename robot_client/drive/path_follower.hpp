@@ -8,8 +8,9 @@
 namespace scanloom::robot {
 
 /// Drives along a way of straight pieces and keeps to it: it aims at a point of the piece it is on, a little ahead,
-/// and never beyond the piece's end, so that no corner is cut; at sharp corners it stops and turns. It never advances
-/// towards what is nearer than kKeptClear ahead (way_ahead.hpp), and waits there: is_blocked().
+/// and never beyond the piece's end, so that no corner is cut; at sharp corners it stops and turns. Before what stands
+/// in its way it waits, 0.2 m further off than kKeptClear (way_ahead.hpp); towards the walls beyond a corner or the end
+/// it goes on as far as that.
 ///
 /// Source  the aim: Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm (CMU-RI-TR-92-01, 1992).
 class PathFollower {
@@ -21,7 +22,7 @@ public:
 
     [[nodiscard]] Velocity step(const Senses& senses);
 
-    /// At the end of the way, to five centimetres; to ten where something keeps it from coming nearer.
+    /// At the end of the way, to three centimetres; to ten where something keeps it from coming nearer.
     [[nodiscard]] bool has_arrived() const noexcept { return passed_ + 1 >= way_.size(); }
 
     /// For how many control steps in a row something ahead has kept it from going on.

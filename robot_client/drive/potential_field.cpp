@@ -29,11 +29,10 @@ Point2 repulsion(const Point2& offset) {
 
 } // namespace
 
-Point2 potential_force(const Senses& senses, const Point2& goal) {
-    const Point2 position{senses.pose.x, senses.pose.y};
+Point2 potential_force(const Point2& position, const Point2& goal, std::span<const Point2> obstacles) {
     std::array<Point2, kDirections> nearest;
     nearest.fill({kReach + kBodyRadius, 0.0}); // too far to count
-    for (const Point2& obstacle : senses.obstacles) {
+    for (const Point2& obstacle : obstacles) {
         const Point2 offset = obstacle - position;
         Point2& known = nearest[direction_of(offset)];
         if (offset.norm() < known.norm()) known = offset;

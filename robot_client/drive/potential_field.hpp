@@ -1,11 +1,13 @@
 #pragma once
 
-#include "robot_client/drive/behaviour.hpp"
+#include "common/geometry/pose2.hpp"
+
+#include <span>
 
 namespace scanloom::robot {
 
-/// The force of an artificial potential field on a robot, in the map frame; its length is 1 where it is drawn to a goal
-/// that is a metre away or more, and by nothing else.
+/// The force of an artificial potential field on a robot, all in the map frame; its length is 1 where it is drawn to a
+/// goal that is a metre away or more, and by nothing else.
 ///
 /// The goal attracts: F = -k (x - x_goal), with k = 1 / m, and never more than 1.
 /// What stands within rho_0 = 0.5 m of the body repels, where rho is its distance from the body's rim:
@@ -14,6 +16,6 @@ namespace scanloom::robot {
 /// matter.
 /// Source  Khatib, Real-Time Obstacle Avoidance for Manipulators and Mobile Robots, IJRR 5(1), 1986: the attractive
 ///         potential 1/2 k (x - x_d)^2, its velocity limited, and the FIRAS function.
-[[nodiscard]] Point2 potential_force(const Senses& senses, const Point2& goal);
+[[nodiscard]] Point2 potential_force(const Point2& position, const Point2& goal, std::span<const Point2> obstacles);
 
 } // namespace scanloom::robot

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kGain = 4.0;                           // radians a second for each radian
 constexpr double kHeading = 0.03;                       // radians: near enough
-constexpr double kOnTheSpot = 0.6;                      // radians: further aside a robot turns before it drives
+constexpr double kOnTheSpot = 0.4;                      // radians: further aside a robot turns before it drives
 constexpr double kSpeedMin = 0.05;                      // metres a second, to arrive at all
 constexpr double kLookingTurn = std::numbers::pi / 2.0; // radians a second, of a full turn
 

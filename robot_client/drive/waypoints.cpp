@@ -11,18 +11,27 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kArrived = 0.15;   // metres
+constexpr double kArrived = 0.10;   // metres
 constexpr double kProgress = 0.10;  // metres nearer, to count as some
 constexpr int kPatienceSteps = 300; // 15 seconds
 constexpr double kForceMin = 1e-9;  // shorter ones point nowhere
 
+/// Of a point from the straight way between two others, metres.
+double distance_to(const Point2& point, const Point2& from, const Point2& to) {
+    const Point2 way = to - from;
+    const double part = way.squaredNorm() > 0.0 ? (point - from).dot(way) / way.squaredNorm() : 0.0;
+    return (from + std::clamp(part, 0.0, 1.0) * way - point).norm();
+}
+
 } // namespace
 
-Waypoints::Waypoints(std::vector<Point2> goals, TourStart start) : goals_(std::move(goals)), start_(start) {}
+Waypoints::Waypoints(std::vector<Point2> goals, TourStart start)
+    : goals_(std::move(goals)), is_looking_around_(start == TourStart::kNearest) {}
 
 Velocity Waypoints::step(const Senses& senses) {
-    if (!has_begun_) begin(position_of(senses.pose));
     if (is_done()) return {};
+    near_.see(senses);
+    if (is_looking_around_) return look_around(senses);
     if (is_turning_) {
         const Velocity velocity = turn_.step(senses.pose);
         if (!turn_.is_done()) return velocity;
@@ -39,12 +48,23 @@ std::string Waypoints::remarks() const {
     return text;
 }
 
-void Waypoints::begin(const Point2& position) {
-    has_begun_ = true;
-    if (start_ == TourStart::kFirst) return;
-    const auto nearest =
-        std::ranges::min_element(goals_, {}, [&](const Point2& goal) { return (goal - position).norm(); });
-    std::ranges::rotate(goals_, nearest);
+Velocity Waypoints::look_around(const Senses& senses) {
+    const Velocity velocity = turn_.step(senses.pose);
+    seen_.insert(seen_.end(), senses.obstacles.begin(), senses.obstacles.end());
+    if (!turn_.is_done()) return velocity;
+    begin_with_nearest(position_of(senses.pose));
+    seen_ = {};
+    is_looking_around_ = false;
+    return {};
+}
+
+void Waypoints::begin_with_nearest(const Point2& position) {
+    const auto distance = [&](const Point2& goal) {
+        const bool is_hidden = std::ranges::any_of(
+            seen_, [&](const Point2& obstacle) { return distance_to(obstacle, position, goal) < kBodyRadius; });
+        return std::pair(is_hidden, (goal - position).norm());
+    };
+    std::ranges::rotate(goals_, std::ranges::min_element(goals_, {}, distance));
 }
 
 void Waypoints::go_on_to_next() {
@@ -66,7 +86,7 @@ Velocity Waypoints::go(const Senses& senses) {
         go_on_to_next();
         return {};
     }
-    const Point2 force = potential_force(senses, goals_[next_]);
+    const Point2 force = potential_force(position, goals_[next_], near_.places());
     if (force.norm() < kForceMin) return {};
     const double speed = std::min(kForwardMax * std::min(1.0, force.norm()), braking_speed(distance));
     return drive_towards(senses, direction({0.0, 0.0}, force), speed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "robot_client/drive/behaviour.hpp"
+#include "robot_client/drive/near_obstacles.hpp"
 #include "robot_client/drive/steering.hpp"
 
 #include <cstddef>
@@ -11,7 +12,7 @@ namespace scanloom::robot {
 /// Where a queue of waypoints is begun.
 enum class TourStart {
     kFirst,   ///< at the first of them
-    kNearest, ///< a round tour: at the one nearest to the robot, and the ones before it at the end
+    kNearest, ///< of a round tour: at the nearest one in sight, after a turn to look around; those before it at the end
 };
 
 /// Goes from waypoint to waypoint, drawn by a potential field, and turns once around itself at each. A field has places
@@ -30,14 +31,16 @@ public:
     [[nodiscard]] std::size_t given_up() const noexcept { return given_up_; }
 
 private:
-    void begin(const Point2& position);
+    [[nodiscard]] Velocity look_around(const Senses& senses);
+    void begin_with_nearest(const Point2& position);
     void go_on_to_next();
     [[nodiscard]] Velocity go(const Senses& senses);
     [[nodiscard]] bool has_progress(double distance);
 
     std::vector<Point2> goals_;
-    TourStart start_;
-    bool has_begun_ = false;
+    bool is_looking_around_;
+    std::vector<Point2> seen_; // meanwhile
+    NearObstacles near_;
     std::size_t next_ = 0;
     std::size_t reached_ = 0;
     std::size_t given_up_ = 0;

@@ -2,7 +2,6 @@
 
 #include "robot_client/drive/ground_paths.hpp"
 #include "robot_client/drive/steering.hpp"
-#include "robot_client/drive/way_ahead.hpp"
 
 #include <fmt/format.h>
 
@@ -12,10 +11,6 @@
 namespace scanloom::robot {
 namespace {
 
-// metres
-constexpr double kStopBefore = 0.25;
-constexpr double kLaneEndSlack = 0.05;
-constexpr double kAlongLane = 0.2; // radians: so far aside it still heads along the lane
 // control steps
 constexpr int kPatienceSteps = 40;
 constexpr int kLanePatienceSteps = 200;
@@ -24,6 +19,11 @@ constexpr int kWaysAroundMax = 3;
 
 /// Lanes overlap by a cell: how straight they are driven does not matter then.
 double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - plan.cell_size, plan.cell_size); }
+
+/// Once every two seconds that it is blocked.
+bool is_out_of_patience(const PathFollower& follower) {
+    return follower.blocked_steps() > 0 && follower.blocked_steps() % kPatienceSteps == 0;
+}
 
 } // namespace
 
@@ -86,6 +86,7 @@ void Zigzag::begin_next_lane(const Point2& position) {
         lane_end_ = from_west ? lane.east : lane.west;
         lane_detours_ = 0;
         ways_around_ = 0;
+        in_the_way_.clear();
         if (auto way = find_way(ground_, position, lane_begin_)) {
             follower_ = PathFollower(std::move(*way));
             task_ = Task::kGo;
@@ -101,17 +102,17 @@ void Zigzag::begin_next_lane(const Point2& position) {
 Velocity Zigzag::go(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
     if (follower_.has_arrived()) {
-        sweep_on(lane_begin_);
+        sweep_on();
         return sweep(senses);
     }
     const Velocity velocity = follower_.step(senses);
-    if (follower_.blocked_steps() < kPatienceSteps) return velocity;
+    if (!is_out_of_patience(follower_)) return velocity;
     ways_around_ += 1;
-    const auto around =
-        find_way(ground_.without(unexpected_obstacles(ground_, senses), kLaneClearance), position, lane_begin_);
-    if (ways_around_ > kWaysAroundMax || !around) {
+    for (const Point2& obstacle : unexpected_obstacles(ground_, senses)) in_the_way_.push_back(obstacle);
+    const auto around = find_way(ground_.without(in_the_way_, kLaneClearance), position, lane_begin_);
+    if (ways_around_ > kWaysAroundMax) {
         give_up_lane(position);
-    } else {
+    } else if (around) {
         follower_ = PathFollower(*around);
     }
     return {};
@@ -124,23 +125,16 @@ Velocity Zigzag::sweep(const Senses& senses) {
         begin_next_lane(position);
         return {};
     }
-    const double yaw = direction(position, lane_end_);
-    const bool is_along = std::abs(normalize_angle(senses.pose.yaw - yaw)) < kAlongLane;
-    const double free = free_ahead(senses, yaw);
-    if (!is_along || free > kStopBefore || free > follower_.left(position) - kLaneEndSlack) {
-        blocked_steps_ = 0;
-        return follower_.step(senses);
-    }
-    blocked_steps_ += 1;
-    if (blocked_steps_ % kPatienceSteps == 0 && lane_detours_ < kDetoursMax) {
+    const Velocity velocity = follower_.step(senses);
+    if (is_out_of_patience(follower_) && lane_detours_ < kDetoursMax) {
         detour_ = Detour::plan(ground_, senses, lane_end_);
         if (detour_) {
             lane_detours_ += 1;
             task_ = Task::kDetour;
         }
     }
-    if (blocked_steps_ > kLanePatienceSteps) give_up_lane(position);
-    return {};
+    if (follower_.blocked_steps() > kLanePatienceSteps) give_up_lane(position);
+    return velocity;
 }
 
 Velocity Zigzag::go_around(const Senses& senses) {
@@ -150,22 +144,24 @@ Velocity Zigzag::go_around(const Senses& senses) {
     case Detour::State::kUnderWay: return velocity;
     case Detour::State::kBackOnLine:
         detours_ += 1;
-        sweep_on(position);
+        sweep_on();
         break;
     case Detour::State::kPastEnd:
         detours_ += 1;
         lanes_swept_ += 1;
         begin_next_lane(position);
         break;
-    case Detour::State::kFailed: give_up_lane(position); break;
+    case Detour::State::kFailed: // what moves may stand elsewhere now
+        sweep_on();
+        break;
     }
     return {};
 }
 
-void Zigzag::sweep_on(const Point2& position) {
+/// Along the lane, from wherever the robot is beside it.
+void Zigzag::sweep_on() {
     task_ = Task::kSweep;
-    blocked_steps_ = 0;
-    follower_ = PathFollower({position, lane_end_});
+    follower_ = PathFollower({lane_begin_, lane_end_});
 }
 
 void Zigzag::give_up_lane(const Point2& position) {

@@ -42,7 +42,7 @@ private:
     [[nodiscard]] Velocity go(const Senses& senses);
     [[nodiscard]] Velocity sweep(const Senses& senses);
     [[nodiscard]] Velocity go_around(const Senses& senses);
-    void sweep_on(const Point2& position);
+    void sweep_on();
     void give_up_lane(const Point2& position);
 
     Ground ground_;
@@ -54,9 +54,9 @@ private:
     Task task_ = Task::kBegin;
     PathFollower follower_;
     std::optional<Detour> detour_;
-    int blocked_steps_ = 0; // in a lane
-    int lane_detours_ = 0;  // begun in this lane
-    int ways_around_ = 0;   // tried to get to this lane
+    int lane_detours_ = 0;           // begun in this lane
+    int ways_around_ = 0;            // tried to get to this lane
+    std::vector<Point2> in_the_way_; // seen there, and not in the plan
     int lanes_swept_ = 0;
     int detours_ = 0; // that came back to their lane
     int given_up_ = 0;

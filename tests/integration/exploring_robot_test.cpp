@@ -1,0 +1,168 @@
+#include "robot_client/sim/truth_grid.hpp"
+#include "robot_client/sim/unicycle.hpp"
+#include "tests/support/goal_oracle.hpp"
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+/// Simulated robots that explore as a server of the same process tells them, until nothing is left.
+namespace scanloom::robot {
+namespace {
+
+using testing_support::GoalOracle;
+
+constexpr std::uint64_t kSeedsPerCase = 5; // so that cases run side by side
+constexpr SimulationLimits kLimits{.duration = 3600.0};
+
+/// Of the free cells that a perfect map would hold, how many are known.
+double known_share(const World& world, const mapping::Snapshot& maps) {
+    const auto truth = truth_of(world, maps.config.cell_size);
+    int free = 0;
+    int known = 0;
+    for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
+        for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
+            if (truth.at(i, j) != Truth::kFree) continue;
+            const auto found = class_at(maps.classes, {i, j});
+            free += 1;
+            known += found != classify::CellClass::kUnexplored && found != classify::CellClass::kFrontier ? 1 : 0;
+        }
+    }
+    return static_cast<double>(known) / free;
+}
+
+/// One whose scans go to the oracle, which tells it where to go.
+class Explorer {
+public:
+    Explorer(GoalOracle& oracle, RobotIndex index, SimulatorOptions options)
+        : oracle_(oracle), index_(index), source_(std::move(options), kLimits, NoReturn::kFree, 0.0) {
+        oracle_.join(index_, *source_.simulator().sensors().front());
+        source_.ask_with([this]() -> boost::asio::awaitable<Result<NextStop>> { co_return oracle_.next(index_); });
+    }
+
+    /// @return whether there was a scan.
+    bool step() {
+        std::optional<Result<std::optional<Observation>>> next;
+        boost::asio::co_spawn(io_, source_.next(), [&](std::exception_ptr failed, auto result) {
+            if (failed) std::rethrow_exception(failed);
+            next = std::move(result);
+        });
+        io_.restart();
+        io_.run();
+        if (!*next) ADD_FAILURE() << next->error().message;
+        if (!*next || !**next) return false;
+        Scan scan = (**next)->scan;
+        scan.seq = ++seq_;
+        clearance_min_ = std::min(clearance_min_, clearance(source_.simulator().world(), {scan.pose.x, scan.pose.y}));
+        oracle_.take(index_, std::move(scan));
+        return true;
+    }
+
+    [[nodiscard]] const ExploringSource& source() const { return source_; }
+    [[nodiscard]] double clearance_min() const { return clearance_min_; }
+
+private:
+    boost::asio::io_context io_;
+    GoalOracle& oracle_;
+    RobotIndex index_;
+    ExploringSource source_;
+    std::uint64_t seq_ = 0;
+    double clearance_min_ = 10.0;
+};
+
+void expect_explored(const Explorer& robot) {
+    EXPECT_EQ(robot.source().simulator().collisions(), 0U);
+    EXPECT_GE(robot.clearance_min(), kBodyRadius);
+    EXPECT_TRUE(robot.source().remarks().starts_with("explored: no frontier can be reached any more, "))
+        << robot.source().remarks();
+}
+
+/// A degree between beams: a third of the time of the reference laser, which explores as well.
+Sensor coarse_laser() {
+    Sensor laser = *find_laser("reference");
+    laser.angles = UniformAngles{-std::numbers::pi / 2.0, std::numbers::pi / 180.0, 181};
+    return laser;
+}
+
+Sensor reference_laser() { return *find_laser("reference"); }
+
+struct Case {
+    const char* name;
+    World (*world)();
+    Sensor (*laser)();
+    bool noisy;
+    std::uint64_t first_seed;
+    std::uint64_t seeds;
+
+    friend void PrintTo(const Case& one, std::ostream* out) { *out << one.name << "_from_" << one.first_seed; }
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> cases{{"hall", make_hall, coarse_laser, false, 1, 1},
+                            {"office_noisy", make_office, coarse_laser, true, 1, 2},
+                            {"office_reference", make_office, reference_laser, false, 1, 1},
+                            {"room_noisy", make_room, reference_laser, true, 1, 5},
+                            {"room_walker_noisy", make_room_walker, reference_laser, true, 1, 5}};
+    for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {
+        cases.push_back({"room", make_room, reference_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"room_walker", make_room_walker, coarse_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"office", make_office, coarse_laser, false, seed, kSeedsPerCase});
+    }
+    return cases;
+}
+
+class ExploringRobots : public session::SessionTest {};
+class ExploringRobot : public ExploringRobots, public testing::WithParamInterface<Case> {};
+
+TEST_P(ExploringRobot, EndsWithACompleteMapAndTouchesNothing) {
+    const Case& one = GetParam();
+    const World world = one.world();
+    for (std::uint64_t seed = one.first_seed; seed < one.first_seed + one.seeds; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        GoalOracle oracle(session_);
+        Explorer robot(oracle, 0, {world, one.laser(), one.noisy ? std::optional(Noise{}) : std::nullopt, seed});
+        while (robot.step()) {
+        }
+        expect_explored(robot);
+        EXPECT_GE(known_share(world, oracle.maps()), 0.95);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, ExploringRobot, testing::ValuesIn(cases()),
+                         [](const auto& one) { return testing::PrintToString(one.param); });
+
+TEST_F(ExploringRobots, TwoOfThemShareTheOffice) {
+    const World world = make_office();
+    GoalOracle oracle(session_);
+    Explorer first(oracle, 0, {world, coarse_laser(), std::nullopt, 1, Pose2{-13.0, -3.0, 0.0}});
+    Explorer second(oracle, 1, {world, coarse_laser(), std::nullopt, 2, Pose2{13.0, 3.0, 0.0}});
+    int together = 0; // scans
+    while (first.step() && second.step()) ++together;
+    while (first.step() || second.step()) {
+    }
+    expect_explored(first);
+    expect_explored(second);
+    EXPECT_GE(known_share(world, oracle.maps()), 0.95);
+    EXPECT_GT(together, 3000) << "both have something to do";
+}
+
+TEST_F(ExploringRobots, TheSameSeedExploresTheSameWay) {
+    const auto scans = [&] {
+        GoalOracle oracle(session_);
+        Explorer robot(oracle, 0, {make_room_walker(), reference_laser(), Noise{}, 7});
+        std::vector<Pose2> poses;
+        while (robot.step()) poses.push_back(robot.source().simulator().pose());
+        return poses;
+    };
+    EXPECT_EQ(scans(), scans());
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "robot_client/drive/explore.hpp"
+#include "robot_client/source/exploring_source.hpp"
+#include "server/guide/goal_book.hpp"
+#include "server/mapping/projection.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace scanloom::testing_support {
+
+/// What a server answers to the robots of one session, without one.
+class GoalOracle {
+public:
+    explicit GoalOracle(std::shared_ptr<const session::Session> session, const mapping::MapConfig& config = {})
+        : session_(std::move(session)), maps_(config) {
+        options_.passability.body_radius_m = robot::Explore::kWayClearance;
+    }
+
+    void join(RobotIndex robot, const Sensor& laser) {
+        maps_.fold(RobotJoined{robot, "r" + std::to_string(robot)}).value();
+        maps_.fold(SensorDescribed{robot, laser}).value();
+    }
+
+    void take(RobotIndex robot, Scan scan) { maps_.fold(ScanTaken{robot, std::move(scan)}).value(); }
+
+    [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
+        const auto maps = maps_.snapshot();
+        const Pose2 pose = *maps.robots.at(robot).pose;
+        auto found = book_.next(session_, maps, robot, {pose.x, pose.y}, {}, options_);
+        asked_ += 1;
+        if (!found) return found.error();
+        robot::NextStop stop;
+        if (found->outcome == planning::Exploration::kTakenByOthers) {
+            stop.outcome = robot::NextStop::Outcome::kTakenByOthers;
+        } else if (found->goal) {
+            stop.outcome = robot::NextStop::Outcome::kGoal;
+            stop.path = std::move(found->path.points);
+            stop.target = Point2(found->goal->target.i + 0.5, found->goal->target.j + 0.5) * maps.config.cell_size;
+        }
+        return stop;
+    }
+
+    [[nodiscard]] mapping::Snapshot maps() { return maps_.snapshot(); }
+    [[nodiscard]] int asked() const noexcept { return asked_; }
+
+private:
+    std::shared_ptr<const session::Session> session_;
+    mapping::Projection maps_;
+    guide::GoalBook book_;
+    planning::ExplorationOptions options_;
+    int asked_ = 0;
+};
+
+} // namespace scanloom::testing_support

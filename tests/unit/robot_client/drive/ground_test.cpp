@@ -1,0 +1,133 @@
+#include "robot_client/drive/ground.hpp"
+
+#include "robot_client/drive/coverage_meter.hpp"
+#include "robot_client/drive/ground_paths.hpp"
+#include "tests/unit/robot_client/drive/drawn_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace scanloom::robot {
+namespace {
+
+/// Rows from the top: # not free, . the body fits, o it does not.
+std::string drawn(const Ground& ground) {
+    std::string text;
+    for (std::int32_t y = ground.plan().height - 1; y >= 0; --y) {
+        for (std::int32_t x = 0; x < ground.plan().width; ++x) {
+            text += !ground.is_free({x, y}) ? '#' : ground.fits({x, y}) ? '.' : 'o';
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+const std::vector<std::string_view> kTwoRooms{"#########", //
+                                              "#...#...#", //
+                                              "#...#...#", //
+                                              "#.......#", //
+                                              "#...#...#", //
+                                              "#...#...#", //
+                                              "#########"};
+
+TEST(Ground, TheBodyFitsWhereItsCentreIsFarEnoughFromAllSolids) {
+    EXPECT_EQ(drawn(Ground(drawn_plan(kTwoRooms, 0.1), 0.06)), "#########\n"
+                                                               "#ooo#ooo#\n"
+                                                               "#o.o#o.o#\n"
+                                                               "#o..o..o#\n"
+                                                               "#o.o#o.o#\n"
+                                                               "#ooo#ooo#\n"
+                                                               "#########\n");
+    EXPECT_EQ(drawn(Ground(drawn_plan(kTwoRooms, 0.1), 0.05)), "#########\n"
+                                                               "#...#...#\n"
+                                                               "#...#...#\n"
+                                                               "#.......#\n"
+                                                               "#...#...#\n"
+                                                               "#...#...#\n"
+                                                               "#########\n");
+}
+
+TEST(Ground, PlacesBesideObstaclesAreTakenOut) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
+    const std::vector<Point2> obstacles{{0.25, 0.35}};
+    EXPECT_EQ(drawn(ground.without(obstacles, 0.06)), "#########\n"
+                                                      "#...#...#\n"
+                                                      "#.o.#...#\n"
+                                                      "#ooo....#\n"
+                                                      "#.o.#...#\n"
+                                                      "#...#...#\n"
+                                                      "#########\n");
+}
+
+TEST(Ground, PointsAndCellsAgreeAlsoBelowTheOrigin) {
+    FloorPlan plan = drawn_plan({"..", ".."}, 0.1);
+    plan.i_begin = -3;
+    plan.j_begin = -5;
+    const Ground ground(plan, 0.0);
+    EXPECT_EQ(ground.spot_of({-0.25, -0.45}), (Spot{0, 0}));
+    EXPECT_EQ(ground.spot_of(ground.centre_of({1, 1})), (Spot{1, 1}));
+}
+
+TEST(Ground, NearSolidCountsWhatIsBeyondThePlan) {
+    const Ground ground(drawn_plan({".....", ".....", ".....", ".....", "....."}, 0.1), 0.0);
+    EXPECT_FALSE(ground.is_near_solid({0.25, 0.25}, 0.2));
+    EXPECT_TRUE(ground.is_near_solid({0.15, 0.25}, 0.2));
+}
+
+TEST(GroundPaths, AWayLeadsThroughTheGapAndFitsAllAlong) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
+    const Point2 from{0.15, 0.15};
+    const Point2 to{0.75, 0.55};
+    const auto way = find_way(ground, from, to);
+    ASSERT_TRUE(way);
+    EXPECT_EQ(way->front(), from);
+    EXPECT_EQ(way->back(), to);
+    EXPECT_LE(way->size(), 4U) << "corners that are not needed are left out";
+    for (std::size_t n = 0; n + 1 < way->size(); ++n) EXPECT_TRUE(ground.fits_along((*way)[n], (*way)[n + 1]));
+}
+
+TEST(GroundPaths, InTheOpenAWayIsStraight) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
+    EXPECT_EQ(find_way(ground, {0.15, 0.15}, {0.35, 0.55}), (std::vector<Point2>{{0.15, 0.15}, {0.35, 0.55}}));
+}
+
+TEST(GroundPaths, WithoutAGapThereIsNoWay) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.06);
+    EXPECT_TRUE(find_way(ground, {0.25, 0.25}, {0.25, 0.45}));
+    EXPECT_FALSE(find_way(ground, {0.25, 0.25}, {0.65, 0.25}));
+    EXPECT_FALSE(find_way(ground, {0.25, 0.25}, {0.15, 0.15})) << "the body does not fit there";
+    EXPECT_FALSE(find_way(ground, {5.0, 5.0}, {0.25, 0.25})) << "nowhere near";
+}
+
+TEST(GroundPaths, ARobotThatStandsTooNearFindsItsWayOut) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.06);
+    const auto way = find_way(ground, {0.14, 0.14}, {0.25, 0.45});
+    ASSERT_TRUE(way);
+    EXPECT_EQ(way->front(), Point2(0.14, 0.14));
+}
+
+TEST(GroundPaths, TheNearestTargetIsThatOfTheShortestWay) {
+    const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.05);
+    const std::vector<Point2> targets{{0.55, 0.15}, {0.15, 0.55}}; // the first is nearer, but behind the wall
+    EXPECT_EQ(nearest_by_way(ground, {0.35, 0.15}, targets), 1U);
+    EXPECT_EQ(nearest_by_way(ground, {0.35, 0.15}, std::vector<Point2>{}), std::nullopt);
+}
+
+TEST(CoverageMeter, CountsWhatABodyPassedOfWhatItCanReach) {
+    FloorPlan plan = drawn_plan(std::vector<std::string_view>(20, std::string_view("....................")), 0.05);
+    const Ground ground(plan, 0.15);
+    CoverageMeter meter(ground, reachable_from(ground, {0.5, 0.5}));
+    EXPECT_NEAR(meter.reachable_m2(), 1.0, 0.03) << "all but the corners";
+    EXPECT_EQ(meter.share(), 0.0);
+    for (double x = 0.15; x < 0.86; x += 0.01) meter.pass(ground, {x, 0.5});
+    EXPECT_NEAR(meter.share() * meter.reachable_m2(), 0.3 * 0.7 + 0.07, 0.03);
+    const double once = meter.share();
+    meter.pass(ground, {0.5, 0.5});
+    EXPECT_EQ(meter.share(), once) << "the same again is no more";
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,120 @@
+#include "robot_client/drive/waypoints.hpp"
+
+#include "robot_client/drive/body.hpp"
+#include "robot_client/drive/near_obstacles.hpp"
+#include "robot_client/drive/potential_field.hpp"
+#include "tests/unit/robot_client/drive/driven.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::robot {
+namespace {
+
+TEST(PotentialField, DrawsStraightToAGoalInTheOpen) {
+    EXPECT_LT((potential_force({1.0, 1.0}, {4.0, 5.0}, {}) - Point2(0.6, 0.8)).norm(), 1e-12) << "limited to 1";
+    EXPECT_LT((potential_force({1.0, 1.0}, {1.3, 1.4}, {}) - Point2(0.3, 0.4)).norm(), 1e-12) << "as far as it is";
+}
+
+TEST(PotentialField, RepelsByTheFirasFunctionOfTheDistanceFromTheBody) {
+    const Point2 here{0.0, 0.0};
+    const double rho = 0.1;
+    const double repulsion = 0.002 * (1.0 / rho - 1.0 / 0.5) / (rho * rho);
+    const Point2 force = potential_force(here, here, std::vector{Point2(0.0, -(kBodyRadius + rho))});
+    EXPECT_NEAR(force.x(), 0.0, 1e-12);
+    EXPECT_NEAR(force.y(), repulsion, 1e-12) << "away from it";
+    EXPECT_EQ(potential_force(here, here, std::vector{Point2(0.0, -(kBodyRadius + 0.51))}), here) << "too far to count";
+}
+
+TEST(PotentialField, CountsTheNearestOfEachDirectionOnly) {
+    const std::vector<Point2> one{{0.4, 0.02}};
+    std::vector<Point2> many;
+    for (int n = 0; n < 50; ++n) many.emplace_back(0.4 + 0.001 * n, 0.02);
+    EXPECT_EQ(potential_force({0, 0}, {1, 1}, one), potential_force({0, 0}, {1, 1}, many));
+}
+
+TEST(NearObstacles, AreRememberedForThreeSecondsAndWithinAMetre) {
+    NearObstacles near;
+    Senses senses;
+    senses.obstacles = {{0.5, 0.0}, {0.51, 0.0}, {0.0, 1.1}};
+    near.see(senses);
+    EXPECT_EQ(near.places().size(), 1U) << "one of a square; the third is too far";
+    senses.obstacles = {};
+    for (int n = 0; n < 59; ++n) near.see(senses);
+    EXPECT_EQ(near.places().size(), 1U);
+    near.see(senses);
+    EXPECT_TRUE(near.places().empty());
+    senses.obstacles = {{0.5, 0.0}};
+    near.see(senses);
+    near.see({{-0.6, 0.0, 0.0}, {}, {}});
+    EXPECT_TRUE(near.places().empty()) << "the robot has left";
+}
+
+TEST(Waypoints, AreReachedInTheirOrderWithAFullTurnAtEach) {
+    const std::vector<Point2> goals{{1.5, 0.0}, {1.5, 1.5}, {-1.0, 1.0}};
+    auto waypoints = std::make_unique<Waypoints>(goals);
+    const Waypoints& going = *waypoints;
+    Driven driven(walled({}), {-1, -1, 0}, std::move(waypoints));
+    double last_yaw = 0.0;
+    double turned = 0.0; // while next to the first waypoint
+    ASSERT_TRUE(driven.run(120.0, [&] {
+        const Pose2& pose = driven.simulator().pose();
+        if (going.reached() == 0 && (driven.way().back() - goals[0]).norm() < 0.1) {
+            turned += std::abs(normalize_angle(pose.yaw - last_yaw));
+        }
+        last_yaw = pose.yaw;
+    }));
+    EXPECT_GT(turned, 2.0 * std::numbers::pi - 0.4);
+    EXPECT_EQ(going.reached(), 3U);
+    EXPECT_EQ(going.given_up(), 0U);
+    EXPECT_EQ(going.remarks(), "waypoints: 3 of 3 reached");
+    for (const Point2& goal : goals) EXPECT_LT(driven.nearest_to(goal), 0.1);
+    EXPECT_EQ(driven.simulator().collisions(), 0U);
+}
+
+TEST(Waypoints, GoAroundWhatStandsBeside) {
+    auto waypoints = std::make_unique<Waypoints>(std::vector<Point2>{{2.0, 0.0}});
+    const Waypoints& going = *waypoints;
+    Driven driven(walled({{-0.3, -0.9, 0.3, -0.05}}), {-2, 0, 0}, std::move(waypoints));
+    EXPECT_TRUE(driven.run(60.0));
+    EXPECT_EQ(going.reached(), 1U);
+    EXPECT_EQ(driven.simulator().collisions(), 0U);
+    EXPECT_GT(driven.clearance_min(), kBodyRadius + 0.05);
+}
+
+TEST(Waypoints, OneThatCannotBeReachedIsGivenUpAndTheNextIsGoneTo) {
+    // a trap open to the west: the field holds the robot in it
+    const std::vector<Box> trap{{0.0, -1.5, 0.2, 1.5}, {-1.5, 1.3, 0.0, 1.5}, {-1.5, -1.5, 0.0, -1.3}};
+    auto waypoints = std::make_unique<Waypoints>(std::vector<Point2>{{1.5, 0.0}, {-2.2, 0.5}});
+    const Waypoints& going = *waypoints;
+    Driven driven(walled(trap), {-1, 0, 0}, std::move(waypoints));
+    EXPECT_TRUE(driven.run(90.0));
+    EXPECT_EQ(going.given_up(), 1U);
+    EXPECT_EQ(going.reached(), 1U);
+    EXPECT_EQ(going.remarks(), "waypoints: 1 of 2 reached, 1 given up");
+    EXPECT_EQ(driven.simulator().collisions(), 0U);
+}
+
+TEST(Waypoints, ARoundTourBeginsWithTheNearestOneInSight) {
+    // (0, 1) is nearest to the start, behind a wall
+    const std::vector<Point2> tour{{0.0, 1.0}, {2.5, 2.0}, {1.8, -1.0}, {-2.5, -1.5}};
+    auto waypoints = std::make_unique<Waypoints>(tour, TourStart::kNearest);
+    const Waypoints& going = *waypoints;
+    Driven driven(walled({{-1.5, 0.0, 1.5, 0.2}}), {0, -0.8, 2.0}, std::move(waypoints));
+    driven.run(20.0);
+    EXPECT_EQ(going.reached(), 1U);
+    EXPECT_LT(driven.nearest_to(tour[2]), 0.1);
+    EXPECT_TRUE(driven.run(200.0));
+    EXPECT_EQ(going.reached() + going.given_up(), 4U);
+}
+
+TEST(Waypoints, WithoutOneItIsDone) {
+    Waypoints none({}, TourStart::kNearest);
+    EXPECT_TRUE(none.is_done());
+    EXPECT_EQ(none.step({}), Velocity{});
+}
+
+} // namespace
+} // namespace scanloom::robot
