@@ -25,9 +25,9 @@ Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const Wor
                      fmt::format("no tour of the world {} is known; say where to drive: --waypoints", simulate.world)};
     }
     std::string name = fmt::format("{} {}", is_tour ? "tour" : "waypoints", to_text(*waypoints));
-    return NamedBehaviour{std::make_unique<Waypoints>(std::move(*waypoints),
-                                                      is_tour ? TourStart::kNearest : TourStart::kFirst),
-                          std::move(name)};
+    return NamedBehaviour{
+        std::make_unique<Waypoints>(std::move(*waypoints), is_tour ? TourStart::kNearest : TourStart::kFirst),
+        std::move(name)};
 }
 
 } // namespace

@@ -166,9 +166,10 @@ ExitCode run(const RobotOptions& options) {
     if (!outcome) outcome = uplink.outcome_when_interrupted();
     console.finish();
     if (const auto remarks = prepared->remarks(); !remarks.empty()) console.note(remarks);
-    fmt::print("{}\n", summary_json({options.session, options.robot, prepared->fingerprint, prepared->order,
-                                     uplink.status(), prepared->skipped_lines, std::chrono::steady_clock::now() - begun,
-                                     (*feed)->scan_count(), *outcome ? "" : outcome->error().message}));
+    fmt::print("{}\n",
+               summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
+                             prepared->skipped_lines, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
+                             prepared->remarks(), *outcome ? "" : outcome->error().message}));
     return *outcome ? kExitDone : fail(outcome->error());
 }
 

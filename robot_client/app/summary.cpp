@@ -7,8 +7,9 @@ namespace scanloom::robot {
 
 std::string summary_json(const Summary& summary) {
     const UplinkStatus& status = summary.status;
-    const std::string error =
-        summary.error.empty() ? "" : fmt::format(R"(,"error":{})", boost::json::serialize(summary.error));
+    const auto field = [](std::string_view name, const std::string& text) {
+        return text.empty() ? "" : fmt::format(R"(,"{}":{})", name, boost::json::serialize(text));
+    };
     return fmt::format(
         R"({{"scans":{},"acknowledged":{},"stored_before":{},"sent":{},"bytes":{},"seconds":{:.3f},)"
         R"("skipped_lines":{},"reconnects":{},"waiting":{},"dropped":{},"session":"{}","robot":"{}","source":"{}","order":"{}"{}}})",

@@ -19,6 +19,7 @@ struct Summary {
     std::size_t skipped_lines = 0;
     std::chrono::duration<double> elapsed{};
     std::optional<std::uint64_t> scan_count; ///< of the source, where it has an end
+    std::string remarks;                     ///< of the source
     std::string error;                       ///< why it failed; empty: it did not
 };
 

@@ -6,8 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -44,9 +44,10 @@ std::optional<Point2> as_waypoint(std::string_view text) {
 }
 
 Error no_waypoint(std::string_view where, std::size_t number, std::string_view text) {
-    return {Errc::kInvalidField, fmt::format("--waypoints: {} {}: '{}' is no waypoint; write x,y in metres, at most {:g} "
-                                             "from the origin",
-                                             where, number, text, kCoordinateMax)};
+    return {Errc::kInvalidField,
+            fmt::format("--waypoints: {} {}: '{}' is no waypoint; write x,y in metres, at most {:g} "
+                        "from the origin",
+                        where, number, text, kCoordinateMax)};
 }
 
 Result<std::vector<Point2>> read_list(std::string_view list) {
@@ -92,7 +93,8 @@ Result<std::vector<Point2>> read_waypoints(const std::string& list) {
     if (!waypoints) return waypoints;
     if (waypoints->empty()) return Error{Errc::kInvalidField, "--waypoints: there are none; give one at least"};
     if (waypoints->size() > kWaypointsMax) {
-        return Error{Errc::kInvalidField, fmt::format("--waypoints: there are more than {}; drive fewer", kWaypointsMax)};
+        return Error{Errc::kInvalidField,
+                     fmt::format("--waypoints: there are more than {}; drive fewer", kWaypointsMax)};
     }
     return waypoints;
 }

@@ -52,7 +52,7 @@ export async function stop(child) {
   await over;
 }
 
-function start(program, args) {
+export function start(program, args) {
   const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', 'inherit'] });
   child.on('error', (error) => console.error(`${program} cannot be started: ${error.message}`));
   return child;

@@ -38,6 +38,7 @@ TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
     Summary refused = kSummary;
     refused.status = {};
     refused.scan_count = 910;
+    refused.remarks = "7 m driven";
     refused.error = "hello.session is \"lab\",\nwhich is full";
     EXPECT_EQ(
         summary_json(refused),

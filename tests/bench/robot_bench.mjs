@@ -1,0 +1,90 @@
+/**
+ * What a robot's program costs: processor time, memory and bytes on the wire, while it reads an LD06 in real time.
+ *
+ *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin node tests/bench/robot_bench.mjs CAPTURE
+ *
+ * CAPTURE holds bytes of a real LD06. They come over TCP, 375 packets of 47 bytes a second.
+ */
+import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { Server, start, stop } from '../e2e/programs.mjs';
+
+const kBytesPerSecond = 4500 / 12 * 47;
+const kTickMs = 20;
+const kWarmUpMs = 4000; // not measured: start, connecting
+const kMeasuredMs = 15000;
+const kTicksPerSecond = 100; // of /proc, on every Linux of today
+
+const capture = await readFile(process.argv[2] ?? missing());
+const place = await mkdtemp(join(tmpdir(), 'scanloom-robot-bench-'));
+const server = await Server.start();
+console.log(['', 'of one core', 'memory, most', 'bytes a scan'].map((title) => title.padStart(18)).join(''));
+await tell('plain', []);
+await tell('zstd', ['--compression', 'zstd']);
+await tell('zstd, 1 s batches', ['--compression', 'zstd', '--batch-delay', '1']);
+await tell('spool', ['--spool', join(place, 'spool')]);
+await tell('spool, no server', ['--spool', join(place, 'spool')], 1);
+await server.stop();
+await rm(place, { recursive: true });
+
+function missing() {
+  console.error('name a file with bytes of an LD06: robot_bench.mjs CAPTURE');
+  process.exit(2);
+}
+
+/** One run with these options, and its line. */
+async function tell(name, options, port = server.robotPort) {
+  const lidar = await startLidar();
+  const session = name.replace(/[^a-z0-9]+/g, '-');
+  const robot = start('scanloom-robot', [
+    ...['--server', `127.0.0.1:${port}`, '--session', session, '--robot', 'r', ...options],
+    ...['ld06', `tcp://127.0.0.1:${lidar.address().port}`, '--pose', '0,0,0'],
+  ]);
+  const printed = textOf(robot.stdout);
+  await milliseconds(kWarmUpMs);
+  const before = await processorTime(robot.pid);
+  await milliseconds(kMeasuredMs);
+  const share = ((await processorTime(robot.pid)) - before) / (kMeasuredMs / 1000);
+  const memory = (await readFile(`/proc/${robot.pid}/status`, 'utf8')).match(/VmHWM:\s+(\d+) kB/)[1] / 1024;
+  await stop(robot);
+  lidar.close();
+  const summary = JSON.parse(await printed);
+  const bytes = summary.sent > 0 ? (summary.bytes / summary.sent).toFixed(0) : '-';
+  const line = [name, `${(100 * share).toFixed(2)} %`, `${memory.toFixed(1)} MiB`, bytes];
+  console.log(line.map((text) => text.padStart(18)).join(''));
+}
+
+/** Sends the capture to whoever connects, at the pace of the sensor. */
+async function startLidar() {
+  const lidar = createServer((socket) => {
+    const begun = performance.now();
+    let sent = 0;
+    const timer = setInterval(() => {
+      const due = Math.min(capture.length, Math.floor(((performance.now() - begun) / 1000) * kBytesPerSecond));
+      if (due > sent) socket.write(capture.subarray(sent, due));
+      sent = Math.max(sent, due);
+    }, kTickMs);
+    socket.on('error', () => {});
+    socket.on('close', () => clearInterval(timer));
+  });
+  await new Promise((resolve) => lidar.listen(0, '127.0.0.1', resolve));
+  return lidar;
+}
+
+/** Seconds that a process has used of a processor. */
+async function processorTime(pid) {
+  const fields = (await readFile(`/proc/${pid}/stat`, 'utf8')).split(') ')[1].split(' ');
+  return (Number(fields[11]) + Number(fields[12])) / kTicksPerSecond;
+}
+
+async function textOf(stream) {
+  let text = '';
+  for await (const part of stream) text += part;
+  return text;
+}
+
+function milliseconds(count) {
+  return new Promise((resolve) => setTimeout(resolve, count));
+}
