@@ -1,18 +1,12 @@
 #include "robot_client/app/make_source.hpp"
 
 #include "robot_client/app/ld06_source.hpp"
-#include "robot_client/drive/wall_follower.hpp"
-#include "robot_client/sim/simulator.hpp"
-#include "robot_client/sim/unicycle.hpp"
+#include "robot_client/app/simulation.hpp"
 #include "robot_client/source/carmen_log.hpp"
-#include "robot_client/source/simulated_source.hpp"
-#include "robot_client/source/simulation_fingerprint.hpp"
 #include "robot_client/source/sonar_log.hpp"
-#include "robot_client/source/world_file.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <numbers>
 
@@ -72,65 +66,8 @@ Result<PreparedSource> make(const RobotOptions& options, const SonarReplayOption
     return prepared;
 }
 
-Result<> check_range(const Sensor& sensor) {
-    if (sensor.range_max > sensor.range_min) return {};
-    return Error{Errc::kInvalidField,
-                 fmt::format("--max-range is {} m, but the {} {} begins to see at {} m", sensor.range_max,
-                             sensor.kind == SensorKind::kLaser ? "laser" : "sonar", sensor.name, sensor.range_min)};
-}
-
-/// Errors  unknown names, and a range that leaves a sensor nothing to see.
-Result<> choose_sensors(const RobotOptions& options, const SimulateOptions& simulate, SimulatorOptions& simulator) {
-    if (simulate.laser != "none") {
-        auto laser = find_laser(simulate.laser);
-        if (!laser) return laser.error();
-        if (options.range_max) laser->range_max = *options.range_max;
-        if (auto ok = check_range(*laser); !ok) return ok.error();
-        simulator.laser = std::move(*laser);
-    }
-    if (simulate.sonar != "none") {
-        auto sonar = find_sonar(simulate.sonar);
-        if (!sonar) return sonar.error();
-        sonar->range_max = std::min(sonar->range_max, options.range_max.value_or(sonar->range_max));
-        if (auto ok = check_range(*sonar); !ok) return ok.error();
-        simulator.sonar = std::move(*sonar);
-    }
-    return {};
-}
-
-std::optional<Noise> noise_of(const SimulateOptions& simulate) {
-    constexpr Noise kOfOdometryOnly{.range = 0.0, .beam_angle = 0.0};
-    const double odometry = simulate.odometry_noise.value_or(simulate.noise == "none" ? 0.0 : 1.0);
-    if (simulate.noise == "gaussian") return with_odometry({}, odometry);
-    if (simulate.noise == "uniform") {
-        Noise noise = kOfOdometryOnly;
-        noise.range_uniform = simulate.noise_width;
-        return with_odometry(noise, odometry);
-    }
-    if (odometry > 0.0) return with_odometry(kOfOdometryOnly, odometry);
-    return std::nullopt;
-}
-
 Result<PreparedSource> make(const RobotOptions& options, const SimulateOptions& simulate, Console&) {
-    auto world = load_world(simulate.world);
-    if (!world) return world.error();
-    SimulatorOptions simulator;
-    simulator.world = std::move(*world);
-    simulator.noise = noise_of(simulate);
-    simulator.seed = simulate.seed;
-    simulator.pose = simulate.pose == "odometry" ? PoseSent::kOdometry : PoseSent::kTrue;
-    if (auto chosen = choose_sensors(options, simulate, simulator); !chosen) return chosen.error();
-    SimulationLimits limits;
-    if (simulate.duration) limits.duration = *simulate.duration;
-    if (simulate.scans) limits.scans = *simulate.scans;
-    const NoReturn no_return = options.no_return.value_or(NoReturn::kFree);
-    PreparedSource prepared;
-    prepared.speed = simulate.speed;
-    prepared.fingerprint = fingerprint_of(simulator, simulate.drive, no_return);
-    prepared.body_radius = kBodyRadius;
-    prepared.source = std::make_unique<SimulatedSource>(
-        Simulator(std::move(simulator), std::make_unique<WallFollower>()), limits, no_return);
-    return prepared;
+    return prepare_simulation(options, simulate);
 }
 
 Result<PreparedSource> make(const RobotOptions& options, const Ld06Options& ld06, Console& console) {

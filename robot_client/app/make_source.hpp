@@ -28,8 +28,8 @@ struct PreparedSource {
 };
 
 /// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
-/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open(), load_world() and
-/// prepare_ld06(); an unknown sensor, or one without a range.
+/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open(),
+/// prepare_simulation() and prepare_ld06().
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

@@ -23,6 +23,7 @@ struct ReplayOptions {
 struct SimulateOptions {
     std::string world = "office"; ///< a name, or the YAML file of a ROS map
     std::string drive = "wall_follower";
+    std::string waypoints; ///< as read_waypoints() takes them; empty: a tour of the world
     std::string noise = "none";
     double noise_width = 0.05;            ///< metres, of uniform noise
     std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without

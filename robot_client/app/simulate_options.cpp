@@ -58,6 +58,20 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
         ->capture_default_str();
 }
 
+void add_drive(CLI::App& simulate, SimulateOptions& options) {
+    simulate
+        .add_option("--drive", options.drive,
+                    "How it drives: along the walls on its right hand, for ever; from waypoint to waypoint; to and fro "
+                    "over all free ground; or where the server tells it to, until nothing is left to explore")
+        ->check(CLI::IsMember({"wall_follower", "waypoints", "zigzag", "explore"}))
+        ->capture_default_str();
+    simulate
+        .add_option("--waypoints", options.waypoints,
+                    "Where to, in metres: \"x,y;x,y;...\", or a file with a line \"x y\" for each. Default: a tour of "
+                    "the world, begun where the robot is")
+        ->type_name("LIST|FILE");
+}
+
 } // namespace
 
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
@@ -65,9 +79,7 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     simulate->add_option("--world", options.world, world_help("Where it drives"))
         ->check(check_world)
         ->capture_default_str();
-    simulate->add_option("--drive", options.drive, "How it drives")
-        ->check(CLI::IsMember({"wall_follower"}))
-        ->capture_default_str();
+    add_drive(*simulate, options);
     add_sensors(*simulate, options);
     add_noise(*simulate, options);
     simulate->add_option("--seed", options.seed, "The same seed gives the same scans")
@@ -105,6 +117,16 @@ std::optional<std::string> mistake_in(const SimulateOptions& options) {
     }
     if (options.pose != "true" && options.pose != "odometry") {
         return fmt::format("simulate: --pose: '{}' is neither true nor odometry", options.pose);
+    }
+    if (options.laser == "none" && options.drive != "wall_follower") {
+        return fmt::format("simulate: --drive {} needs a --laser: sonars do not tell where obstacles end",
+                           options.drive);
+    }
+    if (options.pose == "odometry" && options.drive == "zigzag") {
+        return "simulate: --drive zigzag follows a plan, and --pose odometry drifts off it; use --pose true";
+    }
+    if (!options.waypoints.empty() && options.drive != "waypoints") {
+        return fmt::format("simulate: --waypoints are not for --drive {}; use --drive waypoints", options.drive);
     }
     return std::nullopt;
 }
