@@ -15,7 +15,8 @@ std::string summary_json(const Summary& summary) {
         R"("skipped_lines":{},"reconnects":{},"waiting":{},"dropped":{},"session":"{}","robot":"{}","source":"{}","order":"{}"{}}})",
         summary.scan_count.value_or(status.last), status.acknowledged, status.resumed_after, status.sent, status.bytes,
         summary.elapsed.count(), summary.skipped_lines, status.reconnects, status.waiting, status.dropped,
-        summary.session, summary.robot, summary.source, summary.order, error);
+        summary.session, summary.robot, summary.source, summary.order,
+        field("remarks", summary.remarks) + field("error", summary.error));
 }
 
 } // namespace scanloom::robot
