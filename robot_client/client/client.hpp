@@ -51,7 +51,11 @@ struct ClientStatus {
 
 /// Where to explore next.
 struct ExplorationGoal {
-    enum class Outcome { kGoal, kTakenByOthers, kComplete };
+    enum class Outcome {
+        kGoal,          ///< there is somewhere to go
+        kTakenByOthers, ///< other robots have all that this one can reach
+        kComplete,      ///< nothing can be reached any more
+    };
     Outcome outcome = Outcome::kComplete;
     std::vector<Point2> path; ///< with kGoal: the way there, metres in the map frame (x() and y())
     Point2 target{0.0, 0.0};  ///< with kGoal: what to look at from its end
@@ -69,8 +73,8 @@ struct ExplorationGoal {
 ///
 /// Units   metres, radians counter-clockwise, seconds; ranges in whole millimetres (scan.hpp).
 /// Frames  those of Scan and Sensor: every scan comes with the robot's pose in the map frame.
-/// Errors  a Result is true, or holds error(): a code for programs, a sentence for people (error.hpp). value() throws it as
-///         ErrorException where there is one.
+/// Errors  a Result is true, or holds error(): a code for programs, a sentence for people (error.hpp). value() throws it
+///         as ErrorException where there is one.
 /// Thread  any, several at a time. Scans of several threads are stored in the order in which send() took them.
 class Client {
 public:

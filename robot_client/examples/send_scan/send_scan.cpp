@@ -1,8 +1,6 @@
-// A robot in the middle of a square room sends what its laser sees.
-//   ./send_scan 127.0.0.1:7447
+// Sends one scan to a Scanloom server: ./send_scan 127.0.0.1:7447
 #include <scanloom/client.hpp>
 
-#include <cmath>
 #include <iostream>
 #include <numbers>
 
@@ -22,18 +20,14 @@ int main(int argc, char** argv) try {
     laser->range_min = 0.05;
     laser->range_max = 12.0;
 
-    std::vector<double> metres; // what the laser's driver gives: a wall 2 m ahead, behind and to each side of it
-    for (std::size_t beam = 0; beam < beam_count(laser->angles); ++beam) {
-        const double angle = beam_angle(laser->angles, beam);
-        metres.push_back(2.0 / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle))));
-    }
+    const std::vector<float> metres(360, 2.0F); // from the laser's driver; here it stands in a round room
 
     scanloom::Scan scan;
     scan.stamp = 0.0;                               // seconds
     scan.pose = {.x = 1.0, .y = 0.5, .yaw = 0.785}; // of the robot in the map: metres, radians
     scan.ranges = scanloom::to_ranges_mm(metres);
-    robot->send(laser, scan).value(); // at once: the client's own thread takes care of the rest
-    robot->flush(std::chrono::seconds(10)).value();
+    robot->send(laser, scan).value();               // waits for nothing: the client's own thread does the rest
+    robot->flush(std::chrono::seconds(10)).value(); // until all is stored
     std::cout << robot->status().acknowledged << " scans are stored\n";
     robot->close(std::chrono::seconds(10)).value();
 } catch (const scanloom::ErrorException& failure) {
