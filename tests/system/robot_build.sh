@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Proves what packages.txt says of robots: in a minimal Debian 12 with the packages of [build-robot] this commit's robot
-# program and client library are built; in another, with those of [library], the example is built on the installed one.
+# program and client library are built; in another the program runs with those of [run-robot], and the example is built
+# on the installed library with those of [library].
 # usage: robot_build.sh        (as root; needs debootstrap, git, and the network for packages)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -45,18 +46,17 @@ done
 timed builder ./scanloom install build-robot
 timed builder ./scanloom build --robot
 inside builder cmake --install build/robot --prefix /opt/scanloom
-inside builder /opt/scanloom/bin/scanloom-robot --help >"$work/help"
+cp --archive "$work/builder/opt/scanloom" "$work/robot/opt/"
+
+timed robot ./scanloom install run-robot
+inside robot /opt/scanloom/bin/scanloom-robot --help >"$work/help"
 grep --quiet -- --session "$work/help" || { echo "scanloom-robot does not start" >&2; exit 1; }
 
 timed robot ./scanloom install library
-cp --archive "$work/builder/opt/scanloom" "$work/robot/opt/"
 inside robot cmake -S robot_client/examples/send_scan -B /tmp/send_scan -DCMAKE_PREFIX_PATH=/opt/scanloom
 timed robot cmake --build /tmp/send_scan
 # Nobody listens on port 1: it starts, waits as long as it says, and tells why it failed.
 ! inside robot /tmp/send_scan/send_scan 127.0.0.1:1 2>"$work/news" || { echo "send_scan reached nobody" >&2; exit 1; }
 grep --quiet 'send_scan: not all scans were stored within 10 s' "$work/news" || { cat "$work/news" >&2; exit 1; }
 
-timed robot ./scanloom install run-robot
-cp "$work/builder/opt/scanloom/bin/scanloom-robot" "$work/robot/root/"
-inside robot /root/scanloom-robot --help >/dev/null
 echo "== the packages suffice"
