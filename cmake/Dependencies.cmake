@@ -1,19 +1,22 @@
 # What Scanloom is built from: Debian 12 packages, listed in packages.txt.
 find_package(Threads REQUIRED)
-find_package(Boost 1.81 REQUIRED COMPONENTS url json iostreams) # iostreams: for tests only
+find_package(Boost 1.81 REQUIRED COMPONENTS json)
 find_package(BZip2 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Protobuf 3.21 REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
-find_package(spdlog 1.10 REQUIRED)
 find_package(fmt REQUIRED)
-find_package(RocksDB 7.8 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
-find_package(prometheus-cpp REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto SSL)
 find_package(zstd 1.5 CONFIG REQUIRED)
+if(SCANLOOM_SERVER)
+  find_package(Boost 1.81 REQUIRED COMPONENTS url iostreams) # iostreams: for tests only
+  find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
+  find_package(spdlog 1.10 REQUIRED)
+  find_package(RocksDB 7.8 REQUIRED)
+  find_package(prometheus-cpp REQUIRED)
+endif()
 
 # Asio and Beast, compiled once instead of in every file that includes them.
 add_library(scanloom_asio STATIC ${CMAKE_SOURCE_DIR}/cmake/asio.cpp)

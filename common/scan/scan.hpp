@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace scanloom {
@@ -19,13 +20,20 @@ inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU; ///< nothing within the senso
 /// become kInvalidRange, +inf and lengths beyond 4,294,967 m kNoReturn.
 [[nodiscard]] RangeMm to_range_mm(double range_m) noexcept;
 
-/// One sweep of one sensor, taken from one pose.
+/// The same of each reading of a scan: `scan.ranges = to_ranges_mm(metres)`.
+[[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const float> ranges_m);
+[[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const double> ranges_m);
+
+/// One sweep of one sensor, taken from one pose. Metres and radians, counter-clockwise.
+///
+/// Frames  map: fixed, and one for all robots of a session; robot: x ahead, y to the left, its origin wherever its pose
+///         is meant; odom: fixed where the odometry began. T_a_b is the pose of b in frame a.
 struct Scan {
-    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1
+    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1; robot::Client numbers them
     double stamp = 0.0;                     ///< seconds since the epoch, or since the robot's own start
     std::uint32_t sensor = 0;               ///< Sensor::id
-    Pose2 pose;                             ///< T_map_robot
-    std::optional<Pose2> odometry;          ///< T_odom_robot
+    Pose2 pose;                             ///< T_map_robot, as well as the robot knows: the map is woven from it
+    std::optional<Pose2> odometry;          ///< T_odom_robot, kept for whoever corrects poses later
     std::vector<RangeMm> ranges;            ///< one a beam
     std::vector<std::uint32_t> intensities; ///< empty, or one a beam; the sensor's own scale
     std::optional<BeamAngles> angles;       ///< only where they differ from the sensor's

@@ -76,6 +76,7 @@ const std::vector<Folder> kFolders = {
     {.path = "robot_client/client",
      .may_include = {"common", "robot_client/source", "robot_client/spool", "robot_client/uplink"}},
     {.path = "robot_client/app", .may_include = {"common", "robot_client"}},
+    {.path = "robot_client/examples", .may_include = {}}, // built on the installed client alone
 
     // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
     {.path = "lab",

@@ -30,6 +30,14 @@ TEST(ToRangeMm, WhatIsTooLongForMillimetresIsNoReturn) {
     }
 }
 
+TEST(ToRangesMm, RoundsEachReadingAsAlone) {
+    const std::vector<double> metres = {1.2346, 0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), kInfinity};
+    const std::vector<RangeMm> ranges = {1235, kInvalidRange, kInvalidRange, kInvalidRange, kNoReturn};
+    EXPECT_EQ(to_ranges_mm(metres), ranges);
+    EXPECT_EQ(to_ranges_mm(std::vector<float>(metres.begin(), metres.end())), ranges);
+    EXPECT_TRUE(to_ranges_mm(std::vector<float>{}).empty());
+}
+
 TEST(AnglesOf, TheScansOwnAnglesGoBeforeItsSensors) {
     Sensor sensor;
     sensor.angles = UniformAngles{-1.0, 0.1, 20};
