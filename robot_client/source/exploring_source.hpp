@@ -3,6 +3,7 @@
 #include "robot_client/drive/explore.hpp"
 #include "robot_client/sim/simulator.hpp"
 #include "robot_client/source/live_source.hpp"
+#include "robot_client/source/next_goal.hpp"
 #include "robot_client/source/simulated_source.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -10,29 +11,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace scanloom::robot {
-
-/// What a robot is to explore next.
-struct NextStop {
-    enum class Outcome {
-        kGoal,          ///< there is somewhere to go
-        kTakenByOthers, ///< other robots have all that this one can reach
-        kComplete,      ///< nothing can be reached any more
-    };
-    Outcome outcome = Outcome::kComplete;
-    std::vector<Point2> path; ///< with kGoal: the way there, metres in the map frame
-    Point2 target{0.0, 0.0};  ///< with kGoal: what to look at from its end
-};
-
-/// Asks for the next stop of a robot that stands where its newest scan was taken, on maps that hold all its scans so
-/// far. Ways should keep Explore::kWayClearance from obstacles.
-using NextGoal = std::function<boost::asio::awaitable<Result<NextStop>>()>;
 
 /// A simulated robot that explores a world where it is told to, until that is complete or the first of its limits.
 /// The world stands still while an answer is awaited: the same answers give the same scans. An answer that is an error

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <vector>
 
 namespace scanloom::robot {
 
@@ -16,7 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kSuffix = ".spool";
 constexpr std::string_view kNumberingFile = "numbering";
 constexpr std::uint64_t kSegmentsWanted = 16;
 constexpr std::uint64_t kSegmentBytesMax = std::uint64_t{4} << 20;
@@ -55,60 +53,18 @@ Result<> Spool::load() {
     if (!numbering) return numbering.error();
     numbering_ = *numbering;
     if (numbering_) next_number_ = std::max(next_number_, numbering_->first);
-    std::vector<fs::path> files;
-    std::error_code failed;
-    for (fs::directory_iterator entry(options_.directory, failed), end; !failed && entry != end;
-         entry.increment(failed)) {
-        if (entry->path().extension() == kSuffix) files.push_back(entry->path());
-    }
-    if (failed) {
-        return Error{Errc::kStoreFailed,
-                     fmt::format("cannot list {}: {}", options_.directory.string(), failed.message())};
-    }
-    std::ranges::sort(files);
-    for (const fs::path& file : files) {
-        if (auto ok = load(file); !ok) return ok;
+    auto left = segments_left(options_.directory, numbering_ ? numbering_->first : 0, tell_);
+    if (!left) return left.error();
+    segments_.assign(left->begin(), left->end());
+    for (const Segment& segment : segments_) {
+        bytes_ += segment.bytes;
+        waiting_ += segment.scans;
+        next_number_ = segment.first + segment.scans;
     }
     return {};
 }
 
-/// Counts the scans of a file that an earlier run has left. One without scans, or of acknowledged ones only, goes.
-Result<> Spool::load(const fs::path& file) {
-    auto reader = SegmentReader::open(file);
-    if (!reader) return reader.error();
-    Segment segment;
-    for (;;) {
-        const auto record = reader->next();
-        if (!record) {
-            tell_(record.error().message + "; the scans behind that are lost");
-            break;
-        }
-        if (!*record) break;
-        const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message);
-        if (!batch) continue;
-        if (segment.scans++ == 0) segment.first = batch->scans.front().seq;
-    }
-    const bool is_done = numbering_ && segment.first + segment.scans <= numbering_->first;
-    if (segment.scans == 0 || is_done) {
-        std::error_code ignored;
-        fs::remove(file, ignored);
-        return {};
-    }
-    if (file != file_of(segment)) {
-        return Error{Errc::kMalformed, fmt::format("{} holds scans of another file; remove it", file.string())};
-    }
-    std::error_code failed;
-    segment.bytes = fs::file_size(file, failed);
-    bytes_ += segment.bytes;
-    waiting_ += segment.scans;
-    next_number_ = segment.first + segment.scans;
-    segments_.push_back(segment);
-    return {};
-}
-
-fs::path Spool::file_of(const Segment& segment) const {
-    return options_.directory / fmt::format("{:020}{}", segment.first, kSuffix);
-}
+fs::path Spool::file_of(const Segment& segment) const { return options_.directory / segment_file(segment.first); }
 
 std::uint64_t Spool::segment_bytes_max() const noexcept {
     return std::min(kSegmentBytesMax, options_.bytes_max / kSegmentsWanted);

@@ -5,6 +5,7 @@
 #include "robot_client/spool/file_handle.hpp"
 #include "robot_client/spool/numbering.hpp"
 #include "robot_client/spool/segment.hpp"
+#include "robot_client/spool/segment_list.hpp"
 
 #include <cstdint>
 #include <deque>
@@ -69,17 +70,9 @@ public:
     [[nodiscard]] const std::filesystem::path& directory() const noexcept { return options_.directory; }
 
 private:
-    struct Segment {
-        std::uint64_t first = 0; ///< number of its first scan
-        std::uint64_t scans = 0;
-        std::uint64_t bytes = 0;
-        std::uint64_t first_seq = 0; ///< known once it is entered
-    };
-
     Spool(SpoolOptions options, std::function<void(const std::string&)> tell);
     [[nodiscard]] Result<> load();
     [[nodiscard]] Result<> lock();
-    [[nodiscard]] Result<> load(const std::filesystem::path& file);
     [[nodiscard]] std::filesystem::path file_of(const Segment& segment) const;
     [[nodiscard]] std::uint64_t segment_bytes_max() const noexcept;
 

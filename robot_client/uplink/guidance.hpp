@@ -1,6 +1,6 @@
 #pragma once
 
-#include "robot_client/source/exploring_source.hpp"
+#include "robot_client/source/next_goal.hpp"
 #include "robot_client/uplink/uplink.hpp"
 
 namespace scanloom::robot {

@@ -4,6 +4,7 @@
 #include "tests/support/log_reading.hpp"
 
 #include <boost/endian/conversion.hpp>
+#include <zstd.h>
 
 #include <atomic>
 #include <limits>
@@ -230,6 +231,39 @@ TEST_F(IngestTest, ExactlyTheCreditMayBeUnderWay) {
     RobotSocket again(port());
     again.send(hello("r"));
     EXPECT_EQ(again.receive_kind<wire::Welcome>().last_durable_seq, 4U);
+}
+
+TEST_F(IngestTest, CompressedScansAreTakenAndTheirCreditIsOfWhatTheyHold) {
+    const wire::Message batch = wire::ScanBatch{{random_scan(1, 1)}};
+    const auto compressed = [](std::uint64_t seq) {
+        const std::string frame = frame_of(wire::ScanBatch{{random_scan(1, seq)}});
+        std::string zstd(ZSTD_compressBound(frame.size()), '\0');
+        zstd.resize(ZSTD_compress(zstd.data(), zstd.size(), frame.data() + wire::kLengthPrefixBytes,
+                                  frame.size() - wire::kLengthPrefixBytes, 1));
+        return wire::CompressedScanBatch{static_cast<std::uint32_t>(frame.size() - wire::kLengthPrefixBytes), zstd};
+    };
+    IngestConfig config;
+    config.link.credit_bytes = frame_of(batch).size() * 5 / 2;
+    start(config);
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(small_laser());
+    robot->send(compressed(1));
+    EXPECT_EQ(robot->receive_kind<wire::Ack>().durable_seq, 1U);
+    log_.hold_completions();
+    for (std::uint64_t seq = 2; seq <= 4; ++seq) robot->send(compressed(seq));
+    EXPECT_EQ(farewell_to(*robot).error.code, Errc::kCreditExceeded);
+    log_.release_completions();
+}
+
+TEST_F(IngestTest, ACompressedBatchThatIsNoneEndsTheLinkAndSaysWhy) {
+    start();
+    for (const auto& [bad, text] :
+         {std::pair{wire::CompressedScanBatch{1U << 30, "x"}, "compressed_scan_batch.size is 1073741824"},
+          std::pair{wire::CompressedScanBatch{100, "x"}, "no Zstandard frame"}}) {
+        const auto robot = welcomed(port(), hello("r"));
+        robot->send(bad);
+        EXPECT_THAT(farewell_to(*robot).error.message, testing::HasSubstr(text));
+    }
 }
 
 TEST_F(IngestTest, SensorDescriptionsNeedNoCreditButAreBounded) {

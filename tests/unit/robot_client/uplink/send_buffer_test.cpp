@@ -74,6 +74,34 @@ TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
     EXPECT_THAT(buffer.rewind(9).error().message, testing::HasSubstr("another program"));
 }
 
+TEST(SendBuffer, WhatWasPushedBeforeTheServerWasReachedIsNumberedBehindWhatItHolds) {
+    SendBuffer buffer = with_scans(3);
+    buffer.start_after(10);
+    EXPECT_EQ(buffer.unsent(0).scan.seq, 11U);
+    EXPECT_EQ(buffer.last(), 13U);
+    EXPECT_EQ(buffer.unsent_count(), 3U);
+}
+
+TEST(SendBuffer, TheOldestThatWasNeverSentCanBeDroppedAndTheOthersMoveUp) {
+    SendBuffer buffer(1 << 20);
+    for (std::size_t beams = 1; beams <= 6; ++beams) buffer.push(observation(beams));
+    buffer.mark_sent(3);
+    ASSERT_TRUE(buffer.rewind(1)); // two of them are to be sent again
+    ASSERT_TRUE(buffer.drop_oldest_unsent());
+    std::vector<std::size_t> beams;
+    for (std::size_t i = 0; i < buffer.unsent_count(); ++i) {
+        EXPECT_EQ(buffer.unsent(i).scan.seq, i + 2);
+        beams.push_back(buffer.unsent(i).scan.ranges.size());
+    }
+    EXPECT_THAT(beams, testing::ElementsAre(2, 3, 5, 6));
+    buffer.mark_sent(4);
+    EXPECT_FALSE(buffer.drop_oldest_unsent());
+    buffer.acknowledge(5);
+    EXPECT_TRUE(buffer.empty());
+    for (int n = 0; buffer.has_room() && n < 10'000; ++n) buffer.push(observation());
+    EXPECT_GT(buffer.last(), 5000U) << "what was dropped takes no room";
+}
+
 TEST(WireBytesMax, IsNeverLessThanWhatTheScanTakes) {
     for (const std::size_t beams : {1U, 180U, 4096U}) {
         for (int variant = 0; variant < 5; ++variant) {

@@ -1,0 +1,153 @@
+#include "common/wire/frame_decoder.hpp"
+#include "robot_client/uplink/conversation.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// When scans wait for one another, and how they travel.
+namespace scanloom::robot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class Batching : public testing::Test {
+protected:
+    void begin(std::chrono::milliseconds delay, bool compress = false, bool server_understands = true) {
+        ConversationOptions options;
+        options.hello.robot = "r1";
+        options.hello.session = "s1";
+        options.batch_delay = delay;
+        options.batch_bytes_max = 4000;
+        options.compress = compress;
+        conversation_.emplace(options, now_);
+        server_understands_ = server_understands;
+        connect();
+    }
+
+    void connect(std::uint64_t durable = 0) {
+        conversation_->open(now_);
+        said();
+        ASSERT_FALSE(conversation_->receive(wire::Welcome{"a1", durable, {}, 1 << 20, server_understands_}, now_));
+    }
+
+    void add(int count) {
+        for (int i = 0; i < count; ++i) {
+            Observation made{laser_, {}};
+            made.scan.ranges.assign(180, 1000);
+            conversation_->add(std::move(made), now_);
+        }
+    }
+
+    /// Scans of each batch that it has to say now.
+    std::vector<std::size_t> said() {
+        std::vector<std::size_t> batches;
+        while (const auto frame = conversation_->next_frame(now_)) {
+            auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
+            if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
+                ++compressed_;
+                message = wire::decompress(*compressed).value();
+            }
+            if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) batches.push_back(batch->scans.size());
+        }
+        return batches;
+    }
+
+    Conversation::Time now_{1000s};
+    std::shared_ptr<const Sensor> laser_ = std::make_shared<const Sensor>(
+        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 180}, 0.0, 0.0, 10.0});
+    std::optional<Conversation> conversation_;
+    bool server_understands_ = true;
+    int compressed_ = 0;
+};
+
+TEST_F(Batching, WithoutADelayEachScanGoesAtOnce) {
+    begin(0ms);
+    for (int n = 0; n < 3; ++n) {
+        add(1);
+        EXPECT_THAT(said(), ElementsAre(1));
+    }
+}
+
+TEST_F(Batching, ScansWaitForOthersUntilTheOldestHasWaitedLongEnough) {
+    begin(1s);
+    add(1);
+    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_EQ(conversation_->deadline(now_), now_ + 1s);
+    now_ += 600ms;
+    add(1);
+    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_EQ(conversation_->deadline(now_), now_ + 400ms);
+    now_ += 399ms;
+    EXPECT_THAT(said(), IsEmpty());
+    now_ += 1ms;
+    EXPECT_THAT(said(), ElementsAre(2));
+    add(1);
+    EXPECT_THAT(said(), IsEmpty()) << "the next waits for itself";
+}
+
+TEST_F(Batching, AFullBatchDoesNotWait) {
+    begin(1h);
+    add(10); // of some 900 bytes each
+    EXPECT_THAT(said(), ElementsAre(4, 4)) << "the last two may be joined by others";
+}
+
+TEST_F(Batching, TheLastScansDoNotWait) {
+    begin(1h);
+    add(2);
+    conversation_->end();
+    EXPECT_THAT(said(), ElementsAre(2));
+}
+
+TEST_F(Batching, WhatIsSentAgainDoesNotWaitAgain) {
+    begin(1s);
+    add(2);
+    now_ += 1s;
+    EXPECT_THAT(said(), ElementsAre(2));
+    conversation_->close();
+    connect(1);
+    EXPECT_THAT(said(), ElementsAre(1));
+}
+
+TEST_F(Batching, WhereThereIsNoCreditADelayThatIsOverWakesNobody) {
+    begin(10ms);
+    ASSERT_FALSE(conversation_->receive(wire::Ack{0, 0, 1}, now_));
+    add(1);
+    now_ += 10ms;
+    EXPECT_THAT(said(), IsEmpty());
+    EXPECT_GT(conversation_->deadline(now_), now_) << "only an ack can help";
+}
+
+TEST_F(Batching, BatchesAreCompressedWhereBothSidesWantIt) {
+    begin(0ms, true);
+    add(3);
+    EXPECT_THAT(said(), ElementsAre(3));
+    EXPECT_EQ(compressed_, 1);
+    begin(0ms, true, false);
+    add(3);
+    EXPECT_THAT(said(), ElementsAre(3));
+    begin(0ms, false, true);
+    add(3);
+    EXPECT_THAT(said(), ElementsAre(3));
+    EXPECT_EQ(compressed_, 1);
+}
+
+TEST_F(Batching, ScansThatCameBeforeTheServerGoBehindThoseItHolds) {
+    ConversationOptions options;
+    options.hello.robot = "r1";
+    options.hello.session = "s1";
+    conversation_.emplace(options, now_);
+    add(3);
+    EXPECT_TRUE(conversation_->drop_oldest_unsent());
+    connect(40);
+    EXPECT_THAT(said(), ElementsAre(2));
+    EXPECT_EQ(conversation_->last(), 42U);
+    ASSERT_FALSE(conversation_->receive(wire::Ack{42, 41, 1 << 20}, now_));
+    EXPECT_EQ(conversation_->acknowledged(), 42U);
+    EXPECT_EQ(conversation_->applied(), 41U);
+    EXPECT_FALSE(conversation_->drop_oldest_unsent()) << "all were sent";
+}
+
+} // namespace
+} // namespace scanloom::robot
