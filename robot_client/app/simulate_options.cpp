@@ -87,9 +87,11 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
         ->capture_default_str();
     simulate
         ->add_option("--duration", options.duration,
-                     "Seconds to simulate, earlier runs included; default: until interrupted")
+                     "Seconds to simulate, earlier runs included; default: until it is done, or interrupted")
         ->check(check_positive);
-    simulate->add_option("--scans", options.scans, "Scans to take, earlier runs included; default: until interrupted")
+    simulate
+        ->add_option("--scans", options.scans,
+                     "Scans to take, earlier runs included; default: until it is done, or interrupted")
         ->check(check_whole_number_from(1));
     simulate->add_option("--speed", options.speed, "1 = real time, 0 = as fast as the server takes it")
         ->check(check_not_negative)

@@ -1,0 +1,83 @@
+#include "robot_client/app/simulation.hpp"
+
+#include "robot_client/sim/tour.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace scanloom::robot {
+namespace {
+
+PreparedSource prepared(const std::string& drive, const std::string& world = "room",
+                        const std::string& waypoints = {}) {
+    SimulateOptions simulate;
+    simulate.world = world;
+    simulate.drive = drive;
+    simulate.waypoints = waypoints;
+    auto result = prepare_simulation({}, simulate);
+    EXPECT_TRUE(result) << result.error().message;
+    return std::move(*result);
+}
+
+TEST(Simulation, EachDriveHasAFingerprintOfItsOwn) {
+    const std::set<std::string> fingerprints{prepared("wall_follower").fingerprint,
+                                             prepared("zigzag").fingerprint,
+                                             prepared("waypoints").fingerprint,
+                                             prepared("waypoints", "room", "1,2").fingerprint,
+                                             prepared("waypoints", "room", "2,1").fingerprint,
+                                             prepared("waypoints", "office").fingerprint};
+    EXPECT_EQ(fingerprints.size(), 6U);
+    EXPECT_EQ(prepared("waypoints", "room", "1,2").fingerprint, prepared("waypoints", "room", "1.0 2.0;").fingerprint);
+}
+
+TEST(Simulation, OneThatExploresIsLiveAndNothingIdentifiesItsScans) {
+    const auto exploring = prepared("explore");
+    EXPECT_EQ(exploring.source, nullptr);
+    ASSERT_NE(exploring.live, nullptr);
+    EXPECT_EQ(exploring.live.get(), exploring.exploring);
+    EXPECT_EQ(exploring.fingerprint, "");
+    EXPECT_TRUE(exploring.live->can_wait());
+}
+
+TEST(Simulation, ADriveThatIsDoneEndsIt) {
+    auto source = prepared("waypoints", "room", "1,3.5").source;
+    EXPECT_EQ(source->scan_count(), std::nullopt) << "nobody knows before";
+    std::uint64_t scans = 0;
+    while (*source->next()) ASSERT_LT(++scans, 6000U);
+    EXPECT_GT(scans, 50U);
+    EXPECT_EQ(source->scan_count(), scans);
+    EXPECT_TRUE(source->remarks().starts_with("waypoints: ")) << source->remarks();
+    EXPECT_FALSE(*source->next());
+}
+
+TEST(Simulation, ALimitEndsADriveThatWouldEndLater) {
+    SimulateOptions simulate;
+    simulate.world = "room";
+    simulate.drive = "zigzag";
+    simulate.scans = 20;
+    const auto limited = prepare_simulation({}, simulate);
+    ASSERT_TRUE(limited);
+    Source* source = limited->source.get();
+    std::uint64_t scans = 0;
+    while (*source->next()) ++scans;
+    EXPECT_EQ(scans, 20U);
+    EXPECT_EQ(source->scan_count(), 20U);
+}
+
+TEST(Simulation, EveryWorldWithANameHasATourThatKeepsClearOfWhatStandsThere) {
+    for (const NamedWorld& named : kWorlds) {
+        const World world = named.make();
+        const auto tour = tour_of(named.name);
+        EXPECT_GT(tour.size(), 5U) << named.name;
+        for (const Point2& waypoint : tour) {
+            EXPECT_GT(clearance(world, waypoint), 0.5) << named.name << ' ' << waypoint.transpose();
+        }
+    }
+    EXPECT_TRUE(tour_of("somewhere").empty());
+}
+
+} // namespace
+} // namespace scanloom::robot
