@@ -28,10 +28,10 @@ Result<std::vector<fs::path>> files_in(const fs::path& directory) {
 }
 
 /// Counts the scans of a file, up to its end or to damage.
-Result<Segment> count(const fs::path& file, const std::function<void(const std::string&)>& tell) {
+Result<SpoolFile> count(const fs::path& file, const std::function<void(const std::string&)>& tell) {
     auto reader = SegmentReader::open(file);
     if (!reader) return reader.error();
-    Segment segment;
+    SpoolFile segment;
     for (;;) {
         const auto record = reader->next();
         if (!record) {
@@ -51,11 +51,11 @@ Result<Segment> count(const fs::path& file, const std::function<void(const std::
 
 std::string segment_file(std::uint64_t first) { return fmt::format("{:020}{}", first, kSuffix); }
 
-Result<std::vector<Segment>> segments_left(const fs::path& directory, std::uint64_t first_unacknowledged,
-                                           const std::function<void(const std::string&)>& tell) {
+Result<std::vector<SpoolFile>> segments_left(const fs::path& directory, std::uint64_t first_unacknowledged,
+                                             const std::function<void(const std::string&)>& tell) {
     const auto files = files_in(directory);
     if (!files) return files.error();
-    std::vector<Segment> left;
+    std::vector<SpoolFile> left;
     for (const fs::path& file : *files) {
         const auto segment = count(file, tell);
         if (!segment) return segment.error();

@@ -11,7 +11,7 @@
 namespace scanloom::robot {
 
 /// A file of the spool: scans whose numbers follow one another.
-struct Segment {
+struct SpoolFile {
     std::uint64_t first = 0; ///< number of its first scan
     std::uint64_t scans = 0;
     std::uint64_t bytes = 0;
@@ -24,8 +24,8 @@ struct Segment {
 /// What an earlier run has left in a directory, by number. A file without scans goes, and so does one with scans before
 /// `first_unacknowledged` only. `tell` hears of damage: what stands before it counts.
 /// Errors  kStoreFailed; kMalformed: a file that is not the spool's.
-[[nodiscard]] Result<std::vector<Segment>> segments_left(const std::filesystem::path& directory,
-                                                         std::uint64_t first_unacknowledged,
-                                                         const std::function<void(const std::string&)>& tell);
+[[nodiscard]] Result<std::vector<SpoolFile>> segments_left(const std::filesystem::path& directory,
+                                                           std::uint64_t first_unacknowledged,
+                                                           const std::function<void(const std::string&)>& tell);
 
 } // namespace scanloom::robot

@@ -56,7 +56,7 @@ Result<> Spool::load() {
     auto left = segments_left(options_.directory, numbering_ ? numbering_->first : 0, tell_);
     if (!left) return left.error();
     segments_.assign(left->begin(), left->end());
-    for (const Segment& segment : segments_) {
+    for (const SpoolFile& segment : segments_) {
         bytes_ += segment.bytes;
         waiting_ += segment.scans;
         next_number_ = segment.first + segment.scans;
@@ -64,7 +64,7 @@ Result<> Spool::load() {
     return {};
 }
 
-fs::path Spool::file_of(const Segment& segment) const { return options_.directory / segment_file(segment.first); }
+fs::path Spool::file_of(const SpoolFile& segment) const { return options_.directory / segment_file(segment.first); }
 
 std::uint64_t Spool::segment_bytes_max() const noexcept {
     return std::min(kSegmentBytesMax, options_.bytes_max / kSegmentsWanted);
@@ -187,7 +187,7 @@ Result<std::uint64_t> Spool::first_seq_where(std::uint64_t durable_seq) const {
                         durable_seq, seq - 1)};
     }
     std::uint64_t perhaps_sent = 0;
-    for (const Segment& segment : segments_) {
+    for (const SpoolFile& segment : segments_) {
         if (segment.first <= numbering_->entered) perhaps_sent += segment.scans;
     }
     if (durable_seq < seq + perhaps_sent) return seq;
@@ -201,7 +201,7 @@ Result<std::uint64_t> Spool::first_seq_where(std::uint64_t durable_seq) const {
 
 Result<> Spool::skip(std::uint64_t scans) {
     while (scans > 0) {
-        Segment& segment = segments_[reading_];
+        SpoolFile& segment = segments_[reading_];
         if (!reader_ && segment.scans <= scans && reading_ + 1 < segments_.size()) { // without reading it
             segment.first_seq = next_seq_;
             next_seq_ += segment.scans;
@@ -255,7 +255,7 @@ Result<std::optional<Observation>> Spool::next() {
 
 /// Begins to read segments_[reading_]. From then on its scans may have been sent.
 Result<> Spool::enter() {
-    Segment& segment = segments_[reading_];
+    SpoolFile& segment = segments_[reading_];
     if (segment.first > numbering_->entered) {
         numbering_->entered = segment.first;
         if (auto ok = write_numbering(options_.directory / kNumberingFile, *numbering_); !ok) return ok;
@@ -271,7 +271,7 @@ Result<> Spool::enter() {
 
 /// What cannot be read of the present segment is lost.
 void Spool::leave_damaged(const std::string& why) {
-    Segment& segment = segments_[reading_];
+    SpoolFile& segment = segments_[reading_];
     const std::uint64_t lost = segment.scans - handed_out_;
     tell_(fmt::format("{}; {} scans are lost", why, lost));
     dropped_ += lost;
@@ -294,7 +294,7 @@ void Spool::tidy_up() {
 
 void Spool::forget_acknowledged(bool also_the_newest) {
     while (!segments_.empty()) {
-        const Segment& front = segments_.front();
+        const SpoolFile& front = segments_.front();
         const bool is_handed_out = reading_ > 0 || (reader_ && handed_out_ == front.scans);
         if (!is_handed_out || front.first_seq + front.scans > acknowledged_ + 1) return;
         const bool is_newest = segments_.size() == 1;

@@ -73,7 +73,7 @@ private:
     Spool(SpoolOptions options, std::function<void(const std::string&)> tell);
     [[nodiscard]] Result<> load();
     [[nodiscard]] Result<> lock();
-    [[nodiscard]] std::filesystem::path file_of(const Segment& segment) const;
+    [[nodiscard]] std::filesystem::path file_of(const SpoolFile& segment) const;
     [[nodiscard]] std::uint64_t segment_bytes_max() const noexcept;
 
     [[nodiscard]] Result<> start_segment();
@@ -91,7 +91,7 @@ private:
     std::function<void(const std::string&)> tell_;
     FileHandle lock_;
     BackgroundSync sync_;
-    std::deque<Segment> segments_;
+    std::deque<SpoolFile> segments_;
     std::uint64_t bytes_ = 0;
     std::uint64_t waiting_ = 0;
     std::uint64_t dropped_ = 0;
