@@ -36,7 +36,8 @@ std::optional<double> as_coordinate(std::string_view text) {
 /// "x,y" or "x y".
 std::optional<Point2> as_waypoint(std::string_view text) {
     text = trimmed(text);
-    const std::size_t between = text.find_first_of(", \t");
+    const bool has_comma = text.find(',') != std::string_view::npos;
+    const std::size_t between = has_comma ? text.find(',') : text.find_first_of(" \t");
     if (between == std::string_view::npos) return std::nullopt;
     const auto x = as_coordinate(text.substr(0, between));
     const auto y = as_coordinate(text.substr(between + 1));
