@@ -60,6 +60,22 @@ TEST(PathFollower, ArrivesBesideAWallThatItsWayLeadsTo) {
     EXPECT_GT(driven.way().back().x(), 2.65);
 }
 
+TEST(PathFollower, ArrivesWhereTheEndOfItsWayIsALittleTooNearToAWall) {
+    Driven driven(walled({}), {0, 0, 0.0}, std::make_unique<Follow>(std::vector<Point2>{{0, 0}, {2.9, 0}}));
+    EXPECT_TRUE(driven.run(30.0));
+    EXPECT_NEAR(driven.way().back().x(), 3.0 - kKeptClear, 0.03);
+    EXPECT_EQ(driven.simulator().collisions(), 0U);
+}
+
+TEST(PathFollower, SlowsDownBeforeItHasToStand) {
+    PathFollower sharp({{0, 0}, {1, 0}, {1, 1}});
+    PathFollower gentle({{0, 0}, {1, 0}, {2, 0.1}});
+    Senses senses;
+    senses.pose.x = 0.9;
+    EXPECT_LT(sharp.step(senses).forward, 0.35);
+    EXPECT_GT(gentle.step(senses).forward, 0.6) << "nobody stops for that";
+}
+
 TEST(PathFollower, StopsBeforeWhatStandsInItsWayAndSaysSo) {
     auto follow = std::make_unique<Follow>(std::vector<Point2>{{-2, 0}, {2, 0}});
     const Follow& followed = *follow;

@@ -83,7 +83,8 @@ TEST(FullTurn, EndsAfterOneTurnToTheHeadingWhereItBegan) {
         ASSERT_LT(++steps, 200);
         const Velocity velocity = turn.step(pose);
         EXPECT_EQ(velocity.forward, 0.0);
-        pose.yaw = normalize_angle(pose.yaw + velocity.turn * kControlPeriod);
+        const double slip = steps < 10 ? 0.7 : 1.0; // what was turned counts, not what was asked for
+        pose.yaw = normalize_angle(pose.yaw + slip * velocity.turn * kControlPeriod);
     }
     EXPECT_NEAR(pose.yaw, 2.5, 1e-6);
     EXPECT_GT(steps, 60);
