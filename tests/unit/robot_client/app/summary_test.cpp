@@ -44,7 +44,7 @@ TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
         summary_json(refused),
         R"({"scans":910,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"skipped_lines":3,)"
         R"("reconnects":0,"waiting":0,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time",)"
-        R"("error":"hello.session is \"lab\",\nwhich is full"})");
+        R"("remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
 TEST(SummaryJson, CountsAsTheProgressDoes) {
