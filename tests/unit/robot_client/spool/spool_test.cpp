@@ -1,89 +1,17 @@
-#include "robot_client/spool/spool.hpp"
-
-#include "tests/support/temporary_directory.hpp"
+#include "tests/unit/robot_client/spool/spool_fixture.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <fstream>
 #include <random>
+#include <utility>
 
 namespace scanloom::robot {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
-
-/// Its number is told by its pose, so that no scan can be taken for another.
-Observation numbered(std::uint64_t number, std::uint32_t sensor_id = 0, std::size_t beams = 500) {
-    Sensor sensor;
-    sensor.id = sensor_id;
-    sensor.name = "laser";
-    sensor.angles = UniformAngles{0.0, 0.01, 500};
-    sensor.range_max = 10.0;
-    Observation made{std::make_shared<const Sensor>(sensor), {}};
-    made.scan.sensor = sensor_id;
-    made.scan.pose.x = static_cast<double>(number);
-    made.scan.ranges.assign(beams, static_cast<RangeMm>(number % 10'000));
-    return made;
-}
-
-class SpoolTest : public testing::Test {
-protected:
-    void open(std::uint64_t bytes_max = 64 * kMebibyte, WhenFull when_full = WhenFull::kDropOldest) {
-        spool_.reset();
-        spool_ = Spool::open({directory_.path(), bytes_max, when_full}, [&](const std::string& text) {
-                     told_.push_back(text);
-                 }).value();
-    }
-
-    /// Takes the scans first..last.
-    void take(std::uint64_t first, std::uint64_t last) {
-        for (std::uint64_t number = first; number <= last; ++number) {
-            ASSERT_TRUE(spool_->append(numbered(number)).value()) << number;
-        }
-    }
-
-    /// What next() gives, at most `count` of them.
-    std::vector<std::uint64_t> handed_out(std::size_t count = SIZE_MAX) {
-        std::vector<std::uint64_t> numbers;
-        while (numbers.size() < count) {
-            const auto next = spool_->next().value();
-            if (!next) break;
-            const auto number = static_cast<std::uint64_t>(next->scan.pose.x);
-            Observation expected = numbered(number, next->scan.sensor, next->scan.ranges.size());
-            expected.scan.seq = next->scan.seq;
-            EXPECT_EQ(next->scan, expected.scan);
-            EXPECT_EQ(*next->sensor, *expected.sensor);
-            numbers.push_back(number);
-        }
-        return numbers;
-    }
-
-    static std::vector<std::uint64_t> from_to(std::uint64_t first, std::uint64_t last) {
-        std::vector<std::uint64_t> numbers;
-        for (std::uint64_t number = first; number <= last; ++number) numbers.push_back(number);
-        return numbers;
-    }
-
-    std::vector<fs::path> files() const {
-        std::vector<fs::path> found;
-        for (const auto& entry : fs::directory_iterator(directory_.path())) {
-            if (entry.path().extension() == ".spool") found.push_back(entry.path());
-        }
-        std::ranges::sort(found);
-        return found;
-    }
-
-    TemporaryDirectory directory_;
-    std::vector<std::string> told_;
-    std::unique_ptr<Spool> spool_;
-};
 
 TEST_F(SpoolTest, HandsOutWhatItWasGivenInOrder) {
     open();
@@ -265,78 +193,6 @@ TEST_F(SpoolTest, TwoProgramsCannotUseOneDirectory) {
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::kConflict);
     EXPECT_THAT(second.error().message, HasSubstr("another program uses the spool"));
-}
-
-TEST_F(SpoolTest, WhatAPowerCutLeftOfTheLastScanIsLeftOut) {
-    open();
-    take(1, 10);
-    spool_.reset();
-    const auto file = files().at(0);
-    const auto whole = fs::file_size(file);
-    for (const std::uintmax_t cut : {1U, 100U, 1500U}) {
-        fs::resize_file(file, whole - cut);
-        open();
-        EXPECT_EQ(spool_->waiting(), 9U) << cut;
-    }
-    take(10, 12);
-    ASSERT_TRUE(spool_->begin("a1", 0));
-    EXPECT_EQ(handed_out(), from_to(1, 12));
-    spool_.reset();
-    fs::resize_file(file, 3);
-    open();
-    EXPECT_EQ(spool_->waiting(), 3U) << "less than a file begins with";
-}
-
-TEST_F(SpoolTest, DamageIsToldAndWhatStandsBeforeItAndInOtherFilesIsKept) {
-    open();
-    take(1, 400); // two files and more
-    const auto count = files().size();
-    ASSERT_GE(count, 1U);
-    take(401, 5000);
-    spool_.reset();
-    const auto file = files().at(0);
-    std::mt19937 random(5);
-    for (int round = 0; round < 20; ++round) {
-        std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
-        const auto at = static_cast<std::streamoff>(100 + random() % (fs::file_size(file) - 100));
-        bytes.seekg(at);
-        const int was = bytes.get();
-        bytes.seekp(at);
-        bytes.put(static_cast<char>(was ^ 0x20));
-        bytes.close();
-        told_.clear();
-        open();
-        ASSERT_TRUE(spool_->begin("a1", 0));
-        const auto kept = handed_out();
-        EXPECT_LT(kept.size(), 5000U);
-        EXPECT_EQ(kept.back(), 5000U) << "other files are whole";
-        for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_GT(kept[i], kept[i - 1]);
-        EXPECT_THAT(told_, Contains(HasSubstr("is damaged after")));
-        spool_.reset();
-        fs::remove(directory_.path() / "numbering");
-        std::fstream mended(file, std::ios::in | std::ios::out | std::ios::binary);
-        mended.seekp(at);
-        mended.put(static_cast<char>(was));
-    }
-}
-
-TEST_F(SpoolTest, FilesThatAreNotItsOwnAreRefused) {
-    std::ofstream(directory_.path() / "00000000000000000001.spool") << "something else, and long enough";
-    const auto refused = Spool::open({directory_.path()}, [](const std::string&) {});
-    ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("is no file of a spool"));
-    fs::remove(directory_.path() / "00000000000000000001.spool");
-    std::ofstream(directory_.path() / "numbering") << "1 2 3";
-    const auto damaged = Spool::open({directory_.path()}, [](const std::string&) {});
-    ASSERT_FALSE(damaged);
-    EXPECT_THAT(damaged.error().message, HasSubstr("numbering is damaged"));
-}
-
-TEST_F(SpoolTest, ADirectoryThatCannotBeMadeIsAClearError) {
-    std::ofstream(directory_.path() / "file") << "x";
-    const auto refused = Spool::open({directory_.path() / "file" / "spool"}, [](const std::string&) {});
-    ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("cannot create"));
 }
 
 /// Random use against a list in memory: takes, sends, acknowledgements that arrive or do not, kills.
