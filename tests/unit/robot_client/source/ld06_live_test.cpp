@@ -70,11 +70,17 @@ TEST_F(Ld06Lives, ADeviceThatHangsUpIsAnErrorWhereItIsNotOpenedAgain) {
 
 TEST_F(Ld06Lives, ADeviceThatStaysAwayIsAnErrorInTheEnd) {
     PseudoTerminal sensor;
-    auto live = options(SerialDevice{sensor.device()});
+    const auto path = std::filesystem::temp_directory_path() / fmt::format("scanloom-ld06-away-{}", ::getpid());
+    std::filesystem::remove(path);
+    std::filesystem::create_symlink(sensor.device(), path); // terminals' own names are given to others again
+    auto live = options(SerialDevice{path});
     live.device.reopen_for = std::chrono::milliseconds(150);
     Ld06Live source(std::move(live));
     (void)scan_of(source, [&] { sensor.send(one_turn()); });
-    const auto next = next_of(source, [&] { sensor.hang_up(); });
+    const auto next = next_of(source, [&] {
+        std::filesystem::remove(path);
+        sensor.hang_up();
+    });
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("(tried again for 0.15 s)"));
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up; is it still plugged in?; trying again for 0.15 s")));
