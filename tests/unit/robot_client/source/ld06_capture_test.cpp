@@ -136,7 +136,8 @@ TEST_F(Ld06Captures, ThatChangeWhileTheyAreSentAreAnError) {
 
 TEST_F(Ld06Captures, OfARealRoomGivesItsTurns) {
     const std::filesystem::path path = SCANLOOM_SOURCE_DIR "/../shared/data/ld06/capture.bin";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    if (!std::filesystem::exists(path))
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path;
     auto capture = Ld06Capture::open(path, {}, Pose2{});
     ASSERT_TRUE(capture) << capture.error().message;
     EXPECT_EQ(capture->remarks(), "3 damaged packets, 225 turns");

@@ -132,7 +132,8 @@ TEST(Ld06Decoder, AStreamThatBeginsAnewIsNotMixedWithTheOneBefore) {
 
 TEST(Ld06Decoder, FindsThePacketsOfARealRecording) {
     const std::filesystem::path path = SCANLOOM_SOURCE_DIR "/../shared/data/ld06/capture.bin";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    if (!std::filesystem::exists(path))
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path;
     std::ifstream file(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(file), {});
     Ld06Decoder decoder;
