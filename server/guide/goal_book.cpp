@@ -58,10 +58,12 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
         had != nullptr && had->settings == maps.config && is_there(had->visit, state)) {
         if (has_looked(had->visit, state, cell_size)) {
             add(planning::seen_in_vain(maps.classes, had->goal, had->around_target), in_vain.cells);
+            count_look(had->around_target, in_vain);
         } else {
             going_on = had->visit;
         }
     }
+    add(planning::still_frontier(maps.classes, looked_at_often(in_vain)), in_vain.cells);
     auto found = planning::next_goal(maps.classes, cell_size, position, targets_of_others(session, robot, cell_size),
                                      options, in_vain.cells);
     keep(std::move(in_vain));
@@ -106,7 +108,7 @@ GoalBook::InVain GoalBook::take_in_vain(const std::shared_ptr<const session::Ses
                                         const mapping::Snapshot& maps) {
     const auto known = std::ranges::find_if(
         in_vain_, [&](const InVain& one) { return one.settings == maps.config && one.session.lock() == session; });
-    if (known == in_vain_.end()) return {session, maps.config, maps.revision, {}};
+    if (known == in_vain_.end()) return {session, maps.config, maps.revision, {}, {}};
     InVain taken = std::move(*known);
     in_vain_.erase(known);
     if (maps.revision < taken.revision) return taken;
@@ -116,13 +118,26 @@ GoalBook::InVain GoalBook::take_in_vain(const std::shared_ptr<const session::Ses
 }
 
 void GoalBook::keep(InVain in_vain) {
-    if (in_vain.cells.empty()) return;
+    if (in_vain.cells.empty() && in_vain.looks.empty()) return;
     const auto session = in_vain.session.lock();
     const auto is_of_session = [&](const InVain& one) { return one.session.lock() == session; };
     if (std::ranges::count_if(in_vain_, is_of_session) == static_cast<std::ptrdiff_t>(kSettingsMax)) {
         in_vain_.erase(std::ranges::find_if(in_vain_, is_of_session));
     }
     in_vain_.push_back(std::move(in_vain));
+}
+
+void GoalBook::count_look(const std::vector<grid::Cell>& around_target, InVain& in_vain) {
+    if (in_vain.looks.size() + around_target.size() > kInVainCellsMax) in_vain.looks.clear();
+    for (const grid::Cell cell : around_target) ++in_vain.looks[{cell.j, cell.i}];
+}
+
+std::vector<grid::Cell> GoalBook::looked_at_often(const InVain& in_vain) {
+    std::vector<grid::Cell> cells;
+    for (const auto& [place, times] : in_vain.looks) {
+        if (times >= kLooksMax) cells.push_back({place.second, place.first});
+    }
+    return cells;
 }
 
 void GoalBook::forget_what_counts_no_longer(Clock::time_point now) {

@@ -7,9 +7,11 @@
 #include "server/session/session.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace scanloom::guide {
@@ -23,8 +25,11 @@ namespace scanloom::guide {
 /// It also remembers what robots have looked at in vain, so that exploring comes to an end where a frontier cannot be
 /// seen (glass, a crack, what is too low for the laser). When a robot that has_looked() asks again, the cells that
 /// planning::seen_in_vain() counts for nobody's goals any more, as long as they are FRONTIER: each visit changes the
-/// map or takes a cell out. A robot that has not looked yet gets the same goal, or a better one. This is kept for each
-/// session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go.
+/// map or takes a cell out. A robot that has not looked yet gets the same goal, or a better one. Maps may also go to
+/// and fro: beams along a wall free what beams towards it have shown, and show it again, wherever the robot is not. So
+/// cells around targets count no more either whenever they are FRONTIER again after kLooksMax looks. This is kept for
+/// each session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go, and looks are
+/// counted anew.
 ///
 /// Thread  any; one search at a time.
 class GoalBook {
@@ -32,6 +37,7 @@ public:
     using Clock = WayBook::Clock;
 
     static constexpr std::size_t kInVainCellsMax = std::size_t{1} << 16;
+    static constexpr int kLooksMax = 2;
     static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently asked for go
 
     /// The next goal of a robot at `position`, kept for it from now on.
@@ -56,12 +62,14 @@ private:
         Visit visit;
     };
 
-    /// FRONTIER cells looked at in vain, the oldest first.
+    using Looks = std::map<std::pair<std::int32_t, std::int32_t>, int>; // by (j, i)
+
     struct InVain {
         std::weak_ptr<const session::Session> session;
         mapping::MapConfig settings;
-        Revision revision; // of the newest maps asked on
-        std::vector<grid::Cell> cells;
+        Revision revision;             // of the newest maps asked on
+        std::vector<grid::Cell> cells; // FRONTIER, looked at in vain, the oldest first
+        Looks looks;                   // how often robots looked at cells around their targets
     };
 
     void forget_what_counts_no_longer(Clock::time_point now);
@@ -74,6 +82,8 @@ private:
     [[nodiscard]] InVain take_in_vain(const std::shared_ptr<const session::Session>& session,
                                       const mapping::Snapshot& maps);
     void keep(InVain in_vain);
+    static void count_look(const std::vector<grid::Cell>& around_target, InVain& in_vain);
+    [[nodiscard]] static std::vector<grid::Cell> looked_at_often(const InVain& in_vain);
 
     WayBook ways_;
     std::mutex mutex_;

@@ -93,6 +93,9 @@ Sensor coarse_laser() {
 
 Sensor reference_laser() { return *find_laser("reference"); }
 
+/// It frees, along the walls behind the robot, what it has shown before them: maps that go to and fro.
+Sensor all_round_laser() { return *find_laser("lidar360"); }
+
 struct Case {
     const char* name;
     World (*world)();
@@ -108,6 +111,8 @@ std::vector<Case> cases() {
     std::vector<Case> cases{{"hall", make_hall, coarse_laser, false, 1, 1},
                             {"office_noisy", make_office, coarse_laser, true, 1, 2},
                             {"office_reference", make_office, reference_laser, false, 1, 1},
+                            {"office_all_round", make_office, all_round_laser, false, 1, 1},
+                            {"room_walker_all_round_noisy", make_room_walker, all_round_laser, true, 17, 2},
                             {"room_noisy", make_room, reference_laser, true, 1, 5},
                             {"room_walker_noisy", make_room_walker, reference_laser, true, 1, 5}};
     for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {

@@ -222,6 +222,33 @@ TEST_F(GoalBookTest, ACellThatIsFrontierNoLongerIsForgotten) {
     EXPECT_EQ(anew.goal->target, (grid::Cell{0, 2})) << "the cell in the middle counts again";
 }
 
+TEST_F(GoalBookTest, AFrontierThatComesBackHoweverOftenItIsLookedAtCountsNoMoreAfterTwoLooks) {
+    join("a");
+    const auto open = maps_.classes;
+    const auto shut = testing_support::drawn({"##############################", //
+                                              "#............................f", //
+                                              "#............................f", //
+                                              "#............................f", //
+                                              "##############################"});
+    for (int look = 0; look < 2; ++look) {
+        const auto goal = ask(0);
+        EXPECT_EQ(goal.goal->target.i, 0) << "the left one, which is nearer";
+        EXPECT_EQ(goal.given_up, 0U);
+        scan_at(goal, 0);
+        maps_.classes = shut;
+        maps_.revision += 1;
+        EXPECT_GT(ask(0).goal->target.i, 0) << "it is shut";
+        maps_.classes = open;
+        maps_.revision += 1;
+    }
+    const auto goal = ask(0);
+    EXPECT_EQ(goal.given_up, 3U);
+    EXPECT_GT(goal.goal->target.i, 0) << "enough of the left one";
+    maps_.classes = shut;
+    maps_.revision += 1;
+    EXPECT_EQ(ask(0).given_up, 0U) << "only what is FRONTIER is given up";
+}
+
 TEST_F(GoalBookTest, MapsOfAnEarlierTimeMakeNothingForgotten) {
     join("a");
     maps_.revision = 5;
