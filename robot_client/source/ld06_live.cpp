@@ -176,7 +176,7 @@ bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
         turns_.add(*packet, clock_.stamp(packet->timestamp, arrival));
     }
     while (const auto turn = turns_.next()) {
-        waiting_.push_back({ld06_scan(*turn, options_.scan), Clock::now() + kPoseWait});
+        waiting_.push_back({ld06_scan(*turn, options_.scan), Clock::now() + options_.pose_wait});
         if (waiting_.size() > kScansWaitingMax) {
             waiting_.pop_front();
             ++losses_.too_many_waiting;
@@ -235,7 +235,7 @@ Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const 
     const bool is_after_all = timeline.empty() || stamp > timeline.newest().stamp;
     if (!is_after_all) return {};
     if (are_poses_coming_ && Clock::now() < waiting.until) return {std::nullopt, false};
-    if (are_poses_coming_ && !timeline.empty() && stamp - timeline.newest().stamp <= seconds(kPoseWait)) {
+    if (are_poses_coming_ && !timeline.empty() && stamp - timeline.newest().stamp <= seconds(options_.pose_age_max)) {
         return {timeline.newest().robot};
     }
     return {};

@@ -95,7 +95,10 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
                 co_return;
             }
         }
-        if (ended_ && waiting() == 0) co_return;
+        if (ended_ && waiting() == 0) {
+            if (spool_ && begun_) spool_->tidy_up(); // of what was acknowledged before; the rest follows
+            co_return;
+        }
         taking_->cancel();
         co_await intake.news();
     }

@@ -15,7 +15,9 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
+#include <filesystem>
 
 namespace scanloom::robot {
 namespace {
@@ -221,6 +223,18 @@ TEST_F(LiveFeedTest, AKilledProgramsScansAreSentByTheNextOnce) {
     EXPECT_TRUE(run(last, spool()));
     expect_stored(1000);
     EXPECT_THAT(told_, IsEmpty());
+}
+
+TEST_F(LiveFeedTest, ASpoolIsLeftEmptyByAnEndLongBehindTheLastAck) {
+    ScriptedSource source;
+    source.allow(40);
+    const std::function<void()> end_once_all_is_acknowledged = [&] {
+        if (uplink_->status().acknowledged == 40) return source.end();
+        asio::post(uplink_->executor(), end_once_all_is_acknowledged);
+    };
+    EXPECT_TRUE(run(source, spool(), end_once_all_is_acknowledged));
+    const auto is_segment = [](const auto& entry) { return entry.path().extension() == ".spool"; };
+    EXPECT_EQ(std::ranges::count_if(std::filesystem::directory_iterator(directory_.path() / "spool"), is_segment), 0);
 }
 
 TEST_F(LiveFeedTest, StoppedWithoutAServerItSaysWhatWaitsAndTheNextSendsIt) {
