@@ -69,7 +69,7 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
     keep(std::move(in_vain));
     forget_entry(session, robot);
     if (!found || !found->goal) {
-        ways_.take_back(session, robot);
+        ways_.take_back(session, robot, found && found->outcome == planning::Exploration::kComplete);
         return found;
     }
     Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);

@@ -13,6 +13,7 @@ std::uint64_t WayBook::give_goal(const SessionPtr& session, RobotIndex robot, co
         const std::lock_guard lock(mutex_);
         Record& record = record_of(session);
         record.holdings.erase(robot);
+        record.explored.erase(robot);
         given = ++record.revision;
         record.holdings[robot] = {now, connected, goal, given, bounded(record, std::move(way))};
     }
@@ -37,12 +38,15 @@ void WayBook::give_way(const SessionPtr& session, RobotIndex robot, std::optiona
     session->tell_changed();
 }
 
-void WayBook::take_back(const SessionPtr& session, RobotIndex robot) {
+void WayBook::take_back(const SessionPtr& session, RobotIndex robot, bool explored) {
     {
         const std::lock_guard lock(mutex_);
-        const auto found = records_.find(session);
-        if (found == records_.end() || found->second.holdings.erase(robot) == 0) return;
-        ++found->second.revision;
+        if (!explored && !records_.contains(session)) return;
+        Record& record = record_of(session);
+        const bool held = record.holdings.erase(robot) > 0;
+        const bool is_news = explored ? record.explored.insert(robot).second : record.explored.erase(robot) > 0;
+        if (!held && !is_news) return;
+        ++record.revision;
     }
     session->tell_changed();
 }
@@ -71,7 +75,7 @@ WayBook::Page WayBook::page(const SessionPtr& session, Clock::time_point now) {
     const std::lock_guard lock(mutex_);
     const Record* record = find(session, now);
     if (record == nullptr) return {};
-    Page page{record->revision, {}};
+    Page page{record->revision, {}, {record->explored.begin(), record->explored.end()}};
     for (const auto& [robot, holding] : record->holdings) page.robots.push_back({robot, holding.goal, holding.way});
     return page;
 }

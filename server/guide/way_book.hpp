@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace scanloom::guide {
@@ -19,7 +20,8 @@ namespace scanloom::guide {
 ///
 /// A robot holds what it was given until it is given something else, or has left. What was given to a robot that was
 /// not connected is held until the robot has connected and left, or for kKeptForAbsent. Nothing of it survives a
-/// restart, or its session. Robots that left are noticed when anybody asks; nobody has to wait for that.
+/// restart, or its session. That a robot has explored all it can reach is told on when it has left, until it asks anew.
+/// Robots that left are noticed when anybody asks; nobody has to wait for that.
 ///
 /// Bounds  at most a goal and a way for each robot of a session, kWayPointsMax points a way, about kPointsMax a
 /// session.
@@ -46,7 +48,8 @@ public:
 
     struct Page {
         std::uint64_t revision = 0;
-        std::vector<Held> robots; ///< those that hold anything, by RobotIndex
+        std::vector<Held> robots;         ///< those that hold anything, by RobotIndex
+        std::vector<RobotIndex> explored; ///< those that asked for a goal last when none was left to reach, ascending
     };
 
     using SessionPtr = std::shared_ptr<const session::Session>;
@@ -62,7 +65,8 @@ public:
     void give_way(const SessionPtr& session, RobotIndex robot, std::optional<Way> way, Clock::time_point now);
 
     /// The robot holds nothing any more.
-    void take_back(const SessionPtr& session, RobotIndex robot);
+    /// @param explored  whether that is because nothing is left that it could explore
+    void take_back(const SessionPtr& session, RobotIndex robot, bool explored = false);
 
     [[nodiscard]] bool holds(const SessionPtr& session, RobotIndex robot, std::uint64_t goal, Clock::time_point now);
 
@@ -81,6 +85,7 @@ private:
     struct Record {
         std::uint64_t revision = 0;
         std::map<RobotIndex, Holding> holdings;
+        std::set<RobotIndex> explored;
     };
 
     [[nodiscard]] Record& record_of(const SessionPtr& session);

@@ -197,7 +197,10 @@ export class FakeServer {
     if (rest[0] === 'changes') return json(response, session.changes(url.searchParams.get('layer'), since));
     if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
     if (rest[0] === 'frontiers.geojson') return json(response, { type: 'FeatureCollection', features: session.frontiers });
-    if (rest[0] === 'goals.geojson') return json(response, { type: 'FeatureCollection', features: session.goals });
+    if (rest[0] === 'goals.geojson') {
+      const { goals: features, explored } = session;
+      return json(response, { type: 'FeatureCollection', explored, features });
+    }
     if (rest[0] === 'tiles') return this.answerTile(session, rest.slice(1), url, response);
     return problem(response, 404, 'Not found', url.pathname);
   }

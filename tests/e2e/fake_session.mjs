@@ -22,6 +22,8 @@ export class FakeSession {
     /** Features of goals.geojson, and how often they were told. */
     this.goals = [];
     this.goalsRevision = 0;
+    /** Robots that have explored all they can reach. */
+    this.explored = [];
     /** Live connections. */
     this.viewers = new Set();
     /** Why it takes no scans; null: it does. */
@@ -60,8 +62,9 @@ export class FakeSession {
     for (const viewer of this.viewers) viewer.tell();
   }
 
-  tellGoals(features) {
+  tellGoals(features, explored = []) {
     this.goals = features;
+    this.explored = explored;
     this.goalsRevision += 1;
     this.tell();
   }

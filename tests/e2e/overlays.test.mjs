@@ -117,6 +117,21 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(other[0], other[1] - 7, colour);
   });
 
+  it('say when a robot has explored all, also where goals are not shown', async () => {
+    session.paint(256, 255, 0);
+    session.move('r1', 1, 1, 0);
+    await open();
+    const note = page.locator('#explored');
+    await page.uncheck('[data-switch=goals]');
+    assert.ok(await note.isHidden());
+    session.tellGoals([], ['<b>r1']);
+    await note.waitFor({ state: 'visible' });
+    assert.equal(await note.textContent(), '<b>r1 has explored all it can reach.');
+    await keepPicture(page, 'explored');
+    session.tellGoals([]);
+    await note.waitFor({ state: 'hidden' });
+  });
+
   it('begin with a layer that holds something', async () => {
     session.layers = ['sonar'];
     session.paint(256, 255, 100);

@@ -11,6 +11,7 @@ import { Cursor } from './panel/cursor';
 import { DisplayPanel } from './panel/display_panel';
 import { Facts } from './panel/facts';
 import { LayersPanel } from './panel/layers_panel';
+import { ExploredNote } from './panel/explored_note';
 import { Notice } from './panel/notice';
 import { RobotList } from './panel/robot_list';
 import { showScale } from './panel/scale_bar';
@@ -65,6 +66,7 @@ const viewer: Viewer = new Viewer({
   facts: new Facts(byId('facts', HTMLElement)),
   robots: robotList,
   notice,
+  explored: new ExploredNote(byId('explored', HTMLElement)),
   status,
   settings,
   details: byId('details', HTMLElement),

@@ -1,6 +1,6 @@
 /** One chosen session, from the server's events to everything that shows it. */
 import { fetchFrontiers } from './api/frontiers';
-import { fetchGoals, type RobotGoal } from './api/goals';
+import { fetchGoals, type Goals } from './api/goals';
 import type { LiveEvent, LiveRobot } from './api/live';
 import type { Frontier, Robot, Session, TileChange } from './api/types';
 import { kLayers, type LayerName } from './layers/layers';
@@ -13,6 +13,7 @@ import { LiveSource, type MapSource } from './map/map_source';
 import type { MapView, Shown } from './map/map_view';
 import type { Cursor } from './panel/cursor';
 import type { Facts } from './panel/facts';
+import type { ExploredNote } from './panel/explored_note';
 import type { Notice } from './panel/notice';
 import type { RobotList } from './panel/robot_list';
 import type { Status } from './panel/status';
@@ -30,6 +31,7 @@ export interface ViewerParts {
   facts: Facts;
   robots: RobotList;
   notice: Notice;
+  explored: ExploredNote;
   status: Status;
   settings: SettingsStore;
   details: HTMLElement;
@@ -58,7 +60,7 @@ interface Open {
   /** By number. */
   robots: Map<number, Robot>;
   frontiers: RevisionWatch<Frontier[]>;
-  goals: RevisionWatch<RobotGoal[]>;
+  goals: RevisionWatch<Goals>;
   readers: CellReaders;
   /** No scan of it was told of yet. */
   isNew: boolean;
@@ -173,7 +175,7 @@ export class Viewer {
       trails,
       robots: new Map(),
       frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
-      goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => map.showGoals(all), signal),
+      goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => this.showGoals(all), signal),
       readers,
       isNew: true,
     };
@@ -229,6 +231,11 @@ export class Viewer {
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });
   }
 
+  private showGoals({ ofRobots, explored }: Goals): void {
+    this.parts.map.showGoals(ofRobots);
+    this.parts.explored.show(explored);
+  }
+
   private showRobots(): void {
     const robots = this.moment?.robots ?? this.robots;
     this.parts.map.showRobots(robots);
@@ -263,7 +270,8 @@ export class Viewer {
     const settings = this.moment ? { ...chosen, points: false, frontiers: false, goals: false } : chosen;
     this.parts.map.choose(settings);
     this.open?.frontiers.enable(settings.frontiers);
-    this.open?.goals.enable(settings.goals);
+    this.open?.goals.enable(!this.moment);
+    this.parts.explored.setHidden(this.moment !== null);
   }
 
   private showCounters(): void {
@@ -286,6 +294,7 @@ export class Viewer {
     this.parts.camera.reset();
     this.parts.cursor.show(null);
     this.parts.robots.clear();
+    this.parts.explored.show([]);
     this.parts.details.hidden = true;
     if (wasOpen) for (const listener of this.listeners) listener(null);
   }

@@ -1,9 +1,11 @@
 #include "server/http/handlers/goals.hpp"
 
+#include "common/scan/limits.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/number.hpp"
 
+#include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
 
 #include <string>
@@ -51,7 +53,7 @@ Result<Response> get_goals(const session::SessionRegistry& sessions, guide::WayB
     if (!session) return session.error();
 
     const auto page = ways.page(*session, guide::WayBook::Clock::now());
-    std::size_t bytes = 0;
+    std::size_t bytes = page.explored.size() * kNameBytesMax;
     for (const auto& held : page.robots) bytes += ((held.way ? held.way->points.size() : 0) + 16) * kPointTextBytes;
     auto slot = slots.take(bytes);
     if (!slot) return slot.error();
@@ -64,7 +66,12 @@ Result<Response> get_goals(const session::SessionRegistry& sessions, guide::WayB
         if (held.way) features.push_back(feature_of(name, *held.way));
         if (held.goal) features.push_back(feature_of(name, *held.goal));
     }
-    return ok_text(kGeoJson, std::move(*slot), collection_document(page.revision, {}, features));
+    boost::json::array explored;
+    for (const RobotIndex robot : page.explored) {
+        if (robot < maps->robots.size()) explored.emplace_back(maps->robots[robot].name);
+    }
+    return ok_text(kGeoJson, std::move(*slot),
+                   collection_document(page.revision, {{"explored", std::move(explored)}}, features));
 }
 
 } // namespace scanloom::http

@@ -15,13 +15,20 @@ export interface RobotGoal {
   target: Point | null;
 }
 
-export async function fetchGoals(name: string, signal: AbortSignal): Promise<RobotGoal[]> {
+export interface Goals {
+  ofRobots: RobotGoal[];
+  /** The robots that were told last that no frontier is left that they could reach. */
+  explored: string[];
+}
+
+export async function fetchGoals(name: string, signal: AbortSignal): Promise<Goals> {
   return decodeGoals(await getJson(`${sessionPath(name)}/goals.geojson`, signal));
 }
 
-export function decodeGoals(json: unknown): RobotGoal[] {
+export function decodeGoals(json: unknown): Goals {
+  const goals = fields(json, 'goals');
   const byRobot = new Map<string, RobotGoal>();
-  for (const each of list(fields(json, 'goals')['features'], 'features')) {
+  for (const each of list(goals['features'], 'features')) {
     const feature = fields(each, 'features[]');
     const properties = fields(feature['properties'], 'features[].properties');
     const { coordinates } = fields(feature['geometry'], 'features[].geometry');
@@ -40,5 +47,6 @@ export function decodeGoals(json: unknown): RobotGoal[] {
         throw new MalformedAnswer('features[].properties.role is neither way nor goal');
     }
   }
-  return [...byRobot.values()];
+  const explored = list(goals['explored'], 'explored').map((each) => text(each, 'explored[]'));
+  return { ofRobots: [...byRobot.values()], explored };
 }

@@ -8,6 +8,7 @@
 namespace scanloom::guide {
 namespace {
 
+using testing::ElementsAre;
 using testing::IsEmpty;
 
 /// Counts how often it is told to look again.
@@ -50,6 +51,30 @@ TEST_F(WayBookTest, IsEmptyUntilSomethingIsGiven) {
     book_.take_back(session_, 0);
     give_way(0, std::nullopt);
     EXPECT_EQ(revision(), 0U);
+}
+
+TEST_F(WayBookTest, WhoHasExploredAllIsToldUntilItAsksAnewAlsoWhenItHasLeft) {
+    const auto link = join("a");
+    join("b");
+    give_goal(0);
+    const auto before = revision();
+    book_.take_back(session_, 0, true);
+    EXPECT_GT(revision(), before);
+    EXPECT_THAT(page().robots, IsEmpty());
+    EXPECT_THAT(page().explored, ElementsAre(0U));
+    const auto told = revision();
+    book_.take_back(session_, 0, true);
+    EXPECT_EQ(revision(), told) << "no news";
+    leave(link);
+    EXPECT_THAT(page().explored, ElementsAre(0U));
+    book_.take_back(session_, 1, true);
+    EXPECT_THAT(page().explored, ElementsAre(0U, 1U));
+    give_goal(0);
+    EXPECT_THAT(page().explored, ElementsAre(1U));
+    const auto last = revision();
+    book_.take_back(session_, 1);
+    EXPECT_THAT(page().explored, IsEmpty());
+    EXPECT_GT(revision(), last);
 }
 
 TEST_F(WayBookTest, ARobotHoldsItsGoalAndTheWayItAskedForLast) {

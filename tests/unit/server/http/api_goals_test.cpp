@@ -49,7 +49,8 @@ TEST_F(ApiGoalsTest, NothingGivenIsAnEmptyCollection) {
     EXPECT_EQ(answer.status, Status::ok);
     EXPECT_EQ(answer.get("Content-Type"), kGeoJson);
     EXPECT_EQ(answer.get("Cache-Control"), kNotKept);
-    EXPECT_EQ(text(), R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":0,"features":[]})");
+    EXPECT_EQ(text(),
+              R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":0,"explored":[],"features":[]})");
 }
 
 TEST_F(ApiGoalsTest, WaysAndGoalsAreWrittenAsTheyWereGiven) {
@@ -59,7 +60,7 @@ TEST_F(ApiGoalsTest, WaysAndGoalsAreWrittenAsTheyWereGiven) {
                             guide::WayBook::Clock::now());
     EXPECT_EQ(
         text(),
-        R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":1,"features":[)"
+        R"({"type":"FeatureCollection","frame_id":"map","units":"m","revision":1,"explored":[],"features":[)"
         R"({"type":"Feature","properties":{"role":"way","robot":"r1","kind":"goal","length":0.915492,)"
         R"("points_left_out":0,"revision":3},"geometry":{"type":"LineString","coordinates":[[0.5,1.25],[1.025,0.5]]}},)"
         R"({"type":"Feature","properties":{"role":"goal","robot":"r1","target":[1.5,0.75],"in_danger":true,)"
@@ -116,7 +117,9 @@ TEST_F(ApiGoalsTest, AGoalThatIsNoMoreIsNotShown) {
     EXPECT_EQ(features().size(), 2U);
     EXPECT_EQ(get_json("/api/v1/sessions/a/goal?robot=r1&size_min=100000").at("outcome"), "complete");
     EXPECT_THAT(features(), IsEmpty());
+    EXPECT_EQ(goals().at("explored"), (boost::json::array{"r1"}));
     ask_for_goal("r1");
+    EXPECT_EQ(goals().at("explored"), boost::json::array());
     const auto revision = goals().at("revision").to_number<int>();
     leave(0);
     EXPECT_THAT(features(), IsEmpty());
