@@ -1,22 +1,35 @@
 #include "robot_client/spool/background_sync.hpp"
 
-#include <boost/asio/post.hpp>
-#include <fcntl.h>
 #include <unistd.h>
 
-#include <memory>
+#include <utility>
 
 namespace scanloom::robot {
 
-void BackgroundSync::wrote(const FileHandle& file, Time now) {
-    if (now < next_ || busy_.exchange(true)) return;
-    next_ = now + kPeriod;
-    // The file may be closed before the thread comes to it. (A job must be copyable here, a handle is not.)
-    const auto own = std::make_shared<FileHandle>(::fcntl(file.get(), F_DUPFD_CLOEXEC, 0));
-    boost::asio::post(thread_, [this, own] {
-        if (*own) ::fdatasync(own->get()); // a disk that fails tells so at the next write
-        busy_ = false;
-    });
+BackgroundSync::BackgroundSync(Job sync, std::chrono::milliseconds period)
+    : sync_(std::move(sync)), period_(period), thread_([this](const std::stop_token& stop) { run(stop); }) {
+    if (!sync_) sync_ = [](const FileHandle& file) { ::fdatasync(file.get()); }; // what fails is told at the next write
+}
+
+void BackgroundSync::wrote(const Handle& file) {
+    const std::lock_guard lock(mutex_);
+    if (!written_.empty() && written_.back() == file) return;
+    written_.push_back(file);
+    news_.notify_one();
+}
+
+/// Until it is stopped and everything is synced.
+void BackgroundSync::run(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        news_.wait(lock, stop, [&] { return !written_.empty(); });
+        if (written_.empty()) return;
+        const auto files = std::exchange(written_, {});
+        lock.unlock();
+        for (const auto& file : files) sync_(*file);
+        lock.lock();
+        news_.wait_for(lock, stop, period_, [] { return false; });
+    }
 }
 
 } // namespace scanloom::robot

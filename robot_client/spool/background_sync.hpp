@@ -2,10 +2,14 @@
 
 #include "robot_client/spool/file_handle.hpp"
 
-#include <boost/asio/thread_pool.hpp>
-
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
 
 namespace scanloom::robot {
 
@@ -13,18 +17,25 @@ namespace scanloom::robot {
 /// killed program loses nothing of what it wrote; of a power cut the last second or two may be lost.
 class BackgroundSync {
 public:
-    using Time = std::chrono::steady_clock::time_point;
-    static constexpr std::chrono::seconds kPeriod{1};
+    using Handle = std::shared_ptr<const FileHandle>;
+    using Job = std::function<void(const FileHandle&)>;
 
-    ~BackgroundSync() { thread_.join(); }
+    /// @param sync    what asks the disk; fdatasync
+    /// @param period  between two times
+    explicit BackgroundSync(Job sync = {}, std::chrono::milliseconds period = std::chrono::seconds(1));
 
-    /// Something was written to the file. Thread: one.
-    void wrote(const FileHandle& file, Time now);
+    /// Something was written to the file. It is held open until that is synced.
+    void wrote(const Handle& file);
 
 private:
-    boost::asio::thread_pool thread_{1};
-    std::atomic<bool> busy_ = false;
-    Time next_{};
+    void run(const std::stop_token& stop);
+
+    Job sync_;
+    std::chrono::milliseconds period_;
+    std::mutex mutex_;
+    std::condition_variable_any news_;
+    std::vector<Handle> written_; // and not synced yet, each once
+    std::jthread thread_;         // last: it uses the others
 };
 
 } // namespace scanloom::robot

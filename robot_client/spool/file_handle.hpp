@@ -1,10 +1,17 @@
 #pragma once
 
+#include "common/error/error.hpp"
+
 #include <unistd.h>
 
+#include <filesystem>
+#include <string_view>
 #include <utility>
 
 namespace scanloom::robot {
+
+/// A failed call's errno as an error that names the file. `what` as in "cannot write".
+[[nodiscard]] Error file_error(std::string_view what, const std::filesystem::path& file);
 
 /// An open file descriptor, closed when it goes.
 class FileHandle {

@@ -9,22 +9,26 @@
 
 namespace scanloom::robot {
 
-/// Which seq the server knows the scans of a spool by. It outlives the program: what was sent once under a seq is sent
-/// again under the same.
+/// How far a server has taken the scans of a spool. It outlives the program.
 struct Numbering {
-    std::string session_id;    ///< of Welcome
-    std::uint64_t first = 0;   ///< number within the spool of the first scan that may not be acknowledged
-    std::uint64_t seq = 0;     ///< the seq of that scan; those behind it follow one by one
-    std::uint64_t entered = 0; ///< scans of files that begin behind this number have never been sent
+    std::string session_id;         ///< of Welcome; empty: none was reached yet
+    std::uint64_t acknowledged = 0; ///< seq of that session: the server holds all scans up to it
+    std::string boot;               ///< this_boot() when the server was reached
 
     friend bool operator==(const Numbering&, const Numbering&) = default;
 };
 
-/// Nothing where there is no such file: no server has been reached yet.
+/// Tells one run of this machine from all others; empty where the system does not say.
+[[nodiscard]] std::string this_boot();
+
+/// Nothing where there is no such file.
 /// Errors  kMalformed: the file is damaged; kStoreFailed: it cannot be read.
 [[nodiscard]] Result<std::optional<Numbering>> read_numbering(const std::filesystem::path& file);
 
-/// Overwrites the file, all at once. Pre: the session id is a name. Errors  kStoreFailed.
-[[nodiscard]] Result<> write_numbering(const std::filesystem::path& file, const Numbering& numbering);
+enum class Sync : bool { kNo, kYes };
+
+/// Overwrites the file, all at once. It is always of one size: only the first time it needs room on the disk.
+/// Pre: the session id is a name, or empty. Errors  kStoreFailed.
+[[nodiscard]] Result<> write_numbering(const std::filesystem::path& file, const Numbering& numbering, Sync sync);
 
 } // namespace scanloom::robot

@@ -10,10 +10,9 @@
 
 namespace scanloom::robot {
 
-/// A file of the spool is kSegmentMagic and records one after the other: `uint32 length, uint32 CRC-32 of the body` (as
-/// of zlib; both big-endian), then that many bytes of a Frame: a sensor description, or a batch of one scan whose seq
-/// is the scan's number within the spool.
-inline constexpr std::string_view kSegmentMagic = "SCSPOOL1";
+/// A record of a file of the spool is `uint32 length, uint32 CRC-32 of the body` (as of zlib; both big-endian), then
+/// that many bytes of a Frame: a sensor description, or a batch of one scan whose seq is the scan's number within the
+/// spool.
 inline constexpr std::size_t kRecordHeaderBytes = 8;
 
 void append_record(const wire::Message& message, std::string& out);

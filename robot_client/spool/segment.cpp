@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 namespace scanloom::robot {
 namespace {
@@ -14,15 +13,11 @@ constexpr std::size_t kReadBytes = std::size_t{32} << 10;
 
 } // namespace
 
-Error file_error(std::string_view what, const std::filesystem::path& file) {
-    return {Errc::kStoreFailed, fmt::format("{} {}: {}", what, file.string(), std::strerror(errno))};
-}
-
-Result<SegmentWriter> SegmentWriter::create(std::filesystem::path file) {
+Result<SegmentWriter> SegmentWriter::create(std::filesystem::path file, std::uint64_t first) {
     FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
     if (!handle) return file_error("cannot create", file);
     SegmentWriter writer(std::move(file), std::move(handle));
-    if (auto ok = writer.append(kSegmentMagic); !ok) {
+    if (auto ok = writer.append(segment_head({first, 0})); !ok) {
         ::unlink(writer.file_.c_str());
         return ok.error();
     }
@@ -33,11 +28,11 @@ Result<> SegmentWriter::append(std::string_view bytes) {
     if (!handle_) return Error{Errc::kStoreFailed, fmt::format("{} cannot be written any more", file_.string())};
     std::size_t written = 0;
     while (written < bytes.size()) {
-        const ssize_t count = ::write(handle_.get(), bytes.data() + written, bytes.size() - written);
+        const ssize_t count = ::write(handle_->get(), bytes.data() + written, bytes.size() - written);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) {
             Error failed = file_error("cannot write", file_);
-            if (::ftruncate(handle_.get(), static_cast<off_t>(bytes_)) != 0) handle_ = {};
+            if (::ftruncate(handle_->get(), static_cast<off_t>(bytes_)) != 0) handle_.reset();
             return failed;
         }
         written += static_cast<std::size_t>(count);
@@ -50,17 +45,16 @@ Result<SegmentReader> SegmentReader::open(std::filesystem::path file) {
     FileHandle handle(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
     if (!handle) return file_error("cannot open", file);
     SegmentReader reader(std::move(file), std::move(handle));
-    while (reader.buffer_.size() < kSegmentMagic.size()) {
+    while (reader.buffer_.size() < kSegmentHeadBytes) {
         const auto more = reader.read_more();
         if (!more) return more.error();
         if (!*more) break;
     }
-    // A power cut may leave a file without its first bytes: it holds nothing.
-    if (!kSegmentMagic.starts_with(std::string_view(reader.buffer_).substr(0, kSegmentMagic.size()))) {
-        return Error{Errc::kMalformed, fmt::format("{} is no file of a spool", reader.file_.string())};
-    }
-    reader.consumed_ = std::min(kSegmentMagic.size(), reader.buffer_.size());
-    reader.position_ = reader.consumed_;
+    const auto sent = read_segment_head(reader.buffer_);
+    if (!sent) return prefixed(fmt::format("{} cannot be read: ", reader.file_.string()), sent.error());
+    reader.sent_as_ = *sent;
+    reader.consumed_ = kSegmentHeadBytes;
+    reader.position_ = kSegmentHeadBytes;
     return reader;
 }
 

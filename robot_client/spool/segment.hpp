@@ -3,44 +3,47 @@
 #include "common/error/error.hpp"
 #include "robot_client/spool/file_handle.hpp"
 #include "robot_client/spool/record.hpp"
+#include "robot_client/spool/segment_head.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace scanloom::robot {
 
-/// A failed call's errno as an error that names the file. `what` as in "cannot write".
-[[nodiscard]] Error file_error(std::string_view what, const std::filesystem::path& file);
-
 /// Writes one file of the spool.
 class SegmentWriter {
 public:
-    /// Errors  kStoreFailed: it exists already, or cannot be made.
-    [[nodiscard]] static Result<SegmentWriter> create(std::filesystem::path file);
+    /// Of the scan `first` and those that follow. Errors  kStoreFailed: it exists already, or cannot be made.
+    [[nodiscard]] static Result<SegmentWriter> create(std::filesystem::path file, std::uint64_t first);
 
     /// Appends all of `bytes`, or nothing of them.
     /// Errors  kStoreFailed, and nothing can be appended any more where not even that could be taken back.
     [[nodiscard]] Result<> append(std::string_view bytes);
 
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-    [[nodiscard]] const FileHandle& handle() const noexcept { return handle_; }
+    [[nodiscard]] const std::shared_ptr<const FileHandle>& handle() const noexcept { return handle_; }
 
 private:
-    SegmentWriter(std::filesystem::path file, FileHandle handle) : file_(std::move(file)), handle_(std::move(handle)) {}
+    SegmentWriter(std::filesystem::path file, FileHandle handle)
+        : file_(std::move(file)), handle_(std::make_shared<const FileHandle>(std::move(handle))) {}
 
     std::filesystem::path file_;
-    FileHandle handle_;
+    std::shared_ptr<const FileHandle> handle_; ///< null: nothing can be appended any more
     std::uint64_t bytes_ = 0;
 };
 
 /// Reads one file of the spool from its beginning, while it may still grow.
 class SegmentReader {
 public:
-    /// Errors  kStoreFailed: it cannot be read; kMalformed: it is no file of a spool.
+    /// Errors  kStoreFailed: it cannot be read; kMalformed: it is no file of a spool, or its head is damaged.
     [[nodiscard]] static Result<SegmentReader> open(std::filesystem::path file);
+
+    /// What its head said when it was opened.
+    [[nodiscard]] const SentAs& sent_as() const noexcept { return sent_as_; }
 
     /// The next record; nothing where the file ends by now, or within a record.
     /// Errors  kMalformed: damage, and what follows cannot be read; kStoreFailed.
@@ -55,6 +58,7 @@ private:
 
     std::filesystem::path file_;
     FileHandle handle_;
+    SentAs sent_as_;
     std::string buffer_;         // read, from position_ on; consumed_ of it are records already read
     std::size_t consumed_ = 0;   // bytes
     std::uint64_t position_ = 0; // of buffer_[consumed_] in the file

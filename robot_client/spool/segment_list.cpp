@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <optional>
 
 namespace scanloom::robot {
 
@@ -13,6 +13,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kSuffix = ".spool";
+constexpr std::string_view kSetAside = ".unreadable"; ///< behind the name
+
+using Tell = std::function<void(const std::string&)>;
 
 Result<std::vector<fs::path>> files_in(const fs::path& directory) {
     std::vector<fs::path> files;
@@ -27,47 +30,73 @@ Result<std::vector<fs::path>> files_in(const fs::path& directory) {
     return files;
 }
 
-/// Counts the scans of a file, up to its end or to damage.
-Result<SpoolFile> count(const fs::path& file, const std::function<void(const std::string&)>& tell) {
+/// It counts no more, and nothing of it is lost that a person could still make out.
+void set_aside(const fs::path& file, const std::string& why, const Tell& tell) {
+    std::error_code failed;
+    fs::rename(file, file.string() + std::string(kSetAside), failed);
+    tell(fmt::format("{}; {}", why, failed ? "it is left out" : fmt::format("it is left out, as *{}", kSetAside)));
+}
+
+/// Counts the scans of a file, up to its end or to damage. Errors  kMalformed, kStoreFailed.
+Result<SpoolFile> count(const fs::path& file, const Tell& tell) {
     auto reader = SegmentReader::open(file);
     if (!reader) return reader.error();
     SpoolFile segment;
     for (;;) {
         const auto record = reader->next();
+        if (!record && segment.scans == 0) return record.error();
         if (!record) {
-            tell(record.error().message + "; the scans behind that are lost");
+            tell(record.error().message + "; scans behind that cannot be read");
+            segment.is_damaged = true;
             break;
         }
         if (!*record) break;
         const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message);
-        if (batch != nullptr && segment.scans++ == 0) segment.first = batch->scans.front().seq;
+        if (batch == nullptr) continue;
+        const std::uint64_t number = batch->scans.front().seq;
+        if (segment.scans == 0) segment.first = number;
+        if (number != segment.end()) {
+            tell(fmt::format("{} lacks scan {}; scans behind that are left out", file.string(), segment.end()));
+            segment.is_damaged = true;
+            break;
+        }
+        ++segment.scans;
     }
+    segment.from = std::clamp(reader->sent_as().from, segment.first, segment.end());
+    segment.seq = reader->sent_as().seq;
     std::error_code ignored;
     segment.bytes = fs::file_size(file, ignored);
     return segment;
+}
+
+/// Less than a head: a power cut took the rest.
+bool is_cut_short(const fs::path& file) {
+    std::error_code failed;
+    const auto bytes = fs::file_size(file, failed);
+    return !failed && bytes < kSegmentHeadBytes;
 }
 
 } // namespace
 
 std::string segment_file(std::uint64_t first) { return fmt::format("{:020}{}", first, kSuffix); }
 
-Result<std::vector<SpoolFile>> segments_left(const fs::path& directory, std::uint64_t first_unacknowledged,
-                                             const std::function<void(const std::string&)>& tell) {
+Result<std::vector<SpoolFile>> segments_left(const fs::path& directory, const Tell& tell) {
     const auto files = files_in(directory);
     if (!files) return files.error();
     std::vector<SpoolFile> left;
     for (const fs::path& file : *files) {
-        const auto segment = count(file, tell);
-        if (!segment) return segment.error();
-        if (segment->scans == 0 || segment->first + segment->scans <= first_unacknowledged) {
+        const auto segment = is_cut_short(file) ? Result<SpoolFile>(SpoolFile{}) : count(file, tell);
+        if (!segment && segment.error().code == Errc::kStoreFailed) return segment.error();
+        if (!segment) {
+            set_aside(file, segment.error().message, tell);
+        } else if (segment->scans == 0) {
             std::error_code ignored;
             fs::remove(file, ignored);
-            continue;
+        } else if (file.filename() != segment_file(segment->first)) {
+            set_aside(file, fmt::format("{} holds the scans of another file", file.string()), tell);
+        } else {
+            left.push_back(*segment);
         }
-        if (file.filename() != segment_file(segment->first)) {
-            return Error{Errc::kMalformed, fmt::format("{} holds scans of another file; remove it", file.string())};
-        }
-        left.push_back(*segment);
     }
     return left;
 }

@@ -49,17 +49,29 @@ Result<> Spool::lock() {
 }
 
 Result<> Spool::load() {
-    auto numbering = read_numbering(options_.directory / kNumberingFile);
-    if (!numbering) return numbering.error();
-    numbering_ = *numbering;
-    if (numbering_) next_number_ = std::max(next_number_, numbering_->first);
-    auto left = segments_left(options_.directory, numbering_ ? numbering_->first : 0, tell_);
+    const fs::path file = options_.directory / kNumberingFile;
+    const auto numbering = read_numbering(file);
+    if (!numbering && numbering.error().code == Errc::kStoreFailed) return numbering.error();
+    if (!numbering) tell_(numbering.error().message + "; the scans here are taken for those of this session");
+    numbering_ = numbering && *numbering ? **numbering : Numbering{};
+    if (!numbering || !*numbering) {
+        // From now on it needs no room on the disk. Where there is none even now, whoever appends is told.
+        (void)write_numbering(file, numbering_, Sync::kYes);
+    }
+
+    auto left = segments_left(options_.directory, tell_);
     if (!left) return left.error();
-    segments_.assign(left->begin(), left->end());
-    for (const SpoolFile& segment : segments_) {
+    for (SpoolFile& segment : *left) {
+        segment.stored(numbering_.acknowledged);
+        next_number_ = segment.end();
+        if (segment.left() == 0) {
+            std::error_code ignored;
+            fs::remove(file_of(segment), ignored);
+            continue;
+        }
         bytes_ += segment.bytes;
-        waiting_ += segment.scans;
-        next_number_ = segment.first + segment.scans;
+        waiting_ += segment.left();
+        segments_.push_back(segment);
     }
     return {};
 }
@@ -97,7 +109,7 @@ Result<bool> Spool::append(const Observation& observation) {
     bytes_ += bytes.size();
     ++waiting_;
     ++next_number_;
-    sync_.wrote(writer_->handle(), std::chrono::steady_clock::now());
+    sync_.wrote(writer_->handle());
     return true;
 }
 
@@ -109,10 +121,10 @@ Result<> Spool::start_segment() {
         if (reading_ + 1 == segments_.size()) reader_.reset();
         remove(segments_.size() - 1);
     }
-    auto writer = SegmentWriter::create(file_of({next_number_, 0, 0, 0}));
+    auto writer = SegmentWriter::create(options_.directory / segment_file(next_number_), next_number_);
     if (!writer) return writer.error();
     writer_ = std::move(*writer);
-    segments_.push_back({next_number_, 0, writer_->bytes(), 0});
+    segments_.push_back({next_number_, 0, writer_->bytes(), next_number_, 0, false});
     bytes_ += writer_->bytes();
     return {};
 }
@@ -130,19 +142,19 @@ bool Spool::make_room(std::size_t bytes) {
         std::size_t index = reading_;
         while (index < segments_.size() && !may_go(index)) ++index;
         if (index >= segments_.size()) return false;
-        dropped_ += segments_[index].scans;
-        waiting_ -= segments_[index].scans;
+        dropped_ += segments_[index].left();
+        waiting_ -= segments_[index].left();
         remove(index);
     }
     told_of_dropping_ = told_of_dropping_ && bytes_ + bytes > options_.bytes_max / 2;
     return true;
 }
 
-/// Whether a segment holds only scans that were never sent, and is not the one being written.
+/// Whether a segment holds no scans that were sent, and is not the one being written.
 bool Spool::may_go(std::size_t index) const noexcept {
     const bool is_written = writer_ && index + 1 == segments_.size();
     const bool is_read = index < reading_ || (index == reading_ && reader_);
-    return !is_written && !is_read && segments_[index].first > (numbering_ ? numbering_->entered : 0);
+    return !is_written && !is_read && segments_[index].seq == 0;
 }
 
 void Spool::remove(std::size_t index) {
@@ -158,62 +170,58 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     if (!is_valid_name(session_id)) {
         return Error{Errc::kMalformed, "the server's session id is not one that can be stored in a spool"};
     }
-    const bool is_same = numbering_ && numbering_->session_id == session_id;
-    std::uint64_t seq = durable_seq + 1; // of the first scan here
-    if (is_same) {
-        const auto checked = first_seq_where(durable_seq);
-        if (!checked) return checked.error();
-        seq = *checked;
-    } else if (numbering_ && waiting_ > 0) {
-        tell_(fmt::format("the session is another than before; the {} scans of the spool go to the new one", waiting_));
+    const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
+    if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
+    numbering_ = {std::string(session_id), durable_seq, options_.boot};
+    if (auto ok = write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes); !ok) return ok;
+    for (SpoolFile& segment : segments_) {
+        waiting_ -= segment.left();
+        segment.stored(durable_seq);
+        waiting_ += segment.left();
     }
-    numbering_ = Numbering{std::string(session_id), segments_.empty() ? next_number_ : segments_.front().first, seq,
-                           numbering_ ? numbering_->entered : 0};
-    next_seq_ = seq;
-    if (auto ok = write_numbering(options_.directory / kNumberingFile, *numbering_); !ok) return ok;
-    if (auto ok = skip(durable_seq + 1 - next_seq_); !ok) return ok;
+    next_seq_ = durable_seq + 1;
     acknowledge(durable_seq);
     return {};
 }
 
-/// The seq of the first scan here, in the session that knows them.
-Result<std::uint64_t> Spool::first_seq_where(std::uint64_t durable_seq) const {
-    const std::uint64_t seq = numbering_->seq;
-    if (durable_seq + 1 < seq) {
-        return Error{
-            Errc::kConflict,
-            fmt::format("the server holds {} scans of this robot but had acknowledged {}: restore the server's "
-                        "store or use a new --session",
-                        durable_seq, seq - 1)};
+/// Whether what the server holds goes together with what was sent from here.
+Result<> Spool::check(std::uint64_t durable_seq) const {
+    if (durable_seq < numbering_.acknowledged) {
+        return Error{Errc::kConflict,
+                     fmt::format("the server holds {} scans of this robot but had acknowledged {}: restore the "
+                                 "server's store, or rename {} to OTHER.ROBOT and go on with --session OTHER",
+                                 durable_seq, numbering_.acknowledged, options_.directory.string())};
     }
-    std::uint64_t perhaps_sent = 0;
-    for (const SpoolFile& segment : segments_) {
-        if (segment.first <= numbering_->entered) perhaps_sent += segment.scans;
+    const auto sent = std::ranges::find_if(segments_.rbegin(), segments_.rend(),
+                                           [](const SpoolFile& segment) { return segment.seq > 0; });
+    if (sent == segments_.rend() || durable_seq <= sent->last_seq()) return {}; // others' scans, or these
+    const std::uint64_t more = durable_seq - sent->last_seq();
+    // Scans of its end may be gone here, and stored there; where another file follows it is known how many.
+    const bool is_last = sent == segments_.rbegin();
+    const std::uint64_t next = is_last ? 0 : std::prev(sent)->first;
+    const bool may_be_cut = sent->is_damaged || numbering_.boot != options_.boot || sent->end() + more <= next;
+    if (may_be_cut) {
+        tell_(fmt::format("the server holds {} scans more than {} does, whose end is missing; they are not lost", more,
+                          file_of(*sent).string()));
+        return {};
     }
-    if (durable_seq < seq + perhaps_sent) return seq;
-    if (perhaps_sent == 0) return durable_seq + 1; // sent by others meanwhile; all of these follow
     return Error{Errc::kConflict,
                  fmt::format("the server holds {} scans of this robot, of which the spool {} sent {} at most: another "
                              "program sent scans under the same --robot and --session; use another, or remove the "
                              "directory",
-                             durable_seq, options_.directory.string(), seq + perhaps_sent - 1)};
+                             durable_seq, options_.directory.string(), sent->last_seq())};
 }
 
-Result<> Spool::skip(std::uint64_t scans) {
-    while (scans > 0) {
-        SpoolFile& segment = segments_[reading_];
-        if (!reader_ && segment.scans <= scans && reading_ + 1 < segments_.size()) { // without reading it
-            segment.first_seq = next_seq_;
-            next_seq_ += segment.scans;
-            waiting_ -= segment.scans;
-            scans -= segment.scans;
-            ++reading_;
-            continue;
-        }
-        const auto passed = next();
-        if (!passed) return passed.error();
-        if (!*passed) return {};
-        --scans;
+/// What the session of before did not acknowledge is as if it had never been sent.
+Result<> Spool::leave_session() {
+    if (waiting_ > 0) {
+        tell_(fmt::format("the session is another than before; {} scans that were not acknowledged go to the new one",
+                          waiting_));
+    }
+    for (SpoolFile& segment : segments_) {
+        if (segment.seq == 0) continue;
+        if (auto ok = write_segment_head(file_of(segment), {segment.from, 0}); !ok) return ok;
+        segment.seq = 0;
     }
     return {};
 }
@@ -223,7 +231,8 @@ Result<std::optional<Observation>> Spool::next() {
         if (!reader_) {
             if (auto ok = enter(); !ok) return ok.error();
         }
-        if (handed_out_ == segments_[reading_].scans) {
+        SpoolFile& segment = segments_[reading_];
+        if (read_ == segment.scans) {
             if (reading_ + 1 == segments_.size()) break; // it may still grow
             ++reading_;
             reader_.reset();
@@ -231,8 +240,7 @@ Result<std::optional<Observation>> Spool::next() {
         }
         auto record = reader_->next();
         if (!record || !*record) {
-            leave_damaged(record ? "the end of " + file_of(segments_[reading_]).string() + " is missing"
-                                 : record.error().message);
+            leave_damaged(record ? "the end of " + file_of(segment).string() + " is missing" : record.error().message);
             continue;
         }
         wire::Message& message = (*record)->message;
@@ -241,10 +249,10 @@ Result<std::optional<Observation>> Spool::next() {
         } else if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
             const auto sensor = read_sensors_[batch->scans.front().sensor];
             if (!sensor) {
-                leave_damaged(file_of(segments_[reading_]).string() + " lacks the sensor of a scan");
+                leave_damaged(file_of(segment).string() + " lacks the sensor of a scan");
                 continue;
             }
-            ++handed_out_;
+            if (segment.first + read_++ < segment.from) continue;
             ++next_seq_;
             --waiting_;
             return std::optional(Observation{sensor, std::move(batch->scans.front())});
@@ -253,37 +261,42 @@ Result<std::optional<Observation>> Spool::next() {
     return std::optional<Observation>{};
 }
 
-/// Begins to read segments_[reading_]. From then on its scans may have been sent.
+/// Begins to read segments_[reading_]. From then on its scans may have been sent, under the seqs in its head.
 Result<> Spool::enter() {
     SpoolFile& segment = segments_[reading_];
-    if (segment.first > numbering_->entered) {
-        numbering_->entered = segment.first;
-        if (auto ok = write_numbering(options_.directory / kNumberingFile, *numbering_); !ok) return ok;
-    }
     auto reader = SegmentReader::open(file_of(segment));
     if (!reader) return reader.error();
+    if (segment.seq != next_seq_) {
+        if (auto ok = write_segment_head(file_of(segment), {segment.from, next_seq_}); !ok) return ok;
+        segment.seq = next_seq_;
+    }
     reader_ = std::move(*reader);
     read_sensors_.clear();
-    handed_out_ = 0;
-    segment.first_seq = next_seq_;
+    read_ = 0;
     return {};
 }
 
 /// What cannot be read of the present segment is lost.
 void Spool::leave_damaged(const std::string& why) {
     SpoolFile& segment = segments_[reading_];
-    const std::uint64_t lost = segment.scans - handed_out_;
+    const std::uint64_t lost = segment.end() - std::max(segment.from, segment.first + read_);
     tell_(fmt::format("{}; {} scans are lost", why, lost));
     dropped_ += lost;
     waiting_ -= lost;
-    segment.scans = handed_out_;
+    segment.scans = read_;
+    segment.from = std::min(segment.from, segment.end());
+    segment.is_damaged = true;
     if (reading_ + 1 == segments_.size()) writer_.reset(); // what comes goes to another file
 }
 
 // Acknowledged --------------------------------------------------------------------------------------------------------
 
 void Spool::acknowledge(std::uint64_t seq) {
-    acknowledged_ = std::max(acknowledged_, seq);
+    if (seq > numbering_.acknowledged) {
+        numbering_.acknowledged = seq;
+        // Were it not written, the worst would be that another session gets scans that this one has.
+        (void)write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kNo);
+    }
     forget_acknowledged(false);
 }
 
@@ -295,14 +308,10 @@ void Spool::tidy_up() {
 void Spool::forget_acknowledged(bool also_the_newest) {
     while (!segments_.empty()) {
         const SpoolFile& front = segments_.front();
-        const bool is_handed_out = reading_ > 0 || (reader_ && handed_out_ == front.scans);
-        if (!is_handed_out || front.first_seq + front.scans > acknowledged_ + 1) return;
+        const bool is_handed_out = reading_ > 0 || (reader_ && read_ == front.scans);
+        if (!is_handed_out || (front.left() > 0 && front.last_seq() > numbering_.acknowledged)) return;
         const bool is_newest = segments_.size() == 1;
         if (is_newest && !also_the_newest && front.bytes < std::min(kTidyBytes, segment_bytes_max())) return;
-        numbering_->first = is_newest ? next_number_ : segments_[1].first;
-        numbering_->seq = front.first_seq + front.scans;
-        // Were the file still there with the next one known as the first, it would go at the next start.
-        if (!write_numbering(options_.directory / kNumberingFile, *numbering_)) return;
         if (is_newest) writer_.reset();
         if (reading_ > 0) {
             --reading_;

@@ -26,6 +26,7 @@ struct SpoolOptions {
     std::filesystem::path directory; ///< for one robot in one session; made where it is missing
     std::uint64_t bytes_max = std::uint64_t{256} << 20;
     WhenFull when_full = WhenFull::kDropOldest; ///< the oldest go by whole files, each a sixteenth of bytes_max at most
+    std::string boot = this_boot();             ///< files may have lost their ends since another
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They survive the program that took them.
@@ -33,8 +34,9 @@ struct SpoolOptions {
 ///     acknowledged | handed out by next(), perhaps sent | waiting | what append() adds
 ///
 /// A scan is in its file before append() returns, and the disk is asked to keep it within a second or two. The scans
-/// stand in files of some MiB (see record.hpp), each beginning with the sensors it needs; a file goes once all of it is
-/// acknowledged. Which seq a scan has on the server is in the file `numbering`.
+/// stand in files of some MiB (see segment_head.hpp and record.hpp), each with the sensors it needs; a file goes once
+/// all of it is acknowledged. Which seqs its scans have on the server is in its head, so that the loss of one file, or
+/// of its end, changes nothing for the others. How far the server is stands in the file `numbering`.
 /// Thread  one at a time. One program at a time uses the directory.
 class Spool {
 public:
@@ -42,12 +44,13 @@ public:
 
     /// Opens what an earlier run has left. `tell` hears sentences for people: of files that are damaged, of scans that
     /// are lost.
-    /// Errors  kStoreFailed, kMalformed; kConflict: another program uses the directory.
+    /// Errors  kStoreFailed; kConflict: another program uses the directory.
     [[nodiscard]] static Result<std::unique_ptr<Spool>> open(SpoolOptions options,
                                                              std::function<void(const std::string&)> tell);
 
     /// The server holds the robot's scans up to `durable_seq`: those of them that are here are passed over. Pre: once.
-    /// Errors  kConflict: it lost some that it had acknowledged, or has some that never came from here.
+    /// In another session than before, those go that were not acknowledged in that one.
+    /// Errors  kConflict: it lost some that it had acknowledged, or has some that never came from here; kStoreFailed.
     [[nodiscard]] Result<> begin(std::string_view session_id, std::uint64_t durable_seq);
 
     /// Errors  kStoreFailed: it could not be written.
@@ -81,8 +84,8 @@ private:
     [[nodiscard]] bool may_go(std::size_t index) const noexcept;
     void remove(std::size_t index);
 
-    [[nodiscard]] Result<std::uint64_t> first_seq_where(std::uint64_t durable_seq) const;
-    [[nodiscard]] Result<> skip(std::uint64_t scans);
+    [[nodiscard]] Result<> check(std::uint64_t durable_seq) const;
+    [[nodiscard]] Result<> leave_session();
     [[nodiscard]] Result<> enter();
     void leave_damaged(const std::string& why);
     void forget_acknowledged(bool also_the_newest);
@@ -103,13 +106,12 @@ private:
     std::uint64_t next_number_ = 1;
 
     // handing out
-    std::optional<Numbering> numbering_; ///< none before any server was reached
-    std::size_t reading_ = 0;            ///< index of the segment to read from
+    Numbering numbering_;
+    std::size_t reading_ = 0; ///< index of the segment to read from
     std::optional<SegmentReader> reader_;
     std::map<std::uint32_t, std::shared_ptr<const Sensor>> read_sensors_; ///< of that file
-    std::uint64_t handed_out_ = 0;                                        ///< scans of that segment
+    std::uint64_t read_ = 0;                                              ///< scans of that segment
     std::uint64_t next_seq_ = 0;
-    std::uint64_t acknowledged_ = 0; ///< seq
 };
 
 } // namespace scanloom::robot

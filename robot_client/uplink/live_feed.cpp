@@ -62,7 +62,7 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
     }
     // Scans go in the order in which they were taken. Those that the spool never saw would upset its numbering, so that
     // there is no way back to it for this program.
-    spool_given_up_ = begun_ && spool_->waiting() == 0;
+    spool_given_up_ = spool_->waiting() == 0;
     if (spool_given_up_) return keep_in_memory(intake, std::move(observation));
     ++dropped_;
 }
@@ -89,7 +89,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             options_.on_resume(*intake.resumed_after());
         }
         if (intake.is_stopped() && !std::exchange(stopped, true)) source_.stop();
-        if (spool_ && intake.resumed_after()) {
+        if (spool_ && !spool_given_up_ && intake.resumed_after()) {
             if (auto ok = hand_over_from_spool(intake); !ok) {
                 outcome_ = ok;
                 co_return;
@@ -106,7 +106,13 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
 
 Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
     if (!begun_) {
-        if (auto ok = spool_->begin(intake.session_id(), *intake.resumed_after()); !ok) return ok;
+        if (auto ok = spool_->begin(intake.session_id(), *intake.resumed_after()); !ok) {
+            const bool may_go_on = ok.error().code == Errc::kStoreFailed && spool_->waiting() == 0;
+            if (!may_go_on) return ok;
+            options_.tell(ok.error().message + "; scans are held in memory only");
+            told_of_spool_ = spool_given_up_ = true;
+            return {};
+        }
         begun_ = true;
     }
     while (intake.has_room()) {

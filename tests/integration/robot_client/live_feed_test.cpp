@@ -315,6 +315,36 @@ private:
     rlimit before_{};
 };
 
+TEST_F(LiveFeedTest, ADiskThatIsFullFromTheBeginningHoldsUpNothing) {
+    FullDisk full(0);
+    ScriptedSource source;
+    source.allow(100);
+    source.end();
+    const auto outcome = run(source, spool());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_stored(100);
+    EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("File too large; scans are held in memory only")));
+}
+
+TEST_F(LiveFeedTest, WhatASpoolHoldsIsSentAlsoWhereTheDiskIsFullByNow) {
+    server_.close();
+    {
+        ScriptedSource source;
+        source.on_given = [&](std::uint64_t given) {
+            if (given == 600) kill();
+        };
+        source.allow(600);
+        EXPECT_FALSE(run(source, spool()));
+    }
+    FullDisk full(300); // no file may become larger; what stands in their first bytes may change
+    server_.reopen();
+    ScriptedSource next;
+    next.end();
+    const auto outcome = run(next, spool());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_stored(599);
+}
+
 TEST_F(LiveFeedTest, ASpoolThatCannotBeWrittenIsToldAndTheLinkGoesOnWithoutIt) {
     std::optional<FullDisk> full;
     ScriptedSource source;

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <random>
+#include <set>
 
 /// What others have done to a spool's files.
 namespace scanloom::robot {
@@ -66,16 +67,158 @@ TEST_F(SpoolTest, DamageIsToldAndWhatStandsBeforeItAndInOtherFilesIsKept) {
     }
 }
 
-TEST_F(SpoolTest, FilesThatAreNotItsOwnAreRefused) {
-    std::ofstream(directory_.path() / "00000000000000000001.spool") << "something else, and long enough";
-    const auto refused = Spool::open({directory_.path()}, [](const std::string&) {});
-    ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("is no file of a spool"));
-    fs::remove(directory_.path() / "00000000000000000001.spool");
-    std::ofstream(directory_.path() / "numbering") << "1 2 3";
-    const auto damaged = Spool::open({directory_.path()}, [](const std::string&) {});
-    ASSERT_FALSE(damaged);
-    EXPECT_THAT(damaged.error().message, HasSubstr("numbering is damaged"));
+TEST_F(SpoolTest, FilesThatAreNotWhereTheyBelongAreSetAsideAndKept) {
+    open();
+    take(1, 3500);
+    spool_.reset();
+    const auto all = files();
+    ASSERT_GE(all.size(), 2U);
+    fs::rename(all[0], all[0].string() + "x");
+    fs::rename(all[1], all[0]);
+    fs::rename(all[0].string() + "x", all[1]);
+    std::ofstream(directory_.path() / "00000000000000009999.spool") << "something else, and long enough to be one";
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    for (const auto& number : handed_out()) EXPECT_GT(number, 1000U);
+    EXPECT_THAT(told_, Contains(HasSubstr("is no file of a spool")));
+    EXPECT_THAT(told_, Contains(HasSubstr("holds the scans of another file")));
+    EXPECT_TRUE(fs::exists(all[0].string() + ".unreadable"));
+    EXPECT_TRUE(fs::exists(directory_.path() / "00000000000000009999.spool.unreadable"));
+}
+
+TEST_F(SpoolTest, AfterAPowerCutTheServerMayHoldMoreThanIsLeft) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 28);
+    handed_out();
+    spool_.reset();
+    const auto file = files().at(0);
+    fs::resize_file(file, fs::file_size(file) * 3 / 4);
+    open();
+    take(29, 40); // before any server is reached
+    boot_ = "second";
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 28));
+    EXPECT_EQ(handed_out(), from_to(29, 40));
+    EXPECT_THAT(told_, Contains(HasSubstr("whose end is missing; they are not lost")));
+}
+
+TEST_F(SpoolTest, ThatAFileLostItsEndChangesNothingForTheNext) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 24);
+    handed_out();
+    open(); // killed before any ack; what comes goes to a file of its own
+    take(25, 44);
+    spool_.reset();
+    ASSERT_EQ(files().size(), 2U);
+    fs::resize_file(files().at(0), fs::file_size(files().at(0)) * 7 / 8);
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 24));
+    EXPECT_EQ(handed_out(), from_to(25, 44));
+}
+
+TEST_F(SpoolTest, TheEndOfADamagedFileMayBeStored) {
+    open();
+    ASSERT_TRUE(spool_->begin("a1", 0));
+    take(1, 24);
+    handed_out();
+    spool_.reset();
+    std::fstream bytes(files().at(0), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(files().at(0)) / 2));
+    bytes.write("damage", 6);
+    bytes.close();
+    open();
+    take(25, 26);
+    ASSERT_TRUE(spool_->begin("a1", 24));
+    EXPECT_EQ(handed_out(), from_to(25, 26));
+}
+
+TEST_F(SpoolTest, AScanThatIsMissingEndsAFile) {
+    open();
+    take(1, 9);
+    spool_.reset();
+    const auto file = files().at(0);
+    auto reader = SegmentReader::open(file).value();
+    std::vector<std::uint64_t> ends;
+    while (reader.next().value()) ends.push_back(reader.position());
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    bytes.erase(ends[4], ends[5] - ends[4]); // the sensor is the first record
+    std::ofstream(file, std::ios::binary) << bytes;
+    open();
+    EXPECT_EQ(spool_->waiting(), 4U);
+    EXPECT_THAT(told_, Contains(HasSubstr("lacks scan 5")));
+}
+
+/// Numbers of the scans that can be read in a file.
+std::vector<std::uint64_t> numbers_in(const fs::path& file) {
+    std::vector<std::uint64_t> numbers;
+    auto reader = SegmentReader::open(file);
+    while (reader) {
+        const auto record = reader->next();
+        if (!record || !*record) break;
+        if (const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message)) {
+            numbers.push_back(static_cast<std::uint64_t>(batch->scans.front().pose.x));
+        }
+    }
+    return numbers;
+}
+
+/// Random use against a list in memory, with files that lose their ends, rot or vanish between two runs.
+TEST_F(SpoolTest, WhatADamagedFileStillHoldsAndAllOtherFilesAreSentOnceEach) {
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+        spool_.reset();
+        fs::remove_all(directory_.path());
+        std::mt19937 random(seed);
+        std::vector<std::uint64_t> server;
+        std::set<std::uint64_t> gone; // from the disk
+        std::uint64_t taken = 0;
+        for (int run = 0; run < 6; ++run) {
+            open(kMebibyte * 1024); // nothing is dropped for want of room
+            const bool is_reached = random() % 4 != 0;
+            const int last_arrival = static_cast<int>(random() % 60); // what is sent later is lost on the way
+            if (is_reached) {
+                ASSERT_TRUE(spool_->begin("a1", server.size())) << "seed " << seed;
+            }
+            for (int event = 0; event < 40; ++event) {
+                const std::uint64_t count = random() % 200;
+                take(taken + 1, taken + count);
+                taken += count;
+                if (!is_reached) continue;
+                const auto sent = handed_out(random() % 300);
+                if (event <= last_arrival) std::ranges::copy(sent, std::back_inserter(server));
+                if (random() % 8 == 0) spool_->acknowledge(server.size() - random() % (server.size() + 1));
+            }
+            spool_.reset();
+            const auto all = files();
+            if (all.empty() || random() % 3 == 0) continue;
+            boot_ = std::to_string(run);
+            const auto file = all[random() % all.size()];
+            const auto before = numbers_in(file);
+            switch (random() % 3) {
+            case 0: fs::resize_file(file, random() % fs::file_size(file)); break;
+            case 1: fs::remove(file); break;
+            default: {
+                std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+                const auto at = static_cast<std::streamoff>(random() % fs::file_size(file));
+                bytes.seekg(at);
+                const int was = bytes.get();
+                bytes.seekp(at);
+                bytes.put(static_cast<char>(was ^ (1 << random() % 8)));
+            }
+            }
+            const auto left = numbers_in(file); // its beginning
+            gone.insert(before.begin() + static_cast<std::ptrdiff_t>(left.size()), before.end());
+        }
+        open(kMebibyte * 1024);
+        ASSERT_TRUE(spool_->begin("a1", server.size()));
+        std::ranges::copy(handed_out(), std::back_inserter(server));
+        auto expected = from_to(1, taken);
+        const std::set<std::uint64_t> held(server.begin(), server.end());
+        std::erase_if(expected, [&](std::uint64_t number) { return gone.contains(number) && !held.contains(number); });
+        ASSERT_EQ(server, expected) << "seed " << seed;
+    }
 }
 
 TEST_F(SpoolTest, ADirectoryThatCannotBeMadeIsAClearError) {

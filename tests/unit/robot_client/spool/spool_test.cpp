@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <random>
 #include <utility>
 
@@ -176,15 +177,40 @@ TEST_F(SpoolTest, ScansOfOthersInBetweenDoNotTakeThePlaceOfThoseThatWereNeverSen
     EXPECT_EQ(handed_out(), from_to(6, 9));
 }
 
-TEST_F(SpoolTest, ASessionMadeAnewGetsWhatIsLeft) {
+TEST_F(SpoolTest, ASessionMadeAnewGetsWhatTheOneBeforeHasNotAcknowledged) {
     open();
-    ASSERT_TRUE(spool_->begin("a1", 0));
+    ASSERT_TRUE(spool_->begin("a1", 100));
     take(1, 50);
     handed_out(20);
+    spool_->acknowledge(112);
+    open();
+    EXPECT_EQ(spool_->waiting(), 38U);
+    ASSERT_TRUE(spool_->begin("b2", 0));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("38 scans that were not acknowledged go to the new one")));
     open();
     ASSERT_TRUE(spool_->begin("b2", 0));
-    EXPECT_EQ(handed_out(), from_to(1, 50));
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("the 50 scans of the spool go to the new one")));
+    EXPECT_EQ(handed_out(20), from_to(13, 32));
+    open();
+    take(51, 52);
+    ASSERT_TRUE(spool_->begin("b2", 5));
+    EXPECT_EQ(handed_out(), from_to(18, 52)) << "under the numbers of the new one";
+}
+
+TEST_F(SpoolTest, WhereItsNumberingIsGoneNothingIsSentTwice) {
+    for (const bool empty : {false, true}) {
+        fs::remove_all(directory_.path());
+        fs::create_directories(directory_.path());
+        open();
+        ASSERT_TRUE(spool_->begin("a1", 3));
+        take(1, 3000);
+        handed_out(2000);
+        spool_.reset();
+        fs::remove(directory_.path() / "numbering");
+        if (empty) std::ofstream(directory_.path() / "numbering").close();
+        open();
+        ASSERT_TRUE(spool_->begin("a1", 1503));
+        EXPECT_EQ(handed_out(), from_to(1501, 3000));
+    }
 }
 
 TEST_F(SpoolTest, TwoProgramsCannotUseOneDirectory) {
