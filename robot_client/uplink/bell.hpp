@@ -7,10 +7,12 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include <list>
+#include <memory>
 
 namespace scanloom::robot {
 
-/// Wakes all coroutines that wait for it. Who wakes looks for itself whether anything is new.
+/// Wakes all coroutines that wait for it. Who wakes looks for itself whether anything is new. It may go before or after
+/// the executor of those that wait.
 /// Thread  one at a time.
 class Bell {
 public:
@@ -18,17 +20,33 @@ public:
 
     /// Until it rings, or until then.
     [[nodiscard]] boost::asio::awaitable<void> wait(Time until = Time::max()) {
-        const auto waiting = waiting_.emplace(waiting_.end(), co_await boost::asio::this_coro::executor, until);
-        co_await waiting->async_wait(boost::asio::as_tuple(boost::asio::use_awaitable));
-        waiting_.erase(waiting);
+        const auto waiting = waiting_;
+        boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor, until);
+        const Place place(*waiting, timer);
+        co_await timer.async_wait(boost::asio::as_tuple(boost::asio::use_awaitable));
     }
 
     void ring() {
-        for (auto& timer : waiting_) timer.cancel();
+        for (auto* timer : *waiting_) timer->cancel();
     }
 
 private:
-    std::list<boost::asio::steady_timer> waiting_;
+    using Timers = std::list<boost::asio::steady_timer*>; // each on the frame of the coroutine that waits
+
+    class Place {
+    public:
+        Place(Timers& timers, boost::asio::steady_timer& own)
+            : timers_(timers), place_(timers.insert(timers.end(), &own)) {}
+        Place(const Place&) = delete;
+        Place& operator=(const Place&) = delete;
+        ~Place() { timers_.erase(place_); }
+
+    private:
+        Timers& timers_;
+        Timers::iterator place_;
+    };
+
+    std::shared_ptr<Timers> waiting_ = std::make_shared<Timers>();
 };
 
 } // namespace scanloom::robot

@@ -1,9 +1,6 @@
 #include "robot_client/uplink/live_feed.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 namespace scanloom::robot {
@@ -11,17 +8,10 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using namespace asio::experimental::awaitable_operators;
 
-namespace {
-
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-
-} // namespace
-
 LiveFeed::LiveFeed(LiveSource& source, std::unique_ptr<Spool> spool, LiveFeedOptions options)
     : source_(source), spool_(std::move(spool)), options_(std::move(options)) {}
 
 asio::awaitable<Result<>> LiveFeed::run(Intake& intake) {
-    taking_.emplace(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
     co_await (take(intake) || hand_over(intake));
     co_return outcome_;
 }
@@ -29,7 +19,7 @@ asio::awaitable<Result<>> LiveFeed::run(Intake& intake) {
 /// Ends only when it is cancelled: hand_over() ends the run.
 asio::awaitable<void> LiveFeed::take(Intake& intake) {
     if (source_.can_wait()) {
-        while (!intake.resumed_after()) co_await taking_->async_wait(kUse);
+        while (!intake.resumed_after()) co_await room_.wait();
         source_.resume_after(*intake.resumed_after());
     }
     while (!ended_) {
@@ -45,11 +35,11 @@ asio::awaitable<void> LiveFeed::take(Intake& intake) {
         }
         intake.wake();
     }
-    for (;;) co_await taking_->async_wait(kUse);
+    for (;;) co_await room_.wait();
 }
 
 asio::awaitable<void> LiveFeed::wait_for_room(Intake& intake) {
-    while (!intake.has_room() && !intake.is_stopped()) co_await taking_->async_wait(kUse);
+    while (!intake.has_room() && !intake.is_stopped()) co_await room_.wait();
 }
 
 void LiveFeed::keep(Intake& intake, Observation observation) {
@@ -99,7 +89,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             if (spool_ && begun_) spool_->tidy_up(); // of what was acknowledged before; the rest follows
             co_return;
         }
-        taking_->cancel();
+        room_.ring();
         co_await intake.news();
     }
 }

@@ -2,9 +2,8 @@
 
 #include "robot_client/source/live_source.hpp"
 #include "robot_client/spool/spool.hpp"
+#include "robot_client/uplink/bell.hpp"
 #include "robot_client/uplink/feed.hpp"
-
-#include <boost/asio/steady_timer.hpp>
 
 #include <functional>
 #include <memory>
@@ -47,7 +46,7 @@ private:
     LiveSource& source_;
     std::unique_ptr<Spool> spool_;
     LiveFeedOptions options_;
-    std::optional<boost::asio::steady_timer> taking_; ///< while run() goes on: cancelled when there may be room
+    Bell room_; ///< there may be some
     Result<> outcome_;
     std::uint64_t dropped_ = 0; ///< not by the spool
     bool told_of_dropping_ = false;

@@ -9,10 +9,14 @@
 #include <boost/json/parse.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
+#include <random>
+#include <vector>
 
 /// A live sensor's scans while the network is away and the robot's program is killed.
 namespace scanloom::test {
@@ -26,6 +30,7 @@ using testing_support::bytes_of;
 
 constexpr int kPointsPerTurn = 450; // of Ld06Spinner
 constexpr int kFirstPoint = 375;    // of that turn which is not seen from its beginning
+constexpr int kRangeOfTurn0 = 1000; // mm, straight ahead
 
 /// What a lidar sends from within the turn before `first` until it has begun the one after `last`. Each turn sees the
 /// room a millimetre larger, so that none can stand for another.
@@ -71,31 +76,50 @@ void wait_for_scans(const RunningServer& server, std::uint64_t scans) {
     }
 }
 
-std::uint64_t scans_in_spool(const std::filesystem::path& directory) {
-    std::uint64_t scans = 0;
+std::vector<Scan> scans_in_spool(const std::filesystem::path& directory) {
+    std::vector<std::filesystem::path> files;
     std::error_code missing;
     for (const auto& entry : std::filesystem::directory_iterator(directory, missing)) {
-        if (entry.path().extension() != ".spool") continue;
-        auto reader = robot::SegmentReader::open(entry.path());
+        if (entry.path().extension() == ".spool") files.push_back(entry.path());
+    }
+    std::ranges::sort(files);
+    std::vector<Scan> scans;
+    for (const auto& file : files) {
+        auto reader = robot::SegmentReader::open(file);
         while (reader) {
             const auto record = reader->next();
             if (!record || !*record) break;
-            if (const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message)) scans += batch->scans.size();
+            const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message);
+            if (batch != nullptr) std::ranges::copy(batch->scans, std::back_inserter(scans));
         }
     }
     return scans;
 }
 
+/// See turns().
+int turn_of(const Scan& scan) { return static_cast<int>(*std::ranges::min_element(scan.ranges)) - kRangeOfTurn0; }
+
 class OutageTest : public testing::Test {
 protected:
     /// A robot whose server is at `port`.
-    std::unique_ptr<ChildProcess> start_robot(std::uint16_t port, const Lidar& lidar) {
-        return std::make_unique<ChildProcess>(
-            program("scanloom-robot"),
-            std::vector<std::string>{"--server", "127.0.0.1:" + std::to_string(port), "--session", "s", "--robot", "r",
-                                     "--cell-size", "0.1", "--spool", (place_.path() / "spool").string(), "ld06",
-                                     lidar.address(), "--pose", "1,2,0.3"},
-            place_.path() / "robot");
+    std::unique_ptr<ChildProcess> start_robot(std::uint16_t port, const Lidar& lidar,
+                                              const std::vector<std::string>& options = {}) {
+        std::vector<std::string> arguments{
+            "--server", "127.0.0.1:" + std::to_string(port), "--session", "s", "--robot", "r", "--cell-size", "0.1",
+            "--spool",  (place_.path() / "spool").string()};
+        std::ranges::copy(options, std::back_inserter(arguments));
+        std::ranges::copy(std::vector<std::string>{"ld06", lidar.address(), "--pose", "1,2,0.3"},
+                          std::back_inserter(arguments));
+        return std::make_unique<ChildProcess>(program("scanloom-robot"), arguments, place_.path() / "robot");
+    }
+
+    [[nodiscard]] std::vector<Scan> spooled() const { return scans_in_spool(place_.path() / "spool" / "s.r"); }
+
+    void wait_for_turn_in_spool(int turn) const {
+        for (;;) {
+            const auto scans = spooled();
+            if (!scans.empty() && turn_of(scans.back()) == turn) return;
+        }
     }
 
     /// Everything in one go.
@@ -132,7 +156,7 @@ TEST_F(OutageTest, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwh
     link.cut();
     const std::uint64_t stored = scans_of(server);
     lidar.send({quarter, bytes.end()});
-    while (scans_in_spool(place_.path() / "spool" / "s.r") < 40) {
+    while (spooled().size() < 40) {
     }
     robot->signal(SIGKILL);
     EXPECT_EQ(robot->wait(), -SIGKILL);
@@ -140,7 +164,7 @@ TEST_F(OutageTest, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwh
     robot = start_robot(link.port(), lidar);
     lidar.wait_for_robot();
     lidar.send(turns(41, 60));
-    while (scans_in_spool(place_.path() / "spool" / "s.r") < 60) {
+    while (spooled().size() < 60) {
     }
     EXPECT_EQ(scans_of(server), stored) << "the network is away";
     link.restore();
@@ -149,7 +173,39 @@ TEST_F(OutageTest, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwh
     EXPECT_EQ(robot->wait(), 0);
     EXPECT_EQ(scans_of(server), 60U);
     EXPECT_EQ(server.get("/api/v1/sessions/s/digest").body, undisturbed_digest(60));
-    EXPECT_EQ(scans_in_spool(place_.path() / "spool" / "s.r"), 0U) << "what is stored needs no room";
+    EXPECT_EQ(spooled().size(), 0U) << "what is stored needs no room";
+}
+
+/// Killed again and again while it sends what waits, at another moment each time; the spool has several files.
+TEST_F(OutageTest, NothingIsLostOrDoubledWhereverTheProgramIsKilled) {
+    constexpr int kTurnsPerRound = 30;
+    RunningServer server(place_.path() / "store", place_.path() / "log");
+    TcpProxy link(server.robot_port());
+    std::mt19937 random(7);
+    int taken = 0;
+    for (int round = 0; round < 8; ++round) {
+        link.cut();
+        const std::uint64_t stored = scans_of(server);
+        Lidar lidar;
+        const std::string compression = round % 2 == 0 ? "none" : "zstd";
+        auto robot = start_robot(link.port(), lidar, {"--spool-size", "1", "--compression", compression});
+        lidar.wait_for_robot();
+        lidar.send(turns(taken + 1, taken + kTurnsPerRound));
+        taken += kTurnsPerRound;
+        wait_for_turn_in_spool(taken);
+        link.restore();
+        wait_for_scans(server, stored + random() % (static_cast<std::uint64_t>(taken) - stored));
+        robot->signal(SIGKILL);
+        EXPECT_EQ(robot->wait(), -SIGKILL);
+    }
+    Lidar lidar;
+    auto robot = start_robot(link.port(), lidar, {"--spool-size", "1"});
+    lidar.wait_for_robot();
+    wait_for_scans(server, static_cast<std::uint64_t>(taken));
+    robot->signal(SIGTERM);
+    EXPECT_EQ(robot->wait(), 0);
+    EXPECT_EQ(scans_of(server), static_cast<std::uint64_t>(taken));
+    EXPECT_EQ(server.get("/api/v1/sessions/s/digest").body, undisturbed_digest(taken));
 }
 
 } // namespace
