@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "robot_client/uplink/limits.hpp"
 #include "robot_client/uplink/server_text.hpp"
 #include "robot_client/uplink/utf8.hpp"
 
@@ -14,6 +15,8 @@
 namespace scanloom::robot {
 
 namespace {
+
+constexpr std::size_t kTokenBytesMax = 8192; ///< a hello has room for more
 
 Error too_many(std::string_view what_has, std::size_t count, std::string_view of_what, std::size_t count_max) {
     return {Errc::kTooLarge, fmt::format("{} {} {}, at most {} are allowed", what_has, count, of_what, count_max)};
@@ -48,7 +51,46 @@ Result<> check_sizes(const Sensor& sensor, const Scan& scan) {
     return {};
 }
 
+Result<> check_within(std::string_view what, double value, std::string_view unit, double low, double high) {
+    if (value >= low && value <= high) return {}; // false for NaN
+    return Error{Errc::kInvalidField,
+                 fmt::format("{} of {:g} {} cannot be; give {:g} to {:g}", what, value, unit, low, high)};
+}
+
+Result<> check_names(const ClientOptions& options) {
+    for (const auto* name : {&options.session, &options.robot}) {
+        if (is_valid_name(*name)) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("'{}' is no name of a session or robot; use 1 to {} characters of A-Z a-z 0-9 _ -",
+                                 shown(*name), kNameBytesMax)};
+    }
+    if (options.token.size() > kTokenBytesMax || !is_utf8(options.token)) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("the token has {} bytes, or is not UTF-8; give the one that the server knows",
+                                 options.token.size())};
+    }
+    return {};
+}
+
 } // namespace
+
+Result<> check(const ClientOptions& options) {
+    const auto mib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kMebibyte; };
+    const double delay = std::chrono::duration<double>(options.batch_delay).count();
+    const double cell_size = options.cell_size.value_or(kCellSizeMin);
+    if (auto ok = check_names(options); !ok) return ok;
+    if (options.body_radius && !is_body_radius(*options.body_radius)) {
+        return Error{Errc::kInvalidField, fmt::format("a body_radius of {} m cannot be; give more than 0, at most {}",
+                                                      *options.body_radius, kBodyRadiusMax)};
+    }
+    if (auto ok = check_within("a cell_size", cell_size, "m", kCellSizeMin, kCellSizeMax); !ok) return ok;
+    if (auto ok = check_within("a batch_delay", delay, "s", 0.0, kBatchDelayMax); !ok) return ok;
+    if (auto ok = check_within("memory_bytes_max", mib(options.memory_bytes_max), "MiB", kMemoryMibMin, kMemoryMibMax);
+        !ok) {
+        return ok;
+    }
+    return check_within("spool_bytes_max", mib(options.spool_bytes_max), "MiB", kSpoolMibMin, kSpoolMibMax);
+}
 
 Result<> check(const Sensor& sensor, const Scan& scan) {
     if (auto ok = check_sizes(sensor, scan); !ok) return ok;

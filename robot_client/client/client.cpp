@@ -1,6 +1,5 @@
 #include "robot_client/client/client.hpp"
 
-#include "common/scan/limits.hpp"
 #include "robot_client/client/checks.hpp"
 #include "robot_client/client/worker.hpp"
 
@@ -16,17 +15,7 @@ using std::chrono::milliseconds;
 namespace {
 
 Result<UplinkOptions> uplink_options(const ClientOptions& options) {
-    for (const auto* name : {&options.session, &options.robot}) {
-        if (is_valid_name(*name)) continue;
-        return Error{Errc::kInvalidField,
-                     fmt::format("'{}' is no name of a session or robot; use 1 to {} characters of "
-                                 "A-Z a-z 0-9 _ -",
-                                 *name, kNameBytesMax)};
-    }
-    if (options.body_radius && !is_body_radius(*options.body_radius)) {
-        return Error{Errc::kInvalidField, fmt::format("a body_radius of {} m cannot be; give 0 to {}",
-                                                      *options.body_radius, kBodyRadiusMax)};
-    }
+    if (auto ok = check(options); !ok) return ok.error();
     const auto server = parse_server_address(options.server);
     if (!server) return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT", options.server)};
     UplinkOptions uplink;

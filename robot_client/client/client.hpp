@@ -30,11 +30,12 @@ struct ClientOptions {
     /// A directory that keeps scans until they are stored, also when this program ends before. Empty: memory keeps
     /// them.
     std::filesystem::path spool;
-    std::uint64_t spool_bytes_max = std::uint64_t{256} << 20;
-    std::uint64_t memory_bytes_max = std::uint64_t{8} << 20; ///< of scans that wait to be sent, or to be acknowledged
-    bool drop_newest = false;                 ///< when there is no room left; else the oldest that were never sent go
-    bool compress = false;                    ///< what is sent: fewer bytes, more work
-    std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others to be sent with
+    std::uint64_t spool_bytes_max = std::uint64_t{256} << 20; ///< 1 MiB at least
+    std::uint64_t memory_bytes_max = std::uint64_t{8}
+                                     << 20; ///< 0.1 MiB at least, of scans that wait to be sent, or to be acknowledged
+    bool drop_newest = false;               ///< when there is no room left; else the oldest that were never sent go
+    bool compress = false;                  ///< what is sent: fewer bytes, more work
+    std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others, 60 s at most
 
     /// Hears sentences for people: that the server is away, that scans are dropped. Called on the client's thread,
     /// which waits for it; it must not call the client, nor throw.

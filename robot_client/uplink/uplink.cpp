@@ -193,7 +193,7 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStr
     const auto [failed] = std::get<0>(shaken);
     if (!failed) co_return std::nullopt;
     co_return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
-                               net::handshake_text(failed)));
+                               net::handshake_text(failed, stream.verify_result())));
 }
 
 asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream::Socket& socket) {

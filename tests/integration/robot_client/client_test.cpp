@@ -118,6 +118,13 @@ TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
     EXPECT_THAT(refusal([](auto& made) { made.body_radius = -1.0; }), HasSubstr("body_radius"));
     EXPECT_THAT(refusal([](auto& made) { made.tls_ca_file = "/nowhere"; }), HasSubstr("/nowhere"));
     EXPECT_THAT(refusal([](auto& made) { made.spool = "/proc/spool"; }), HasSubstr("/proc/spool"));
+    EXPECT_THAT(refusal([](auto& made) { made.cell_size = 0.0; }), HasSubstr("a cell_size of 0 m cannot be"));
+    EXPECT_THAT(refusal([](auto& made) { made.memory_bytes_max = 0; }), HasSubstr("memory_bytes_max of 0 MiB"));
+    EXPECT_THAT(refusal([](auto& made) { made.spool_bytes_max = 1000; }), HasSubstr("spool_bytes_max of"));
+    EXPECT_THAT(refusal([](auto& made) { made.batch_delay = -1ms; }), HasSubstr("batch_delay of -0.001 s"));
+    EXPECT_THAT(refusal([](auto& made) { made.batch_delay = 61s; }), HasSubstr("batch_delay of 61 s"));
+    EXPECT_THAT(refusal([](auto& made) { made.token = std::string(20'000, 't'); }), HasSubstr("token has 20000 bytes"));
+    EXPECT_THAT(refusal([](auto& made) { made.token = "\xff"; }), HasSubstr("not UTF-8"));
     EXPECT_EQ(refusal([](auto&) {}), "started");
 }
 
