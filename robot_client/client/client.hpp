@@ -31,10 +31,9 @@ struct ClientOptions {
     /// them.
     std::filesystem::path spool;
     std::uint64_t spool_bytes_max = std::uint64_t{256} << 20; ///< 1 MiB at least
-    std::uint64_t memory_bytes_max = std::uint64_t{8}
-                                     << 20; ///< 0.1 MiB at least, of scans that wait to be sent, or to be acknowledged
-    bool drop_newest = false;               ///< when there is no room left; else the oldest that were never sent go
-    bool compress = false;                  ///< what is sent: fewer bytes, more work
+    std::uint64_t memory_bytes_max = std::uint64_t{8} << 20;  ///< of scans not acknowledged; 0.1 MiB at least
+    bool drop_newest = false;                 ///< when there is no room left; else the oldest that were never sent go
+    bool compress = false;                    ///< what is sent: fewer bytes, more work
     std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others, 60 s at most
 
     /// Hears sentences for people: that the server is away, that scans are dropped. Called on the client's thread,
@@ -138,8 +137,8 @@ public:
     [[nodiscard]] Result<> send(const std::shared_ptr<const Sensor>& sensor, Scan scan);
 
     /// Waits until all scans that were handed over before are stored; those that others hand over meanwhile may not be.
-    /// Errors  kTimeout; what ended the link for good; kOverloaded: the rest is stored, but so many scans as the message
-    ///         says were dropped for want of room since the last flush(), and are lost.
+    /// Errors  kTimeout; what ended the link for good; kOverloaded: the rest is stored, but as many scans as the
+    ///         message says were dropped for want of room since the last flush(), and are lost.
     [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
 
     /// Waits as flush() does and says goodbye. Nothing can be sent from then on (kGone).
@@ -149,8 +148,8 @@ public:
     // Questions. Each is asked once the scans handed over before are in the server's maps, or dropped, so that the
     // robot is known to be where the newest of them was taken. Four are open at a time; further ones, of other threads,
     // wait for their turn within their own patience.
-    // Errors of all  kInvalidField, kTooLarge: an option that no server would take, by name; the server's, e.g. kNoPath;
-    //                kTimeout; what ended the link for good.
+    // Errors of all  kInvalidField, kTooLarge: an option that no server would take, by name; the server's, e.g.
+    //                kNoPath; kTimeout; what ended the link for good.
 
     /// The cheapest way to `goal`, metres in the map frame.
     [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds patience,
