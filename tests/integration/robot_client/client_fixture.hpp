@@ -5,6 +5,7 @@
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,6 +30,24 @@ inline Scan numbered(int number) {
     scan.ranges.assign(200, static_cast<RangeMm>(2000 + number % 50));
     return scan;
 }
+
+/// A fake server that takes connections from the start, and answers them from run() on, on a thread of its own.
+class ServerInTheTest {
+public:
+    ~ServerInTheTest() { io_.stop(); }
+    void run() {
+        thread_ = std::jthread([this] { io_.run(); });
+    }
+    [[nodiscard]] std::string address() const { return fmt::format("127.0.0.1:{}", server_.port()); }
+    /// Pre: the client is closed.
+    [[nodiscard]] const FakeServer& fake() const noexcept { return server_; }
+
+private:
+    boost::asio::io_context io_{1};
+    boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+    FakeServer server_{io_, {{}}};
+    std::jthread thread_; // its end waits for io_'s
+};
 
 class ClientFixture : public testing::Test {
 protected:

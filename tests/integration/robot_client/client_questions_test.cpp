@@ -1,7 +1,5 @@
 #include "tests/integration/robot_client/client_fixture.hpp"
 
-#include <boost/asio/executor_work_guard.hpp>
-
 #include <atomic>
 #include <future>
 
@@ -103,22 +101,17 @@ TEST_F(ClientQuestions, OfManyThreadsWaitForTheirTurn) {
 }
 
 TEST_F(ClientQuestions, WhoseAskerHasLeftAreForgotten) {
-    boost::asio::io_context io{1};
-    FakeServer server(io, {{}}); // takes connections as soon as it runs
+    ServerInTheTest server;
     auto made = options();
-    made.server = fmt::format("127.0.0.1:{}", server.port());
+    made.server = server.address();
     const auto client = Client::start(made).value();
     for (int n = 0; n < 10; ++n) EXPECT_EQ(client->plan({1.0, 0.0}, 1ms).error().code, Errc::kTimeout);
-    {
-        const auto work = boost::asio::make_work_guard(io);
-        const std::jthread running([&] { io.run(); });
-        const auto way = client->plan({2.0, 0.0}, 20s);
-        EXPECT_TRUE(way) << way.error().message;
-        EXPECT_TRUE(client->close(20s));
-        io.stop();
-    }
-    ASSERT_EQ(server.plans().size(), 1U);
-    EXPECT_EQ(server.plans()[0].goal, Point2(2.0, 0.0));
+    server.run();
+    const auto way = client->plan({2.0, 0.0}, 20s);
+    EXPECT_TRUE(way) << way.error().message;
+    EXPECT_TRUE(client->close(20s));
+    ASSERT_EQ(server.fake().plans().size(), 1U);
+    EXPECT_EQ(server.fake().plans()[0].goal, Point2(2.0, 0.0));
 }
 
 } // namespace

@@ -1,7 +1,5 @@
 #include "tests/integration/robot_client/client_fixture.hpp"
 
-#include <boost/asio/executor_work_guard.hpp>
-
 #include <csignal>
 
 /// The library that a robot's own program links, at a real server.
@@ -144,9 +142,12 @@ TEST_F(ClientTest, WhatTheServerRefusesForGoodEndsTheClientWithItsSentence) {
 }
 
 TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
-    serve();
-    const auto client = Client::start(options()).value();
-    send(*client, 1, 100);
+    ServerInTheTest server; // whose credit is of few scans, so that it never catches up
+    server.run();
+    auto made = options();
+    made.server = server.address();
+    const auto client = Client::start(made).value();
+    send(*client, 1, 200);
     std::jthread other([&client](const std::stop_token& stop) {
         for (int number = 101; !stop.stop_requested(); ++number) {
             while (client->status().waiting > 200 && !stop.stop_requested()) std::this_thread::yield();
@@ -162,16 +163,14 @@ TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
 }
 
 TEST_F(ClientTest, ScansThatWereDroppedAreToldByTheNextFlush) {
-    boost::asio::io_context io{1};
-    FakeServer server(io, {{}}); // takes connections as soon as it runs
+    ServerInTheTest server;
     auto made = options();
-    made.server = fmt::format("127.0.0.1:{}", server.port());
+    made.server = server.address();
     made.memory_bytes_max = 200'000;
     const auto client = Client::start(made).value();
     send(*client, 1, 600);
     EXPECT_EQ(client->flush(1ms).error().code, Errc::kTimeout);
-    const auto work = boost::asio::make_work_guard(io);
-    const std::jthread running([&] { io.run(); });
+    server.run();
     const auto flushed = client->flush(20s);
     ASSERT_FALSE(flushed);
     EXPECT_EQ(flushed.error().code, Errc::kOverloaded);
@@ -183,7 +182,6 @@ TEST_F(ClientTest, ScansThatWereDroppedAreToldByTheNextFlush) {
     const auto again = client->flush(20s);
     EXPECT_TRUE(again) << again.error().message;
     EXPECT_TRUE(client->close(20s));
-    io.stop();
 }
 
 TEST_F(ClientTest, ManyThreadsMaySend) {
