@@ -1,7 +1,9 @@
 #include "robot_client/client/client.hpp"
 
+#include "common/scan/limits.hpp"
 #include "robot_client/client/checks.hpp"
 #include "robot_client/client/worker.hpp"
+#include "robot_client/uplink/waiting_robot.hpp"
 
 #include <fmt/format.h>
 
@@ -37,17 +39,8 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     uplink.conversation.hello.create->cell_size = options.cell_size;
     uplink.conversation.hello.client = "scanloom client library";
     uplink.conversation.hello.body_radius = options.body_radius;
-    uplink.on_trouble = [tell = options.tell, told = std::string()](const Error& error) mutable {
-        if (error.message != std::exchange(told, error.message)) tell(error.message); // each is told once
-    };
+    uplink.on_trouble = told_once(options.tell);
     return uplink;
-}
-
-Result<std::unique_ptr<Spool>> open_spool(const ClientOptions& options) {
-    if (options.spool.empty()) return std::unique_ptr<Spool>{};
-    return Spool::open({options.spool / fmt::format("{}.{}", options.session, options.robot), options.spool_bytes_max,
-                        options.drop_newest ? WhenFull::kDropNewest : WhenFull::kDropOldest},
-                       options.tell);
 }
 
 Path from_wire(wire::Path path, std::uint64_t revision) {
@@ -59,21 +52,30 @@ Path from_wire(wire::Path path, std::uint64_t revision) {
 Result<std::unique_ptr<Client>> Client::start(ClientOptions options) {
     auto uplink = uplink_options(options);
     if (!uplink) return uplink.error();
-    auto spool = open_spool(options);
+    const auto when_full = options.drop_newest ? WhenFull::kDropNewest : WhenFull::kDropOldest;
+    auto spool = open_spool_of(options.session, options.robot, {options.spool, options.spool_bytes_max, when_full},
+                               options.tell);
     if (!spool) return spool.error();
     LiveFeedOptions feed;
-    feed.when_full = options.drop_newest ? WhenFull::kDropNewest : WhenFull::kDropOldest;
+    feed.when_full = when_full;
     feed.tell = options.tell;
-    return std::unique_ptr<Client>(
-        new Client(std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed))));
+    return std::unique_ptr<Client>(new Client(
+        std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed)), options.cell_size));
 }
 
-Client::Client(std::unique_ptr<Worker> worker) : worker_(std::move(worker)) {}
+Client::Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size)
+    : worker_(std::move(worker)), cell_size_(cell_size) {}
 Client::~Client() = default;
 
 Result<> Client::send(const std::shared_ptr<const Sensor>& sensor, Scan scan) {
     if (!sensor) return Error{Errc::kInvalidField, "a scan needs its sensor"};
     if (auto ok = check(*sensor, scan); !ok) return ok;
+    if (cell_size_ && sensor->range_max > kReachCellsMax * *cell_size_) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("range_max is {} m, more than {} cells of the cell_size {} m, the most that a server "
+                                 "takes; use larger cells, or a shorter range",
+                                 sensor->range_max, kReachCellsMax, *cell_size_)};
+    }
     return worker_->push({sensor, std::move(scan)});
 }
 

@@ -166,9 +166,10 @@ public:
 private:
     class Worker;
 
-    explicit Client(std::unique_ptr<Worker> worker);
+    Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size);
 
     std::unique_ptr<Worker> worker_;
+    std::optional<double> cell_size_;
 };
 
 } // namespace scanloom::robot

@@ -100,6 +100,10 @@ TEST_F(ClientTest, ScansThatNoServerTakesAreRefusedAtOnceAndNamed) {
     Sensor without_range = *laser();
     without_range.range_max = 0.0;
     EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(without_range)), HasSubstr("range_max"));
+    Sensor far_sighted = *laser();
+    far_sighted.range_max = 900.0; // the cells are of 0.1 m
+    EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(far_sighted)),
+                HasSubstr("range_max is 900 m, more than 8192 cells"));
     EXPECT_EQ(refusal([](Scan&) {}, laser()), "taken");
 }
 
