@@ -1,7 +1,7 @@
 #include "common/net/link_stream.hpp"
 
-#include <boost/asio/ssl/host_name_verification.hpp>
 #include <openssl/ssl.h>
+#include <openssl/x509_vfy.h>
 
 namespace scanloom::net {
 
@@ -10,8 +10,18 @@ void LinkStream::expect_host(const std::string& host) {
     if (tls == nullptr) return;
     boost::system::error_code is_name;
     boost::asio::ip::make_address(host, is_name);
-    if (is_name) SSL_set_tlsext_host_name(tls->native_handle(), host.c_str()); // addresses may not be sent (RFC 6066)
-    tls->set_verify_callback(boost::asio::ssl::host_name_verification(host));
+    SSL* ssl = tls->native_handle();
+    if (is_name) {
+        SSL_set_tlsext_host_name(ssl, host.c_str()); // addresses may not be sent (RFC 6066)
+        SSL_set1_host(ssl, host.c_str());
+    } else {
+        X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host.c_str());
+    }
+}
+
+long LinkStream::verify_result() const {
+    const auto* tls = std::get_if<Tls>(&stream_);
+    return tls == nullptr ? 0 : SSL_get_verify_result(const_cast<Tls*>(tls)->native_handle());
 }
 
 } // namespace scanloom::net

@@ -40,6 +40,10 @@ public:
     /// Of a client: the server has to prove that it is `host`. Pre: before async_handshake().
     void expect_host(const std::string& host);
 
+    /// Of a client whose handshake failed: what was wrong with the server's certificate, as OpenSSL numbers it
+    /// (X509_V_ERR_...); 0 where nothing was.
+    [[nodiscard]] long verify_result() const;
+
     /// Must be done before anything is read or written. Completes at once where nothing is encrypted.
     template <class Token>
     auto async_handshake(Role role, Token&& token) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+#include <openssl/x509_vfy.h>
 
 namespace scanloom::net {
 
@@ -54,12 +55,30 @@ Result<TlsContext> server_tls(const std::string& certificate_file, const std::st
     return context;
 }
 
-std::string handshake_text(const boost::system::error_code& failed) {
+namespace {
+
+std::string certificate_text(long verify_result) {
+    switch (verify_result) {
+    case X509_V_ERR_HOSTNAME_MISMATCH:
+    case X509_V_ERR_IP_ADDRESS_MISMATCH:
+        return "its certificate is for another name; give --server the name that is in it, or have the server given a "
+               "certificate for this one";
+    case X509_V_ERR_CERT_HAS_EXPIRED: return "its certificate has expired; have the server given a new one";
+    case X509_V_ERR_CERT_NOT_YET_VALID: return "its certificate is not valid yet; check the clocks of both";
+    default:
+        return fmt::format("nobody who is trusted here signed its certificate ({}); name the certificate that signed "
+                           "it with --tls-ca",
+                           X509_verify_cert_error_string(verify_result));
+    }
+}
+
+} // namespace
+
+std::string handshake_text(const boost::system::error_code& failed, long verify_result) {
     const bool is_openssl = failed.category() == boost::asio::error::get_ssl_category();
     const int reason = is_openssl ? ERR_GET_REASON(static_cast<unsigned long>(failed.value())) : 0;
     if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED) {
-        return "its certificate is not one to be trusted for that name; name the certificate that signed it with "
-               "--tls-ca, and give --server the name that is in it";
+        return certificate_text(verify_result);
     }
     if (reason == SSL_R_WRONG_VERSION_NUMBER || reason == SSL_R_HTTP_REQUEST || !is_openssl) {
         return fmt::format("what listens there does not speak TLS ({}); leave --tls out, or have the server given a "

@@ -22,7 +22,8 @@ using TlsContext = std::shared_ptr<boost::asio::ssl::context>;
 /// Errors  kNotFound: a file cannot be read, or is no such thing; kConflict: the key is another certificate's.
 [[nodiscard]] Result<TlsContext> server_tls(const std::string& certificate_file, const std::string& key_file);
 
-/// Why a client's handshake failed, for people.
-[[nodiscard]] std::string handshake_text(const boost::system::error_code& failed);
+/// Why a client's handshake failed and what to do, for people.
+/// @param verify_result  LinkStream::verify_result()
+[[nodiscard]] std::string handshake_text(const boost::system::error_code& failed, long verify_result);
 
 } // namespace scanloom::net

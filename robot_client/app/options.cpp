@@ -5,6 +5,7 @@
 #include "common/app/parse_failure.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/app/simulate_options.hpp"
+#include "robot_client/uplink/limits.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
                    "File with the certificates to trust, in PEM, instead of the system's; means --tls")
         ->check(CLI::ExistingFile);
     app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
-        ->check(check_within(0.01, 1.0));
+        ->check(check_within(kCellSizeMin, kCellSizeMax));
     app.add_option("--body-radius", options.body_radius,
                    "Metres, of the robot's body, for viewers and as the default of planned ways. Default: that of the "
                    "simulated robot, for recordings none")
@@ -73,11 +74,11 @@ void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
                    "Directory that keeps the scans of a sensor until they are stored, so that neither minutes without "
                    "a server nor the end of this program lose any. Recordings need none");
     app.add_option("--spool-size", raw.spool_mib, "MiB, the most that the spool takes of the disk")
-        ->check(check_within(1.0, 1e6))
+        ->check(check_within(kSpoolMibMin, kSpoolMibMax))
         ->capture_default_str();
     app.add_option("--memory", raw.memory_mib,
                    "MiB of scans held in memory until they are stored; recordings are read no further then")
-        ->check(check_within(0.1, 1e5))
+        ->check(check_within(kMemoryMibMin, kMemoryMibMax))
         ->capture_default_str();
     app.add_option("--when-full", raw.when_full,
                    "What goes when a sensor's scans have no room left in the spool, or without one in memory. Those "
@@ -88,7 +89,7 @@ void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 
 void add_wire_options(CLI::App& app, Raw& raw) {
     app.add_option("--batch-delay", raw.batch_delay, "Seconds that a scan may wait for others to be sent with")
-        ->check(check_within(0.0, 60.0))
+        ->check(check_within(0.0, kBatchDelayMax))
         ->capture_default_str();
     app.add_option("--batch-size", raw.batch_kib, "KiB of scans that are sent together at most")
         ->check(check_within(1.0, 1000.0))
@@ -108,8 +109,8 @@ void sort_in(const Raw& raw, RobotOptions& options) {
     options.tls = options.tls || !options.tls_ca_file.empty();
     if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
     if (raw.give_up_after) options.give_up_after = milliseconds(*raw.give_up_after);
-    options.spool_bytes_max = bytes(raw.spool_mib * kKibibyte * kKibibyte);
-    options.memory_bytes_max = bytes(raw.memory_mib * kKibibyte * kKibibyte);
+    options.spool_bytes_max = bytes(raw.spool_mib * kMebibyte);
+    options.memory_bytes_max = bytes(raw.memory_mib * kMebibyte);
     options.when_full = raw.when_full == "drop-newest" ? WhenFull::kDropNewest : WhenFull::kDropOldest;
     options.batch_delay = milliseconds(raw.batch_delay);
     options.batch_bytes_max = bytes(raw.batch_kib * kKibibyte);

@@ -7,6 +7,7 @@
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
+#include "robot_client/uplink/waiting_robot.hpp"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -52,11 +53,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     uplink.give_up_after = options.give_up_after.value_or(default_patience);
     uplink.give_up_after_end = options.give_up_after.value_or(uplink.give_up_after_end);
     uplink.backoff_seed = std::random_device{}();
-    uplink.on_trouble = [&console, told = std::string()](const Error& error) mutable {
-        if (error.message == told) return; // a server that is away for long is told once
-        told = error.message;
-        console.note(fmt::format("{}; trying again", error.message));
-    };
+    uplink.on_trouble = told_once([&console](const std::string& text) { console.note(text); });
     uplink.conversation.batch_delay = options.batch_delay;
     uplink.conversation.batch_bytes_max = options.batch_bytes_max;
     uplink.conversation.compress = options.compress;
@@ -91,16 +88,12 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
     }
     const auto tell = [&console](const std::string& text) { console.note(text); };
     const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
-    std::unique_ptr<Spool> spool;
-    if (!options.spool.empty()) {
-        const auto directory = options.spool / fmt::format("{}.{}", options.session, options.robot);
-        auto opened = Spool::open({directory, options.spool_bytes_max, options.when_full}, tell);
-        if (!opened) return opened.error();
-        spool = std::move(*opened);
-        if (spool->waiting() > 0)
-            console.note(fmt::format("{} scans wait in {}", spool->waiting(), directory.string()));
-    }
-    return std::unique_ptr<Feed>(std::make_unique<LiveFeed>(*prepared.live, std::move(spool),
+    auto spool = open_spool_of(options.session, options.robot,
+                               {options.spool, options.spool_bytes_max, options.when_full}, tell);
+    if (!spool) return spool.error();
+    if (*spool && (*spool)->waiting() > 0)
+        console.note(fmt::format("{} scans wait in {}", (*spool)->waiting(), (*spool)->directory().string()));
+    return std::unique_ptr<Feed>(std::make_unique<LiveFeed>(*prepared.live, std::move(*spool),
                                                             LiveFeedOptions{options.when_full, on_resume, tell}));
 }
 

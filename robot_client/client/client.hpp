@@ -30,11 +30,11 @@ struct ClientOptions {
     /// A directory that keeps scans until they are stored, also when this program ends before. Empty: memory keeps
     /// them.
     std::filesystem::path spool;
-    std::uint64_t spool_bytes_max = std::uint64_t{256} << 20;
-    std::uint64_t memory_bytes_max = std::uint64_t{8} << 20; ///< of scans that wait to be sent, or to be acknowledged
+    std::uint64_t spool_bytes_max = std::uint64_t{256} << 20; ///< 1 MiB at least
+    std::uint64_t memory_bytes_max = std::uint64_t{8} << 20;  ///< of scans not acknowledged; 0.1 MiB at least
     bool drop_newest = false;                 ///< when there is no room left; else the oldest that were never sent go
     bool compress = false;                    ///< what is sent: fewer bytes, more work
-    std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others to be sent with
+    std::chrono::milliseconds batch_delay{0}; ///< how long a scan may wait for others, 60 s at most
 
     /// Hears sentences for people: that the server is away, that scans are dropped. Called on the client's thread,
     /// which waits for it; it must not call the client, nor throw.
@@ -49,6 +49,46 @@ struct ClientStatus {
     bool is_linked = false;
 };
 
+/// What plan() keeps to.
+struct PlanOptions {
+    std::optional<Point2> start;       ///< metres in the map frame; none: where the robot's newest scan was taken
+    bool allow_unknown = false;        ///< whether the way may lead through unexplored cells, and beside them
+    std::optional<double> body_radius; ///< metres, 0 to 5; none: ClientOptions::body_radius
+    std::optional<double> danger_cost; ///< what a metre in danger costs more than another, 0 to 1000; none: 1
+};
+
+/// Straight from point to point, metres in the map frame (x() and y()).
+struct Path {
+    std::vector<Point2> points; ///< at least 1
+    double length = 0.0;        ///< metres
+    double cost = 0.0;          ///< metres, those in danger counting 1 + danger_cost
+    std::uint64_t revision = 0; ///< of the session's maps it was found on
+};
+
+/// What coverage() keeps to.
+struct CoverageOptions {
+    std::optional<Point2> start;       ///< as of PlanOptions
+    std::optional<double> body_radius; ///< likewise; what the way covers to either side, too
+    std::optional<double> spacing;     ///< metres between rows, at most two body radii and a cell; none: two body radii
+    std::vector<Point2> region;        ///< corners of a polygon, 3 to 4096; none: all free ground
+};
+
+/// Cells side by side in a row of the map: (i, j), (i + 1, j) ... Cell (i, j) is the square from (i, j) * cell_size on.
+struct CellRun {
+    std::int32_t j = 0;
+    std::int32_t i = 0;
+    std::int32_t count = 0;
+};
+
+/// A way over all free ground.
+struct Coverage {
+    Path path;
+    double free_area = 0.0;           ///< square metres of free cells in the region
+    double covered_area = 0.0;        ///< square metres of those that the path covers
+    std::vector<CellRun> unreachable; ///< the others, which no path reaches
+    double cell_size = 0.0;           ///< metres
+};
+
 /// Where to explore next.
 struct ExplorationGoal {
     enum class Outcome {
@@ -57,8 +97,10 @@ struct ExplorationGoal {
         kComplete,      ///< nothing can be reached any more
     };
     Outcome outcome = Outcome::kComplete;
-    std::vector<Point2> path; ///< with kGoal: the way there, metres in the map frame (x() and y())
-    Point2 target{0.0, 0.0};  ///< with kGoal: what to look at from its end
+    std::vector<Point2> path;   ///< with kGoal: the way there, metres in the map frame (x() and y())
+    Point2 target{0.0, 0.0};    ///< with kGoal: what to look at from its end
+    bool in_danger = false;     ///< with kGoal: its end is near an obstacle, as there was no other place to stand
+    std::uint32_t given_up = 0; ///< cells of frontiers that count no more, as robots looked at them in vain
 };
 
 /// A robot's link to a Scanloom server, for the robot's own program.
@@ -69,7 +111,8 @@ struct ExplorationGoal {
 ///
 /// Scans are handed over and forgotten: a thread of the client's own sends them, keeps what is not stored, connects
 /// again when the link breaks, and resumes behind what the server has. Nothing waits for the network but flush(),
-/// close(), plan() and next_goal().
+/// close() and the questions plan(), next_goal() and coverage(), each for as long as its caller has patience. What is
+/// not done by then is kTimeout, and goes on without the caller: scans are sent, a question is forgotten.
 ///
 /// Units   metres, radians counter-clockwise, seconds; ranges in whole millimetres (scan.hpp).
 /// Frames  those of Scan and Sensor: every scan comes with the robot's pose in the map frame.
@@ -93,27 +136,40 @@ public:
     ///         good, e.g. kUnauthorized; kOverloaded: the client does not keep up, as its disk stands still.
     [[nodiscard]] Result<> send(const std::shared_ptr<const Sensor>& sensor, Scan scan);
 
-    /// Waits until all scans that were handed over are stored. Errors  kTimeout; what ended the link for good.
+    /// Waits until all scans that were handed over before are stored; those that others hand over meanwhile may not be.
+    /// Errors  kTimeout; what ended the link for good; kOverloaded: the rest is stored, but as many scans as the
+    ///         message says were dropped for want of room since the last flush(), and are lost.
     [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
 
-    /// Waits as flush() does and says goodbye. Nothing can be sent from then on (kGone). Errors  as of flush().
+    /// Waits as flush() does and says goodbye. Nothing can be sent from then on (kGone).
+    /// Errors  as of flush(); after kTimeout it may be tried again, after any other the client is closed.
     [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
 
-    /// The cheapest way to `goal`, metres in the map frame, from where the robot's newest scan was taken.
-    /// Errors  the server's, e.g. kNoPath; kTimeout.
-    [[nodiscard]] Result<std::vector<Point2>> plan(const Point2& goal, std::chrono::milliseconds patience);
+    // Questions. Each is asked once the scans handed over before are in the server's maps, or dropped, so that the
+    // robot is known to be where the newest of them was taken. Four are open at a time; further ones, of other threads,
+    // wait for their turn within their own patience.
+    // Errors of all  kInvalidField, kTooLarge: an option that no server would take, by name; the server's, e.g.
+    //                kNoPath; kTimeout; what ended the link for good.
 
-    /// Where to explore next, once all scans handed over are in the maps. Errors  the server's; kTimeout.
+    /// The cheapest way to `goal`, metres in the map frame.
+    [[nodiscard]] Result<Path> plan(const Point2& goal, std::chrono::milliseconds patience,
+                                    const PlanOptions& options = {});
+
+    /// Where to explore next.
     [[nodiscard]] Result<ExplorationGoal> next_goal(std::chrono::milliseconds patience);
+
+    /// A way over all free ground, or that of a region.
+    [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
 
     [[nodiscard]] ClientStatus status() const;
 
 private:
     class Worker;
 
-    explicit Client(std::unique_ptr<Worker> worker);
+    Client(std::unique_ptr<Worker> worker, std::optional<double> cell_size);
 
     std::unique_ptr<Worker> worker_;
+    std::optional<double> cell_size_;
 };
 
 } // namespace scanloom::robot

@@ -14,7 +14,10 @@ client reconnects as often as it takes and sends again what was not acknowledged
 Units are metres, radians counter-clockwise and seconds. A pose is (x, y, yaw), a point (x, y). Every function may be
 called from any thread. What fails raises ScanloomError; an argument that cannot be sent raises ValueError.
 
-As a program it reads scans from standard input, one JSON object a line; --help says how.
+As a program it reads scans from standard input, one JSON object a line, with "t" in seconds, "pose" and "ranges", and
+perhaps "odometry", "intensities" and "angles"; null in ranges is no valid reading. --help tells more.
+
+    {"t": 12.5, "pose": [1.0, 0.5, 0.785], "ranges": [1.25, Infinity, null]}
 """
 from __future__ import annotations
 
@@ -25,6 +28,7 @@ import dataclasses
 import json
 import logging
 import math
+import operator
 import random
 import re
 import selectors
@@ -132,7 +136,7 @@ class Status:
     stored_before: int  # scans of this robot that the server held when it was first reached
     scans: int  # number of the newest scan, those stored before included
     sent: int  # scans that went out in this run, each counted once
-    acknowledged: int  # number of the newest scan that is durable
+    acknowledged: int  # scans of this robot that are durable, those stored before included
     bytes: int  # sent, those sent again included
     reconnects: int
     is_linked: bool
@@ -233,6 +237,8 @@ _PINGS_MAX = 16  # unanswered; who sends more is not the server
 _SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years of ten a second
 _NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
 _COORDINATE_MAX = 1e6  # metres
+_REGION_CORNERS_MAX = 4096
+_TOKEN_BYTES_MAX = 8192  # a hello has room for more
 _FULL_TURN = 2.0 * math.pi + 1e-6
 _SERVER_TEXT_MAX = 500  # characters that are shown
 
@@ -263,6 +269,8 @@ def _millimetres(range_m: float) -> int:
 
 def _numbers(field: str, values: Any, convert: Callable[[Any], Any]) -> List[Any]:
     """Of a list, tuple, array or NumPy array."""
+    if values is None or isinstance(values, (str, bytes, bytearray, dict, set, frozenset)):
+        raise ValueError(f"{field} is of type {type(values).__name__}; a list or an array of numbers is needed")
     try:
         return [convert(value) for value in (values.tolist() if hasattr(values, "tolist") else values)]
     except (TypeError, ValueError, OverflowError) as error:
@@ -272,7 +280,7 @@ def _numbers(field: str, values: Any, convert: Callable[[Any], Any]) -> List[Any
 def _finite(field: str, value: Any, magnitude_max: float = math.inf) -> float:
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{field} is {value!r}; a number is needed") from None
     if not math.isfinite(number) or abs(number) > magnitude_max:
         limit = f", at most {magnitude_max:g} either way" if magnitude_max < math.inf else ""
@@ -280,9 +288,41 @@ def _finite(field: str, value: Any, magnitude_max: float = math.inf) -> float:
     return number
 
 
+def _whole(field: str, value: Any, smallest: int, largest: int) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{field} is {value!r}; a whole number is needed") from None
+    if not smallest <= number <= largest:
+        raise ValueError(f"{field} is {number}; {smallest} to {largest} are possible")
+    return number
+
+
+def _text(field: str, value: Any, bytes_max: int) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{field} is {value!r}; a str is needed")
+    try:
+        size = len(value.encode())
+    except UnicodeEncodeError:
+        raise ValueError(f"{field} {value!r} cannot be written in UTF-8; give it without surrogates") from None
+    if size > bytes_max:
+        raise ValueError(f"{field} is longer than {bytes_max} bytes: {_shown(value)!r}")
+    return value
+
+
+def _patience(timeout: Any) -> Optional[float]:
+    """None, or seconds that a lock can wait."""
+    if timeout is None or timeout == math.inf:
+        return None
+    return min(max(_finite("timeout", timeout), 0.0), threading.TIMEOUT_MAX)
+
+
 def _set_coordinates(field: str, value: Any, names: Sequence[str], message: Any) -> None:
     """Into a Point or Pose2, which counts as present afterwards also where all is 0."""
-    coordinates = list(value)
+    try:
+        coordinates = list(value)
+    except TypeError:
+        raise ValueError(f"{field} is {value!r}; ({', '.join(names)}) are needed") from None
     if len(coordinates) != len(names):
         raise ValueError(f"{field} has {len(coordinates)} numbers; ({', '.join(names)}) are needed")
     message.SetInParent()
@@ -296,6 +336,25 @@ def _set_pose(field: str, value: Any, message: Any) -> None:
 
 def _set_point(field: str, value: Any, message: Any) -> None:
     _set_coordinates(field, value, ("x", "y"), message)
+
+
+def _region(region: Any) -> List[float]:
+    """Corners x, y, x, y, ... of a polygon [(x, y), ...] or of a box [x_min, y_min, x_max, y_max]."""
+    needed = "a polygon of 3 to 4096 corners [(x, y), ...] or a box [x_min, y_min, x_max, y_max] is needed"
+    try:
+        given = list(region.tolist() if hasattr(region, "tolist") else region)
+        corners = [given] if given and not any(hasattr(corner, "__len__") for corner in given) else \
+            [list(corner) for corner in given]
+    except TypeError:
+        raise ValueError(f"region is {region!r}; {needed}") from None
+    if len(corners) == 1 and len(corners[0]) == 4:
+        low_x, low_y, high_x, high_y = (_finite("region", edge, _COORDINATE_MAX) for edge in corners[0])
+        if not (low_x < high_x and low_y < high_y):
+            raise ValueError(f"region is the box {corners[0]}, which holds nothing; {needed}")
+        return [low_x, low_y, high_x, low_y, high_x, high_y, low_x, high_y]
+    if not 3 <= len(corners) <= _REGION_CORNERS_MAX or any(len(corner) != 2 for corner in corners):
+        raise ValueError(f"region has {len(corners)} parts that are no corners of one; {needed}")
+    return [_finite("region", coordinate, _COORDINATE_MAX) for corner in corners for coordinate in corner]
 
 
 def _check_count(field: str, count: int) -> None:
@@ -321,6 +380,7 @@ def _uniform_angles(first: Any, increment: Any, count: Any, message: Any) -> Non
     message.increment = _finite("angle_increment", increment)
     if message.increment == 0.0:
         raise ValueError("angle_increment is 0; the beams would all point one way")
+    count = _whole("count", count, -_NO_RETURN, _NO_RETURN)
     _check_count("count", count)
     _check_span(message.increment, count)
     message.count = count
@@ -328,10 +388,8 @@ def _uniform_angles(first: Any, increment: Any, count: Any, message: Any) -> Non
 
 def _describe(sensor: int, kind: str, name: str, mount: Pose, uniform: Tuple[Any, Any, Any], angles: Any,
               aperture: float, range_min: float, range_max: float) -> Sensor:
-    description = _SensorDescription(sensor=sensor, name=name)
+    description = _SensorDescription(sensor=sensor, name=_text("the sensor's name", name, 64))
     description.kind = _messages["SensorKind"].values_by_name[f"SENSOR_KIND_{kind}"].number
-    if len(name.encode()) > 64:
-        raise ValueError(f"the sensor's name {name!r} is longer than 64 bytes")
     _set_pose("mount", mount, description.mount)
     if angles is None:
         _uniform_angles(*uniform, description.angles.uniform)
@@ -382,18 +440,24 @@ def _hello(session: str, robot: str, token: str, source: str, cell_size: Optiona
     frame = _Frame()
     hello = frame.hello
     for field, name in (("session", session), ("robot", robot)):
-        if not re.fullmatch("[A-Za-z0-9_-]{1,64}", name):
+        if not isinstance(name, str) or not re.fullmatch("[A-Za-z0-9_-]{1,64}", name):
             raise ValueError(f"{field} is {name!r}; 1 to 64 letters, digits, '_' and '-' are possible")
-    if len(source.encode()) > 64:
-        raise ValueError(f"source {source!r} is longer than 64 bytes")
+    _text("source", source, 64)
+    if not source.isprintable():
+        raise ValueError(f"source is {source!r}; printable text is needed")
+    _text("token", token, _TOKEN_BYTES_MAX)
     hello.protocol_version = _PROTOCOL_VERSION
     hello.session, hello.robot, hello.token, hello.source = session, robot, token, source
     hello.client = f"scanloom_client.py {__version__}"
     hello.create.SetInParent()
     if cell_size is not None:
         hello.create.cell_size = _finite("cell_size", cell_size)
+        if not 0.01 <= hello.create.cell_size <= 1.0:
+            raise ValueError(f"cell_size is {cell_size}; 0.01 to 1 metre are possible")
     if body_radius is not None:
         hello.body_radius = _finite("body_radius", body_radius)
+        if not 0.0 < hello.body_radius <= 5.0:
+            raise ValueError(f"body_radius is {body_radius}; more than 0 and at most 5 metres are possible")
     return frame
 
 
@@ -449,6 +513,7 @@ class _Conversation:
         self.scans: Deque[Tuple[Sensor, bytes]] = collections.deque()  # acknowledged + 1 .. last
         self.bytes_free = buffer_bytes
         self.acknowledged = self.sent = self.sent_ever = self.last = 0
+        self.applied = 0  # up to this scan they are in the maps, as far as is known
         self.requests: Dict[int, _Request] = {}  # by id, which grows
         self.request_ids = 0
         self.nonce = 0
@@ -560,6 +625,7 @@ class _Conversation:
                                 "and robot")
         self._acknowledge(durable, now)
         self.sent = durable
+        self.applied = max(self.applied, durable)
 
     def _on_ack(self, ack: Any, now: float) -> None:
         assert self.link and self.stored_before is not None
@@ -568,6 +634,7 @@ class _Conversation:
             raise _retry("MALFORMED_FRAME", f"the server acknowledged scan {ack.durable_seq}, only "
                          f"{self.stored_before + self.sent} were sent")
         self._acknowledge(durable, now)
+        self.applied = max(self.applied, min(ack.applied_seq - self.stored_before, self.last))
         while self.link.batches and self.link.batches[0][0] <= durable:
             self.link.under_way -= self.link.batches.popleft()[1]
         self.link.credit = ack.credit_bytes
@@ -806,8 +873,16 @@ class _Connection:
             del self._in[: _LENGTH_BYTES + size]
 
 
+_CERTIFICATE_ADVICE = {  # by OpenSSL's X509_V_ERR_...
+    9: "check the clocks of both: it is not valid yet",
+    10: "have the server given a new one",
+    62: "give the name that is in it as the server's address, or have the server given a certificate for this one",
+    64: "give the name that is in it as the server's address, or have the server given a certificate for this one",
+}
+
+
 def _split_address(address: str) -> Tuple[str, int]:
-    match = re.fullmatch(r"(?:\[([^\]]+)\]|([^:\s]+)):(\d{1,5})", address)
+    match = isinstance(address, str) and re.fullmatch(r"(?:\[([^\]]+)\]|([^:\s]+)):(\d{1,5})", address)
     if not match or not 1 <= int(match[3]) <= 65535:
         raise ValueError(f"the server's address is {address!r}; HOST:PORT is needed")
     return match[1] or match[2], int(match[3])
@@ -829,8 +904,9 @@ def _connect(host: str, port: int, tls: Optional[ssl.SSLContext], timeout: float
         return tls.wrap_socket(sock, server_hostname=host) if tls else sock
     except ssl.SSLCertVerificationError as error:
         sock.close()
-        raise ScanloomError("UNAUTHORIZED", f"the certificate of {where} is not trusted: {error.verify_message}; give "
-                            "tls= a context that knows who signed it") from None
+        raise ScanloomError("UNAUTHORIZED", f"the certificate of {where} is not trusted: {error.verify_message}; "
+                            + _CERTIFICATE_ADVICE.get(error.verify_code, "give tls= a context that knows who signed it")
+                            ) from None
     except OSError as error:
         sock.close()
         raise _retry("UNREACHABLE", f"no TLS with {where}: {error.strerror or error}") from None
@@ -861,6 +937,11 @@ class Client:
                  tls: Optional[ssl.SSLContext] = None, source: str = "", body_radius: Optional[float] = None,
                  buffer_bytes: int = 32 << 20, timing: Timing = Timing()) -> None:
         self._host, self._port = _split_address(server)
+        buffer_bytes = _whole("buffer_bytes", buffer_bytes, 1, 1 << 50)
+        if tls is not None and not isinstance(tls, ssl.SSLContext):
+            raise ValueError(f"tls is {tls!r}; what ssl.create_default_context() gives is needed")
+        if not isinstance(timing, Timing):
+            raise ValueError(f"timing is {timing!r}; a Timing is needed")
         self._tls = tls
         self._timing = timing
         self._conversation = _Conversation(_hello(session, robot, token, source, cell_size, body_radius), buffer_bytes,
@@ -932,10 +1013,18 @@ class Client:
         Waits while the buffer is full. Raises BufferFull if block is False then, or when timeout seconds have passed;
         ScanloomError once the client has failed.
         """
+        self._take(*self._encoded(sensor, ranges, pose, stamp, odometry, intensities, angles), block, timeout)
+
+    def _encoded(self, sensor: Sensor, ranges: Any, pose: Any, stamp: Optional[float], odometry: Any, intensities: Any,
+                 angles: Any) -> Tuple[Sensor, bytes]:
+        if not isinstance(sensor, Sensor):
+            raise ValueError(f"sensor is {sensor!r}; what laser() or sonar() gave is needed")
         if sensor.id >= len(self._sensors) or self._sensors[sensor.id] is not sensor:
             raise ValueError(f"{sensor.name} is not a sensor of this client")
         stamp = time.time() if stamp is None else stamp
-        encoded = _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
+        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
+
+    def _take(self, sensor: Sensor, encoded: bytes, block: bool, timeout: Optional[float]) -> None:
         with self._changed:
             self._check_open()
             waited = self._wait_for(self._conversation.has_room, timeout if block else 0.0)
@@ -964,18 +1053,19 @@ class Client:
                 raise ScanloomError("TIMEOUT", self._unacknowledged(), retryable=True)
             self._check_failure()
 
-    # Requests
+    # Requests. Each is asked once the scans given to send() before are in the server's maps, so that the robot is known
+    # to be where the newest of them was taken.
 
     def plan(self, goal: Point, *, start: Optional[Point] = None, allow_unknown: bool = False,
              body_radius: Optional[float] = None, danger_cost: Optional[float] = None,
              timeout: Optional[float] = None) -> Path:
-        """The cheapest way to a point, from where the newest scan in the maps was taken, or from start. Raises
+        """The cheapest way to a point, from where the newest scan given to send() was taken, or from start. Raises
         ScanloomError with NO_PATH where there is none, and TIMEOUT without an answer within timeout seconds."""
         frame = _Frame()
         request = frame.plan_request
         _set_point("goal", goal, request.goal)
         _set_options(request, start, body_radius)
-        request.allow_unknown = allow_unknown
+        request.allow_unknown = bool(allow_unknown)
         if danger_cost is not None:
             request.danger_cost = _finite("danger_cost", danger_cost)
         reply = self._ask(frame, timeout)
@@ -988,7 +1078,7 @@ class Client:
         request = frame.goal_request
         request.SetInParent()
         _set_options(request, start, body_radius)
-        request.frontier_size_min = frontier_size_min
+        request.frontier_size_min = _whole("frontier_size_min", frontier_size_min, 0, _NO_RETURN)
         reply = self._ask(frame, timeout)
         goal = reply.goal
         return Goal(exploration=_enum_name("Exploration", goal.exploration, "EXPLORATION_"),
@@ -997,17 +1087,18 @@ class Client:
                     given_up=goal.given_up, in_danger=goal.in_danger, revision=reply.revision)
 
     def coverage(self, *, start: Optional[Point] = None, body_radius: Optional[float] = None,
-                 spacing: Optional[float] = None, region: Optional[Sequence[Point]] = None,
+                 spacing: Optional[float] = None, region: Optional[Sequence[Any]] = None,
                  timeout: Optional[float] = None) -> Coverage:
-        """A way over all free ground, or that within the polygon region. Raises ScanloomError as plan() does."""
+        """A way over all free ground, or that within region: the corners of a polygon [(x, y), ...], or a box
+        [x_min, y_min, x_max, y_max]. Raises ScanloomError as plan() does."""
         frame = _Frame()
         request = frame.coverage_request
         request.SetInParent()
         _set_options(request, start, body_radius)
         if spacing is not None:
             request.spacing = _finite("spacing", spacing)
-        for x, y in region or ():
-            request.region.extend((_finite("region", x, _COORDINATE_MAX), _finite("region", y, _COORDINATE_MAX)))
+        if region is not None:
+            request.region.extend(_region(region))
         reply = self._ask(frame, timeout)
         runs = list(reply.coverage.unreachable)
         return Coverage(path=_path(reply.coverage.path, reply.revision), free_area=reply.coverage.free_area,
@@ -1015,11 +1106,15 @@ class Client:
                         unreachable=list(zip(runs[0::3], runs[1::3], runs[2::3])))
 
     def _ask(self, frame: Any, timeout: Optional[float]) -> Any:
-        until = math.inf if timeout is None else time.monotonic() + timeout
+        patience = _patience(timeout)
+        until = math.inf if patience is None else time.monotonic() + patience
         late = ScanloomError("TIMEOUT", "the server did not answer the request in time", retryable=True)
         with self._changed:
             self._check_open()
             conversation = self._conversation
+            last = conversation.last
+            if not self._wait_for(lambda: conversation.applied >= last, until - time.monotonic()):
+                raise late
             if not self._wait_for(lambda: len(conversation.requests) < _REQUESTS_MAX, until - time.monotonic()):
                 raise late
             self._check_open()
@@ -1055,9 +1150,8 @@ class Client:
 
     @property
     def acknowledged(self) -> int:
-        """Scans of this run that are durable."""
-        with self._changed:
-            return self._conversation.acknowledged
+        """Scans of this robot that are durable, those of earlier runs included."""
+        return self.status().acknowledged
 
     def status(self) -> Status:
         with self._changed:
@@ -1072,8 +1166,7 @@ class Client:
 
     def _wait_for(self, condition: Callable[[], bool], timeout: Optional[float]) -> bool:
         """Whether the condition came true in time. Raises what the client has failed with."""
-        if timeout == math.inf:
-            timeout = None
+        timeout = _patience(timeout)
         self._changed.wait_for(lambda: condition() or self._failure is not None, timeout)
         if condition():
             return True
@@ -1174,7 +1267,7 @@ class Client:
                         self._conversation.receive(_Frame.FromString(body), time.monotonic())
                         self._changed.notify_all()
         except ScanloomError as failure:
-            return failure
+            return self._explained(failure)
         except DecodeError as error:
             return self._unreadable(error)
         finally:
@@ -1196,6 +1289,13 @@ class Client:
                     break
                 connection.write(frame)
             return min(self._conversation.deadline(), patience_ends) - now
+
+    def _explained(self, failure: ScanloomError) -> ScanloomError:
+        link = self._conversation.link
+        if failure.code != "UNREACHABLE" or self._tls or (link and link.is_welcome):
+            return failure
+        return _retry("UNREACHABLE", f"{self._host}:{self._port} hung up without an answer; where it wants TLS, give "
+                      "tls=")
 
     def _unreadable(self, error: DecodeError) -> ScanloomError:
         if self._conversation.link and self._conversation.link.is_welcome:
@@ -1219,10 +1319,18 @@ def _path(path: Any, revision: int) -> Path:
 
 _USAGE = """reads scans from standard input and streams them to a server, one JSON object a line:
 
-  {"t": 12.5, "pose": [x, y, yaw], "ranges": [1.25, Infinity, null, ...]}
+  {"t": 12.5, "pose": [1.0, 0.5, 0.785], "ranges": [1.25, Infinity, null]}
 
-t is in seconds, ranges are in metres: Infinity or range-max is nothing within range, null no valid reading. "odometry",
-"intensities" and "angles" may be there, too. At the end it waits until every scan is durable and prints a summary."""
+  t            seconds
+  pose         [x, y, yaw] of the robot in the map, metres and radians
+  ranges       metres, one a beam: Infinity or range-max is nothing within range, null no valid reading
+  odometry     [x, y, yaw] of the robot in its odometry frame; may be absent, as may the others below
+  intensities  whole numbers, one a beam
+  angles       radians, one a beam, where they are not those of --angle-min and --angle-increment
+
+Lines that are no such object are told and skipped. At the end it waits until every scan is durable and prints a
+summary. Exits 0 when every line is stored, 1 when not or when lines were skipped ("skipped" of the summary), 2 when it
+was called wrongly."""
 
 
 class _OneLineParser(argparse.ArgumentParser):
@@ -1260,34 +1368,62 @@ def _open(options: argparse.Namespace) -> Client:
                   token=token, tls=tls, source=options.source)
 
 
-def _send_line(robot: Client, laser: Optional[Sensor], line: str, options: argparse.Namespace) -> Sensor:
-    scan = json.loads(line)
-    if not isinstance(scan, dict) or not {"t", "pose", "ranges"} <= scan.keys():
-        raise ValueError('an object with "t", "pose" and "ranges" is needed')
-    ranges = [math.nan if value is None else value for value in scan["ranges"]]
-    if laser is None:
-        increment = 2.0 * math.pi / max(len(ranges), 1) if options.angle_increment is None else options.angle_increment
-        laser = robot.laser(angle_min=options.angle_min, angle_increment=increment, count=len(ranges),
-                            range_min=options.range_min, range_max=options.range_max)
-    robot.send(laser, ranges, pose=scan["pose"], stamp=scan["t"], odometry=scan.get("odometry"),
-               intensities=scan.get("intensities"), angles=scan.get("angles"))
-    return laser
+class _Lines:
+    """From lines of the input to scans."""
 
+    _TOLD_MAX = 10  # of skipped lines
 
-def _stream(robot: Client, lines: Any, options: argparse.Namespace) -> None:
-    """A first signal ends the input."""
-    laser: Optional[Sensor] = None
-    known = robot.stored_before() if options.source else 0
-    try:
-        for number, line in enumerate((line for line in lines if line.strip()), start=1):
-            if number <= known:
-                continue
-            try:
-                laser = _send_line(robot, laser, line, options)
-            except (ValueError, TypeError) as error:
-                raise ValueError(f"scan {number} of the input: {error}") from None
-    except KeyboardInterrupt:
-        print("interrupted: waiting for what was sent to be stored; interrupt again to leave at once", file=sys.stderr)
+    def __init__(self, robot: Client, options: argparse.Namespace) -> None:
+        self._robot = robot
+        self._options = options
+        self._laser: Optional[Sensor] = None
+        self.skipped = 0
+
+    def stream(self, lines: Any) -> None:
+        """A first signal ends the input."""
+        known = self._robot.stored_before() if self._options.source else 0
+        try:
+            for number, line in enumerate(lines, start=1):
+                if not line.strip():
+                    continue
+                try:
+                    scan = self._read(line)
+                except (ValueError, TypeError, RecursionError) as error:
+                    self._skip(number, error)
+                    continue
+                if known > 0:
+                    known -= 1
+                else:
+                    self._robot._take(*scan, True, None)
+        except KeyboardInterrupt:
+            print("interrupted: waiting for what was sent to be stored; interrupt again to leave at once",
+                  file=sys.stderr)
+
+    def _skip(self, number: int, error: Exception) -> None:
+        self.skipped += 1
+        if self.skipped <= self._TOLD_MAX:
+            print(f"scanloom_client.py: line {number} of the input is skipped: {error}", file=sys.stderr)
+        if self.skipped == self._TOLD_MAX:
+            print("scanloom_client.py: further lines that are skipped are only counted", file=sys.stderr)
+
+    def _read(self, line: bytes) -> Tuple[Sensor, bytes]:
+        scan = json.loads(line)
+        if not isinstance(scan, dict) or not {"t", "pose", "ranges"} <= scan.keys():
+            raise ValueError('an object with "t", "pose" and "ranges" is needed')
+        if not isinstance(scan["ranges"], list):
+            raise ValueError("ranges is no list of numbers")
+        ranges = [math.nan if value is None else value for value in scan["ranges"]]
+        _set_pose("pose", scan["pose"], _Scan().pose)  # a wrong line describes no laser
+        return self._robot._encoded(self._laser or self._make_laser(len(ranges)), ranges, scan["pose"],
+                                    _finite("t", scan["t"]), scan.get("odometry"), scan.get("intensities"),
+                                    scan.get("angles"))
+
+    def _make_laser(self, count: int) -> Sensor:
+        options = self._options
+        increment = 2.0 * math.pi / max(count, 1) if options.angle_increment is None else options.angle_increment
+        self._laser = self._robot.laser(angle_min=options.angle_min, angle_increment=increment, count=count,
+                                        range_min=options.range_min, range_max=options.range_max)
+        return self._laser
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -1301,16 +1437,20 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except (ValueError, OSError) as error:
         print(f"scanloom_client.py: {error}", file=sys.stderr)
         return 2
+    lines = _Lines(robot, options)
     try:
         with robot:
-            _stream(robot, sys.stdin, options)
+            lines.stream(sys.stdin.buffer)
     except (ScanloomError, ValueError) as error:
         problem = str(error)
     except KeyboardInterrupt:
         problem = "interrupted before every scan was acknowledged"
     summary = dataclasses.asdict(robot.status())
     del summary["is_linked"]
-    summary.update(seconds=round(time.monotonic() - started, 3), session=options.session, robot=options.robot)
+    if lines.skipped and not problem:
+        problem = f"{lines.skipped} lines of the input were skipped; the others are stored"
+    summary.update(skipped=lines.skipped, seconds=round(time.monotonic() - started, 3), session=options.session,
+                   robot=options.robot)
     if problem:
         summary["error"] = problem
         print(f"scanloom_client.py: {problem}", file=sys.stderr)

@@ -52,6 +52,11 @@ void Conversation::open(Time now) {
     link_->opened = link_->heard = now;
 }
 
+void Conversation::close() {
+    link_.reset();
+    requests_.rewind();
+}
+
 std::optional<wire::LinkError> Conversation::receive(const wire::Message& message, Time now) {
     assert(link_);
     link_->heard = now;
@@ -98,7 +103,6 @@ std::optional<wire::LinkError> Conversation::on_welcome(const wire::Welcome& wel
     }
     session_id_ = welcome.session_id;
     applied_ = std::max(applied_, welcome.last_durable_seq);
-    requests_.rewind();
     link_->welcomed = true;
     link_->limits = with_defaults(welcome.limits);
     link_->zstd = welcome.zstd;

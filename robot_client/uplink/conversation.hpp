@@ -44,7 +44,7 @@ public:
 
     // The link
     void open(Time now);
-    void close() noexcept { link_.reset(); }
+    void close();
     [[nodiscard]] std::optional<wire::LinkError> receive(const wire::Message& message, Time now);
     /// The next frame to send, length prefix included; nothing while there is nothing to say or no credit to say it.
     [[nodiscard]] std::optional<std::string> next_frame(Time now);
@@ -68,10 +68,12 @@ public:
     /// Asks the server; `answered` is called once, from receive(), with the reply, which may be a refusal. What was
     /// asked on a link that breaks is asked again on the next; what is not answered when all scans are durable and
     /// there will be no more, never is.
-    /// @return false when OpenRequests::kMax are not answered yet; nothing is asked then.
-    [[nodiscard]] bool ask(Request request, Answered answered) {
+    /// @return its id; nothing when OpenRequests::kMax are not answered yet, and nothing is asked then.
+    [[nodiscard]] std::optional<std::uint64_t> ask(Request request, Answered answered) {
         return requests_.add(std::move(request), std::move(answered));
     }
+    /// Nobody waits for the answer any more.
+    void abandon(std::uint64_t id) { requests_.abandon(id); }
 
     // How far it is
     /// Every scan there will be is durable.

@@ -36,11 +36,11 @@ asio::awaitable<Result<NextStop>> ask(Uplink& uplink, double body_radius_m) {
         Pending{asio::steady_timer(co_await asio::this_coro::executor, asio::steady_timer::time_point::max()), {}});
     wire::GoalRequest request;
     request.body_radius = body_radius_m;
-    const bool is_asked = uplink.ask(request, [pending](const Reply& reply) {
+    const auto asked = uplink.ask(request, [pending](const Reply& reply) {
         pending->goal = std::get<wire::GoalReply>(reply).goal;
         pending->answered.cancel();
     });
-    if (!is_asked) co_return Error{Errc::kOverloaded, "too many questions to the server are open"};
+    if (!asked) co_return Error{Errc::kOverloaded, "too many questions to the server are open"};
     while (!pending->goal) co_await pending->answered.async_wait(asio::as_tuple(asio::use_awaitable));
     if (!*pending->goal) co_return pending->goal->error();
     co_return as_stop(std::move(**pending->goal));

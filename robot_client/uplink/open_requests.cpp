@@ -14,12 +14,27 @@ std::optional<Reply> as_reply(const wire::Message& message) {
 
 } // namespace
 
-bool OpenRequests::add(Request request, Answered answered) {
-    if (open_.size() >= kMax) return false;
+std::optional<std::uint64_t> OpenRequests::add(Request request, Answered answered) {
+    if (open_.size() >= kMax) return std::nullopt;
     const std::uint64_t id = ++newest_;
     std::visit([id](auto& kind) { kind.id = id; }, request);
     open_.emplace(id, Open{std::move(request), std::move(answered)});
-    return true;
+    return id;
+}
+
+void OpenRequests::abandon(std::uint64_t id) {
+    const auto asked = open_.find(id);
+    if (asked == open_.end()) return; // the answer was quicker
+    if (id > sent_) {
+        open_.erase(asked);
+    } else {
+        asked->second.answered = nullptr;
+    }
+}
+
+void OpenRequests::rewind() {
+    sent_ = 0;
+    std::erase_if(open_, [](const auto& one) { return !one.second.answered; });
 }
 
 std::optional<wire::Message> OpenRequests::next() {
@@ -38,7 +53,7 @@ bool OpenRequests::answer(const wire::Message& message) {
     if (!is_of_it) return false;
     const auto answered = std::move(asked->second.answered);
     open_.erase(asked);
-    answered(*reply);
+    if (answered) answered(*reply);
     return true;
 }
 

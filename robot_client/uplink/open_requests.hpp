@@ -25,11 +25,15 @@ class OpenRequests {
 public:
     static constexpr std::size_t kMax = 4; ///< what a server meets at a time
 
-    /// @return false when kMax are open; nothing is asked then.
-    [[nodiscard]] bool add(Request request, Answered answered);
+    /// @return its id; nothing when kMax are open, and nothing is asked then.
+    [[nodiscard]] std::optional<std::uint64_t> add(Request request, Answered answered);
 
-    /// There is a new link: all are unsent.
-    void rewind() noexcept { sent_ = 0; }
+    /// Nobody waits for the reply any more. What was not sent never is; of what was, the server counts one until its
+    /// reply was read, or the link is gone.
+    void abandon(std::uint64_t id);
+
+    /// The link is gone: all are unsent, and those that were abandoned are forgotten.
+    void rewind();
 
     /// The next to be sent, in the order in which they were asked; counts as sent from then on.
     [[nodiscard]] std::optional<wire::Message> next();
@@ -41,7 +45,7 @@ public:
 private:
     struct Open {
         Request request;
-        Answered answered;
+        Answered answered; ///< none: abandoned
     };
 
     std::map<std::uint64_t, Open> open_; // by id, which grows

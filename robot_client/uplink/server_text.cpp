@@ -1,15 +1,11 @@
 #include "robot_client/uplink/server_text.hpp"
 
-#include <fmt/format.h>
+#include "robot_client/uplink/utf8.hpp"
 
-#include <array>
+#include <fmt/format.h>
 
 namespace scanloom::robot {
 namespace {
-
-unsigned char byte_at(std::string_view text, std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
-}
 
 /// Characters that do not stand in the text but change how it is shown.
 /// Source  Unicode 15: general categories Cc, Zl and Zp, and the property Bidi_Control.
@@ -20,19 +16,8 @@ bool is_control(char32_t c) {
 
 /// Bytes of the printable UTF-8 character at the front of `text`; 0 where there is none.
 std::size_t printable_size(std::string_view text) {
-    const unsigned char first = byte_at(text, 0);
-    if (first < 0x80) return is_control(first) ? 0 : 1;
-    const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-    char32_t character = first & (0x7fU >> size);
-    for (std::size_t i = 1; i < size; ++i) {
-        if ((byte_at(text, i) & 0xc0) != 0x80) return 0;
-        character = character << 6 | (byte_at(text, i) & 0x3fU);
-    }
-    // Longer than needed would be another way to write smaller characters, controls among them.
-    constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
-    const bool is_text = first >= 0xc0 && first < 0xf8 && character >= kSmallest[size] && character <= 0x10ffff &&
-                         (character < 0xd800 || character > 0xdfff);
-    return is_text && !is_control(character) ? size : 0;
+    const auto first = first_character(text);
+    return first && !is_control(first->value) ? first->size : 0;
 }
 
 } // namespace
@@ -42,7 +27,7 @@ std::string shown(std::string_view text) {
     while (!text.empty()) {
         const std::size_t size = printable_size(text);
         std::string next(text.substr(0, size));
-        if (size == 0) next = fmt::format("\\x{:02x}", byte_at(text, 0));
+        if (size == 0) next = fmt::format("\\x{:02x}", static_cast<unsigned char>(text.front()));
         if (out.size() + next.size() > kServerTextMax) return out + "...";
         out += next;
         text.remove_prefix(size == 0 ? 1 : size);

@@ -60,10 +60,10 @@ void Uplink::stop() {
     wake_all();
 }
 
-bool Uplink::ask(Request request, Answered answered) {
-    if (!conversation_.ask(std::move(request), std::move(answered))) return false;
-    write_wake_.cancel();
-    return true;
+std::optional<std::uint64_t> Uplink::ask(Request request, Answered answered) {
+    const auto id = conversation_.ask(std::move(request), std::move(answered));
+    if (id) write_wake_.cancel();
+    return id;
 }
 
 UplinkStatus Uplink::status() const {
@@ -100,15 +100,9 @@ void Uplink::add(Observation observation) {
 
 asio::awaitable<void> Uplink::until_applied() {
     const auto all_handed_over = [&] { return conversation_.resumed_after() && feed_.waiting() == 0; };
-    while (!all_handed_over()) co_await acked_.wait(Clock::now() + kProgressPeriod);
+    while (!all_handed_over()) co_await heard_.wait(Clock::now() + kProgressPeriod);
     const std::uint64_t last = conversation_.last();
-    while (conversation_.applied() < last) co_await acked_.wait();
-}
-
-asio::awaitable<void> Uplink::until_stored() {
-    while (feed_.waiting() > 0 || conversation_.acknowledged() < conversation_.last()) {
-        co_await acked_.wait(Clock::now() + kProgressPeriod); // scans may be dropped, too
-    }
+    while (conversation_.applied() < last) co_await heard_.wait();
 }
 
 // Progress ------------------------------------------------------------------------------------------------------------
@@ -163,6 +157,7 @@ asio::awaitable<void> Uplink::keep_linked() {
         const auto cancellation = co_await asio::this_coro::cancellation_state;
         if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has the outcome
         conversation_.close();
+        heard_.ring();
         if (conversation_.is_done()) co_return;
         if (!failure.retryable) {
             outcome_ = failure.error;
@@ -198,7 +193,7 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStr
     const auto [failed] = std::get<0>(shaken);
     if (!failed) co_return std::nullopt;
     co_return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
-                               net::handshake_text(failed)));
+                               net::handshake_text(failed, stream.verify_result())));
 }
 
 asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream::Socket& socket) {
@@ -305,7 +300,7 @@ void Uplink::wake_all() {
     feed_wake_.cancel();
     write_wake_.cancel();
     progress_wake_.cancel();
-    acked_.ring();
+    heard_.ring();
 }
 
 } // namespace scanloom::robot

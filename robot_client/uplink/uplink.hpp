@@ -49,7 +49,7 @@ struct UplinkStatus {
 /// Carries a feed's scans to the server: connects and reconnects. The protocol is Conversation's; here are the sockets
 /// and timers.
 ///
-/// Thread  everything runs on the one thread of `io`; stop(), ask() and until_applied() are called on it, too.
+/// Thread  everything runs on the one thread of `io`; all functions are called on it, too.
 class Uplink final : private Intake {
 public:
     Uplink(boost::asio::io_context& io, UplinkOptions options, Feed& feed);
@@ -67,15 +67,21 @@ public:
     [[nodiscard]] Result<> outcome_when_interrupted() const;
 
     /// Conversation::ask(), sent as soon as there is a link. `answered` is called on the thread of `io`.
-    [[nodiscard]] bool ask(Request request, Answered answered);
+    [[nodiscard]] std::optional<std::uint64_t> ask(Request request, Answered answered);
+    /// Nobody waits for the answer any more.
+    void abandon(std::uint64_t id) { conversation_.abandon(id); }
 
     /// Completes when all scans that were taken by now are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
-    /// Completes when all scans that were taken are durable.
-    [[nodiscard]] boost::asio::awaitable<void> until_stored();
+    /// Rings whenever something came from the server, and when a link has ended.
+    [[nodiscard]] Bell& news_bell() noexcept { return heard_; }
 
     [[nodiscard]] UplinkStatus status() const;
+    /// The highest seq that is in the server's maps, as far as is known.
+    [[nodiscard]] std::uint64_t applied() const noexcept { return conversation_.applied(); }
+    /// Why nothing moves, for people.
+    [[nodiscard]] std::string what_is_wrong() const;
     [[nodiscard]] boost::asio::io_context::executor_type executor() const { return io_.get_executor(); }
 
 private:
@@ -104,7 +110,6 @@ private:
     [[nodiscard]] wire::LinkError unreadable(const Error& error) const;
     [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
-    [[nodiscard]] std::string what_is_wrong() const;
 
     /// Waits until `time` or until the timer is cancelled, which is how the coroutines wake one another.
     [[nodiscard]] static boost::asio::awaitable<void> wait(boost::asio::steady_timer& timer, Clock::time_point time);
@@ -118,7 +123,7 @@ private:
     boost::asio::steady_timer feed_wake_;
     boost::asio::steady_timer write_wake_;
     boost::asio::steady_timer progress_wake_;
-    Bell acked_;
+    Bell heard_;
     Result<> outcome_;
     std::optional<Error> last_trouble_;
     std::optional<Clock::time_point> stopped_;

@@ -15,12 +15,12 @@ using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
 using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
-Certificate make_certificate(EVP_PKEY* key, const std::string& host) {
+Certificate make_certificate(EVP_PKEY* key, const std::string& host, long valid_for_s) {
     Certificate made(X509_new(), X509_free);
     X509_set_version(made.get(), 2); // that is, 3
     ASN1_INTEGER_set(X509_get_serialNumber(made.get()), 1);
-    X509_gmtime_adj(X509_getm_notBefore(made.get()), -3600);
-    X509_gmtime_adj(X509_getm_notAfter(made.get()), 24L * 3600);
+    X509_gmtime_adj(X509_getm_notBefore(made.get()), valid_for_s - 24L * 3600);
+    X509_gmtime_adj(X509_getm_notAfter(made.get()), valid_for_s);
     X509_set_pubkey(made.get(), key);
     X509_NAME* name = X509_get_subject_name(made.get());
     X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>("scanloom test"), -1,
@@ -37,10 +37,10 @@ Certificate make_certificate(EVP_PKEY* key, const std::string& host) {
 
 } // namespace
 
-CertificateFiles write_certificate(const std::filesystem::path& directory, const std::string& host) {
+CertificateFiles write_certificate(const std::filesystem::path& directory, const std::string& host, long valid_for_s) {
     const CertificateFiles files{directory / (host + ".crt"), directory / (host + ".key")};
     const Key key(EVP_EC_gen("P-256"), EVP_PKEY_free);
-    const Certificate certificate = make_certificate(key.get(), host);
+    const Certificate certificate = make_certificate(key.get(), host, valid_for_s);
     const File certificate_file(std::fopen(files.certificate.c_str(), "w"), std::fclose);
     PEM_write_X509(certificate_file.get(), certificate.get());
     const File key_file(std::fopen(files.key.c_str(), "w"), std::fclose);

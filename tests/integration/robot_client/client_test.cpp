@@ -1,15 +1,6 @@
-#include "robot_client/client/client.hpp"
-
-#include "tests/support/running_server.hpp"
-#include "tests/support/temporary_directory.hpp"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/integration/robot_client/client_fixture.hpp"
 
 #include <csignal>
-#include <limits>
-#include <thread>
 
 /// The library that a robot's own program links, at a real server.
 namespace scanloom::robot {
@@ -18,52 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-std::shared_ptr<const Sensor> laser() {
-    Sensor sensor;
-    sensor.name = "laser";
-    sensor.angles = UniformAngles{-1.0, 0.01, 200};
-    sensor.range_max = 10.0;
-    return std::make_shared<const Sensor>(sensor);
-}
-
-Scan numbered(int number) {
-    Scan scan;
-    scan.stamp = 0.1 * number;
-    scan.pose = {0.01 * number, 0.0, 0.001 * number};
-    scan.ranges.assign(200, static_cast<RangeMm>(2000 + number % 50));
-    return scan;
-}
-
-class ClientTest : public testing::Test {
-protected:
-    void serve(std::uint16_t robot_port = 0) {
-        server_.reset();
-        server_.emplace(directory_.path() / "store", directory_.path() / "log", robot_port);
-    }
-
-    ClientOptions options(const std::string& session = "lab") {
-        ClientOptions made;
-        made.server = server_ ? server_->robot_address() : made.server;
-        made.session = session;
-        made.robot = "r1";
-        made.cell_size = 0.1;
-        return made;
-    }
-
-    static void send(Client& client, int first, int last) {
-        for (int number = first; number <= last; ++number) {
-            const auto sent = client.send(laser(), numbered(number));
-            ASSERT_TRUE(sent) << sent.error().message;
-        }
-    }
-
-    std::string digest_of(const std::string& session) {
-        return server_->get(fmt::format("/api/v1/sessions/{}/digest", session)).body;
-    }
-
-    TemporaryDirectory directory_;
-    std::optional<test::RunningServer> server_;
-};
+class ClientTest : public ClientFixture {};
 
 TEST_F(ClientTest, WhatIsSentIsStoredOnceFlushed) {
     serve();
@@ -146,9 +92,18 @@ TEST_F(ClientTest, ScansThatNoServerTakesAreRefusedAtOnceAndNamed) {
     EXPECT_THAT(refusal([](Scan& scan) { scan.sensor = 3; }, laser()), HasSubstr("of sensor 3, the sensor given is 0"));
     EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(4097); }, laser()), HasSubstr("4097 beams"));
     EXPECT_THAT(refusal([](Scan&) {}, nullptr), HasSubstr("needs its sensor"));
+    Sensor unreadable = *laser();
+    unreadable.name = "la\xffser";
+    EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(unreadable)),
+                HasSubstr("name 'la\\xffser' is not UTF-8"));
+    EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(1'000'000); }, laser()), HasSubstr("1000000 beams"));
     Sensor without_range = *laser();
     without_range.range_max = 0.0;
     EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(without_range)), HasSubstr("range_max"));
+    Sensor far_sighted = *laser();
+    far_sighted.range_max = 900.0; // the cells are of 0.1 m
+    EXPECT_THAT(refusal([](Scan&) {}, std::make_shared<const Sensor>(far_sighted)),
+                HasSubstr("range_max is 900 m, more than 8192 cells"));
     EXPECT_EQ(refusal([](Scan&) {}, laser()), "taken");
 }
 
@@ -165,6 +120,13 @@ TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
     EXPECT_THAT(refusal([](auto& made) { made.body_radius = -1.0; }), HasSubstr("body_radius"));
     EXPECT_THAT(refusal([](auto& made) { made.tls_ca_file = "/nowhere"; }), HasSubstr("/nowhere"));
     EXPECT_THAT(refusal([](auto& made) { made.spool = "/proc/spool"; }), HasSubstr("/proc/spool"));
+    EXPECT_THAT(refusal([](auto& made) { made.cell_size = 0.0; }), HasSubstr("a cell_size of 0 m cannot be"));
+    EXPECT_THAT(refusal([](auto& made) { made.memory_bytes_max = 0; }), HasSubstr("memory_bytes_max of 0 MiB"));
+    EXPECT_THAT(refusal([](auto& made) { made.spool_bytes_max = 1000; }), HasSubstr("spool_bytes_max of"));
+    EXPECT_THAT(refusal([](auto& made) { made.batch_delay = -1ms; }), HasSubstr("batch_delay of -0.001 s"));
+    EXPECT_THAT(refusal([](auto& made) { made.batch_delay = 61s; }), HasSubstr("batch_delay of 61 s"));
+    EXPECT_THAT(refusal([](auto& made) { made.token = std::string(20'000, 't'); }), HasSubstr("token has 20000 bytes"));
+    EXPECT_THAT(refusal([](auto& made) { made.token = "\xff"; }), HasSubstr("not UTF-8"));
     EXPECT_EQ(refusal([](auto&) {}), "started");
 }
 
@@ -183,18 +145,47 @@ TEST_F(ClientTest, WhatTheServerRefusesForGoodEndsTheClientWithItsSentence) {
     EXPECT_EQ(second->send(laser(), numbered(2)).error().code, Errc::kConflict);
 }
 
-TEST_F(ClientTest, WaysAndGoalsAreAnswered) {
-    serve();
-    const auto client = Client::start(options()).value();
-    send(*client, 1, 5);
-    const auto goal = client->next_goal(20s);
-    ASSERT_TRUE(goal) << goal.error().message;
-    ASSERT_EQ(goal->outcome, ExplorationGoal::Outcome::kGoal);
-    EXPECT_FALSE(goal->path.empty());
-    const auto way = client->plan({1.0, 0.0}, 20s);
-    ASSERT_TRUE(way) << way.error().message;
-    EXPECT_LT((way->back() - Point2(1.0, 0.0)).norm(), 0.2);
-    EXPECT_EQ(client->plan({50.0, 0.0}, 20s).error().code, Errc::kNoPath);
+TEST_F(ClientTest, AFlushWaitsForNoScansThatOthersSendMeanwhile) {
+    ServerInTheTest server; // whose credit is of few scans, so that it never catches up
+    server.run();
+    auto made = options();
+    made.server = server.address();
+    const auto client = Client::start(made).value();
+    send(*client, 1, 200);
+    std::jthread other([&client](const std::stop_token& stop) {
+        for (int number = 101; !stop.stop_requested(); ++number) {
+            while (client->status().waiting > 200 && !stop.stop_requested()) std::this_thread::yield();
+            if (!client->send(laser(), numbered(number))) return; // it is closed
+        }
+    });
+    for (int round = 0; round < 5; ++round) {
+        const auto flushed = client->flush(20s);
+        ASSERT_TRUE(flushed) << flushed.error().message;
+    }
+    const auto closed = client->close(20s);
+    EXPECT_TRUE(closed) << closed.error().message;
+}
+
+TEST_F(ClientTest, ScansThatWereDroppedAreToldByTheNextFlush) {
+    ServerInTheTest server;
+    auto made = options();
+    made.server = server.address();
+    made.memory_bytes_max = 200'000;
+    const auto client = Client::start(made).value();
+    send(*client, 1, 600);
+    EXPECT_EQ(client->flush(1ms).error().code, Errc::kTimeout);
+    server.run();
+    const auto flushed = client->flush(20s);
+    ASSERT_FALSE(flushed);
+    EXPECT_EQ(flushed.error().code, Errc::kOverloaded);
+    const auto dropped = client->status().dropped;
+    EXPECT_GT(dropped, 100U);
+    EXPECT_THAT(flushed.error().message, HasSubstr(fmt::format("{} scans were dropped", dropped)));
+    EXPECT_EQ(client->status().acknowledged, 600U - dropped);
+    send(*client, 601, 610);
+    const auto again = client->flush(20s);
+    EXPECT_TRUE(again) << again.error().message;
+    EXPECT_TRUE(client->close(20s));
 }
 
 TEST_F(ClientTest, ManyThreadsMaySend) {

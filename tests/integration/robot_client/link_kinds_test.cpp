@@ -102,7 +102,7 @@ TEST_F(LinkKinds, AnotherHostsCertificateIsRefusedBeforeAnythingIsSaid) {
     made.tls = net::client_tls(files_.certificate).value();
     EXPECT_FALSE(run(made));
     ASSERT_THAT(troubles_, testing::SizeIs(1));
-    EXPECT_THAT(troubles_[0], HasSubstr("its certificate is not one to be trusted for that name"));
+    EXPECT_THAT(troubles_[0], HasSubstr("its certificate is for another name; give --server"));
     EXPECT_THAT(server_->hellos(), IsEmpty());
 }
 
@@ -114,6 +114,16 @@ TEST_F(LinkKinds, ACertificateThatNobodyTrustsIsRefused) {
     EXPECT_FALSE(run(made));
     EXPECT_THAT(troubles_.at(0), HasSubstr("--tls-ca"));
     EXPECT_THAT(server_->hellos(), IsEmpty());
+}
+
+TEST_F(LinkKinds, ACertificateThatHasExpiredIsToldAsThat) {
+    serve("127.0.0.1");
+    const auto expired = write_certificate(directory_.path(), "127.0.0.1", -3600);
+    server_->encrypt_with(net::server_tls(expired.certificate, expired.key).value());
+    auto made = options();
+    made.tls = net::client_tls(expired.certificate).value();
+    EXPECT_FALSE(run(made));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("its certificate has expired; have the server given a new one"));
 }
 
 TEST_F(LinkKinds, WhereOnlyOneSideEncryptsEachIsToldWhatToDo) {

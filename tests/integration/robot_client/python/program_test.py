@@ -66,18 +66,34 @@ class Program(unittest.TestCase):
         uniform = server.sensors[0].angles.uniform
         self.assertEqual((uniform.first, uniform.increment, uniform.count), (-math.pi, math.pi / 2, 4))
 
-    def test_a_wrong_line_is_named_and_those_before_it_are_stored(self):
+    def test_a_wrong_line_is_named_and_skipped(self):
         for told, wrong in [("Expecting value", "hello"), ('"t", "pose" and "ranges" is needed', '{"t": 1}'),
-                            ("pose has 2 numbers", '{"t": 1, "pose": [1, 2], "ranges": [1]}')]:
+                            ("pose has 2 numbers", '{"t": 1, "pose": [1, 2], "ranges": [1]}'),
+                            ("ranges is no list", '{"t": 1, "pose": [1, 2, 3], "ranges": 4}'),
+                            ("t is None", '{"t": null, "pose": [1, 2, 3], "ranges": [1]}')]:
             with self.subTest(told):
                 server = self.fake()
                 code, out, errors = self.stream(server.address, [line_of(0), "", line_of(1), wrong, line_of(3)])
                 self.assertEqual(code, 1)
-                self.assertIn("scan 3 of the input: ", errors)
+                self.assertIn("line 4 of the input is skipped: ", errors)
                 self.assertIn(told, errors)
-                self.assertEqual(errors.count("\n"), 1)
-                self.assertEqual(json.loads(out)["acknowledged"], 2)
-                self.assertEqual(len(server.stored), 2)
+                self.assertIn("1 lines of the input were skipped", errors)
+                summary = json.loads(out)
+                self.assertEqual((summary["acknowledged"], summary["skipped"]), (3, 1))
+                self.assertEqual([scan.stamp for scan in server.stored], [0.0, 0.1, 0.1 * 3])
+
+    def test_wrong_lines_do_not_count_where_lines_are_streamed_again(self):
+        server = self.fake()
+        lines = [line_of(0), "hello", line_of(1), line_of(2)]
+        self.stream(server.address, lines[:3], "--source", "lines")
+        self.stream(server.address, lines, "--source", "lines")
+        self.assertEqual([scan.stamp for scan in server.stored], [0.1 * i for i in range(3)])
+
+    def test_many_wrong_lines_are_counted(self):
+        server = self.fake()
+        code, out, errors = self.stream(server.address, ["hello"] * 50 + [line_of(0)])
+        self.assertEqual((code, json.loads(out)["skipped"], len(server.stored)), (1, 50, 1))
+        self.assertEqual(errors.count("\n"), 12)
 
     def test_what_the_server_refuses_is_told_in_one_line(self):
         def refuses(link):

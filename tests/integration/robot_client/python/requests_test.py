@@ -1,8 +1,10 @@
 """Questions on the link: each reply finds who asked."""
+import math
 import threading
 import unittest
 
 from fixture import LinkTest
+from programs import scanloom_client
 
 
 def collect(link, count):
@@ -138,6 +140,44 @@ class Requests(LinkTest):
         self.start(mistakes, answers)
         with self.client() as robot:
             self.assertEqual(robot.plan((2.0, 1.0)).points[-1], (2.0, 1.0))
+
+    def test_what_was_sent_before_is_in_the_maps_first(self):
+        order = []
+
+        def notes(link):
+            link.greet()
+            frame = link.serve(until=lambda frame: order.append(frame.WhichOneof("body")) or
+                               order[-1] == "plan_request")
+            reply_plan(link, frame.plan_request)
+            link.serve()
+
+        self.start(notes)
+        with self.client() as robot:
+            self.assertEqual(robot.stored_before(), 0)
+            self.send(robot, self.laser(robot), 2)
+            self.assertEqual(robot.plan((2.0, 1.0)).points[-1], (2.0, 1.0))
+        self.assertEqual(order[-1], "plan_request")
+        self.assertIn("scan_batch", order)
+        self.assert_stored(2)
+
+    def test_regions_are_polygons_or_boxes(self):
+        box = [0.0, 0.0, 2.0, 0.0, 2.0, 1.0, 0.0, 1.0]
+        self.assertEqual(scanloom_client._region([0, 0, 2, 1]), box)
+        self.assertEqual(scanloom_client._region([(0, 0), (2, 0), (2, 1), (0, 1)]), box)
+        for wrong in ([0, 0, 2], [2, 0, 0, 1], [(0, 0), (1, 1)], [(0, 0), (1, 1), (1,)], 5, [], "abcd",
+                      [(0, 0), (1, 1), 2], [0, 0, "x", 1], [(math.nan, 0), (1, 0), (1, 1)], [(0, 0)] * 4097):
+            with self.subTest(wrong=str(wrong)[:40]), self.assertRaisesRegex(ValueError, "region"):
+                scanloom_client._region(wrong)
+
+    def test_wrong_arguments_are_refused_by_name(self):
+        self.start()
+        with self.client() as robot:
+            for told, call, arguments in [("goal is None", robot.plan, {"goal": None}),
+                                          ("frontier_size_min is 1.5", robot.next_goal, {"frontier_size_min": 1.5}),
+                                          ("frontier_size_min is -1", robot.next_goal, {"frontier_size_min": -1}),
+                                          ("start is 3", robot.coverage, {"start": 3})]:
+                with self.subTest(told), self.assertRaisesRegex(ValueError, told):
+                    call(**arguments)
 
     def test_options_of_requests_are_sent_as_given(self):
         asked = []

@@ -15,14 +15,32 @@ class Tls(LinkTest):
     def setUpClass(cls):
         cls.directory = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.directory.cleanup)
-        cls.certificate = pathlib.Path(cls.directory.name) / "certificate.pem"
-        key = pathlib.Path(cls.directory.name) / "key.pem"
+        cls.certificate, cls.server_side = cls.make_certificate("localhost", "IP:127.0.0.1")
+
+    @classmethod
+    def make_certificate(cls, name, address):
+        """The file of one that signs itself, and what a server needs to show it."""
+        certificate, key = (pathlib.Path(cls.directory.name) / f"{name}.{kind}" for kind in ("pem", "key"))
         code, _, errors = run("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1",
-                              "-nodes", "-days", "2", "-subj", "/CN=localhost",
-                              "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", cls.certificate)
+                              "-nodes", "-days", "2", "-subj", f"/CN={name}", "-addext", f"subjectAltName={address}",
+                              "-keyout", key, "-out", certificate)
         assert code == 0, errors
-        cls.server_side = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-        cls.server_side.load_cert_chain(cls.certificate, key)
+        server_side = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        server_side.load_cert_chain(certificate, key)
+        return certificate, server_side
+
+    def test_a_server_that_wants_tls_is_told_as_that(self):
+        self.start(lambda link: link.receive())  # and hangs up, as a server with a certificate does
+        robot = self.client(timing={"give_up_after": 0.05})
+        self.assertIn("where it wants TLS, give tls=", self.assert_fails("TIMEOUT", robot.close).message)
+
+    def test_what_to_do_about_a_certificate_depends_on_what_is_wrong_with_it(self):
+        certificate, server_side = self.make_certificate("another", "DNS:another.example")
+        self.start(tls=server_side)
+        context = ssl.create_default_context(cafile=certificate)
+        error = self.assert_fails("UNAUTHORIZED", self.client(tls=context).close)
+        self.assertIn("give the name that is in it", error.message)
+        self.assertNotIn("who signed it", error.message)
 
     def test_scans_arrive(self):
         self.start(tls=self.server_side)

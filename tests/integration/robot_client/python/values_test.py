@@ -90,6 +90,14 @@ class Refused(LinkTest):
                     ("pose.x is 2000000.0", {"pose": (2e6, 0.0, 0.0)}),
                     ("pose has 2 numbers", {"pose": (0.0, 0.0)}),
                     ("odometry.y is inf", {"odometry": (0.0, math.inf, 0.0)}),
+                    ("ranges is of type bytes", {"ranges": b"12"}),
+                    ("ranges is of type dict", {"ranges": {1.0: 2.0}}),
+                    ("ranges is of type NoneType", {"ranges": None}),
+                    ("pose is None", {"pose": None}),
+                    ("pose.x is 1000", {"pose": (10**400, 0, 0)}),
+                    ("sensor is None", {"sensor": None}),
+                    ("timeout is 'x'", {"timeout": "x"}),
+                    ("stamp is 1000", {"stamp": 10**400}),
                     ("stamp is 'now'", {"stamp": "now"})]:
                 with self.subTest(told), self.assertRaisesRegex(ValueError, told):
                     robot.send(**{**good, **wrong})
@@ -103,6 +111,8 @@ class Refused(LinkTest):
                 ("angle_increment is 0", {"angle_increment": 0.0}),
                 ("more than a full turn", {"angle_increment": 1.0}),
                 ("count has 0 beams", {"count": 0}),
+                ("count is 1.5", {"count": 1.5}),
+                ("name is None", {"name": None}),
                 ("give angle_min", {"angle_min": None}),
                 ("not both", {"angles": [0.0]}),
                 ("range_max 1001", {"range_max": 1001.0}),
@@ -129,7 +139,12 @@ class Refused(LinkTest):
     def test_names_and_addresses_that_cannot_be_are_refused(self):
         for told, wrong in [("session is 'a b'", {"session": "a b"}), ("robot is ''", {"robot": ""}),
                             ("source", {"source": "s" * 65}), ("HOST:PORT", {"server": "localhost"}),
-                            ("HOST:PORT", {"server": "localhost:0"}), ("cell_size is nan", {"cell_size": math.nan})]:
+                            ("HOST:PORT", {"server": "localhost:0"}), ("cell_size is nan", {"cell_size": math.nan}),
+                            ("cell_size is 2", {"cell_size": 2}), ("body_radius is 6", {"body_radius": 6}),
+                            ("session is None", {"session": None}), ("token is None", {"token": None}),
+                            ("token is longer", {"token": "t" * 20000}), ("HOST:PORT", {"server": None}),
+                            ("tls is True", {"tls": True}), ("buffer_bytes is 0", {"buffer_bytes": 0}),
+                            ("buffer_bytes is -1", {"buffer_bytes": -1}), ("source is 'a.nb'", {"source": "a\nb"})]:
             with self.subTest(told), self.assertRaisesRegex(ValueError, told):
                 scanloom_client.Client(**{"server": "127.0.0.1:1", "session": "s", "robot": "r", **wrong})
 

@@ -64,6 +64,39 @@ TEST(OpenRequests, AreSentAgainOnANewLink) {
     EXPECT_FALSE(requests.next());
 }
 
+TEST(OpenRequests, WhatWasAbandonedBeforeItWasSentNeverIs) {
+    OpenRequests requests;
+    const auto left = requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); });
+    const auto kept = requests.add(kPlan, [](const Reply&) {});
+    requests.abandon(left.value());
+    EXPECT_EQ(id_of(requests.next()), kept);
+    EXPECT_FALSE(requests.next());
+}
+
+TEST(OpenRequests, WhatWasAbandonedLaterTakesItsPlaceUntilItsReplyCame) {
+    OpenRequests requests;
+    std::optional<std::uint64_t> left;
+    for (std::size_t n = 0; n < OpenRequests::kMax; ++n) {
+        left = requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); });
+        EXPECT_TRUE(requests.next());
+    }
+    requests.abandon(left.value());
+    EXPECT_FALSE(requests.add(kPlan, [](const Reply&) {}));
+    EXPECT_TRUE(requests.answer(no_path(*left)));
+    EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
+    requests.abandon(*left); // again, and too late
+}
+
+TEST(OpenRequests, WhatWasAbandonedIsForgottenWithItsLink) {
+    OpenRequests requests;
+    const auto left = requests.add(kPlan, [](const Reply&) { ADD_FAILURE(); });
+    EXPECT_TRUE(requests.next());
+    requests.abandon(left.value());
+    requests.rewind();
+    EXPECT_FALSE(requests.next());
+    for (std::size_t n = 0; n < OpenRequests::kMax; ++n) EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {}));
+}
+
 TEST(OpenRequests, WhoIsAnsweredMayAskAgainAtOnce) {
     OpenRequests requests;
     EXPECT_TRUE(requests.add(kPlan, [&](const Reply&) { EXPECT_TRUE(requests.add(kPlan, [](const Reply&) {})); }));

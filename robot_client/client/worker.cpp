@@ -1,0 +1,190 @@
+#include "robot_client/client/worker.hpp"
+
+#include "robot_client/client/checks.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_future.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using std::chrono::milliseconds;
+
+namespace {
+
+/// Scans on their way to the client's thread. It takes them at once, unless the disk of its spool stands still.
+constexpr std::size_t kHandedOverMax = 1024;
+
+constexpr milliseconds kPatienceMax = std::chrono::hours(24 * 365);
+
+/// How much later than it should the client's thread may be: its disk may stand still.
+constexpr milliseconds kGrace{1000};
+
+/// How often to look for what no bell tells: that scans were dropped, or stood in a spool and are stored already.
+constexpr milliseconds kLookPeriod{100};
+
+} // namespace
+
+Client::Worker::Patience::Patience(milliseconds given)
+    : length(std::clamp(given, milliseconds(0), kPatienceMax)), until(Clock::now() + length) {}
+
+Client::Worker::Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed)
+    : feed_(source_, std::move(spool), std::move(feed)), uplink_(io_, std::move(uplink), feed_),
+      ended_(asio::co_spawn(io_, run(), asio::use_future)), thread_([this] { io_.run(); }) {}
+
+Client::Worker::~Worker() {
+    io_.stop();
+    thread_.join();
+}
+
+asio::awaitable<void> Client::Worker::run() {
+    const Result<> outcome = co_await uplink_.run();
+    {
+        const std::lock_guard lock(mutex_);
+        outcome_ = outcome ? Error{Errc::kGone, "the client was closed"} : outcome.error();
+    }
+    uplink_.news_bell().ring();
+}
+
+std::optional<Error> Client::Worker::failure() {
+    const std::lock_guard lock(mutex_);
+    return outcome_;
+}
+
+// Scans ---------------------------------------------------------------------------------------------------------------
+
+Result<> Client::Worker::push(Observation observation) {
+    const std::lock_guard lock(mutex_); // so that what is taken before close() is there before the source's end
+    if (outcome_) return *outcome_;
+    if (is_closing_) return Error{Errc::kGone, "the client is being closed"};
+    if (on_their_way_.fetch_add(1) >= kHandedOverMax) {
+        --on_their_way_;
+        return Error{
+            Errc::kOverloaded,
+            fmt::format("{} scans wait to be taken up; the disk of the spool may stand still", kHandedOverMax)};
+    }
+    asio::post(io_, [this, observation = std::move(observation)]() mutable {
+        source_.push(std::move(observation));
+        ++handed_over_;
+        --on_their_way_;
+    });
+    return {};
+}
+
+Result<> Client::Worker::flush(milliseconds length) {
+    const Patience patience(length);
+    return wait_for(until_stored(patience), patience);
+}
+
+Result<> Client::Worker::close(milliseconds length) {
+    const Patience patience(length);
+    const auto flushed = wait_for(until_stored(patience), patience);
+    if (!flushed && flushed.error().code != Errc::kOverloaded) return flushed;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!std::exchange(is_closing_, true)) asio::post(io_, [this] { source_.stop(); });
+    }
+    if (ended_.wait_until(patience.until) != std::future_status::ready) {
+        return Error{Errc::kTimeout, fmt::format("the server did not close the link within {:g} s",
+                                                 std::chrono::duration<double>(patience.length).count())};
+    }
+    if (auto failed = failure(); failed && failed->code != Errc::kGone) return *failed;
+    return flushed;
+}
+
+std::uint64_t Client::Worker::count_of_those_not(Fate fate) const {
+    const UplinkStatus now = uplink_.status();
+    const std::uint64_t done = fate == Fate::kStored ? now.acknowledged : std::min(uplink_.applied(), now.last);
+    return source_.waiting() + now.waiting + now.last - done;
+}
+
+asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Patience patience) {
+    const std::uint64_t handed_over = handed_over_;
+    const std::uint64_t dropped = uplink_.status().dropped;
+    for (;;) {
+        // Scans go in order: once no more are left than came later, those from before are through. Which of them were
+        // dropped is not known; to take all for later ones only means to wait for as many more.
+        const std::uint64_t left = count_of_those_not(fate);
+        const std::uint64_t newer = handed_over_ - handed_over;
+        if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};
+        const auto what = fmt::format("{} scans were not {}", left, fate == Fate::kStored ? "stored" : "in the maps");
+        if (const auto why = reason_to_leave(what, patience)) co_return *why;
+        co_await uplink_.news_bell().wait(std::min(patience.until, Clock::now() + kLookPeriod));
+    }
+}
+
+asio::awaitable<Result<>> Client::Worker::until_stored(Patience patience) {
+    const Result<> stored = co_await until_all_are(Fate::kStored, patience);
+    if (!stored) co_return stored;
+    const std::uint64_t dropped = uplink_.status().dropped;
+    const std::uint64_t lost = dropped - std::exchange(dropped_and_told_, dropped);
+    if (lost == 0) co_return Result<>{};
+    co_return Error{Errc::kOverloaded,
+                    fmt::format("{} scans were dropped for want of room and are lost, the others are stored; give a "
+                                "larger memory_bytes_max, or a spool",
+                                lost)};
+}
+
+// Questions -----------------------------------------------------------------------------------------------------------
+
+Result<Reply> Client::Worker::ask(Request request, milliseconds length) {
+    if (auto ok = check(request); !ok) return ok.error();
+    const Patience patience(length);
+    return wait_for(until_answered(std::move(request), patience), patience);
+}
+
+asio::awaitable<Result<Reply>> Client::Worker::until_answered(Request request, Patience patience) {
+    const Result<> applied = co_await until_all_are(Fate::kInMaps, patience);
+    if (!applied) co_return applied.error();
+    const auto reply = std::make_shared<std::optional<Reply>>();
+    const Answered answered = [reply](const Reply& got) { reply->emplace(got); };
+    auto id = uplink_.ask(request, answered);
+    while (!id) {
+        if (const auto why = reason_to_leave("too many questions were open", patience)) co_return *why;
+        co_await uplink_.news_bell().wait(patience.until);
+        id = uplink_.ask(request, answered);
+    }
+    while (!*reply) {
+        if (const auto why = reason_to_leave("the server did not answer", patience)) {
+            uplink_.abandon(*id);
+            co_return *why;
+        }
+        co_await uplink_.news_bell().wait(patience.until);
+    }
+    co_return **reply;
+}
+
+// Waiting -------------------------------------------------------------------------------------------------------------
+
+std::optional<Error> Client::Worker::reason_to_leave(std::string_view what, const Patience& patience) {
+    if (auto failed = failure()) return failed;
+    if (Clock::now() < patience.until) return std::nullopt;
+    return Error{Errc::kTimeout,
+                 fmt::format("{} within {:g} s{}", what, std::chrono::duration<double>(patience.length).count(),
+                             uplink_.status().is_linked ? "" : ": " + uplink_.what_is_wrong())};
+}
+
+template <class Value>
+Result<Value> Client::Worker::wait_for(asio::awaitable<Result<Value>> coroutine, const Patience& patience) {
+    auto done = asio::co_spawn(io_, std::move(coroutine), asio::use_future);
+    if (done.wait_until(patience.until + kGrace) == std::future_status::ready) return done.get();
+    return failure().value_or(
+        Error{Errc::kTimeout, "the client's thread stands still; the disk of its spool may, too"});
+}
+
+ClientStatus Client::Worker::status() {
+    auto asked =
+        asio::post(io_, asio::use_future([this] {
+                       const UplinkStatus now = uplink_.status();
+                       return ClientStatus{now.acknowledged, count_of_those_not(Fate::kStored) + on_their_way_.load(),
+                                           now.dropped, now.bytes, now.is_linked};
+                   }));
+    return asked.get();
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "robot_client/client/client.hpp"
+#include "robot_client/client/pushed_source.hpp"
+#include "robot_client/uplink/live_feed.hpp"
+#include "robot_client/uplink/uplink.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace scanloom::robot {
+
+/// The uplink on a thread of its own.
+///
+/// What a caller waits for is a coroutine on that thread that ends by itself when the caller's patience does, so that
+/// nothing is left of those who have gone.
+/// Thread  any, several at a time. What is private runs on its own, except where it says otherwise.
+class Client::Worker {
+public:
+    Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed);
+    ~Worker();
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    [[nodiscard]] Result<> push(Observation observation);
+    [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
+    [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
+    /// Errors  kInvalidField, kTooLarge: a value that would end the link; kTimeout; what ended the client. A refusal of
+    ///         the server is in the reply.
+    [[nodiscard]] Result<Reply> ask(Request request, std::chrono::milliseconds patience);
+    [[nodiscard]] ClientStatus status();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    /// How long a caller waits.
+    struct Patience {
+        explicit Patience(std::chrono::milliseconds length);
+
+        std::chrono::milliseconds length;
+        Clock::time_point until;
+    };
+
+    /// What is to become of scans.
+    enum class Fate { kStored, kInMaps };
+
+    [[nodiscard]] boost::asio::awaitable<void> run();
+    /// Of the scans handed over before; those dropped meanwhile count as gone.
+    [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Patience patience);
+    [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Patience patience);
+    [[nodiscard]] boost::asio::awaitable<Result<Reply>> until_answered(Request request, Patience patience);
+    [[nodiscard]] std::uint64_t count_of_those_not(Fate fate) const;
+    /// Why there is no use in waiting on, if so: the client has ended, or the patience has.
+    [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Patience& patience);
+
+    /// Waits for a coroutine. Thread: the caller's.
+    template <class Value>
+    [[nodiscard]] Result<Value> wait_for(boost::asio::awaitable<Result<Value>> coroutine, const Patience& patience);
+    /// What the client has ended with. Thread: any.
+    [[nodiscard]] std::optional<Error> failure();
+
+    boost::asio::io_context io_{1};
+    boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+    PushedSource source_;
+    LiveFeed feed_;
+    Uplink uplink_;
+    std::uint64_t handed_over_ = 0;      ///< scans, to source_
+    std::uint64_t dropped_and_told_ = 0; ///< scans, by flush()
+    std::atomic<std::size_t> on_their_way_ = 0;
+    std::mutex mutex_;
+    std::optional<Error> outcome_; ///< guarded by mutex_
+    bool is_closing_ = false;      ///< guarded by mutex_
+    std::future<void> ended_;
+    std::thread thread_; // last: it uses the others
+};
+
+} // namespace scanloom::robot
