@@ -2,7 +2,9 @@
 
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/app/recent_rate.hpp"
 #include "robot_client/app/summary.hpp"
+#include "robot_client/source/further.hpp"
 #include "robot_client/uplink/guidance.hpp"
 #include "robot_client/uplink/live_feed.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
@@ -55,7 +57,7 @@ UplinkOptions uplink_options(const RobotOptions& options, std::string token, con
     uplink.on_trouble = [&console, told = std::string()](const Error& error) mutable {
         if (error.message == told) return; // a server that is away for long is told once
         told = error.message;
-        console.note(fmt::format("{}; trying again", error.message));
+        console.note(further(error.message, "trying again"));
     };
     uplink.conversation.batch_delay = options.batch_delay;
     uplink.conversation.batch_bytes_max = options.batch_bytes_max;
@@ -118,10 +120,15 @@ asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, 
                                     const PreparedSource& prepared, Console& console) {
     const auto begun = std::chrono::steady_clock::now();
     asio::steady_timer timer(io);
+    RecentRate rate;
+    static_cast<void>(rate.update({}, 0));
     for (;;) {
         timer.expires_after(console.progress_period());
         if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
-        console.progress(progress_text(uplink.status(), feed.scan_count(), std::chrono::steady_clock::now() - begun,
+        const UplinkStatus status = uplink.status();
+        const std::uint64_t stored_now = status.acknowledged - status.resumed_after;
+        console.progress(progress_text(status, feed.scan_count(),
+                                       rate.update(std::chrono::steady_clock::now() - begun, stored_now),
                                        prepared.live ? prepared.live->remarks() : std::string()));
     }
 }
