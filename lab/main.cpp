@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
-    return scanloom::lab::run(std::get<scanloom::lab::LabOptions>(options));
+    return scanloom::lab::run(std::get<scanloom::lab::ExperimentOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-lab: {}\n", error.what()));
     return scanloom::kExitFailed;

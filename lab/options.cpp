@@ -15,7 +15,7 @@ constexpr const char* kAbout =
     "Exits 0 when done, 1 when something failed, 2 when it was called wrongly.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML, in a section of its command) or in the environment\n"
-    "(--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
+    "(--seed as SCANLOOM_SEED). A flag beats the environment, which beats the file.";
 
 CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
     auto* experiment = app.add_subcommand(
@@ -35,42 +35,24 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
     return experiment;
 }
 
-CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
-    auto* truth = app.add_subcommand("truth", "What a perfect map of a world would hold, as map.pgm and map.yaml");
-    truth->add_option("--world", options.world, "Which world")
-        ->check(CLI::IsMember({"room", "office", "hall"}))
-        ->capture_default_str();
-    truth->add_option("--cell-size", options.cell_size, "Metres a cell")
-        ->check(check_within(0.01, 1.0))
-        ->capture_default_str();
-    truth->add_option("--out", options.out, "Directory for the two files; made if it does not exist");
-    return truth;
-}
-
 } // namespace
 
-std::variant<LabOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<ExperimentOptions, Leave> parse_options(int argc, const char* const* argv) {
     ExperimentOptions experiment_options;
-    TruthOptions truth_options;
     CLI::App app(kAbout, "scanloom-lab");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-lab {}", kVersion));
-    const CLI::App* experiment = add_experiment(app, experiment_options);
-    add_truth(app, truth_options);
+    add_experiment(app, experiment_options);
     app.require_subcommand(1);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "say what to do: experiment, or truth");
+        return leave_for(app, reason, "say what to do: experiment");
     }
-    // not required() by the parser: an environment meant for one command would be asked for by the other
-    const bool is_experiment = experiment->parsed();
-    if ((is_experiment ? experiment_options.out : truth_options.out).empty()) {
-        return usage_error(app, fmt::format("{}: name a directory with --out", is_experiment ? "experiment" : "truth"));
-    }
-    if (is_experiment) return LabOptions(std::move(experiment_options));
-    return LabOptions(std::move(truth_options));
+    // not required() by the parser, which would ask for it in words of its own
+    if (experiment_options.out.empty()) return usage_error(app, "experiment: name a directory with --out");
+    return experiment_options;
 }
 
 } // namespace scanloom::lab

@@ -5,7 +5,6 @@
 
 #include "common/app/console.hpp"
 #include "common/app/machine.hpp"
-#include "robot_client/sim/truth_map.hpp"
 
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
@@ -56,7 +55,7 @@ Result<> write_document(const OutputDirectory& directory, const std::string& nam
     return directory.write(name + ".html", to_html(document, std::get<Heading>(document.front()).text));
 }
 
-Result<std::string> run_one(const ExperimentOptions& options, Console& console) {
+Result<std::string> run_experiment_of(const ExperimentOptions& options, Console& console) {
     Matrix matrix = options.quick ? quick_matrix() : full_matrix();
     matrix.seed = options.seed;
     matrix.scans = options.scans.value_or(matrix.scans);
@@ -79,24 +78,11 @@ Result<std::string> run_one(const ExperimentOptions& options, Console& console) 
                        boost::json::serialize((directory->path() / kReportFile).string() + ".html"));
 }
 
-Result<std::string> run_one(const TruthOptions& options, Console&) {
-    const auto world = robot::find_world(options.world);
-    if (!world) return world.error();
-    const auto directory = OutputDirectory::open(options.out);
-    if (!directory) return directory.error();
-    const robot::TruthGrid truth = robot::truth_of(*world, options.cell_size);
-    if (auto written = directory->write("map.pgm", robot::truth_pgm(truth)); !written) return written.error();
-    const std::string yaml = robot::truth_yaml(truth, "map.pgm");
-    if (auto written = directory->write("map.yaml", yaml); !written) return written.error();
-    return fmt::format(R"({{"width":{},"height":{},"map":{}}})", truth.width, truth.height,
-                       boost::json::serialize((directory->path() / "map.yaml").string()));
-}
-
 } // namespace
 
-ExitCode run(const LabOptions& options) {
+ExitCode run(const ExperimentOptions& options) {
     Console console(standard_error());
-    const auto result = std::visit([&](const auto& chosen) { return run_one(chosen, console); }, options);
+    const auto result = run_experiment_of(options, console);
     if (!result) {
         console.note("scanloom-lab: " + result.error().message);
         return kExitFailed;

@@ -10,11 +10,12 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace scanloom::robot {
 namespace {
 
-/// X,Y,YAW.
+/// X,Y,YAW, the yaw as it was written.
 std::optional<Pose2> to_pose(const std::string& text) {
     std::array<double, 3> numbers{};
     const auto words = CLI::detail::split(text, ',');
@@ -24,12 +25,20 @@ std::optional<Pose2> to_pose(const std::string& text) {
             return std::nullopt;
         }
     }
-    return Pose2{numbers[0], numbers[1], normalize_angle(numbers[2])};
+    return Pose2{numbers[0], numbers[1], numbers[2]};
 }
 
 std::string check_pose(const std::string& text) {
-    if (to_pose(text)) return {};
-    return fmt::format("'{}' is not X,Y,YAW in metres and radians", text);
+    const auto pose = to_pose(text);
+    if (!pose) return fmt::format("'{}' is not X,Y,YAW in metres and radians", text);
+    if (std::abs(pose->yaw) <= 2.0 * std::numbers::pi) return {};
+    return fmt::format("yaw is in radians, and {:g} of them are more than a full turn; 90 degrees are 1.570796",
+                       pose->yaw);
+}
+
+Pose2 checked_pose(const std::string& text) {
+    const Pose2 pose = *to_pose(text);
+    return {pose.x, pose.y, normalize_angle(pose.yaw)};
 }
 
 std::string check_window(const std::string& text) {
@@ -49,7 +58,7 @@ std::string check_confidence(const std::string& text) {
 
 void add_poses(CLI::App& ld06, Ld06Options& options) {
     ld06.add_option_function<std::string>(
-            "--pose", [&](const std::string& text) { options.pose = to_pose(text); },
+            "--pose", [&](const std::string& text) { options.pose = checked_pose(text); },
             "X,Y,YAW of a robot that stands: metres, and radians counter-clockwise")
         ->check(check_pose);
     ld06.add_option("--poses", options.poses,
@@ -57,7 +66,7 @@ void add_poses(CLI::App& ld06, Ld06Options& options) {
                     "device it is Unix time. Between its lines a pose is interpolated; scans before the first and "
                     "behind the last are passed over");
     ld06.add_option_function<std::string>(
-            "--mount", [&](const std::string& text) { options.mount = *to_pose(text); },
+            "--mount", [&](const std::string& text) { options.mount = checked_pose(text); },
             "X,Y,YAW of the sensor on the robot; its 0 degrees are its x axis. Default: 0,0,0")
         ->check(check_pose);
 }

@@ -51,7 +51,7 @@ Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
 
 Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOptions& scan, Console& console) {
     Ld06Poses poses = ld06.pose.value_or(Pose2{});
-    std::size_t skipped = 0;
+    std::optional<std::size_t> skipped;
     if (!ld06.pose) {
         auto lines = read_poses(ld06, console);
         if (!lines) return lines.error();
@@ -60,7 +60,6 @@ Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOp
     }
     auto capture = Ld06Capture::open(ld06.input, scan, std::move(poses));
     if (!capture) return capture.error();
-    console.note(fmt::format("{}: {}", ld06.input, capture->remarks()));
     PreparedSource prepared;
     prepared.skipped_lines = skipped;
     prepared.speed = ld06.speed;
@@ -75,7 +74,8 @@ bool is_regular_standard_input() {
 }
 
 /// Poses of a device that come while it is read, or that are known from the begin.
-Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::size_t& skipped, Console& console) {
+Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::optional<std::size_t>& skipped,
+                        Console& console) {
     if (ld06.pose) {
         live.poses = *ld06.pose;
     } else if (ld06.poses == kStandardInput && !is_regular_standard_input()) {
@@ -118,7 +118,13 @@ Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Optio
     if (std::filesystem::is_character_file(status)) {
         return prepare_device(ld06, *scan, SerialDevice{ld06.input}, console);
     }
-    if (std::filesystem::is_regular_file(status)) return prepare_capture(ld06, *scan, console);
+    if (std::filesystem::is_regular_file(status)) {
+        if (options.spool.empty()) return prepare_capture(ld06, *scan, console);
+        return Error{Errc::kInvalidField,
+                     fmt::format("{}: a capture file is a recording and needs no --spool: the same command again "
+                                 "continues behind what is stored; leave --spool out",
+                                 ld06.input)};
+    }
     return Error{Errc::kNotFound,
                  std::filesystem::exists(status)
                      ? fmt::format("{}: neither a serial device nor a file; name one", ld06.input)

@@ -1,6 +1,7 @@
 #include "robot_client/app/make_behaviour.hpp"
 
 #include "robot_client/app/waypoint_list.hpp"
+#include "robot_client/drive/body.hpp"
 #include "robot_client/drive/wall_follower.hpp"
 #include "robot_client/drive/waypoints.hpp"
 #include "robot_client/drive/zigzag.hpp"
@@ -16,6 +17,14 @@ namespace {
 
 constexpr double kPlanCellSize = 0.05; // metres
 
+/// Why a robot cannot be in a place, however it goes there.
+std::string unreachable(const World& world, const Point2& place) {
+    if (!bounds_of(world).contains(place)) return "outside the world";
+    if (world.obstacles->contain(place)) return "inside what stands there";
+    if (world.obstacles->distance(place) < kBodyRadius) return "too near to what stands there";
+    return {};
+}
+
 Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const World& world) {
     const bool is_tour = simulate.waypoints.empty();
     auto waypoints = is_tour ? Result<std::vector<Point2>>(tour_of(world.name)) : read_waypoints(simulate.waypoints);
@@ -26,7 +35,8 @@ Result<NamedBehaviour> make_waypoints(const SimulateOptions& simulate, const Wor
     }
     std::string name = fmt::format("{} {}", is_tour ? "tour" : "waypoints", to_text(*waypoints));
     return NamedBehaviour{
-        std::make_unique<Waypoints>(std::move(*waypoints), is_tour ? TourStart::kNearest : TourStart::kFirst),
+        std::make_unique<Waypoints>(std::move(*waypoints), is_tour ? TourStart::kNearest : TourStart::kFirst,
+                                    [world](const Point2& place) { return unreachable(world, place); }),
         std::move(name)};
 }
 

@@ -14,12 +14,12 @@
 namespace scanloom::robot {
 
 struct PreparedSource {
-    std::unique_ptr<Source> source;   ///< a recording or simulation, or
-    std::unique_ptr<LiveSource> live; ///< what comes when it comes: exactly one of the two
-    std::size_t skipped_lines = 0;
+    std::unique_ptr<Source> source;           ///< a recording or simulation, or
+    std::unique_ptr<LiveSource> live;         ///< what comes when it comes: exactly one of the two
+    std::optional<std::size_t> skipped_lines; ///< of what was read as text
     double speed = 0.0;
     std::string fingerprint;              ///< for Hello.source
-    std::string_view order = "time";      ///< of its scans: "file" or "time", a literal
+    std::string_view order;               ///< of a log's scans: "file" or "time", a literal; else empty
     ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
     std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
 

@@ -70,9 +70,11 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 }
 
 void add_waiting_options(CLI::App& app, RobotOptions& options, Raw& raw) {
-    app.add_option("--spool", options.spool,
-                   "Directory that keeps the scans of a sensor until they are stored, so that neither minutes without "
-                   "a server nor the end of this program lose any. Recordings need none");
+    app.add_option(
+        "--spool", options.spool,
+        "Directory that keeps the scans of a sensor until they are stored, so that neither minutes without "
+        "a server nor the end of this program lose any. Not for what can be read again: logs, captures, most "
+        "simulations");
     app.add_option("--spool-size", raw.spool_mib, "MiB, the most that the spool takes of the disk")
         ->check(check_within(kSpoolMibMin, kSpoolMibMax))
         ->capture_default_str();
@@ -209,6 +211,11 @@ std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const ch
                                        *options.range_max, kReachCellsMax, *options.cell_size));
     }
     sort_in(raw, options);
+    const bool is_recording = !ld06->parsed() && !(simulate->parsed() && simulate_options.drive == "explore");
+    if (!options.spool.empty() && is_recording) {
+        return usage_error(app, "--spool is for what cannot be had again; this source can: the same command again "
+                                "continues behind what is stored; leave --spool out");
+    }
     if (replay->parsed()) {
         if (replay_options.file.empty()) return usage_error(app, "replay: name the FILE to replay");
         options.source = std::move(replay_options);

@@ -20,12 +20,14 @@ struct ReplayOptions {
     double speed = 0.0; ///< 0 = as fast as the server takes it, 1 = as recorded
 };
 
+inline constexpr double kNoiseWidth = 0.05; ///< metres
+
 struct SimulateOptions {
     std::string world = "office"; ///< a name, or the YAML file of a ROS map
     std::string drive = "wall_follower";
     std::string waypoints; ///< as read_waypoints() takes them; empty: a tour of the world
     std::string noise = "none";
-    double noise_width = 0.05;            ///< metres, of uniform noise
+    std::optional<double> noise_width;    ///< metres, of uniform noise; absent: kNoiseWidth
     std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without
     std::string laser = "reference";      ///< or none
     std::string sonar = "none";

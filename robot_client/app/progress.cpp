@@ -4,10 +4,8 @@
 
 namespace scanloom::robot {
 
-std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total,
-                          std::chrono::duration<double> elapsed, std::string_view remarks) {
-    const double rate =
-        elapsed.count() > 0.0 ? static_cast<double>(status.acknowledged - status.resumed_after) / elapsed.count() : 0.0;
+std::string progress_text(const UplinkStatus& status, std::optional<std::uint64_t> total, double rate,
+                          std::string_view remarks) {
     std::string text = total ? fmt::format("{} of {} scans stored", status.acknowledged, *total)
                              : fmt::format("{} scans stored", status.acknowledged);
     text += fmt::format(", {:.0f} a second", rate);

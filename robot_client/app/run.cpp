@@ -2,6 +2,7 @@
 
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
+#include "robot_client/app/recent_rate.hpp"
 #include "robot_client/app/summary.hpp"
 #include "robot_client/uplink/guidance.hpp"
 #include "robot_client/uplink/live_feed.hpp"
@@ -111,10 +112,15 @@ asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, 
                                     const PreparedSource& prepared, Console& console) {
     const auto begun = std::chrono::steady_clock::now();
     asio::steady_timer timer(io);
+    RecentRate rate;
+    static_cast<void>(rate.update({}, 0));
     for (;;) {
         timer.expires_after(console.progress_period());
         if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
-        console.progress(progress_text(uplink.status(), feed.scan_count(), std::chrono::steady_clock::now() - begun,
+        const UplinkStatus status = uplink.status();
+        const std::uint64_t stored_now = status.acknowledged - status.resumed_after;
+        console.progress(progress_text(status, feed.scan_count(),
+                                       rate.update(std::chrono::steady_clock::now() - begun, stored_now),
                                        prepared.live ? prepared.live->remarks() : std::string()));
     }
 }

@@ -20,6 +20,15 @@ std::string world_help(std::string text) {
     return text + "or FILE.yaml, a map of ROS";
 }
 
+constexpr const char* kWorldsFooter =
+    "Worlds, in metres, the origin in the middle of each, x to the right and y up:\n"
+    "  room, room_walker  x -5 to 5, y -5 to 5; room_walker with a person who walks about\n"
+    "  office             x -15 to 15, y -10 to 10\n"
+    "  hall               x -30 to 30, y -20 to 20\n"
+    "  FILE.yaml          where its origin says; rays pass through cells that it does not know as if they were free, "
+    "and\n"
+    "                     meet nothing beyond its edge";
+
 void add_sensors(CLI::App& simulate, SimulateOptions& options) {
     simulate
         .add_option("--laser", options.laser,
@@ -38,10 +47,10 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
         ->check(CLI::IsMember({"none", "gaussian", "uniform"}))
         ->capture_default_str();
     simulate
-        .add_option("--noise-width", options.noise_width,
-                    "Metres; uniform noise makes each reading too long by 0 up to this")
-        ->check(check_positive)
-        ->capture_default_str();
+        .add_option(
+            "--noise-width", options.noise_width,
+            fmt::format("Metres; uniform noise makes each reading too long by 0 up to this. Default: {}", kNoiseWidth))
+        ->check(check_positive);
     simulate
         .add_option(
             "--odometry-noise", options.odometry_noise,
@@ -66,9 +75,10 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
         ->check(CLI::IsMember({"wall_follower", "waypoints", "zigzag", "explore"}))
         ->capture_default_str();
     simulate
-        .add_option("--waypoints", options.waypoints,
-                    "Where to, in metres: \"x,y;x,y;...\", or a file with a line \"x y\" for each. Default: a tour of "
-                    "the world, begun where the robot is")
+        .add_option(
+            "--waypoints", options.waypoints,
+            "Where to, in metres from the origin of the world (see below): \"x,y;x,y;...\", or a file with a line "
+            "\"x y\" for each. Default: a tour of the world, begun where the robot is")
         ->type_name("LIST|FILE");
 }
 
@@ -76,6 +86,7 @@ void add_drive(CLI::App& simulate, SimulateOptions& options) {
 
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
     auto* simulate = app.add_subcommand("simulate", "Simulate a robot that drives through a world");
+    simulate->footer(kWorldsFooter);
     simulate->add_option("--world", options.world, world_help("Where it drives"))
         ->check(check_world)
         ->capture_default_str();
@@ -101,6 +112,9 @@ CLI::App* add_simulate(CLI::App& app, SimulateOptions& options) {
 
 CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
     auto* truth = app.add_subcommand("truth", "Write what a perfect map of a world holds, without a server");
+    truth->footer(
+        "Cells that a map of ROS does not know are unknown in its truth, too, though rays of simulated robots pass\n"
+        "through them as if they were free: leave them out when a map is scored against the truth.");
     // not required() by the parser: an environment meant for several subcommands would then ask for them everywhere
     truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
     truth->add_option("--cell-size", options.cell_size, "Metres a cell")
@@ -108,7 +122,7 @@ CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
         ->capture_default_str();
     truth
         ->add_option("--output", options.output,
-                     "Writes PREFIX.pgm and PREFIX.yaml, as map_server and imports take them")
+                     "Writes PREFIX.pgm and PREFIX.yaml, as map_server and imports take them; makes their folder")
         ->type_name("PREFIX");
     return truth;
 }
@@ -126,6 +140,9 @@ std::optional<std::string> mistake_in(const SimulateOptions& options) {
     }
     if (options.pose == "odometry" && options.drive == "zigzag") {
         return "simulate: --drive zigzag follows a plan, and --pose odometry drifts off it; use --pose true";
+    }
+    if (options.noise_width && options.noise != "uniform") {
+        return fmt::format("simulate: --noise-width is not for --noise {}; use --noise uniform", options.noise);
     }
     if (!options.waypoints.empty() && options.drive != "waypoints") {
         return fmt::format("simulate: --waypoints are not for --drive {}; use --drive waypoints", options.drive);

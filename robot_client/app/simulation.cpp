@@ -47,7 +47,7 @@ std::optional<Noise> noise_of(const SimulateOptions& simulate) {
     if (simulate.noise == "gaussian") return with_odometry({}, odometry);
     if (simulate.noise == "uniform") {
         Noise noise = kOfOdometryOnly;
-        noise.range_uniform = simulate.noise_width;
+        noise.range_uniform = simulate.noise_width.value_or(kNoiseWidth);
         return with_odometry(noise, odometry);
     }
     if (odometry > 0.0) return with_odometry(kOfOdometryOnly, odometry);

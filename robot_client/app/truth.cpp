@@ -16,14 +16,25 @@
 namespace scanloom::robot {
 namespace {
 
+/// The folder of the files. Errors  kStoreFailed: it cannot be made.
+Result<> make_folder(const std::string& prefix) {
+    const auto folder = std::filesystem::path(prefix).parent_path();
+    std::error_code failed;
+    if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+    if (!failed) return {};
+    return Error{Errc::kStoreFailed, fmt::format("{}: the folder cannot be made ({}); give another --output",
+                                                 folder.string(), failed.message())};
+}
+
 Result<> write_file(const std::string& path, std::span<const char> content) {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));
     file.close();
     if (file) return {};
-    return Error{Errc::kStoreFailed, fmt::format("{}: the file cannot be written; its folder has to be there, and room "
-                                                 "on the disk",
-                                                 path)};
+    return Error{Errc::kStoreFailed,
+                 fmt::format("{}: the file cannot be written; make room on the disk, or give another "
+                             "--output",
+                             path)};
 }
 
 /// Before memory is taken for the cells.
@@ -42,6 +53,7 @@ Result<std::string> write_truth(const TruthOptions& options) {
     const auto world = load_world(options.world);
     if (!world) return world.error();
     if (auto ok = check_size(*world, options.cell_size); !ok) return ok.error();
+    if (auto made = make_folder(options.output); !made) return made.error();
     const TruthGrid truth = truth_of(*world, options.cell_size);
     const std::string image = options.output + ".pgm";
     const std::string yaml = options.output + ".yaml";

@@ -68,7 +68,8 @@ Velocity Explore::step(const Senses& senses) {
 
 std::string Explore::remarks() const {
     const std::string drive = fmt::format("{:.0f} m driven in {}", driven_, as_text(driven_s()));
-    return is_done() ? fmt::format("explored: no frontier can be reached any more, {}", drive)
+    return is_done() ? fmt::format("explored: no frontier can be reached any more with {} m around the robot, {}",
+                                   kWayClearance, drive)
                      : fmt::format("exploring: {}", drive);
 }
 

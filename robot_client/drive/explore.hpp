@@ -14,8 +14,12 @@ namespace scanloom::robot {
 /// wait() and finish().
 class Explore final : public Behaviour {
 public:
-    /// Metres that ways should keep from obstacles, for this robot to follow them with a noisy laser: what it asks for
-    /// as the radius of its body.
+    /// Metres that ways should keep from obstacles: what it asks for as the radius of its body, which is 0.15 m. It is
+    /// kKeptClear, 0.17 m, nearer than which its centre does not go to what it sees, and 0.05 m for what noise
+    /// (sigma 0.02 m) and corners (passed by 0.03 m) take of a way. Nearer ways can be driven, only
+    /// more slowly: in exploring_robot_test it explores as much with 0.15 m and touches nothing either, yet the
+    /// office takes it 17 to 21 minutes instead of 15 to 17. The price: passages narrower than 0.44 m are not explored,
+    /// though the body would fit through those of 0.3 m.
     static constexpr double kWayClearance = 0.22;
 
     [[nodiscard]] Velocity step(const Senses& senses) override;

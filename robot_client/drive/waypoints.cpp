@@ -14,7 +14,8 @@ namespace {
 constexpr double kArrived = 0.10;   // metres
 constexpr double kProgress = 0.10;  // metres nearer, to count as some
 constexpr int kPatienceSteps = 300; // 15 seconds
-constexpr double kForceMin = 1e-9;  // shorter ones point nowhere
+constexpr std::size_t kGivenUpTold = 5;
+constexpr double kForceMin = 1e-9; // shorter ones point nowhere
 
 /// Of a point from the straight way between two others, metres.
 double distance_to(const Point2& point, const Point2& from, const Point2& to) {
@@ -25,8 +26,8 @@ double distance_to(const Point2& point, const Point2& from, const Point2& to) {
 
 } // namespace
 
-Waypoints::Waypoints(std::vector<Point2> goals, TourStart start)
-    : goals_(std::move(goals)), is_looking_around_(start == TourStart::kNearest) {}
+Waypoints::Waypoints(std::vector<Point2> goals, TourStart start, Explain explain)
+    : goals_(std::move(goals)), is_looking_around_(start == TourStart::kNearest), explain_(std::move(explain)) {}
 
 Velocity Waypoints::step(const Senses& senses) {
     if (is_done()) return {};
@@ -44,7 +45,14 @@ Velocity Waypoints::step(const Senses& senses) {
 
 std::string Waypoints::remarks() const {
     std::string text = fmt::format("waypoints: {} of {} reached", reached_, goals_.size());
-    if (given_up_ > 0) text += fmt::format(", {} given up", given_up_);
+    if (given_up_.empty()) return text;
+    text += fmt::format(", {} given up:", given_up_.size());
+    for (std::size_t n = 0; n < std::min(given_up_.size(), kGivenUpTold); ++n) {
+        const std::string why = explain_ ? explain_(given_up_[n]) : std::string();
+        text += fmt::format("{} ({}, {}) {}", n > 0 ? "," : "", given_up_[n].x(), given_up_[n].y(),
+                            why.empty() ? "no way found" : why);
+    }
+    if (given_up_.size() > kGivenUpTold) text += fmt::format(", and {} more", given_up_.size() - kGivenUpTold);
     return text;
 }
 
@@ -82,7 +90,7 @@ Velocity Waypoints::go(const Senses& senses) {
         return turn_.step(senses.pose);
     }
     if (!has_progress(distance)) {
-        given_up_ += 1;
+        given_up_.push_back(goals_[next_]);
         go_on_to_next();
         return {};
     }

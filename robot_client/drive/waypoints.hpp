@@ -5,6 +5,8 @@
 #include "robot_client/drive/steering.hpp"
 
 #include <cstddef>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace scanloom::robot {
@@ -19,8 +21,12 @@ enum class TourStart {
 /// where it holds a robot; a waypoint that it comes no nearer to for 15 seconds is given up, and so it ends.
 class Waypoints final : public Behaviour {
 public:
-    /// @param goals  metres in the map frame
-    explicit Waypoints(std::vector<Point2> goals, TourStart start = TourStart::kFirst);
+    /// Why a waypoint could not be reached, for people; empty: nothing is known.
+    using Explain = std::function<std::string(const Point2&)>;
+
+    /// @param goals    metres in the map frame
+    /// @param explain  is asked of those that were given up
+    explicit Waypoints(std::vector<Point2> goals, TourStart start = TourStart::kFirst, Explain explain = {});
 
     [[nodiscard]] Velocity step(const Senses& senses) override;
     [[nodiscard]] bool is_done() const override { return next_ == goals_.size(); }
@@ -28,7 +34,7 @@ public:
     [[nodiscard]] std::string remarks() const override;
 
     [[nodiscard]] std::size_t reached() const noexcept { return reached_; }
-    [[nodiscard]] std::size_t given_up() const noexcept { return given_up_; }
+    [[nodiscard]] std::size_t given_up() const noexcept { return given_up_.size(); }
 
 private:
     [[nodiscard]] Velocity look_around(const Senses& senses);
@@ -43,7 +49,8 @@ private:
     NearObstacles near_;
     std::size_t next_ = 0;
     std::size_t reached_ = 0;
-    std::size_t given_up_ = 0;
+    std::vector<Point2> given_up_;
+    Explain explain_;
     bool is_turning_ = false; // at the next one
     FullTurn turn_;
     double nearest_ = 0.0;     // metres from it, so far

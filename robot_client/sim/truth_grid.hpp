@@ -8,7 +8,8 @@
 namespace scanloom::robot {
 
 enum class Truth : std::uint8_t {
-    kOutside,  ///< beyond the walls, or shut in between solids: no way leads there from a floor; or not known
+    kOutside,  ///< beyond the walls, or shut in between solids: no way leads there from a floor; or not known,
+               ///< though rays pass through what is not known
     kFree,     ///< nothing stands in the cell
     kOccupied, ///< a solid stands in the cell or in a part of it
 };

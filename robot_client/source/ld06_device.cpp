@@ -1,5 +1,7 @@
 #include "robot_client/source/ld06_device.hpp"
 
+#include "robot_client/source/further.hpp"
+
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
@@ -84,7 +86,7 @@ bool Reading::give_up(const Error& error) {
     if (!gone_since_) {
         gone_since_ = Clock::now();
         if (options_.reopen_for.count() > 0) {
-            options_.note(fmt::format("{}; trying again for {:g} s", error.message, seconds(options_.reopen_for)));
+            options_.note(further(error.message, fmt::format("trying again for {:g} s", seconds(options_.reopen_for))));
         }
     }
     return Clock::now() - *gone_since_ >= options_.reopen_for;

@@ -13,9 +13,11 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <deque>
 #include <exception>
 #include <optional>
@@ -53,6 +55,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
+constexpr double kOtherClock = 60.0;     // seconds; no late pose is so far from a scan
 
 double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
@@ -110,6 +113,8 @@ private:
     void add(const StampedPose& pose);
     [[nodiscard]] Answer pose_for(const Waiting& waiting) const;
     [[nodiscard]] std::optional<Observation> take_ready();
+    void tell_of_other_clock(double stamp);
+    [[nodiscard]] Result<std::optional<Observation>> end_when_stopped() const;
     void wake();
 
     Ld06LiveOptions options_;
@@ -120,6 +125,8 @@ private:
     std::deque<Waiting> waiting_;
     bool are_poses_coming_;
     Ld06Losses losses_;
+    std::uint64_t given_ = 0; ///< scans
+    bool told_of_other_clock_ = false;
     std::optional<Error> ended_; ///< why nothing more comes from the sensor
     bool is_started_ = false;
     bool is_stopped_ = false;
@@ -208,7 +215,7 @@ asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
         timer.expires_at(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
         co_await timer.async_wait(kUse);
     }
-    co_return std::optional<Observation>{};
+    co_return end_when_stopped();
 }
 
 /// The next scan whose pose is known; those that will have none are passed over.
@@ -220,11 +227,34 @@ std::optional<Observation> Ld06Live::State::take_ready() {
         waiting_.pop_front();
         if (answer.pose) {
             scan.pose = *answer.pose;
+            ++given_;
             return Observation{sensor_, std::move(scan)};
         }
         ++losses_.without_pose;
+        tell_of_other_clock(scan.stamp);
     }
     return std::nullopt;
+}
+
+/// Poses that count from another moment would be passed over for ever without a word.
+void Ld06Live::State::tell_of_other_clock(double stamp) {
+    const auto& timeline = std::get<PoseTimeline>(options_.poses);
+    if (timeline.empty() || told_of_other_clock_) return;
+    const double newest = timeline.newest().stamp;
+    if (std::max(stamp - newest, timeline.oldest().stamp - stamp) <= kOtherClock) return;
+    told_of_other_clock_ = true;
+    options_.device.note(fmt::format("scans are passed over: the poses are at t = {:.0f}, and the scans at t = {:.0f}; "
+                                     "for a device t is Unix time, in seconds",
+                                     newest, stamp));
+}
+
+/// A robot of which nothing was mapped for want of poses has failed, though it was told to stop.
+Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
+    if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
+    return Error{Errc::kNotFound,
+                 fmt::format("no scan was sent: of {} scans not one was taken within the time of the poses; for a "
+                             "device the t of --poses is Unix time, in seconds",
+                             losses_.without_pose)};
 }
 
 Ld06Live::State::Answer Ld06Live::State::pose_for(const Waiting& waiting) const {

@@ -26,7 +26,8 @@ inline constexpr std::size_t kScansWaitingMax = 64;
 /// An LD06 that is read now: a scan for each turn that has a pose. Stamps are Unix time.
 ///
 /// From the first next() on the sensor and the poses are read all the time, on that executor, whether a scan is asked
-/// for or not: what is not fetched from a serial line in time is lost.
+/// for or not: what is not fetched from a serial line in time is lost. People are told, once, of poses whose times are
+/// more than a minute away from those of the scans.
 class Ld06Live final : public LiveSource {
 public:
     explicit Ld06Live(Ld06LiveOptions options);
@@ -34,7 +35,7 @@ public:
     Ld06Live& operator=(const Ld06Live&) = delete;
     ~Ld06Live() override;
 
-    /// Errors  those of read_ld06_device().
+    /// Errors  those of read_ld06_device(); once it was stopped, kNotFound: not one of the scans had a pose.
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
     void stop() override;
     [[nodiscard]] std::string remarks() const override;

@@ -41,7 +41,8 @@ struct Ld06Packet {
 /// Pre  the bytes begin with the header and their CRC is right.
 [[nodiscard]] Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> bytes) noexcept;
 
-/// False for what no sensor sends, though its CRC is right: one damaged packet in 256 has one that is.
+/// False for what no sensor sends, though its CRC is right: one damaged packet in 256 has one that is. Sensors of 2250
+/// samples a second and more pass, so those of 4500 (LD06, LD19) with up to three times the span of their speed.
 [[nodiscard]] bool is_plausible(const Ld06Packet& packet) noexcept;
 
 /// Steps from the first point to the last, clockwise.

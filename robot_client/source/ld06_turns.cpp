@@ -16,8 +16,11 @@ constexpr std::int32_t kDisagreementMax = 20 * kLd06StepsPerDegree;
 void Ld06Turns::add(const Ld06Packet& packet, double stamp) {
     const auto followed = before_ ? follow(packet) : std::nullopt;
     if (before_ && !followed) {
+        ++gaps_;
+        is_part_ = true;
         end_turn();
-        is_whole_ = true;
+        is_given_ = true;
+        is_part_ = true;
     }
     const std::int32_t span = steps_spanned(packet);
     std::int32_t start = followed.value_or(packet.start_angle * kLd06StepsPerDegree / 100 % kLd06StepsPerTurn);
@@ -26,7 +29,7 @@ void Ld06Turns::add(const Ld06Packet& packet, double stamp) {
         std::int32_t step = start + span / gaps * static_cast<std::int32_t>(i);
         while (step >= kLd06StepsPerTurn) {
             end_turn();
-            is_whole_ = true;
+            is_given_ = true;
             start -= kLd06StepsPerTurn;
             step -= kLd06StepsPerTurn;
         }
@@ -57,11 +60,13 @@ void Ld06Turns::add_point(Ld06Beam beam, double stamp) {
 void Ld06Turns::end_turn() {
     if (beams_.size() > kBeamsMax) {
         ++too_long_;
-    } else if (is_whole_ && !beams_.empty()) {
+    } else if (is_given_ && !beams_.empty()) {
         complete_.push_back({(first_stamp_ + last_stamp_) / 2.0, std::move(beams_)});
         ++count_;
+        parts_ += is_part_ ? 1 : 0;
     }
     beams_.clear();
+    is_part_ = false;
 }
 
 std::optional<Ld06Turn> Ld06Turns::next() {
@@ -73,7 +78,8 @@ std::optional<Ld06Turn> Ld06Turns::next() {
 
 void Ld06Turns::restart() {
     before_.reset();
-    is_whole_ = false;
+    is_given_ = false;
+    is_part_ = false;
     beams_.clear();
 }
 

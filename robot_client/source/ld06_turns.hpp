@@ -29,7 +29,8 @@ struct Ld06Turn {
 ///
 /// The turn that is under way when the stream begins is dropped, and the one that is when it ends. A turn of which
 /// packets were lost has a hole there. Where a whole turn may be missing, or angle and time disagree (something else
-/// goes on), the turn ends with the points it has, and the points behind begin another one.
+/// goes on), there is a gap: the turn ends with the points it has, and the points behind begin another one. These are
+/// parts of turns, not full ones, and are given all the same: what was measured once is not to be had again.
 class Ld06Turns {
 public:
     /// `stamp`: of this packet, seconds.
@@ -41,8 +42,11 @@ public:
     /// The stream begins anew.
     void restart();
 
-    /// Turns given to this day, without those of more than kBeamsMax points.
+    /// Turns given to this day, parts among them, without those of more than kBeamsMax points.
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+    /// Of these the ones that a gap has cut.
+    [[nodiscard]] std::uint64_t parts() const noexcept { return parts_; }
+    [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_; }
     /// Turns of more than kBeamsMax points, which are dropped: the sensor turns far too slowly.
     [[nodiscard]] std::uint64_t too_long() const noexcept { return too_long_; }
 
@@ -57,12 +61,15 @@ private:
     void end_turn();
 
     std::optional<Before> before_; ///< the packet before
-    bool is_whole_ = false;        ///< the turn under way was seen from its begin
+    bool is_given_ = false;        ///< the turn under way: its begin was seen, or is behind a gap
+    bool is_part_ = false;         ///< so is this: a gap has cut it
     std::vector<Ld06Beam> beams_;
     double first_stamp_ = 0.0;
     double last_stamp_ = 0.0;
     std::deque<Ld06Turn> complete_;
     std::uint64_t count_ = 0;
+    std::uint64_t parts_ = 0;
+    std::uint64_t gaps_ = 0;
     std::uint64_t too_long_ = 0;
 };
 

@@ -29,7 +29,8 @@ public:
     /// The server holds so many of its scans from earlier runs. Only where it can wait, before the first next().
     virtual void resume_after(std::uint64_t scans) { static_cast<void>(scans); }
 
-    /// No more is wanted: next() comes to its end soon, and after it gives nothing.
+    /// No more is wanted: next() comes to its end soon, and after it gives nothing, or an error where nothing could be
+    /// had at all.
     virtual void stop() = 0;
 
     /// What people should know of it beside its scans, a few words; empty: nothing.

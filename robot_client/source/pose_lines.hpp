@@ -11,8 +11,8 @@
 #include <optional>
 #include <string_view>
 
-/// Poses as text, a line each: `t x y yaw`, in seconds, metres and radians counter-clockwise; what stands behind is
-/// ignored, and so are blank lines and those that begin with '#'.
+/// Poses as text, a line each: `t x y yaw`, in seconds, metres and radians counter-clockwise, beyond a full turn, too, as
+/// odometry counts; what stands behind is ignored, and so are blank lines and those that begin with '#'.
 namespace scanloom::robot {
 
 /// Nothing for a line that says nothing.

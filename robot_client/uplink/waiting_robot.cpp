@@ -1,5 +1,7 @@
 #include "robot_client/uplink/waiting_robot.hpp"
 
+#include "robot_client/source/further.hpp"
+
 #include <fmt/format.h>
 
 #include <utility>
@@ -16,7 +18,7 @@ Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const s
 std::function<void(const Error&)> told_once(Tell tell) {
     return [tell = std::move(tell), told = std::string()](const Error& error) mutable {
         if (error.message == std::exchange(told, error.message)) return;
-        tell(fmt::format("{}; trying again", error.message));
+        tell(further(error.message, "trying again"));
     };
 }
 

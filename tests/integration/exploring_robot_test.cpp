@@ -1,6 +1,7 @@
 #include "robot_client/sim/truth_grid.hpp"
 #include "robot_client/sim/unicycle.hpp"
 #include "tests/support/goal_oracle.hpp"
+#include "tests/support/unexplored.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -18,6 +19,7 @@ namespace scanloom::robot {
 namespace {
 
 using testing_support::GoalOracle;
+using testing_support::Unexplored;
 
 constexpr std::uint64_t kSeedsPerCase = 5; // so that cases run side by side
 constexpr SimulationLimits kLimits{.duration = 3600.0};
@@ -36,6 +38,25 @@ double known_share(const World& world, const mapping::Snapshot& maps) {
         }
     }
     return static_cast<double>(known) / free;
+}
+
+/// What is left that the robot could explore.
+std::vector<grid::Cell> left_unexplored(const World& world, GoalOracle& oracle, const Pose2& robot) {
+    const auto maps = oracle.maps();
+    const auto truth = truth_of(world, maps.config.cell_size);
+    constexpr std::int32_t kMargin = 40; // cells; noisy readings end behind walls
+    const grid::CellBox area{truth.i_begin - kMargin, truth.j_begin - kMargin, truth.i_begin + truth.width + kMargin,
+                             truth.j_begin + truth.height + kMargin};
+    // as wide as the way that is asked for: 2 * 0.22 m over cells of 0.05 m along their diagonals
+    const auto size_min =
+        static_cast<std::size_t>(2.0 * Explore::kWayClearance / (std::numbers::sqrt2 * maps.config.cell_size));
+    const Unexplored unexplored(maps.classes, area,
+                                {.cell_size = maps.config.cell_size,
+                                 .clearance = Explore::kWayClearance,
+                                 .size_min = size_min,
+                                 .looked_at = oracle.looked_at()});
+    EXPECT_GT(unexplored.reach({robot.x, robot.y}), 1000) << "the check itself gets about";
+    return unexplored.within_reach_of({robot.x, robot.y});
 }
 
 /// One whose scans go to the oracle, which tells it where to go.
@@ -77,14 +98,18 @@ private:
     double clearance_min_ = 10.0;
 };
 
-void expect_explored(const Explorer& robot) {
+void expect_explored(const Explorer& robot, GoalOracle& oracle) {
+    const auto& simulator = robot.source().simulator();
+    EXPECT_TRUE(left_unexplored(simulator.world(), oracle, simulator.pose()).empty());
     EXPECT_EQ(robot.source().simulator().collisions(), 0U);
     EXPECT_GE(robot.clearance_min(), kBodyRadius);
-    EXPECT_TRUE(robot.source().remarks().starts_with("explored: no frontier can be reached any more, "))
+    EXPECT_TRUE(robot.source().remarks().starts_with(
+        "explored: no frontier can be reached any more with 0.22 m around the robot, "))
         << robot.source().remarks();
 }
 
-/// A degree between beams: a third of the time of the reference laser, which explores as well.
+/// A degree between beams: a third of the time of the reference laser, which explores as well. (Twenty offices with
+/// that one and noise take 140 s of a processor.)
 Sensor coarse_laser() {
     Sensor laser = *find_laser("reference");
     laser.angles = UniformAngles{-std::numbers::pi / 2.0, std::numbers::pi / 180.0, 181};
@@ -109,7 +134,7 @@ struct Case {
 
 std::vector<Case> cases() {
     std::vector<Case> cases{{"hall", make_hall, coarse_laser, false, 1, 1},
-                            {"office_noisy", make_office, coarse_laser, true, 1, 2},
+                            {"office_noisy", make_office, reference_laser, true, 1, 2},
                             {"office_reference", make_office, reference_laser, false, 1, 1},
                             {"office_all_round", make_office, all_round_laser, false, 1, 1},
                             {"room_walker_all_round_noisy", make_room_walker, all_round_laser, true, 17, 2},
@@ -117,7 +142,7 @@ std::vector<Case> cases() {
                             {"room_walker_noisy", make_room_walker, reference_laser, true, 1, 5}};
     for (std::uint64_t seed = 1; seed <= 20; seed += kSeedsPerCase) {
         cases.push_back({"room", make_room, reference_laser, false, seed, kSeedsPerCase});
-        cases.push_back({"room_walker", make_room_walker, coarse_laser, false, seed, kSeedsPerCase});
+        cases.push_back({"room_walker", make_room_walker, reference_laser, false, seed, kSeedsPerCase});
         cases.push_back({"office", make_office, coarse_laser, false, seed, kSeedsPerCase});
     }
     return cases;
@@ -135,7 +160,7 @@ TEST_P(ExploringRobot, EndsWithACompleteMapAndTouchesNothing) {
         Explorer robot(oracle, 0, {world, one.laser(), one.noisy ? std::optional(Noise{}) : std::nullopt, seed});
         while (robot.step()) {
         }
-        expect_explored(robot);
+        expect_explored(robot, oracle);
         EXPECT_GE(known_share(world, oracle.maps()), 0.95);
     }
 }
@@ -152,8 +177,8 @@ TEST_F(ExploringRobots, TwoOfThemShareTheOffice) {
     while (first.step() && second.step()) ++together;
     while (first.step() || second.step()) {
     }
-    expect_explored(first);
-    expect_explored(second);
+    expect_explored(first, oracle);
+    expect_explored(second, oracle);
     EXPECT_GE(known_share(world, oracle.maps()), 0.95);
     EXPECT_GT(together, 3000) << "both have something to do";
 }

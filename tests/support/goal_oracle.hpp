@@ -5,9 +5,13 @@
 #include "server/guide/goal_book.hpp"
 #include "server/mapping/projection.hpp"
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace scanloom::testing_support {
 
@@ -28,10 +32,13 @@ public:
 
     [[nodiscard]] Result<robot::NextStop> next(RobotIndex robot) {
         const auto maps = maps_.snapshot();
+        for (const grid::Cell cell : around_target_[robot]) looked_at_.insert({cell.j, cell.i}); // as it asks again
+        around_target_[robot].clear();
         const Pose2 pose = *maps.robots.at(robot).pose;
         auto found = book_.next(session_, maps, robot, {pose.x, pose.y}, {}, options_);
         asked_ += 1;
         if (!found) return found.error();
+        around_target_[robot] = found->around_target;
         robot::NextStop stop;
         if (found->outcome == planning::Exploration::kTakenByOthers) {
             stop.outcome = robot::NextStop::Outcome::kTakenByOthers;
@@ -45,6 +52,10 @@ public:
 
     [[nodiscard]] mapping::Snapshot maps() { return maps_.snapshot(); }
     [[nodiscard]] int asked() const noexcept { return asked_; }
+    /// (j, i) of the cells around the targets that robots were sent to, and of which they asked for more.
+    [[nodiscard]] const std::set<std::pair<std::int32_t, std::int32_t>>& looked_at() const noexcept {
+        return looked_at_;
+    }
 
 private:
     std::shared_ptr<const session::Session> session_;
@@ -52,6 +63,8 @@ private:
     guide::GoalBook book_;
     planning::ExplorationOptions options_;
     int asked_ = 0;
+    std::map<RobotIndex, std::vector<grid::Cell>> around_target_; // of the goals they pursue
+    std::set<std::pair<std::int32_t, std::int32_t>> looked_at_;
 };
 
 } // namespace scanloom::testing_support

@@ -73,16 +73,6 @@ TEST_F(Lab, WritesTheSameReportTwiceWithEveryPictureItShows) {
     EXPECT_GT(files.size(), 4U);
 }
 
-TEST_F(Lab, WritesTheTruthAsAMapThatRosLoads) {
-    const auto outcome = run({"truth", "--world", "room", "--cell-size", "0.1", "--out", place_.path().string()});
-    EXPECT_EQ(outcome.code, 0) << outcome.errors;
-    const auto pgm = contents(place_.path() / "map.pgm");
-    EXPECT_THAT(pgm, testing::StartsWith("P5\n"));
-    EXPECT_THAT(pgm, HasSubstr("\n104 104\n255\n"));
-    EXPECT_EQ(static_cast<unsigned char>(pgm.back()), 0) << "a wall";
-    EXPECT_THAT(contents(place_.path() / "map.yaml"), HasSubstr("origin: [-5.2, -5.2, 0]"));
-}
-
 TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
     std::ofstream(place_.path() / "file") << "no directory";
     const auto outcome = run({"experiment", "--quick", "--out", (place_.path() / "file").string()});

@@ -11,44 +11,33 @@ namespace {
 
 using testing::HasSubstr;
 
-std::variant<LabOptions, Leave> parse(const std::vector<const char*>& words) {
+std::variant<ExperimentOptions, Leave> parse(const std::vector<const char*>& words) {
     std::vector<const char*> argv{"scanloom-lab"};
     argv.insert(argv.end(), words.begin(), words.end());
     return parse_options(static_cast<int>(argv.size()), argv.data());
 }
 
 TEST(LabOptionsTest, ExperimentTakesItsDirectoryAndHasDefaults) {
-    const auto options = std::get<ExperimentOptions>(std::get<LabOptions>(parse({"experiment", "--out", "d"})));
+    const auto options = std::get<ExperimentOptions>(parse({"experiment", "--out", "d"}));
     EXPECT_EQ(options.out, "d");
     EXPECT_EQ(options.seed, 1U);
     EXPECT_FALSE(options.quick || options.scans);
-    const auto other = std::get<ExperimentOptions>(
-        std::get<LabOptions>(parse({"experiment", "--quick", "--seed", "7", "--scans=50", "--out", "d"})));
+    const auto other =
+        std::get<ExperimentOptions>(parse({"experiment", "--quick", "--seed", "7", "--scans=50", "--out", "d"}));
     EXPECT_TRUE(other.quick);
     EXPECT_EQ(other.seed, 7U);
     EXPECT_EQ(other.scans, 50U);
 }
 
-TEST(LabOptionsTest, TruthTakesWorldCellSizeAndDirectory) {
-    const auto options = std::get<TruthOptions>(
-        std::get<LabOptions>(parse({"truth", "--world", "office", "--cell-size", "0.1", "--out", "d"})));
-    EXPECT_EQ(options.world, "office");
-    EXPECT_EQ(options.cell_size, 0.1);
-    EXPECT_EQ(options.out, "d");
-}
-
 TEST(LabOptionsTest, EachMistakeIsOneLineAndAUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
-        {{}, "say what to do: experiment, or truth"},
+        {{}, "say what to do: experiment"},
         {{"experiment"}, "experiment: name a directory with --out"},
-        {{"truth"}, "truth: name a directory with --out"},
         {{"experiment", "--out", "d", "--scans", "9"}, "--scans"},
         {{"experiment", "--out", "d", "--scans", "10.5"}, "--scans"},
         {{"experiment", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"experiment", "--out", "d", "--bogus"}, "--bogus"},
-        {{"truth", "--out", "d", "--world", "moon"}, "moon"},
-        {{"truth", "--out", "d", "--cell-size", "2"}, "--cell-size"},
-        {{"landmark"}, "say what to do: experiment, or truth"},
+        {{"landmark"}, "say what to do: experiment"},
     };
     for (const auto& [words, hint] : mistakes) {
         const auto leave = std::get<Leave>(parse(words));

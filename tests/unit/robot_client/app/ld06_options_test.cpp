@@ -39,11 +39,11 @@ std::string refused(const std::vector<std::string>& words) {
 
 TEST(Ld06OptionsOf, TheCommandLineAreTaken) {
     const auto options =
-        std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,7", "--mount=0.1,0,-1.5", "--min-range", "0.2",
+        std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--pose", "-1,2.5,6", "--mount=0.1,0,-1.5", "--min-range", "0.2",
                                       "--min-confidence", "0", "--median", "5", "--speed", "1", "--reopen-for", "0"})
                                   .source);
     EXPECT_EQ(options.input, "/dev/ttyUSB0");
-    EXPECT_EQ(options.pose, (Pose2{-1.0, 2.5, normalize_angle(7.0)}));
+    EXPECT_EQ(options.pose, (Pose2{-1.0, 2.5, normalize_angle(6.0)}));
     EXPECT_EQ(options.mount, (Pose2{0.1, 0.0, -1.5}));
     EXPECT_EQ(options.range_min, 0.2);
     EXPECT_EQ(options.confidence_min, 0);
@@ -59,6 +59,15 @@ TEST(Ld06OptionsOf, ACommandLineWithoutThemAreTheDefaults) {
     EXPECT_EQ(options.mount, Pose2{});
     EXPECT_EQ(options.speed, 0.0);
     EXPECT_EQ(options.reopen_for, 60.0);
+}
+
+TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
+    for (const auto* pose : {"0,0,90", "0,0,-90", "0,0,6.2832"}) {
+        EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("yaw is in radians")) << pose;
+        EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("90 degrees are 1.570796")) << pose;
+    }
+    const auto options = std::get<Ld06Options>(parsed({"f", "--pose", "0,0,-6.2831853"}).source);
+    EXPECT_NEAR(options.pose->yaw, 0.0, 1e-6);
 }
 
 TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
@@ -132,6 +141,8 @@ TEST_F(PreparedLd06, WhatIsNeitherIsAnError) {
     EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
     EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("neither a serial device nor a file"));
     EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));
+    EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--spool", "/tmp/none"}).error().message,
+                HasSubstr("a capture file is a recording and needs no --spool"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--min-range", "13"}).error().message,
                 HasSubstr("--min-range is 13 m, but --max-range only 12 m"));
 }

@@ -1,5 +1,7 @@
 #include "robot_client/app/options.hpp"
 
+#include "robot_client/sim/truth_grid.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -90,10 +92,10 @@ TEST_F(Options, DefaultsAreThoseOfTheContract) {
 }
 
 TEST_F(Options, WhatWaitsAndHowItTravelsCanBeSaid) {
-    const auto said = parsed({"simulate",     "--session",       "s",   "--robot",      "r",   "--spool",
-                              "/var/spool/x", "--spool-size",    "2",   "--memory",     "0.5", "--when-full",
-                              "drop-newest",  "--batch-delay",   "1.5", "--batch-size", "8",   "--compression",
-                              "zstd",         "--give-up-after", "0"});
+    const auto said = parsed({"ld06",         "/dev/x", "--pose",        "0,0,0",        "--session",       "s",
+                              "--robot",      "r",      "--spool",       "/var/spool/x", "--spool-size",    "2",
+                              "--memory",     "0.5",    "--when-full",   "drop-newest",  "--batch-delay",   "1.5",
+                              "--batch-size", "8",      "--compression", "zstd",         "--give-up-after", "0"});
     EXPECT_EQ(said.spool, "/var/spool/x");
     EXPECT_EQ(said.spool_bytes_max, 2U << 20);
     EXPECT_EQ(said.memory_bytes_max, 1U << 19);
@@ -229,6 +231,11 @@ TEST_F(Options, EachMistakeIsOneLineAndAUsageError) {
         {{"truth", "--world", "room", "--output", "x", "--cell-size", "0"}, "--cell-size"},
         {with({"--noise", "loud"}), "loud"},
         {with({"--noise-width", "0"}), "--noise-width"},
+        {with({"--noise-width", "0.1"}), "--noise-width is not for --noise none; use --noise uniform"},
+        {with({"--noise-width", "0.1", "--noise", "gaussian"}), "use --noise uniform"},
+        {with({"--spool", "d"}), "leave --spool out"},
+        {{"replay", "f", "--session", "s", "--robot", "r", "--spool", "d"}, "leave --spool out"},
+        {{"sonar", "m", "p", "--session", "s", "--robot", "r", "--spool", "d"}, "leave --spool out"},
         {with({"--no-return", "maybe"}), "maybe"},
         {with({"--cell-size", "0"}), "--cell-size"},
         {with({"--cell-size", "nan"}), "--cell-size"},
@@ -265,6 +272,33 @@ TEST_F(Options, SeedsReachAsFarAsTheirTypeAlsoInTheFile) {
     EXPECT_THAT(left(words).text, HasSubstr("--seed"));
     const auto largest = parsed({"simulate", "--session", "s", "--robot", "r", "--seed", "18446744073709551615"});
     EXPECT_EQ(std::get<SimulateOptions>(largest.source).seed, std::numeric_limits<std::uint64_t>::max());
+}
+
+TEST_F(Options, WhatExploresMayHaveASpoolAsItsScansAreNeverTheSame) {
+    EXPECT_EQ(parsed({"simulate", "--drive", "explore", "--session", "s", "--robot", "r", "--spool", "d"}).spool, "d");
+}
+
+TEST_F(Options, TheWidthOfUniformNoiseCanBeSaid) {
+    const auto options =
+        parsed({"simulate", "--session", "s", "--robot", "r", "--noise", "uniform", "--noise-width", "0.1"});
+    EXPECT_EQ(std::get<SimulateOptions>(options.source).noise_width, 0.1);
+}
+
+TEST_F(Options, HelpTellsWhereWorldsAre) {
+    const auto help = left({"simulate", "--help"}).text;
+    for (const NamedWorld& world : kWorlds) {
+        const TruthGrid truth = truth_of(world.make(), 0.5);
+        std::int32_t right = 0;
+        std::int32_t top = 0;
+        for (std::int32_t j = truth.j_begin; j < truth.j_begin + truth.height; ++j) {
+            for (std::int32_t i = truth.i_begin; i < truth.i_begin + truth.width; ++i) {
+                if (truth.at(i, j) != Truth::kFree) continue;
+                right = std::max({right, i + 1, -i});
+                top = std::max({top, j + 1, -j});
+            }
+        }
+        EXPECT_THAT(help, HasSubstr(fmt::format("x -{0:g} to {0:g}, y -{1:g} to {1:g}", right / 2.0, top / 2.0)));
+    }
 }
 
 TEST_F(Options, HelpTellsWhereLogsEnd) { EXPECT_THAT(left({"--help"}).text, HasSubstr("for logs 50")); }

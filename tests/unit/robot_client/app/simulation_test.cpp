@@ -1,11 +1,14 @@
 #include "robot_client/app/simulation.hpp"
 
+#include "robot_client/app/waypoint_list.hpp"
 #include "robot_client/sim/tour.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace scanloom::robot {
@@ -51,6 +54,21 @@ TEST(Simulation, ADriveThatIsDoneEndsIt) {
     EXPECT_EQ(source->scan_count(), scans);
     EXPECT_TRUE(source->remarks().starts_with("waypoints: ")) << source->remarks();
     EXPECT_FALSE(*source->next());
+}
+
+TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
+    const World room = make_room();
+    const Box inner = *std::ranges::find_if(
+        room.solids, [](const Box& box) { return std::max(std::abs(box.x_min), std::abs(box.x_max)) < 4.0; });
+    const Point2 middle{(inner.x_min + inner.x_max) / 2.0, (inner.y_min + inner.y_max) / 2.0};
+    const Point2 beside{inner.x_min - 0.1, middle.y()};
+    auto source = prepared("waypoints", "room", to_text({{40.0, 0.0}, middle, beside})).source;
+    while (*source->next()) {
+    }
+    EXPECT_THAT(source->remarks(),
+                testing::StartsWith("waypoints: 0 of 3 reached, 3 given up: (40, 0) outside the world"));
+    EXPECT_THAT(source->remarks(), testing::HasSubstr(") inside what stands there, ("));
+    EXPECT_THAT(source->remarks(), testing::EndsWith(") too near to what stands there"));
 }
 
 TEST(Simulation, ALimitEndsADriveThatWouldEndLater) {

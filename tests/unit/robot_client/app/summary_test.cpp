@@ -30,7 +30,7 @@ const Summary kSummary{"lab",
 TEST(SummaryJson, TellsWhatWasStoredBeforeAndWhatWasSentNow) {
     EXPECT_EQ(
         summary_json(kSummary),
-        R"({"scans":30,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
+        R"({"scans":38,"acknowledged":25,"stored_before":10,"sent":18,"bytes":4321,"seconds":1.500,)"
         R"("skipped_lines":3,"reconnects":2,"waiting":7,"dropped":1,"session":"lab","robot":"r1","source":"carmen:9f3a","order":"time"})");
 }
 
@@ -47,9 +47,19 @@ TEST(SummaryJson, OfARefusedRobotSaysWhyAndHowManyScansThereAre) {
         R"("remarks":"7 m driven","error":"hello.session is \"lab\",\nwhich is full"})");
 }
 
+TEST(SummaryJson, OfASensorThatNeverReachedItsServerCountsWhatItTook) {
+    Summary sensor = kSummary;
+    sensor.status = {.waiting = 170};
+    sensor.order = {};
+    sensor.skipped_lines = std::nullopt;
+    EXPECT_EQ(summary_json(sensor),
+              R"({"scans":170,"acknowledged":0,"stored_before":0,"sent":0,"bytes":0,"seconds":1.500,"reconnects":0,)"
+              R"("waiting":170,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a"})");
+}
+
 TEST(SummaryJson, CountsAsTheProgressDoes) {
-    EXPECT_THAT(progress_text(kSummary.status, 30, 1s), testing::StartsWith("25 of 30 scans stored"));
-    EXPECT_THAT(summary_json(kSummary), testing::StartsWith(R"({"scans":30,"acknowledged":25,)"));
+    EXPECT_THAT(progress_text(kSummary.status, 30, 25.0), testing::StartsWith("25 of 30 scans stored"));
+    EXPECT_THAT(summary_json(kSummary), testing::StartsWith(R"({"scans":38,"acknowledged":25,)"));
 }
 
 } // namespace

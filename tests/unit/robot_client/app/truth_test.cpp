@@ -13,8 +13,8 @@ namespace {
 
 TEST(Truth, WhatIsWrittenIsAWorldOfTheSameTruth) {
     const auto folder = std::filesystem::path(testing::TempDir()) / "scanloom truth_test";
-    std::filesystem::create_directories(folder);
-    const std::string prefix = (folder / "the room: 1").string();
+    std::filesystem::remove_all(folder);
+    const std::string prefix = (folder / "deep" / "the room: 1").string();
     const auto line = write_truth({"room", 0.1, prefix});
     ASSERT_TRUE(line) << line.error().message;
     EXPECT_EQ(*line, R"({"width":104,"height":104,"map":")" + prefix + R"(.yaml"})");
@@ -24,9 +24,22 @@ TEST(Truth, WhatIsWrittenIsAWorldOfTheSameTruth) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(Truth, IsThatOfEveryWorldAndOfTheWalkersOneWithoutThem) {
+    const std::string prefix = std::filesystem::path(testing::TempDir()) / "scanloom_truth_of";
+    for (const NamedWorld& world : kWorlds) {
+        ASSERT_TRUE(write_truth({std::string(world.name), 0.2, prefix})) << world.name;
+        const auto written = load_world(prefix + ".yaml");
+        ASSERT_TRUE(written) << written.error().message;
+        EXPECT_EQ(truth_of(*written, 0.2).cells, truth_of(world.make(), 0.2).cells) << world.name;
+    }
+    for (const char* end : {".pgm", ".yaml"}) std::filesystem::remove(prefix + end);
+}
+
 TEST(Truth, WhatCannotBeWrittenIsSaid) {
-    EXPECT_THAT(write_truth({"room", 0.1, "/nonexistent/room"}).error().message,
-                testing::HasSubstr("/nonexistent/room.pgm: the file cannot be written"));
+    EXPECT_THAT(write_truth({"room", 0.1, "/proc/none/room"}).error().message,
+                testing::HasSubstr("/proc/none: the folder cannot be made"));
+    EXPECT_THAT(write_truth({"room", 0.1, "/proc/room"}).error().message,
+                testing::HasSubstr("/proc/room.pgm: the file cannot be written"));
     EXPECT_THAT(write_truth({"moon", 0.1, "/nonexistent/moon"}).error().message, testing::HasSubstr("moon"));
     EXPECT_EQ(write_truth({"hall", 0.001, "/nonexistent/hall"}).error().code, Errc::kTooLarge);
 }

@@ -89,7 +89,8 @@ TEST(Explore, SaysWhenItIsDone) {
     EXPECT_EQ(robot.explore->remarks(), "exploring: 0 m driven in 4 s");
     robot.explore->finish();
     EXPECT_TRUE(robot.driven.is_done());
-    EXPECT_EQ(robot.explore->remarks(), "explored: no frontier can be reached any more, 0 m driven in 4 s");
+    EXPECT_EQ(robot.explore->remarks(),
+              "explored: no frontier can be reached any more with 0.22 m around the robot, 0 m driven in 4 s");
 }
 
 } // namespace

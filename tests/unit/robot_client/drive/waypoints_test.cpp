@@ -93,8 +93,20 @@ TEST(Waypoints, OneThatCannotBeReachedIsGivenUpAndTheNextIsGoneTo) {
     EXPECT_TRUE(driven.run(90.0));
     EXPECT_EQ(going.given_up(), 1U);
     EXPECT_EQ(going.reached(), 1U);
-    EXPECT_EQ(going.remarks(), "waypoints: 1 of 2 reached, 1 given up");
+    EXPECT_EQ(going.remarks(), "waypoints: 1 of 2 reached, 1 given up: (1.5, 0) no way found");
     EXPECT_EQ(driven.simulator().collisions(), 0U);
+}
+
+TEST(Waypoints, ThoseThatAreGivenUpAreToldWithTheReasonOfTheFirstFew) {
+    const std::vector<Point2> beyond{{9.0, 0.0}, {9.5, 0.0}, {9.0, 1.0}, {9.0, 2.0},
+                                     {9.0, 3.0}, {9.0, 4.0}, {9.0, 5.0}};
+    const auto explain = [](const Point2& place) { return place.x() > 9.0 ? "far out" : ""; };
+    auto waypoints = std::make_unique<Waypoints>(beyond, TourStart::kFirst, explain);
+    const Waypoints& going = *waypoints;
+    Driven driven(walled({}), {0, 0, 0}, std::move(waypoints));
+    EXPECT_TRUE(driven.run(300.0));
+    EXPECT_EQ(going.remarks(), "waypoints: 0 of 7 reached, 7 given up: (9, 0) no way found, (9.5, 0) far out, "
+                               "(9, 1) no way found, (9, 2) no way found, (9, 3) no way found, and 2 more");
 }
 
 TEST(Waypoints, ARoundTourBeginsWithTheNearestOneInSight) {

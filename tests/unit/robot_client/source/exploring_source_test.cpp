@@ -81,7 +81,8 @@ TEST_F(ExploringSourceTest, AsksWhenItHasLookedAndEndsWhenAllIsExplored) {
         << "the scan where it looked was given before it asked";
     EXPECT_LT(std::abs(scans.back().pose.yaw - 1.5708), 0.05);
     for (std::size_t n = 0; n < scans.size(); ++n) EXPECT_NEAR(scans[n].stamp, 0.1 * static_cast<double>(n), 1e-9);
-    EXPECT_TRUE(source.remarks().starts_with("explored: no frontier can be reached any more, 2 m driven in "))
+    EXPECT_TRUE(source.remarks().starts_with(
+        "explored: no frontier can be reached any more with 0.22 m around the robot, 2 m driven in "))
         << source.remarks();
     EXPECT_FALSE(*next(source)) << "and gives nothing any more";
 }

@@ -26,9 +26,10 @@ protected:
         live.pose_age_max = age_max;
         source_ = std::make_unique<Ld06Live>(std::move(live));
     }
-    void stop_when_one_is_passed_over() {
-        if (source_->remarks().find("1 scan without a pose") != std::string::npos) return source_->stop();
-        asio::post(io_, [this] { stop_when_one_is_passed_over(); });
+    void stop_when_passed_over(int scans) {
+        const auto passed_over = fmt::format("{} scan{} without a pose", scans, scans == 1 ? "" : "s");
+        if (source_->remarks().find(passed_over) != std::string::npos) return source_->stop();
+        asio::post(io_, [this, scans] { stop_when_passed_over(scans); });
     }
 
     void write_pose(double t, double x) const { write(fmt::format("{:.6f} {} 0 0\n", t, x)); }
@@ -90,10 +91,39 @@ TEST_F(Ld06LivePoses, AScanIsPassedOverWhereTheNewestIsTooOld) {
     const auto next = next_of(*source_, [&] {
         write_pose(unix_now() - 100.0, 7.0);
         sensor_.send(one_turn());
-        stop_when_one_is_passed_over();
+        stop_when_passed_over(1);
     });
-    EXPECT_FALSE(next.value());
+    EXPECT_THAT(next.error().message, HasSubstr("of 1 scans not one"));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("for a device t is Unix time")));
     EXPECT_EQ(source_->remarks(), "0 damaged packets, 1 turn, 1 scan without a pose passed over");
+}
+
+TEST_F(Ld06LivePoses, OfAnotherClockAreToldOnceAndNothingMappedIsAnError) {
+    start(kNotAtAll, kNotAtAll);
+    const auto next = next_of(*source_, [&] {
+        write_pose(12.0, 0.0);
+        write_pose(13.0, 0.0);
+        sensor_.send(Ld06Spinner(35'000).next_bytes(80));
+        stop_when_passed_over(2);
+    });
+    ASSERT_FALSE(next);
+    EXPECT_THAT(next.error().message,
+                HasSubstr("of 2 scans not one was taken within the time of the poses; for a device the t"));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses are at t = 13, and the scans at t = 1")));
+}
+
+TEST_F(Ld06LivePoses, OfWhichSomeFitAreNoError) {
+    start(kForEver);
+    const double now = unix_now();
+    static_cast<void>(scan_of(*source_, [&] {
+        write_pose(now - 100.0, 0.0);
+        write_pose(now + 100.0, 0.0);
+        sensor_.send(one_turn());
+    }));
+    const auto next = next_of(*source_, [&] { source_->stop(); });
+    ASSERT_TRUE(next) << next.error().message;
+    EXPECT_FALSE(*next);
+    EXPECT_TRUE(notes_.empty());
 }
 
 TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {
@@ -101,9 +131,9 @@ TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {
     on_note_ = [&] { sensor_.send(one_turn()); };
     const auto next = next_of(*source_, [&] {
         end_poses();
-        stop_when_one_is_passed_over();
+        stop_when_passed_over(1);
     });
-    EXPECT_FALSE(next.value());
+    EXPECT_FALSE(next);
     EXPECT_THAT(notes_, ElementsAre(HasSubstr("the poses have ended; scans behind the last of them have none")));
 }
 

@@ -83,7 +83,7 @@ TEST_F(Ld06Lives, ADeviceThatStaysAwayIsAnErrorInTheEnd) {
     });
     ASSERT_FALSE(next);
     EXPECT_THAT(next.error().message, HasSubstr("(tried again for 0.15 s)"));
-    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up; is it still plugged in?; trying again for 0.15 s")));
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("hung up; is it still plugged in? Trying again for 0.15 s")));
 }
 
 TEST_F(Ld06Lives, ADeviceThatIsPluggedInAgainGoesOn) {

@@ -165,6 +165,34 @@ TEST(Ld06Turns, ATimeThatGoesBackEndsATurn) {
     EXPECT_EQ(cutter.complete[1].beams.front().step, 20'000 * 11);
     EXPECT_EQ(cutter.complete[1].beams.size(), 200U);
     EXPECT_EQ(cutter.complete[2].beams.front().step, 0);
+    EXPECT_EQ(cutter.turns.count(), 3U);
+    EXPECT_EQ(cutter.turns.parts(), 2U) << "that before the gap and that behind it";
+    EXPECT_EQ(cutter.turns.gaps(), 1U);
+}
+
+TEST(Ld06Turns, WithAHoleAreNotInPart) {
+    Ld06Spinner sensor(0);
+    Cutter cutter;
+    cutter.add(sensor, 45);
+    sensor.skip(3);
+    cutter.add(sensor, 60);
+    ASSERT_EQ(cutter.complete.size(), 1U);
+    EXPECT_EQ(cutter.turns.parts() + cutter.turns.gaps(), 0U);
+}
+
+TEST(Ld06Turns, BeforeTheFirstAndBehindTheLastAreNotCountedAsParts) {
+    Cutter cutter;
+    Ld06Spinner sensor(10'000, 10'000);
+    cutter.add(sensor, 5); // of the turn that is dropped
+    Ld06Spinner other(10'000, 4'000);
+    cutter.add(other, 5); // of one that does not end
+    EXPECT_EQ(cutter.turns.gaps(), 1U);
+    EXPECT_EQ(cutter.turns.parts(), 0U);
+    cutter.turns.restart();
+    Ld06Spinner again(0);
+    cutter.add(again, 80);
+    EXPECT_EQ(cutter.turns.count(), 1U);
+    EXPECT_EQ(cutter.turns.parts(), 0U);
 }
 
 TEST(Ld06Turns, AnAngleThatJumpsEndsATurn) {

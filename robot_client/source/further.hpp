@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace scanloom::robot {
+
+/// What a message says, and what follows from it: "it is gone; trying again", and behind a question a sentence of its
+/// own: "is it gone? Trying again".
+[[nodiscard]] std::string further(std::string_view message, std::string_view more);
+
+} // namespace scanloom::robot
