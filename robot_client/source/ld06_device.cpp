@@ -1,6 +1,6 @@
 #include "robot_client/source/ld06_device.hpp"
 
-#include "robot_client/source/further.hpp"
+#include "common/error/further.hpp"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>

@@ -1,6 +1,6 @@
 #include "robot_client/uplink/waiting_robot.hpp"
 
-#include "robot_client/source/further.hpp"
+#include "common/error/further.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "robot_client/source/further.hpp"
+#include "common/error/further.hpp"
 
-namespace scanloom::robot {
+namespace scanloom {
 
 std::string further(std::string_view message, std::string_view more) {
     std::string text(message);
@@ -11,4 +11,4 @@ std::string further(std::string_view message, std::string_view more) {
     return text;
 }
 
-} // namespace scanloom::robot
+} // namespace scanloom

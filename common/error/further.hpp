@@ -3,10 +3,10 @@
 #include <string>
 #include <string_view>
 
-namespace scanloom::robot {
+namespace scanloom {
 
 /// What a message says, and what follows from it: "it is gone; trying again", and behind a question a sentence of its
 /// own: "is it gone? Trying again".
 [[nodiscard]] std::string further(std::string_view message, std::string_view more);
 
-} // namespace scanloom::robot
+} // namespace scanloom
