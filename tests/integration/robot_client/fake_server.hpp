@@ -41,7 +41,9 @@ public:
     [[nodiscard]] std::uint16_t port() const { return endpoint_.port(); }
     /// From now on links are encrypted.
     void encrypt_with(net::TlsContext tls) { tls_ = std::move(tls); }
-    /// Every connection is closed at once and no new one is taken, until reopen().
+    /// The next links go by this.
+    void continue_with(LinkScript script) { scripts_ = {std::move(script)}; }
+    /// No new connection is taken until reopen().
     void close();
     void reopen();
 

@@ -1,0 +1,161 @@
+#pragma once
+
+#include "robot_client/uplink/live_feed.hpp"
+#include "robot_client/uplink/uplink.hpp"
+#include "tests/integration/robot_client/fake_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+/// Gives its scans as fast as they are taken, then rests until it is told to go on, to end or to fail.
+class ScriptedSource final : public LiveSource {
+public:
+    asio::awaitable<Result<std::optional<Observation>>> next() override {
+        const auto wake = std::make_shared<asio::steady_timer>(co_await asio::this_coro::executor,
+                                                               asio::steady_timer::time_point::max());
+        wake_ = wake;
+        for (;;) {
+            if (given_ < allowed_) {
+                ++given_;
+                on_given(given_);
+                co_await asio::post(co_await asio::this_coro::executor, asio::use_awaitable); // others have their turn
+                co_return std::optional(scan(given_));
+            }
+            if (fails_) co_return Error{Errc::kStoreFailed, "the sensor is gone"};
+            if (ended_) co_return std::optional<Observation>{};
+            co_await wake->async_wait(asio::as_tuple(asio::use_awaitable));
+        }
+    }
+    void stop() override { end(); }
+
+    [[nodiscard]] bool can_wait() const override { return can_wait_; }
+    void resume_after(std::uint64_t scans) override { resumed_after_ = scans; }
+
+    void allow(std::uint64_t upto) {
+        allowed_ = upto;
+        wake();
+    }
+    void end() {
+        ended_ = true;
+        wake();
+    }
+    void fail() {
+        fails_ = true;
+        wake();
+    }
+
+    std::function<void(std::uint64_t)> on_given = [](std::uint64_t) {};
+    std::uint64_t given_ = 0;
+    bool can_wait_ = false;
+    std::optional<std::uint64_t> resumed_after_;
+
+private:
+    void wake() {
+        if (const auto wake = wake_.lock()) wake->cancel();
+    }
+    Observation scan(std::uint64_t number) const {
+        Observation made{sensor_, {}};
+        made.scan.pose.x = static_cast<double>(number);
+        made.scan.ranges.assign(90, 1000);
+        return made;
+    }
+
+    std::weak_ptr<asio::steady_timer> wake_; // of next(), while it waits
+    std::shared_ptr<const Sensor> sensor_ = std::make_shared<const Sensor>(
+        Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 90}, 0.0, 0.0, 10.0});
+    std::uint64_t allowed_ = 0;
+    bool ended_ = false;
+    bool fails_ = false;
+};
+
+class LiveFeedTest : public testing::Test {
+protected:
+    LiveFeedTest() {
+        options_.tell = [this](const std::string& text) { told_.push_back(text); };
+    }
+
+    UplinkOptions uplink_options() {
+        UplinkOptions made;
+        made.server.host = "127.0.0.1";
+        made.server.port = std::to_string(server_.port());
+        made.conversation.hello.robot = "r1";
+        made.conversation.hello.session = "s1";
+        made.conversation.buffer_bytes_max = 100'000;
+        made.give_up_after = 0ms;
+        made.give_up_after_end = 20s;
+        return made;
+    }
+
+    std::unique_ptr<Spool> spool(std::uint64_t bytes_max = 64 << 20) {
+        return Spool::open({directory_.path() / "spool", bytes_max, WhenFull::kDropOldest}, options_.tell).value();
+    }
+
+    /// A program from its start to its end, or until it is killed; `meanwhile` is called once all is set up.
+    Result<> run(
+        ScriptedSource& source, std::unique_ptr<Spool> spool, const std::function<void()>& meanwhile = [] {}) {
+        asio::io_context robot(1);
+        LiveFeed feed(source, std::move(spool), options_);
+        Uplink uplink(robot, uplink_options(), feed);
+        uplink_ = &uplink;
+        is_killed_ = false;
+        Result<> outcome = Error{Errc::kInternal, "killed"};
+        asio::co_spawn(robot, uplink.run(), [&](std::exception_ptr failed, Result<> result) {
+            EXPECT_FALSE(failed);
+            outcome = std::move(result);
+            robot.stop();
+        });
+        asio::post(robot, meanwhile);
+        while (!robot.stopped() && !is_killed_) {
+            robot.poll_one();
+            server_io_.restart();
+            server_io_.poll();
+        }
+        status_ = uplink.status();
+        return outcome;
+    }
+
+    /// Nothing of the program runs any more.
+    void kill() { is_killed_ = true; }
+
+    [[nodiscard]] std::ptrdiff_t spool_files() const {
+        const auto is_segment = [](const auto& entry) { return entry.path().extension() == ".spool"; };
+        return std::ranges::count_if(std::filesystem::directory_iterator(directory_.path() / "spool"), is_segment);
+    }
+
+    void expect_stored(std::uint64_t scans) {
+        EXPECT_THAT(server_.faults(), testing::IsEmpty());
+        ASSERT_EQ(server_.stored().size(), scans);
+        for (std::uint64_t i = 0; i < scans; ++i) EXPECT_EQ(server_.stored()[i].pose.x, static_cast<double>(i + 1));
+    }
+
+    asio::io_context server_io_{1};
+    TemporaryDirectory directory_;
+    FakeServer server_{server_io_, {{}}};
+    LiveFeedOptions options_;
+    Uplink* uplink_ = nullptr;
+    bool is_killed_ = false;
+    UplinkStatus status_;
+    std::vector<std::string> told_;
+};
+
+} // namespace scanloom::robot
