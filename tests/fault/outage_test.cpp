@@ -201,6 +201,8 @@ TEST_F(OutageTest, NothingIsLostOrDoubledWhereverTheProgramIsKilled) {
     Lidar lidar;
     auto robot = start_robot(link.port(), lidar, {"--spool-size", "1"});
     lidar.wait_for_robot();
+    lidar.send(turns(taken + 1, taken + 1)); // the server may hold all others by now
+    taken += 1;
     wait_for_scans(server, static_cast<std::uint64_t>(taken));
     robot->signal(SIGTERM);
     EXPECT_EQ(robot->wait(), 0);
