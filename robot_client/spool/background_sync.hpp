@@ -34,7 +34,7 @@ private:
     std::chrono::milliseconds period_;
     std::mutex mutex_;
     std::condition_variable_any news_;
-    std::vector<Handle> written_; // and not synced yet, each once
+    std::vector<Handle> written_; // and not synced yet; nobody goes back to an earlier file
     std::jthread thread_;         // last: it uses the others
 };
 

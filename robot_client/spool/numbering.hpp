@@ -13,13 +13,9 @@ namespace scanloom::robot {
 struct Numbering {
     std::string session_id;         ///< of Welcome; empty: none was reached yet
     std::uint64_t acknowledged = 0; ///< seq of that session: the server holds all scans up to it
-    std::string boot;               ///< this_boot() when the server was reached
 
     friend bool operator==(const Numbering&, const Numbering&) = default;
 };
-
-/// Tells one run of this machine from all others; empty where the system does not say.
-[[nodiscard]] std::string this_boot();
 
 /// Nothing where there is no such file.
 /// Errors  kMalformed: the file is damaged; kStoreFailed: it cannot be read.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 
 namespace scanloom::robot {
@@ -50,11 +51,9 @@ Result<SegmentReader> SegmentReader::open(std::filesystem::path file) {
         if (!more) return more.error();
         if (!*more) break;
     }
-    const auto sent = read_segment_head(reader.buffer_);
-    if (!sent) return prefixed(fmt::format("{} cannot be read: ", reader.file_.string()), sent.error());
-    reader.sent_as_ = *sent;
-    reader.consumed_ = kSegmentHeadBytes;
-    reader.position_ = kSegmentHeadBytes;
+    reader.sent_as_ = read_segment_head(reader.buffer_);
+    reader.consumed_ = std::min(kSegmentHeadBytes, reader.buffer_.size());
+    reader.position_ = reader.consumed_;
     return reader;
 }
 

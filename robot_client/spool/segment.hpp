@@ -39,11 +39,11 @@ private:
 /// Reads one file of the spool from its beginning, while it may still grow.
 class SegmentReader {
 public:
-    /// Errors  kStoreFailed: it cannot be read; kMalformed: it is no file of a spool, or its head is damaged.
+    /// Errors  kStoreFailed: it cannot be read.
     [[nodiscard]] static Result<SegmentReader> open(std::filesystem::path file);
 
-    /// What its head said when it was opened.
-    [[nodiscard]] const SentAs& sent_as() const noexcept { return sent_as_; }
+    /// What its head said when it was opened; nothing where that is damaged.
+    [[nodiscard]] const std::optional<SentAs>& sent_as() const noexcept { return sent_as_; }
 
     /// The next record; nothing where the file ends by now, or within a record.
     /// Errors  kMalformed: damage, and what follows cannot be read; kStoreFailed.
@@ -58,7 +58,7 @@ private:
 
     std::filesystem::path file_;
     FileHandle handle_;
-    SentAs sent_as_;
+    std::optional<SentAs> sent_as_;
     std::string buffer_;         // read, from position_ on; consumed_ of it are records already read
     std::size_t consumed_ = 0;   // bytes
     std::uint64_t position_ = 0; // of buffer_[consumed_] in the file

@@ -31,14 +31,11 @@ std::string segment_head(const SentAs& sent) {
     return std::string(kMagic).append(reinterpret_cast<const char*>(numbers), sizeof numbers);
 }
 
-Result<SentAs> read_segment_head(std::string_view bytes) {
-    if (bytes.size() < kSegmentHeadBytes || !bytes.starts_with(kMagic)) {
-        return Error{Errc::kMalformed, "it is no file of a spool"};
-    }
+std::optional<SentAs> read_segment_head(std::string_view bytes) {
+    if (bytes.size() < kSegmentHeadBytes || !bytes.starts_with(kMagic)) return std::nullopt;
     const std::string_view numbers = bytes.substr(kMagic.size(), kNumbersBytes);
-    if (boost::endian::load_big_u32(bytes_of(bytes) + kMagic.size() + kNumbersBytes) != checksum(numbers)) {
-        return Error{Errc::kMalformed, "its first bytes are damaged"};
-    }
+    const auto sum = boost::endian::load_big_u32(bytes_of(bytes) + kMagic.size() + kNumbersBytes);
+    if (sum != checksum(numbers)) return std::nullopt;
     return SentAs{boost::endian::load_big_u64(bytes_of(numbers)), boost::endian::load_big_u64(bytes_of(numbers) + 8)};
 }
 

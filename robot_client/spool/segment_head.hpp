@@ -26,8 +26,8 @@ inline constexpr std::size_t kSegmentHeadBytes = 28;
 
 [[nodiscard]] std::string segment_head(const SentAs& sent);
 
-/// Errors  kMalformed: the bytes are no such head, or it is damaged.
-[[nodiscard]] Result<SentAs> read_segment_head(std::string_view bytes);
+/// Nothing where the bytes are no such head, or a damaged one.
+[[nodiscard]] std::optional<SentAs> read_segment_head(std::string_view bytes);
 
 /// Returns when the disk has it. Errors  kStoreFailed.
 [[nodiscard]] Result<> write_segment_head(const std::filesystem::path& file, const SentAs& sent);

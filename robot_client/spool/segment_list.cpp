@@ -33,8 +33,10 @@ Result<std::vector<fs::path>> files_in(const fs::path& directory) {
 /// It counts no more, and nothing of it is lost that a person could still make out.
 void set_aside(const fs::path& file, const std::string& why, const Tell& tell) {
     std::error_code failed;
-    fs::rename(file, file.string() + std::string(kSetAside), failed);
-    tell(fmt::format("{}; {}", why, failed ? "it is left out" : fmt::format("it is left out, as *{}", kSetAside)));
+    fs::path aside = file.string() + std::string(kSetAside);
+    for (int n = 2; fs::exists(aside, failed); ++n) aside = fmt::format("{}{}.{}", file.string(), kSetAside, n);
+    fs::rename(file, aside, failed);
+    tell(fmt::format("{}; it is left out{}", why, failed ? "" : ", as " + aside.filename().string()));
 }
 
 /// Counts the scans of a file, up to its end or to damage. Errors  kMalformed, kStoreFailed.
@@ -44,26 +46,26 @@ Result<SpoolFile> count(const fs::path& file, const Tell& tell) {
     SpoolFile segment;
     for (;;) {
         const auto record = reader->next();
-        if (!record && segment.scans == 0) return record.error();
-        if (!record) {
-            tell(record.error().message + "; scans behind that cannot be read");
-            segment.is_damaged = true;
-            break;
-        }
-        if (!*record) break;
+        if (!record && segment.scans == 0 && reader->sent_as()) return record.error();
+        if (!record && segment.scans > 0) tell(record.error().message + "; scans behind that cannot be read");
+        if (!record || !*record) break;
         const auto* batch = std::get_if<wire::ScanBatch>(&(*record)->message);
         if (batch == nullptr) continue;
         const std::uint64_t number = batch->scans.front().seq;
         if (segment.scans == 0) segment.first = number;
         if (number != segment.end()) {
             tell(fmt::format("{} lacks scan {}; scans behind that are left out", file.string(), segment.end()));
-            segment.is_damaged = true;
             break;
         }
         ++segment.scans;
     }
-    segment.from = std::clamp(reader->sent_as().from, segment.first, segment.end());
-    segment.seq = reader->sent_as().seq;
+    segment.is_headless = !reader->sent_as();
+    if (segment.is_headless && segment.scans == 0) {
+        return Error{Errc::kMalformed, fmt::format("{} is no file of a spool", file.string())};
+    }
+    const SentAs sent = reader->sent_as().value_or(SentAs{});
+    segment.from = std::clamp(sent.from, segment.first, segment.end());
+    segment.seq = sent.seq;
     std::error_code ignored;
     segment.bytes = fs::file_size(file, ignored);
     return segment;

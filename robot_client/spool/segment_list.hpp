@@ -16,9 +16,9 @@ struct SpoolFile {
     std::uint64_t first = 0; ///< number of its first scan
     std::uint64_t scans = 0; ///< that can be read
     std::uint64_t bytes = 0;
-    std::uint64_t from = 0;  ///< number of the first scan that is not known to be stored
-    std::uint64_t seq = 0;   ///< of that scan, those behind it follow; 0: none of them was ever sent
-    bool is_damaged = false; ///< there may have been more
+    std::uint64_t from = 0;   ///< number of the first scan that is not known to be stored
+    std::uint64_t seq = 0;    ///< of that scan, those behind it follow; 0: none of them was ever sent
+    bool is_headless = false; ///< its head is damaged: from and seq are not known
 
     [[nodiscard]] std::uint64_t end() const noexcept { return first + scans; }         ///< number behind its last scan
     [[nodiscard]] std::uint64_t left() const noexcept { return end() - from; }         ///< scans not known to be stored

@@ -61,19 +61,38 @@ Result<> Spool::load() {
 
     auto left = segments_left(options_.directory, tell_);
     if (!left) return left.error();
-    for (SpoolFile& segment : *left) {
+    segments_.assign(left->begin(), left->end());
+    mend_heads();
+    for (SpoolFile& segment : segments_) {
         segment.stored(numbering_.acknowledged);
         next_number_ = segment.end();
-        if (segment.left() == 0) {
-            std::error_code ignored;
-            fs::remove(file_of(segment), ignored);
-            continue;
-        }
         bytes_ += segment.bytes;
         waiting_ += segment.left();
-        segments_.push_back(segment);
+    }
+    for (std::size_t i = segments_.size(); i-- > 0;) {
+        if (segments_[i].left() == 0) remove(i);
     }
     return {};
+}
+
+/// As what the scans of a file were sent can be told from the file before it or behind it. Were they not sent at all,
+/// the server will not hold that many.
+void Spool::mend_heads() {
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+        SpoolFile& segment = segments_[i];
+        if (!segment.is_headless) continue;
+        const SpoolFile* before = i > 0 ? &segments_[i - 1] : nullptr;
+        const SpoolFile* behind = i + 1 < segments_.size() ? &segments_[i + 1] : nullptr;
+        if (before != nullptr && before->seq > 0 && before->end() == segment.first) {
+            segment.seq = before->seq + before->left();
+        } else if (behind != nullptr && !behind->is_headless && behind->seq > segment.scans &&
+                   behind->from == segment.end()) {
+            segment.seq = behind->seq - segment.scans;
+        }
+        tell_(fmt::format("the first bytes of {} are damaged; its scans are {}", file_of(segment).string(),
+                          segment.seq > 0 ? "numbered as those of the files around it"
+                                          : "sent, again if they were sent before"));
+    }
 }
 
 fs::path Spool::file_of(const SpoolFile& segment) const { return options_.directory / segment_file(segment.first); }
@@ -172,7 +191,7 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     }
     const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
-    numbering_ = {std::string(session_id), durable_seq, options_.boot};
+    numbering_ = {std::string(session_id), durable_seq};
     if (auto ok = write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes); !ok) return ok;
     for (SpoolFile& segment : segments_) {
         waiting_ -= segment.left();
@@ -195,21 +214,18 @@ Result<> Spool::check(std::uint64_t durable_seq) const {
     const auto sent = std::ranges::find_if(segments_.rbegin(), segments_.rend(),
                                            [](const SpoolFile& segment) { return segment.seq > 0; });
     if (sent == segments_.rend() || durable_seq <= sent->last_seq()) return {}; // others' scans, or these
-    const std::uint64_t more = durable_seq - sent->last_seq();
-    // Scans of its end may be gone here, and stored there; where another file follows it is known how many.
-    const bool is_last = sent == segments_.rbegin();
-    const std::uint64_t next = is_last ? 0 : std::prev(sent)->first;
-    const bool may_be_cut = sent->is_damaged || numbering_.boot != options_.boot || sent->end() + more <= next;
-    if (may_be_cut) {
-        tell_(fmt::format("the server holds {} scans more than {} does, whose end is missing; they are not lost", more,
-                          file_of(*sent).string()));
-        return {};
-    }
-    return Error{Errc::kConflict,
-                 fmt::format("the server holds {} scans of this robot, of which the spool {} sent {} at most: another "
-                             "program sent scans under the same --robot and --session; use another, or remove the "
-                             "directory",
-                             durable_seq, options_.directory.string(), sent->last_seq())};
+    tell_(fmt::format(
+        "the server holds {} scans of this robot, {} more than were sent from {}: files there have lost their "
+        "ends, the disk was full, or another program sent scans under the same --robot and --session; "
+        "scans that may have been sent count as stored",
+        durable_seq, durable_seq - sent->last_seq(), options_.directory.string()));
+    return {};
+}
+
+Result<> Spool::follow(std::string_view session_id) {
+    if (numbering_.session_id == session_id) return {};
+    numbering_.session_id = session_id;
+    return write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes);
 }
 
 /// What the session of before did not acknowledge is as if it had never been sent.
@@ -285,7 +301,6 @@ void Spool::leave_damaged(const std::string& why) {
     waiting_ -= lost;
     segment.scans = read_;
     segment.from = std::min(segment.from, segment.end());
-    segment.is_damaged = true;
     if (reading_ + 1 == segments_.size()) writer_.reset(); // what comes goes to another file
 }
 

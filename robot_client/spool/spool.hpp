@@ -26,7 +26,6 @@ struct SpoolOptions {
     std::filesystem::path directory; ///< for one robot in one session; made where it is missing
     std::uint64_t bytes_max = std::uint64_t{256} << 20;
     WhenFull when_full = WhenFull::kDropOldest; ///< the oldest go by whole files, each a sixteenth of bytes_max at most
-    std::string boot = this_boot();             ///< files may have lost their ends since another
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They survive the program that took them.
@@ -50,14 +49,20 @@ public:
 
     /// The server holds the robot's scans up to `durable_seq`: those of them that are here are passed over. Pre: once.
     /// In another session than before, those go that were not acknowledged in that one.
-    /// Errors  kConflict: it lost some that it had acknowledged, or has some that never came from here; kStoreFailed.
+    /// Where the server holds more than was sent from here, that is told: files may have lost their ends in a power
+    /// cut, scans may have gone past a full disk, or another program sent some under the same name. What was sent then
+    /// counts as stored.
+    /// Errors  kConflict: it lost some that it had acknowledged; kStoreFailed.
     [[nodiscard]] Result<> begin(std::string_view session_id, std::uint64_t durable_seq);
 
     /// Errors  kStoreFailed: it could not be written.
     /// @return whether it is kept; not if there is no room and the newest go.
     [[nodiscard]] Result<bool> append(const Observation& observation);
 
-    /// The next scan to send; nothing while none waits. Pre: begin() went well.
+    /// The link goes on in a session of this id, under the same seqs: in the one before nothing had been acknowledged.
+    [[nodiscard]] Result<> follow(std::string_view session_id);
+
+    /// The next scan to send; nothing while none waits. Waits for the disk once a file. Pre: begin() went well.
     /// Errors  kStoreFailed.
     [[nodiscard]] Result<std::optional<Observation>> next();
 
@@ -84,6 +89,7 @@ private:
     [[nodiscard]] bool may_go(std::size_t index) const noexcept;
     void remove(std::size_t index);
 
+    void mend_heads();
     [[nodiscard]] Result<> check(std::uint64_t durable_seq) const;
     [[nodiscard]] Result<> leave_session();
     [[nodiscard]] Result<> enter();

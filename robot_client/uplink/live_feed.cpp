@@ -58,15 +58,14 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
 }
 
 void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
-    if (!intake.has_room()) {
-        if (!std::exchange(told_of_dropping_, true)) {
-            options_.tell(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
-                                      "--spool keeps them on disk",
-                                      options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
-        }
+    if (!intake.has_room() && !std::exchange(told_of_dropping_, true)) {
+        options_.tell(fmt::format("the memory for scans that are not acknowledged is full: the {} are dropped; "
+                                  "--spool keeps them on disk",
+                                  options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
+    }
+    while (!intake.has_room()) { // the oldest may be smaller
         ++dropped_;
         if (options_.when_full == WhenFull::kDropNewest || !intake.drop_oldest_unsent()) return;
-        if (!intake.has_room()) return; // scans are of different sizes
     }
     intake.add(std::move(observation));
 }
@@ -105,6 +104,7 @@ Result<> LiveFeed::hand_over_from_spool(Intake& intake) {
         }
         begun_ = true;
     }
+    if (auto ok = spool_->follow(intake.session_id()); !ok) return ok;
     while (intake.has_room()) {
         auto next = spool_->next();
         if (!next) return next.error();

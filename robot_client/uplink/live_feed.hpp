@@ -22,7 +22,7 @@ struct LiveFeedOptions {
 /// Hands over what cannot be had again. It takes scans whether there is a server or not: into the spool, and from there
 /// as there is room; without a spool into the uplink's memory, and drops some where that is full. A source that can
 /// wait is asked for nothing before the server was reached, nor while there is no room.
-/// Errors of run()  those of the source, once what it gave before is handed over; those of Spool::begin().
+/// Errors of run()  those of the source, once what it gave before is handed over; those of the spool.
 class LiveFeed final : public Feed {
 public:
     /// `spool` may be null.

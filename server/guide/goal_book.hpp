@@ -88,7 +88,7 @@ private:
     WayBook ways_;
     std::mutex mutex_;
     std::vector<Entry> entries_;  // at most one a robot
-    std::vector<InVain> in_vain_; // of each session and settings one, if it has cells; the last asked for last
+    std::vector<InVain> in_vain_; // of each session and settings one, if it has any; the last asked for last
 };
 
 } // namespace scanloom::guide

@@ -25,6 +25,32 @@ private:
     rlimit before_{};
 };
 
+TEST_F(LiveFeedTest, WhatWentPastAFullDiskDoesNotHoldUpTheNextProgram) {
+    LinkScript silent;
+    silent.ack_every = 1000;
+    server_.continue_with(silent);
+    std::optional<FullDisk> full;
+    ScriptedSource source;
+    server_.on_stored = [&](std::size_t stored) {
+        if (stored == 10) {
+            full.emplace(300);
+            source.allow(30);
+        }
+        if (stored == 30) kill();
+    };
+    source.allow(10);
+    EXPECT_FALSE(run(source, spool()));
+    full.reset();
+    server_.continue_with({});
+    ScriptedSource next;
+    next.given_ = 30;
+    next.allow(35);
+    next.end();
+    const auto outcome = run(next, spool());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_stored(35);
+}
+
 TEST_F(LiveFeedTest, ADiskThatIsFullFromTheBeginningHoldsUpNothing) {
     FullDisk full(0);
     ScriptedSource source;

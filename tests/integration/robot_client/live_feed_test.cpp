@@ -55,6 +55,21 @@ TEST_F(LiveFeedTest, WithoutASpoolTheOldestUnsentGoWhenMemoryIsFullAndThatIsTold
     EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("--spool keeps them on disk")));
 }
 
+TEST_F(LiveFeedTest, WhereMemoryIsFullEachScanIsKeptOrCountedAlsoOfDifferentSizes) {
+    server_.close();
+    ScriptedSource source;
+    source.large_ = 900;
+    source.on_given = [&](std::uint64_t given) {
+        if (given != 999) return;
+        server_.reopen();
+        source.end();
+    };
+    source.allow(1000);
+    EXPECT_TRUE(run(source, nullptr));
+    EXPECT_EQ(status_.dropped + server_.stored().size(), 1000U);
+    EXPECT_EQ(server_.stored().back().pose.x, 1000.0) << "the newest is never among those that go";
+}
+
 TEST_F(LiveFeedTest, AKilledProgramsScansAreSentByTheNextOnce) {
     // Each is killed at another moment: with nothing sent, with some under way, with some acknowledged.
     std::uint64_t taken = 0;

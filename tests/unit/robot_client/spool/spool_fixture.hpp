@@ -33,7 +33,7 @@ class SpoolTest : public testing::Test {
 protected:
     void open(std::uint64_t bytes_max = 64 * kMebibyte, WhenFull when_full = WhenFull::kDropOldest) {
         spool_.reset();
-        spool_ = Spool::open({directory_.path(), bytes_max, when_full, boot_}, [&](const std::string& text) {
+        spool_ = Spool::open({directory_.path(), bytes_max, when_full}, [&](const std::string& text) {
                      told_.push_back(text);
                  }).value();
     }
@@ -77,7 +77,6 @@ protected:
     }
 
     TemporaryDirectory directory_;
-    std::string boot_ = "first";
     std::vector<std::string> told_;
     std::unique_ptr<Spool> spool_;
 };
