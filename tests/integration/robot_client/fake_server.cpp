@@ -138,8 +138,11 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
     }
     durable_ = stored_.size(); // what was stored without being acknowledged survived
     // Messages have names here: g++ 12 destroys temporaries of aggregate types twice when a co_await follows them.
-    const wire::Message welcome =
-        wire::Welcome{"f1", link.script.durable_seq.value_or(durable_), {}, link.script.credit_bytes, link.script.zstd};
+    const wire::Message welcome = wire::Welcome{link.script.session_id,
+                                                link.script.durable_seq.value_or(durable_),
+                                                {},
+                                                link.script.credit_bytes,
+                                                link.script.zstd};
     co_return co_await link.send(welcome);
 }
 

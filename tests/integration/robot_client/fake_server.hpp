@@ -26,6 +26,7 @@ struct LinkScript {
     std::optional<std::uint64_t> silent_after_scans = {};  ///< nothing is said from then on; 0: no welcome
     std::optional<std::uint64_t> stop_reading_after_scans = {};
     std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
+    std::string session_id = "f1";
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
     bool zstd = false;

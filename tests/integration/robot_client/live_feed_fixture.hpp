@@ -67,7 +67,7 @@ public:
     std::function<void(std::uint64_t)> on_given = [](std::uint64_t) {};
     std::uint64_t given_ = 0;
     bool can_wait_ = false;
-    std::size_t large_ = 90; ///< beams of each third scan
+    std::uint64_t large_from_ = UINT64_MAX; ///< ten times the beams
     std::optional<std::uint64_t> resumed_after_;
 
 private:
@@ -77,7 +77,7 @@ private:
     Observation scan(std::uint64_t number) const {
         Observation made{sensor_, {}};
         made.scan.pose.x = static_cast<double>(number);
-        made.scan.ranges.assign(number % 3 == 0 ? large_ : 90, 1000);
+        made.scan.ranges.assign(number < large_from_ ? 90 : 900, 1000);
         return made;
     }
 

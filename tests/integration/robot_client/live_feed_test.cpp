@@ -1,3 +1,4 @@
+#include "robot_client/uplink/send_buffer.hpp"
 #include "tests/integration/robot_client/live_feed_fixture.hpp"
 
 namespace scanloom::robot {
@@ -55,10 +56,44 @@ TEST_F(LiveFeedTest, WithoutASpoolTheOldestUnsentGoWhenMemoryIsFullAndThatIsTold
     EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("--spool keeps them on disk")));
 }
 
+TEST_F(LiveFeedTest, ASessionMadeAnewBeforeAnyAckGetsAllScansOnceAlsoFromTheNextProgram) {
+    LinkScript first;
+    first.ack_every = 1000;
+    first.hang_up_after_scans = 18;
+    LinkScript anew;
+    anew.ack_every = 1000;
+    anew.session_id = "f2";
+    server_.continue_with(first);
+    bool is_anew = false;
+    server_.on_stored = [&](std::size_t stored) {
+        if (!is_anew && stored == 18) {
+            is_anew = true;
+            server_.forget();
+            server_.continue_with(anew);
+        } else if (is_anew && stored == 10) {
+            kill();
+        }
+    };
+    ScriptedSource source;
+    source.allow(18);
+    EXPECT_FALSE(run(source, spool()));
+    anew.durable_seq = server_.stored().size();
+    anew.ack_every = 1;
+    server_.continue_with(anew);
+    ScriptedSource next;
+    next.given_ = 18;
+    next.allow(25);
+    next.end();
+    const auto outcome = run(next, spool());
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_stored(25);
+    EXPECT_THAT(told_, IsEmpty());
+}
+
 TEST_F(LiveFeedTest, WhereMemoryIsFullEachScanIsKeptOrCountedAlsoOfDifferentSizes) {
     server_.close();
     ScriptedSource source;
-    source.large_ = 900;
+    source.large_from_ = 600;
     source.on_given = [&](std::uint64_t given) {
         if (given != 999) return;
         server_.reopen();
@@ -67,6 +102,9 @@ TEST_F(LiveFeedTest, WhereMemoryIsFullEachScanIsKeptOrCountedAlsoOfDifferentSize
     source.allow(1000);
     EXPECT_TRUE(run(source, nullptr));
     EXPECT_EQ(status_.dropped + server_.stored().size(), 1000U);
+    std::size_t bytes = 0;
+    for (const Scan& scan : server_.stored()) bytes += wire_bytes_max(scan);
+    EXPECT_LE(bytes, 110'000U) << "what memory may hold, and one scan that comes when it is free again";
     EXPECT_EQ(server_.stored().back().pose.x, 1000.0) << "the newest is never among those that go";
 }
 

@@ -216,7 +216,7 @@ TEST_F(UplinkTest, AServerThatLostAcknowledgedScansIsAClearError) {
     serve({{.hang_up_after_scans = 100}, {.durable_seq = 3}});
     const auto outcome = run(options());
     ASSERT_FALSE(outcome);
-    EXPECT_THAT(outcome.error().message, HasSubstr("are lost"));
+    EXPECT_THAT(outcome.error().message, HasSubstr("no longer in memory"));
 }
 
 TEST_F(UplinkTest, AProgramThatSpeaksSomethingElseIsAClearError) {
