@@ -161,6 +161,7 @@ public:
     /// A way over all free ground, or that of a region.
     [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
 
+    /// Waits, as the destructor does, while the disk of the spool stands still.
     [[nodiscard]] ClientStatus status() const;
 
 private:

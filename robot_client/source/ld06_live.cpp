@@ -127,6 +127,7 @@ private:
     Ld06Losses losses_;
     std::uint64_t given_ = 0; ///< scans
     bool told_of_other_clock_ = false;
+    bool told_of_poses_ahead_ = false;
     std::optional<Error> ended_; ///< why nothing more comes from the sensor
     bool is_started_ = false;
     bool is_stopped_ = false;
@@ -196,6 +197,17 @@ bool Ld06Live::State::on_bytes(std::span<const std::uint8_t> bytes) {
 void Ld06Live::State::add(const StampedPose& pose) {
     auto* timeline = std::get_if<PoseTimeline>(&options_.poses);
     if (timeline == nullptr) return;
+    const double now = unix_now();
+    const double latest = now + seconds(options_.pose_ahead_max);
+    timeline->forget_after(latest); // the clock was put back
+    if (pose.stamp > latest) {
+        if (std::exchange(told_of_poses_ahead_, true)) return;
+        options_.device.note(
+            fmt::format("poses are passed over: one of t = {:.0f} came at {:.0f}; for a device t is Unix "
+                        "time, in seconds, and the clocks must agree",
+                        pose.stamp, now));
+        return;
+    }
     timeline->insert(pose);
     timeline->keep_newest(kPosesKept);
     wake();

@@ -16,8 +16,9 @@ struct Ld06LiveOptions {
     Ld06ScanOptions scan;
     Ld06Poses poses;          ///< those known from the begin; their times are Unix time
     int pose_descriptor = -1; ///< where more poses come from (see pose_feed.hpp), owned from now on; -1: nowhere
-    std::chrono::milliseconds pose_wait{500};    ///< a scan waits so long for the pose behind it, if more may come;
-    std::chrono::milliseconds pose_age_max{500}; ///< then it takes the newest, if that is no older than this
+    std::chrono::milliseconds pose_wait{500};       ///< a scan waits so long for the pose behind it, if more may come;
+    std::chrono::milliseconds pose_age_max{500};    ///< then it takes the newest, if that is no older than this
+    std::chrono::milliseconds pose_ahead_max{2000}; ///< a pose that comes may be so far ahead of this machine's clock
 };
 
 /// Scans that nobody asked for; of more the oldest are dropped.

@@ -18,6 +18,9 @@ public:
     /// Forgets the oldest beyond `count`.
     void keep_newest(std::size_t count);
 
+    /// Forgets those of later times.
+    void forget_after(double stamp);
+
     [[nodiscard]] std::optional<Pose2> at(double stamp) const;
 
     [[nodiscard]] bool empty() const noexcept { return poses_.empty(); }

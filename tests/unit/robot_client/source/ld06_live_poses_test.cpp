@@ -24,6 +24,7 @@ protected:
         live.pose_descriptor = pipe_[0];
         live.pose_wait = wait;
         live.pose_age_max = age_max;
+        live.pose_ahead_max = ahead_max_;
         source_ = std::make_unique<Ld06Live>(std::move(live));
     }
     void stop_when_passed_over(int scans) {
@@ -43,6 +44,7 @@ protected:
     static constexpr std::chrono::hours kForEver{1};
     static constexpr std::chrono::milliseconds kNotAtAll{0};
 
+    std::chrono::milliseconds ahead_max_ = kForEver;
     PseudoTerminal sensor_;
     int pipe_[2]{-1, -1};
     std::unique_ptr<Ld06Live> source_;
@@ -124,6 +126,19 @@ TEST_F(Ld06LivePoses, OfWhichSomeFitAreNoError) {
     ASSERT_TRUE(next) << next.error().message;
     EXPECT_FALSE(*next);
     EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(Ld06LivePoses, OneFarAheadOfTheClockIsPassedOverAndTold) {
+    ahead_max_ = std::chrono::seconds(50);
+    start(kNotAtAll);
+    on_note_ = [&] { sensor_.send(one_turn()); };
+    const Scan scan = scan_of(*source_, [&] {
+        write_pose(unix_now() - 100.0, 7.0);
+        write_pose(unix_now() + 100.0, 50.0);
+        write_pose(unix_now() + 101.0, 50.0);
+    });
+    EXPECT_EQ(scan.pose.x, 7.0);
+    EXPECT_THAT(notes_, ElementsAre(HasSubstr("the clocks must agree")));
 }
 
 TEST_F(Ld06LivePoses, AreNotWaitedForWhenTheyHaveEnded) {

@@ -99,6 +99,10 @@ TEST(PoseTimeline, ForgetsTheOldest) {
     poses.keep_newest(3);
     EXPECT_EQ(poses.size(), 3U);
     EXPECT_EQ(poses.oldest().stamp, 7.0);
+    const std::size_t before = poses.size();
+    poses.forget_after(poses.oldest().stamp);
+    EXPECT_LT(poses.size(), before);
+    EXPECT_EQ(poses.newest().stamp, poses.oldest().stamp);
 }
 
 } // namespace
