@@ -231,7 +231,7 @@ TEST_F(ConversationTest, AServerThatLostAcknowledgedScansIsAFinalError) {
     const auto failure = conversation_.receive(wire::Welcome{"a1", 5, {}, kPlenty}, now_);
     ASSERT_TRUE(failure);
     EXPECT_FALSE(failure->retryable);
-    EXPECT_THAT(failure->error.message, HasSubstr("scans 6 to 8 are lost"));
+    EXPECT_THAT(failure->error.message, HasSubstr("scans 6 to 8 are no longer in memory"));
 }
 
 TEST_F(ConversationTest, ASessionMadeAnewMeanwhileIsAFinalError) {

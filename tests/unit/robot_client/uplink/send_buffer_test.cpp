@@ -65,7 +65,7 @@ TEST(SendBuffer, ScansTheServerLostAreAClearError) {
     buffer.acknowledge(6);
     const auto lost = buffer.rewind(4);
     ASSERT_FALSE(lost);
-    EXPECT_THAT(lost.error().message, testing::HasSubstr("scans 5 to 6 are lost"));
+    EXPECT_THAT(lost.error().message, testing::HasSubstr("scans 5 to 6 are no longer in memory"));
 }
 
 TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
