@@ -968,7 +968,8 @@ class Client:
         try:  # what failed in the block is what is told; the scans before it are not given up for that
             self.close(timeout=10.0)
         except ScanloomError as failure:
-            _log.warning("%s", failure.message)
+            if failure.message != str(error):
+                _log.warning("%s", failure.message)
 
     # Sensors
 

@@ -165,5 +165,19 @@ class GivingUp(LinkTest):
         robot.close()
 
 
+class Failing(LinkTest):
+    def test_what_a_block_has_raised_is_not_told_once_more(self):
+        def refuses(link):
+            link.receive()
+            link.send(error={"code": 14, "message": "no token was given"})
+
+        self.start(refuses)
+        with self.assertNoLogs("scanloom"), self.assertRaises(scanloom_client.ScanloomError) as caught:
+            with self.client() as robot:
+                self.send(robot, self.laser(robot), 1)
+                robot.flush()
+        self.assertEqual(caught.exception.message, "no token was given")
+
+
 if __name__ == "__main__":
     unittest.main()
