@@ -72,7 +72,7 @@ void Waypoints::begin_with_nearest(const Point2& position) {
             seen_, [&](const Point2& obstacle) { return distance_to(obstacle, position, goal) < kBodyRadius; });
         return std::pair(is_hidden, (goal - position).norm());
     };
-    std::ranges::rotate(goals_, std::ranges::min_element(goals_, {}, distance));
+    std::rotate(goals_.begin(), std::ranges::min_element(goals_, {}, distance), goals_.end());
 }
 
 void Waypoints::go_on_to_next() {
