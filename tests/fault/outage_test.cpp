@@ -10,12 +10,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <iterator>
 #include <optional>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 /// A live sensor's scans while the network is away and the robot's program is killed.
@@ -71,9 +74,16 @@ std::uint64_t scans_of(const RunningServer& server) {
     return answer.status == 200 ? boost::json::parse(answer.body).at("scans").to_number<std::uint64_t>() : 0;
 }
 
-void wait_for_scans(const RunningServer& server, std::uint64_t scans) {
-    while (scans_of(server) < scans) {
+/// What is lost never comes: that is told, long after any machine would have brought it.
+void wait_until(const std::string& what, const std::function<bool()>& has_come) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!has_come()) {
+        if (std::chrono::steady_clock::now() > until) throw std::runtime_error("waited in vain for " + what);
     }
+}
+
+void wait_for_scans(const RunningServer& server, std::uint64_t scans) {
+    wait_until(std::to_string(scans) + " scans on the server", [&] { return scans_of(server) >= scans; });
 }
 
 std::vector<Scan> scans_in_spool(const std::filesystem::path& directory) {
@@ -116,10 +126,10 @@ protected:
     [[nodiscard]] std::vector<Scan> spooled() const { return scans_in_spool(place_.path() / "spool" / "s.r"); }
 
     void wait_for_turn_in_spool(int turn) const {
-        for (;;) {
+        wait_until("turn " + std::to_string(turn) + " in the spool", [&] {
             const auto scans = spooled();
-            if (!scans.empty() && turn_of(scans.back()) == turn) return;
-        }
+            return !scans.empty() && turn_of(scans.back()) == turn;
+        });
     }
 
     /// Everything in one go.
@@ -155,16 +165,14 @@ TEST_F(OutageTest, NothingIsLostWhileTheNetworkIsAwayAndTheProgramIsKilledMeanwh
 
     link.cut();
     lidar.send({quarter, bytes.end()});
-    while (spooled().size() < 40) {
-    }
+    wait_until("40 scans in the spool", [&] { return spooled().size() >= 40; });
     robot->signal(SIGKILL);
     EXPECT_EQ(robot->wait(), -SIGKILL);
 
     robot = start_robot(link.port(), lidar);
     lidar.wait_for_robot();
     lidar.send(turns(41, 60));
-    while (spooled().size() < 60) {
-    }
+    wait_until("60 scans in the spool", [&] { return spooled().size() >= 60; });
     EXPECT_LE(scans_of(server), 10U) << "the network is away"; // the tenth was in the quarter, too
     link.restore();
     wait_for_scans(server, 60);
