@@ -16,6 +16,7 @@ if(SCANLOOM_SERVER)
   find_package(spdlog 1.10 REQUIRED)
   find_package(RocksDB 7.8 REQUIRED)
   find_package(prometheus-cpp REQUIRED)
+  find_package(hwy 1.0 CONFIG REQUIRED)
 endif()
 
 # Asio and Beast, compiled once instead of in every file that includes them.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/grid/chunk.hpp"
+#include "server/grid/bit_plane.hpp"
 
 #include <array>
 #include <bit>
@@ -9,8 +9,7 @@
 
 namespace scanloom::classify {
 
-/// One bit per cell of a chunk: bit i of row j is the cell (i, j) of the chunk, so that 64 cells are handled at once.
-using BitPlane = std::array<std::uint64_t, grid::kChunkSide>;
+using grid::BitPlane;
 
 static_assert(std::endian::native == std::endian::little, "cells are read eight at a time, the first one lowest");
 

@@ -1,9 +1,8 @@
 #pragma once
 
+#include "server/grid/bit_plane.hpp"
 #include "server/grid/chunk_tree.hpp"
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
 namespace scanloom::classify {
@@ -11,8 +10,21 @@ namespace scanloom::classify {
 /// What the evidence so far says of a cell. Depends on the order of the evidence: see Hysteresis.
 enum class OccType : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2 };
 
-/// The occ_types of one chunk, bottom row first.
-using OccPlane = std::array<OccType, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
+/// The OccTypes of one chunk's cells. No cell is both free and occupied.
+struct OccPlanes {
+    grid::BitPlane free{};
+    grid::BitPlane occupied{};
+
+    [[nodiscard]] OccType at(grid::Cell cell) const noexcept {
+        const auto is_set = [&](const grid::BitPlane& plane) { return grid::is_set(plane, cell); };
+        return is_set(free) ? OccType::kFree : is_set(occupied) ? OccType::kOccupied : OccType::kUnexplored;
+    }
+
+    void set(grid::Cell cell, OccType type) noexcept {
+        grid::set(free, cell, type == OccType::kFree);
+        grid::set(occupied, cell, type == OccType::kOccupied);
+    }
+};
 
 /// What a cell means to whoever drives: its OccType, told apart by its neighbours. The numbers are those of tiles.
 ///   frontier  unexplored, and one of the 8 cells around it is free

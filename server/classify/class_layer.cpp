@@ -106,30 +106,29 @@ ClassLayer::ClassLayer(std::int32_t danger_cells) : danger_cells_(danger_cells),
     assert(danger_cells <= kDangerCellsMax);
 }
 
-void ClassLayer::update(std::span<const grid::ChunkKey> changed, const FindPlane& find_plane, Revision revision) {
+void ClassLayer::update(std::span<const grid::ChunkKey> changed, const FindPlanes& find_planes, Revision revision) {
     StaleChunks stale;
-    for (const grid::ChunkKey key : changed) take_in(key, find_plane(key), revision, stale);
+    for (const grid::ChunkKey key : changed) take_in(key, find_planes(key), revision, stale);
     for (const auto& [key, retyped] : stale) classify(key, retyped, revision);
 }
 
 /// Notes which chunks need their classes worked out again: this one, and the neighbours near enough to a change.
-void ClassLayer::take_in(grid::ChunkKey key, const OccPlane* types, Revision revision, StaleChunks& stale) {
+void ClassLayer::take_in(grid::ChunkKey key, const OccPlanes* types, Revision revision, StaleChunks& stale) {
     static constexpr Planes kUnwritten;
     const auto* known = planes_.find(key);
     if (types == nullptr && known == nullptr) return;
     const Planes& before = known == nullptr ? kUnwritten : known->planes;
-    const BitPlane free = types == nullptr ? BitPlane{} : bits_where(*types, OccType::kFree);
-    const BitPlane occupied = types == nullptr ? BitPlane{} : bits_where(*types, OccType::kOccupied);
+    const OccPlanes now = types == nullptr ? OccPlanes{} : *types;
     BitPlane freed{};      // or no longer free
     BitPlane obstructed{}; // or no longer occupied
-    for (std::size_t j = 0; j < free.size(); ++j) {
-        freed[j] = free[j] ^ before.free[j];
-        obstructed[j] = occupied[j] ^ before.occupied[j];
+    for (std::size_t j = 0; j < freed.size(); ++j) {
+        freed[j] = now.free[j] ^ before.free[j];
+        obstructed[j] = now.occupied[j] ^ before.occupied[j];
     }
     if (!any(freed) && !any(obstructed)) return;
     Planes& planes = planes_.write(key, revision).planes;
-    planes.free = free;
-    planes.occupied = occupied;
+    planes.free = now.free;
+    planes.occupied = now.occupied;
     for (std::int32_t dj = -1; dj <= 1; ++dj) {
         for (std::int32_t di = -1; di <= 1; ++di) {
             const auto other = neighbour(key, di, dj);

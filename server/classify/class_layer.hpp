@@ -24,16 +24,16 @@ public:
     static constexpr std::int32_t kDangerCellsMax = grid::kChunkSide;
 
     /// The OccTypes of a chunk as they are now; nullptr where nothing was ever written: all unexplored.
-    using FindPlane = std::function<const OccPlane*(grid::ChunkKey)>;
+    using FindPlanes = std::function<const OccPlanes*(grid::ChunkKey)>;
 
     /// Pre  1 <= danger_cells <= kDangerCellsMax.
     explicit ClassLayer(std::int32_t danger_cells);
 
-    /// Takes in the OccTypes of the chunks that may have changed since the last update. find_plane is asked for those
+    /// Takes in the OccTypes of the chunks that may have changed since the last update. find_planes is asked for those
     /// alone. Cost follows them, and those of their neighbours that a change at their border concerns; a chunk named
     /// without need costs a microsecond.
     /// Pre  revision >= that of every earlier update.
-    void update(std::span<const grid::ChunkKey> changed, const FindPlane& find_plane, Revision revision);
+    void update(std::span<const grid::ChunkKey> changed, const FindPlanes& find_planes, Revision revision);
 
     /// How many chunks have a cell that is, or was once, not plainly UNEXPLORED.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
@@ -63,7 +63,7 @@ private:
     ClassLayer(std::int32_t danger_cells, grid::ChunkTree<PlanesChunk> planes, grid::ChunkTree<ClassChunk> tree)
         : danger_cells_(danger_cells), planes_(std::move(planes)), tree_(std::move(tree)) {}
 
-    void take_in(grid::ChunkKey key, const OccPlane* types, Revision revision, StaleChunks& stale);
+    void take_in(grid::ChunkKey key, const OccPlanes* types, Revision revision, StaleChunks& stale);
     void classify(grid::ChunkKey key, const BitPlane& retyped, Revision revision);
     [[nodiscard]] Around around(grid::ChunkKey key) const;
     void write(grid::ChunkKey key, const Planes& planes, const BitPlane& reclassified, Revision revision);

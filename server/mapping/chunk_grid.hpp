@@ -40,6 +40,9 @@ public:
         return current_;
     }
 
+    /// The chunk as it is now, or nullptr where nothing was ever written. Valid until the next write.
+    [[nodiscard]] const ChunkType* find(grid::ChunkKey key) const noexcept { return tree_.find(key); }
+
     /// Calls change(chunk, i, count) for each piece, cells i..i + count - 1, of the cells i_begin..i_end - 1 of row j
     /// that lies in one chunk. Leaves out chunks that hold the entry already.
     template <class Change>

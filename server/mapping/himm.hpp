@@ -1,11 +1,8 @@
 #pragma once
 
-#include "server/mapping/inverse_sensor_model.hpp"
 #include "server/mapping/map_config.hpp"
 
-#include <algorithm>
 #include <cstdint>
-#include <span>
 
 namespace scanloom::mapping {
 
@@ -15,21 +12,13 @@ using HimmCount = std::uint8_t;
 inline constexpr HimmCount kHimmMax = 15;
 inline constexpr HimmCount kUnseenHimm = 255; ///< a cell that no scan has reached; not one counted down to 0
 
-/// Histogramic in-motion mapping: counts up where a hit is, down before it.
+/// Histogramic in-motion mapping: counts up where a hit is, down before it, within 0..15, unseen cells starting from 0.
 /// Source  Borenstein, Koren, Histogramic In-Motion Mapping for Mobile Robot Obstacle Avoidance (1991), section III.
 struct HimmRule {
     explicit HimmRule(const MapConfig& config) noexcept : up(config.himm_increment), down(config.himm_decrement) {}
 
-    void apply(std::span<HimmCount> cells, Verdict verdict) const noexcept {
-        const int step = verdict == Verdict::kOccupied ? up : -down;
-        for (HimmCount& cell : cells) {
-            const int before = cell == kUnseenHimm ? 0 : cell;
-            cell = static_cast<HimmCount>(std::clamp<int>(before + step, 0, kHimmMax));
-        }
-    }
-
-    int up;
-    int down;
+    int up;   ///< 1..15
+    int down; ///< 1..15
 };
 
 } // namespace scanloom::mapping

@@ -1,11 +1,16 @@
 #include "server/mapping/laser_layers.hpp"
 
-#include "server/mapping/inverse_sensor_model.hpp"
+#include "server/mapping/chunk_kernels.hpp"
 #include "server/mapping/map_patch_cells.hpp"
+#include "server/mapping/sweep/sweep.hpp"
 #include "server/mapping/work.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 namespace scanloom::mapping {
@@ -15,7 +20,6 @@ LaserChunk blank_chunk() {
     LaserChunk chunk;
     chunk.occupancy.fill(kUnknownLogOdds);
     chunk.himm.fill(kUnseenHimm);
-    chunk.occ_types.fill(classify::OccType::kUnexplored);
     return chunk;
 }
 
@@ -36,16 +40,35 @@ classify::Hysteresis<HimmCount> hysteresis_of_himm(const MapConfig& config) {
             kUnseenHimm};
 }
 
-/// Calls row() for what the next sectors of a scan show, as many as the work allows.
-/// @param done  sectors so far. @return whether that was the last.
-template <class Row>
-bool visit_sectors(const BeamFan& fan, const LaserScan& scan, const ModelGeometry& geometry, std::size_t& done,
-                   double& work, Row&& row) {
-    const auto missing = std::span(fan).subspan(done);
-    const auto sectors = missing.first(sectors_within(work, missing, scan.ranges, geometry));
-    inverse_sensor_model(sectors, scan.ranges, scan.T_map_sensor, geometry, row);
-    done += sectors.size();
-    return sectors.size() == missing.size();
+bool is_swept(const MapConfig& config) { return config.ray_model == RayModel::kInverseSensorModel; }
+
+constexpr grid::BitPlane all_cells() {
+    grid::BitPlane plane{};
+    plane.fill(~std::uint64_t{0});
+    return plane;
+}
+
+grid::BitPlane touched_by(const ChunkVerdicts& verdicts) {
+    grid::BitPlane touched;
+    for (std::size_t j = 0; j < touched.size(); ++j) touched[j] = verdicts.free[j] | verdicts.occupied[j];
+    return touched;
+}
+
+/// Grows a box to hold the cells of a chunk that have a verdict.
+void include(grid::CellBox& box, grid::ChunkKey key, const ChunkVerdicts& verdicts) {
+    const std::int32_t left = key.ci * grid::kChunkSide;
+    const std::int32_t bottom = key.cj * grid::kChunkSide;
+    const bool is_inside = box.i_begin <= left && left + grid::kChunkSide <= box.i_end && box.j_begin <= bottom &&
+                           bottom + grid::kChunkSide <= box.j_end;
+    if (is_inside) return;
+    const grid::BitPlane touched = touched_by(verdicts);
+    const std::uint64_t columns = std::accumulate(touched.begin(), touched.end(), std::uint64_t{0}, std::bit_or<>());
+    if (columns == 0) return;
+    const auto is_touched = [](std::uint64_t row) { return row != 0; };
+    const auto first = std::find_if(touched.begin(), touched.end(), is_touched) - touched.begin();
+    const auto end = touched.rend() - std::find_if(touched.rbegin(), touched.rend(), is_touched);
+    box.include({left + std::countr_zero(columns), bottom + static_cast<std::int32_t>(first),
+                 left + grid::kChunkSide - std::countl_zero(columns), bottom + static_cast<std::int32_t>(end)});
 }
 
 } // namespace
@@ -54,10 +77,13 @@ LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, doubl
     const double for_occupancy = aperture > 0.0 ? aperture : config.beam_aperture;
     const double for_himm = aperture > 0.0 ? aperture : config.himm_beam_aperture;
     LaserFan fan;
-    fan.himm = std::make_shared<const BeamFan>(make_beam_fan(angles, for_himm));
+    const auto ring_of = [&](double width) {
+        return std::make_shared<const FanRing>(make_fan_ring(make_beam_fan(angles, width)));
+    };
+    fan.himm = ring_of(for_himm);
     if (config.ray_model == RayModel::kInverseSensorModel) {
         const bool alike = for_occupancy == for_himm;
-        fan.occupancy = alike ? fan.himm : std::make_shared<const BeamFan>(make_beam_fan(angles, for_occupancy));
+        fan.occupancy = alike ? fan.himm : ring_of(for_occupancy);
         return fan;
     }
     fan.beams.reserve(beam_count(angles));
@@ -72,28 +98,32 @@ LaserLayers::LaserLayers(const MapConfig& config) : LaserLayers(config, ChunkGri
 
 LaserLayers::LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid)
     : config_(config), occupancy_(config), himm_(config), by_occupancy_(hysteresis_of_occupancy(config)),
-      by_himm_(hysteresis_of_himm(config)), grid_(std::move(grid)) {}
+      by_himm_(hysteresis_of_himm(config)), grid_(std::move(grid)), stage_(first_stage(config)) {}
+
+/// Evidence comes with the sweep, or beam by beam before it.
+LaserLayers::Stage LaserLayers::first_stage(const MapConfig& config) {
+    return is_swept(config) ? Stage::kSweep : Stage::kBeams;
+}
 
 bool LaserLayers::integrate(const LaserScan& scan, Revision revision, double& work) {
     grid_.begin(revision);
-    if (stage_ == Stage::kOccupancy) {
-        const bool by_sectors = config_.ray_model == RayModel::kInverseSensorModel;
-        if (!(by_sectors ? add_sectors(scan, work) : trace_beams(scan, work))) return false;
+    if (stage_ == Stage::kBeams) {
+        if (!trace_beams(scan, work)) return false;
         stage_ = Stage::kMarks;
     }
     if (stage_ == Stage::kMarks) {
         if (!add_marks(work)) return false;
-        stage_ = Stage::kHimm;
+        stage_ = Stage::kSweep;
         done_ = 0;
     }
-    if (stage_ == Stage::kHimm) {
-        if (!count(scan, work)) return false;
+    if (stage_ == Stage::kSweep) {
+        if (!sweep(scan, work)) return false;
         stage_ = Stage::kClasses;
         done_ = 0;
         changed_ = grid_.changed_in(touched_);
     }
     if (!fold_classes(work)) return false;
-    stage_ = Stage::kOccupancy;
+    stage_ = first_stage(config_);
     done_ = 0;
     touched_ = {};
     return true;
@@ -111,29 +141,16 @@ void LaserLayers::import(const MapPatch& patch, Revision revision) {
 
 void LaserLayers::set(grid::Cell cell, MapCell to) {
     if (to == MapCell::kUnknown) return;
-    const Verdict verdict = to == MapCell::kOccupied ? Verdict::kOccupied : Verdict::kFree;
+    const bool is_occupied = to == MapCell::kOccupied;
     bounds_.occupancy.include_row(cell.j, cell.i, cell.i + 1);
     bounds_.himm.include_row(cell.j, cell.i, cell.i + 1);
     touched_.include_row(cell.j, cell.i, cell.i + 1);
     grid_.write_row(cell.j, cell.i, cell.i + 1, [&](LaserChunk& chunk, std::int32_t i, std::size_t) {
         const auto at = grid::index_in_chunk({i, cell.j});
-        if (verdict == Verdict::kFree && chunk.occupancy[at] != kUnknownLogOdds) return;
-        chunk.occupancy[at] = occupancy_.certain(verdict);
-        chunk.himm[at] = verdict == Verdict::kOccupied ? kHimmMax : 0;
+        if (!is_occupied && chunk.occupancy[at] != kUnknownLogOdds) return;
+        chunk.occupancy[at] = is_occupied ? occupancy_.l_max : occupancy_.l_min;
+        chunk.himm[at] = is_occupied ? kHimmMax : 0;
     });
-}
-
-/// The inverse sensor model: cells by sectors.
-bool LaserLayers::add_sectors(const LaserScan& scan, double& work) {
-    const ModelGeometry geometry{scan.readings, config_.obstacle_thickness, config_.cell_size};
-    return visit_sectors(*scan.fan.occupancy, scan, geometry, done_, work,
-                         [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
-                             bounds_.occupancy.include_row(j, begin, end);
-                             touched_.include_row(j, begin, end);
-                             grid_.write_row(j, begin, end, [&](LaserChunk& chunk, std::int32_t i, std::size_t count) {
-                                 occupancy_.apply({&chunk.occupancy[grid::index_in_chunk({i, j})], count}, verdict);
-                             });
-                         });
 }
 
 /// The models that trace rays: cells are marked first, as a hit beats all passes of a scan, or of a beam.
@@ -162,46 +179,75 @@ bool LaserLayers::add_marks(double& work) {
 void LaserLayers::add_first_marks() {
     const auto first = marks_.take_first();
     const grid::ChunkKey key = first.key();
-    const ChunkMarks& marks = first.mapped();
-    const auto add = [&](std::int32_t row, std::uint64_t bits, Verdict verdict) {
-        for_each_run(bits, [&](int begin, int end) {
-            const std::int32_t left = key.ci * grid::kChunkSide;
-            const std::int32_t j = key.cj * grid::kChunkSide + row;
-            bounds_.occupancy.include_row(j, left + begin, left + end);
-            touched_.include_row(j, left + begin, left + end);
-            grid_.write_row(j, left + begin, left + end, [&](LaserChunk& chunk, std::int32_t i, std::size_t count) {
-                occupancy_.apply({&chunk.occupancy[grid::index_in_chunk({i, j})], count}, verdict);
-            });
+    const ChunkVerdicts verdicts = verdicts_of(first.mapped());
+    include(bounds_.occupancy, key, verdicts);
+    include(touched_, key, verdicts);
+    if (LaserChunk* chunk = grid_.write(key)) simd::add_evidence(*chunk, verdicts, occupancy_);
+}
+
+/// Counts of any model; and the evidence of the inverse sensor model, with the classes that follow from both.
+bool LaserLayers::sweep(const LaserScan& scan, double& work) {
+    std::array<Sweep::Band, Sweep::kBandsMax> bands;
+    std::size_t count = 0;
+    if (is_swept(config_)) bands[count++] = {scan.fan.occupancy.get(), config_.obstacle_thickness};
+    bands[count++] = {scan.fan.himm.get(), config_.himm_obstacle_thickness};
+    Sweep sweep({scan.ranges, scan.T_map_sensor, scan.readings, config_.cell_size}, std::span(bands).first(count));
+    for (bool first = true; done_ < sweep.strips() && (first || work > 0.0); ++done_, first = false) {
+        work -= static_cast<double>(scan.ranges.size());
+        sweep.visit(done_, [&](grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
+            work -= kWorkPerSweptChunk;
+            weave(key, verdicts);
         });
-    };
-    for (std::int32_t row = 0; row < grid::kChunkSide; ++row) {
-        const auto r = static_cast<std::size_t>(row);
-        add(row, marks.hit[r], Verdict::kOccupied);
-        add(row, marks.passed[r] & ~marks.hit[r], Verdict::kFree);
+    }
+    return done_ >= sweep.strips();
+}
+
+void LaserLayers::weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
+    const ChunkVerdicts& counted = verdicts.back();
+    include(bounds_.himm, key, counted);
+    if (verdicts.size() == 1) { // beams were traced before
+        include(touched_, key, counted);
+        if (LaserChunk* chunk = grid_.write(key)) simd::count_hits(*chunk, counted, himm_);
+        return;
+    }
+    const ChunkVerdicts& seen = verdicts.front();
+    include(bounds_.occupancy, key, seen);
+    const LaserChunk* known = grid_.find(key);
+    if (known != nullptr && simd::is_settled(*known, seen, counted)) return;
+    LaserChunk* chunk = grid_.write(key);
+    if (chunk == nullptr) return;
+    simd::count_hits(*chunk, counted, himm_);
+    simd::add_evidence(*chunk, seen, occupancy_);
+    const bool by_occupancy = config_.class_source == ClassSource::kOccupancy;
+    fold_types(*chunk, undecided(chunk->occ_types, by_occupancy ? seen : counted));
+}
+
+/// The cells whose type the verdicts might change. Evidence for what a cell is leaves it so, where evidence goes the
+/// way it says: HIMM's does, that of log-odds unless the prior lies beyond what the model says.
+grid::BitPlane LaserLayers::undecided(const classify::OccPlanes& types, const ChunkVerdicts& verdicts) const {
+    grid::BitPlane cells = touched_by(verdicts);
+    if (config_.class_source == ClassSource::kOccupancy && (occupancy_.free > 0 || occupancy_.occupied < 0))
+        return cells;
+    for (std::size_t j = 0; j < cells.size(); ++j) {
+        cells[j] &= ~((verdicts.free[j] & types.free[j]) | (verdicts.occupied[j] & types.occupied[j]));
+    }
+    return cells;
+}
+
+void LaserLayers::fold_types(LaserChunk& chunk, const grid::BitPlane& touched) const {
+    if (config_.class_source == ClassSource::kOccupancy) {
+        simd::fold_types(chunk, touched, by_occupancy_);
+    } else {
+        simd::fold_types(chunk, touched, by_himm_);
     }
 }
 
-bool LaserLayers::count(const LaserScan& scan, double& work) {
-    const ModelGeometry geometry{scan.readings, config_.himm_obstacle_thickness, config_.cell_size};
-    return visit_sectors(*scan.fan.himm, scan, geometry, done_, work,
-                         [&](Verdict verdict, std::int32_t j, std::int32_t begin, std::int32_t end) {
-                             bounds_.himm.include_row(j, begin, end);
-                             touched_.include_row(j, begin, end);
-                             grid_.write_row(j, begin, end, [&](LaserChunk& chunk, std::int32_t i, std::size_t count) {
-                                 himm_.apply({&chunk.himm[grid::index_in_chunk({i, j})], count}, verdict);
-                             });
-                         });
-}
-
+/// Of the models that trace rays, which may touch a chunk more than once in a scan.
 bool LaserLayers::fold_classes(double& work) {
+    static constexpr grid::BitPlane kAllCells = all_cells();
     for (bool first = true; done_ < changed_.size() && (first || work > 0.0); ++done_, first = false) {
         work -= kWorkPerChunk;
-        LaserChunk& chunk = *grid_.write(changed_[done_]);
-        if (config_.class_source == ClassSource::kOccupancy) {
-            by_occupancy_.fold(chunk.occupancy, chunk.occ_types);
-        } else {
-            by_himm_.fold(chunk.himm, chunk.occ_types);
-        }
+        fold_types(*grid_.write(changed_[done_]), kAllCells);
     }
     return done_ == changed_.size();
 }

@@ -1,15 +1,15 @@
 #pragma once
 
 #include "common/scan/map_patch.hpp"
-#include "server/classify/cell_class.hpp"
 #include "server/classify/hysteresis.hpp"
 #include "server/mapping/chunk_grid.hpp"
 #include "server/mapping/himm.hpp"
+#include "server/mapping/laser_chunk.hpp"
 #include "server/mapping/map_config.hpp"
 #include "server/mapping/occupancy.hpp"
 #include "server/mapping/ray_models.hpp"
+#include "server/mapping/sweep/fan_ring.hpp"
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -17,22 +17,12 @@
 
 namespace scanloom::mapping {
 
-/// 64 x 64 cells of all layers that lasers make. They change together, so that one revision tells what all of them
-/// hold, and a class never stands beside evidence that is older or newer than what it was decided on.
-struct LaserChunk : grid::TreeItem {
-    static constexpr std::size_t kCells = std::size_t{grid::kChunkSide} * grid::kChunkSide;
-
-    std::array<LogOdds, kCells> occupancy; ///< bottom row first, as everywhere
-    std::array<HimmCount, kCells> himm;
-    classify::OccPlane occ_types;
-};
-
 using LaserView = grid::ChunkView<LaserChunk>;
 
 /// The directions of a sensor's beams, as each model wants them. Made once, used by many scans.
 struct LaserFan {
-    std::shared_ptr<const BeamFan> occupancy; ///< for the inverse sensor model
-    std::shared_ptr<const BeamFan> himm;      ///< the same one where the apertures are alike
+    std::shared_ptr<const FanRing> occupancy; ///< for the inverse sensor model
+    std::shared_ptr<const FanRing> himm;      ///< the same one where the apertures are alike
     std::vector<Direction> beams;             ///< for the models that trace rays; empty for the inverse sensor model
 };
 
@@ -94,15 +84,18 @@ public:
 private:
     LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid);
 
-    /// What comes after what within a scan.
-    enum class Stage { kOccupancy, kMarks, kHimm, kClasses };
+    /// What comes after what within a scan. The inverse sensor model does all in one.
+    enum class Stage { kBeams, kMarks, kSweep, kClasses };
 
-    [[nodiscard]] bool add_sectors(const LaserScan& scan, double& work);
+    [[nodiscard]] static Stage first_stage(const MapConfig& config);
     [[nodiscard]] bool trace_beams(const LaserScan& scan, double& work);
     [[nodiscard]] bool add_marks(double& work);
-    [[nodiscard]] bool count(const LaserScan& scan, double& work);
+    [[nodiscard]] bool sweep(const LaserScan& scan, double& work);
     [[nodiscard]] bool fold_classes(double& work);
     void add_first_marks();
+    void weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts);
+    [[nodiscard]] grid::BitPlane undecided(const classify::OccPlanes& types, const ChunkVerdicts& verdicts) const;
+    void fold_types(LaserChunk& chunk, const grid::BitPlane& touched) const;
     void set(grid::Cell cell, MapCell to);
 
     const MapConfig config_;
@@ -115,9 +108,9 @@ private:
     Bounds bounds_;
 
     // Of the scan that is being integrated.
-    Stage stage_ = Stage::kOccupancy;
-    std::size_t done_ = 0; // of the stage: sectors, beams, chunks
-    grid::CellBox touched_;
+    Stage stage_;
+    std::size_t done_ = 0;  // of the stage: beams, strips, chunks
+    grid::CellBox touched_; // by what folds its classes later
     ScanMarks marks_;
     std::vector<grid::ChunkKey> changed_;
 };

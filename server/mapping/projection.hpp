@@ -15,7 +15,7 @@
 namespace scanloom::mapping {
 
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
-inline constexpr std::uint32_t kWeavingVersion = 3;
+inline constexpr std::uint32_t kWeavingVersion = 4;
 
 /// A sensor as a log entry described it. The description is shared, never changed.
 struct KnownSensor {

@@ -1,18 +1,17 @@
 #pragma once
 
-#include "server/grid/chunk.hpp"
+#include "server/grid/bit_plane.hpp"
+#include "server/mapping/laser_chunk.hpp"
 
-#include <array>
-#include <bit>
 #include <cstdint>
 #include <map>
 
 namespace scanloom::mapping {
 
-/// What rays say of the cells of one chunk, a bit a cell, row by row: bit i of row j is cell (i, j) of the chunk.
+/// What rays say of the cells of one chunk,
 struct ChunkMarks {
-    std::array<std::uint64_t, grid::kChunkSide> passed{}; ///< by a ray, before its hit
-    std::array<std::uint64_t, grid::kChunkSide> hit{};
+    grid::BitPlane passed{}; ///< by a ray, before its hit
+    grid::BitPlane hit{};
 };
 
 /// The cells that the rays of a scan pass and hit, each once however many rays say so; a hit beats a pass.
@@ -31,7 +30,7 @@ public:
     }
 
 private:
-    void mark(grid::Cell cell, std::array<std::uint64_t, grid::kChunkSide> ChunkMarks::*kind) {
+    void mark(grid::Cell cell, grid::BitPlane ChunkMarks::*kind) {
         const grid::ChunkKey key = grid::chunk_of(cell);
         if (current_ == nullptr || key != current_key_) { // neighbours on a ray mostly share a chunk
             current_ = &chunks_[key];
@@ -46,19 +45,15 @@ private:
     ChunkMarks* current_ = nullptr;
 };
 
-/// Calls run(begin, end) for each run of bits that are set, from the lowest.
-template <class Run>
-void for_each_run(std::uint64_t bits, Run&& run) {
-    int base = 0;
-    while (bits != 0) {
-        const int begin = std::countr_zero(bits);
-        bits >>= begin;
-        const int length = std::countr_one(bits);
-        run(base + begin, base + begin + length);
-        if (length == 64) return;
-        bits >>= length;
-        base += begin + length;
+/// A hit beats a pass.
+[[nodiscard]] inline ChunkVerdicts verdicts_of(const ChunkMarks& marks) noexcept {
+    ChunkVerdicts verdicts{.occupied = marks.hit};
+    for (std::size_t j = 0; j < marks.passed.size(); ++j) {
+        verdicts.free[j] = marks.passed[j] & ~marks.hit[j];
+        verdicts.free_rows |= std::uint64_t{verdicts.free[j] != 0} << j;
+        verdicts.occupied_rows |= std::uint64_t{marks.hit[j] != 0} << j;
     }
+    return verdicts;
 }
 
 } // namespace scanloom::mapping

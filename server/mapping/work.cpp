@@ -17,18 +17,6 @@ double reached(RangeMm range, const ModelGeometry& geometry) noexcept {
                            : reading->metres;
 }
 
-std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
-                           const ModelGeometry& geometry) {
-    std::size_t count = 0;
-    while (count < sectors.size() && (count == 0 || work > 0.0)) {
-        const Sector& sector = sectors[count++];
-        const double cells = reached(ranges[sector.beam], geometry) / geometry.cell_size;
-        const double sine = sector.low.x * sector.high.y - sector.low.y * sector.high.x; // nearly the angle
-        work -= 0.5 * sine * cells * cells + 2.0 * cells + 1.0;
-    }
-    return count;
-}
-
 double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept {
     const double cells = reading.metres / geometry.cell_size;
     const double disc = geometry.hit_radius / geometry.cell_size;

@@ -13,10 +13,8 @@ namespace scanloom::mapping {
 /// Of what is done for each chunk that a scan touched, whatever it did there.
 inline constexpr double kWorkPerChunk = 512.0;
 
-/// How many of the sectors, from the first, can be woven with this much work; at least one of them.
-/// @param work  what there is; what the sectors take is taken from it.
-[[nodiscard]] std::size_t sectors_within(double& work, std::span<const Sector> sectors, std::span<const RangeMm> ranges,
-                                         const ModelGeometry& geometry);
+/// Of a chunk in which a sweep has a verdict, all layers of lasers together.
+inline constexpr double kWorkPerSweptChunk = 2048.0;
 
 /// Of tracing one beam.
 [[nodiscard]] double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept;

@@ -302,9 +302,10 @@ bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view 
     const auto revision = part.take<Revision>();
     const auto occupancy = part.take<decltype(mapping::LaserChunk::occupancy)>();
     const auto himm = part.take<decltype(mapping::LaserChunk::himm)>();
-    const auto occ_types = part.take<classify::OccPlane>();
+    const auto occ_types = part.take<classify::OccPlanes>();
     const bool are_types =
-        std::ranges::all_of(occ_types, [](auto type) { return type <= classify::OccType::kOccupied; });
+        std::ranges::equal(occ_types.free, occ_types.occupied,
+                           [](std::uint64_t free, std::uint64_t occupied) { return (free & occupied) == 0; });
     const bool are_counts = std::ranges::all_of(
         himm, [](auto count) { return count <= mapping::kHimmMax || count == mapping::kUnseenHimm; });
     if (!part.complete() || !are_types || !are_counts) return false;

@@ -10,7 +10,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 5e6;            // as Reach::work: some tens of milliseconds, with a sector of 8192 cells
+constexpr double kSliceWork = 5e6;            // as Reach::work: a few milliseconds
 constexpr std::size_t kGroupsDurableMax = 2;  // one is folded, one waits for that
 constexpr Revision kCheckpointEvery = 4096;   // entries folded between two checkpoints, or
 constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again

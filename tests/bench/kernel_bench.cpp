@@ -3,13 +3,12 @@
 #include "server/tiles/changes.hpp"
 #include "server/tiles/map_image.hpp"
 #include "server/tiles/tile.hpp"
-#include "tests/bench/float_grid.hpp"
 #include "tests/support/room_scans.hpp"
 
 #include <benchmark/benchmark.h>
 
 // What weaving a scan and showing a map cost, on the reference laser in a room of 10 x 10 m. Times are per scan;
-// the argument is the cell size in millimetres. FloatGrid is the plain mapper that Integrate is compared with.
+// the argument is the cell size in millimetres. projection_bench compares with other mappers.
 
 namespace scanloom::bench {
 namespace {
@@ -60,17 +59,6 @@ void IntegrateAndSnapshot(benchmark::State& state) {
     for (auto _ : state) {
         weaver.integrate();
         weaver.take_snapshot(); // so that the next scan copies each chunk it touches
-    }
-}
-
-void FloatGridBresenham(benchmark::State& state) {
-    FloatGrid grid(12.0, cell_size_of(state));
-    const Sensor laser = testing_support::reference_laser();
-    std::size_t next = 0;
-    for (auto _ : state) {
-        grid.integrate(scans()[next++ % scans().size()], laser);
-        benchmark::DoNotOptimize(grid.cells().data());
-        benchmark::ClobberMemory();
     }
 }
 
@@ -132,7 +120,6 @@ void Digest(benchmark::State& state) {
 
 BENCHMARK(Integrate)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
 BENCHMARK(IntegrateAndSnapshot)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
-BENCHMARK(FloatGridBresenham)->Arg(10)->Arg(50)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
 BENCHMARK(Tile)->ArgName("zoom")->Arg(9)->Arg(7)->Arg(3)->Arg(0)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TilePng)->ArgName("zoom")->Arg(9)->Arg(7)->Arg(3)->Arg(0)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ChangedTiles)->ArgName("revisions")->Arg(1)->Arg(1000)->Unit(benchmark::kMicrosecond);

@@ -96,10 +96,9 @@ void DistancesOfOffice(benchmark::State& state) {
 /// A scan's worth of changes: a fan of 5 m, 16 chunks, whose cells all change between free and unexplored.
 void ClassesOfAScan(benchmark::State& state) {
     classify::ClassLayer layer(3);
-    std::array<classify::OccPlane, 2> planes;
-    planes[0].fill(classify::OccType::kFree);
-    planes[1].fill(classify::OccType::kUnexplored);
-    planes[0][2000] = classify::OccType::kOccupied;
+    std::array<classify::OccPlanes, 2> planes;
+    planes[0].free.fill(~std::uint64_t{0});
+    planes[0].set({16, 31}, classify::OccType::kOccupied);
     std::vector<grid::ChunkKey> changed;
     for (std::int32_t chunk = 0; chunk < 16; ++chunk) changed.push_back({chunk / 4, chunk % 4});
     Revision revision = 0;

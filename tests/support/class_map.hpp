@@ -57,15 +57,12 @@ private:
 /// The classes of OccTypes given for a box of cells.
 template <class TypeAt>
 [[nodiscard]] ClassView classified(const grid::CellBox& box, std::int32_t danger_cells, TypeAt&& type_at) {
-    std::map<grid::ChunkKey, std::unique_ptr<classify::OccPlane>> planes;
+    std::map<grid::ChunkKey, std::unique_ptr<classify::OccPlanes>> planes;
     for (std::int32_t j = box.j_begin; j < box.j_end; ++j) {
         for (std::int32_t i = box.i_begin; i < box.i_end; ++i) {
             auto& plane = planes[grid::chunk_of({i, j})];
-            if (!plane) {
-                plane = std::make_unique<classify::OccPlane>();
-                plane->fill(OccType::kUnexplored);
-            }
-            (*plane)[grid::index_in_chunk({i, j})] = type_at(Cell{i, j});
+            if (!plane) plane = std::make_unique<classify::OccPlanes>();
+            plane->set({i, j}, type_at(Cell{i, j}));
         }
     }
     std::vector<grid::ChunkKey> keys;

@@ -2,7 +2,7 @@
 
 #include "common/scan/scan.hpp"
 #include "server/grid/cell.hpp"
-#include "server/mapping/inverse_sensor_model.hpp"
+#include "server/mapping/sweep/sweep.hpp"
 #include "tests/support/beam_index.hpp"
 #include "tests/support/inverse_sensor_oracle.hpp"
 
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,18 +36,30 @@ struct Case {
 
 using Verdicts = std::map<std::pair<int, int>, oracle::Verdict>;
 
+inline void add_verdicts(const Case& c, grid::ChunkKey key, const grid::BitPlane& cells, oracle::Verdict verdict,
+                         Verdicts& verdicts) {
+    for (int j = 0; j < grid::kChunkSide; ++j) {
+        for (int i = 0; i < grid::kChunkSide; ++i) {
+            if (!grid::is_set(cells, {i, j})) continue;
+            const std::pair cell(key.ci * grid::kChunkSide + i, key.cj * grid::kChunkSide + j);
+            EXPECT_TRUE(verdicts.emplace(cell, verdict).second)
+                << c.shape << ": cell " << cell.first << ", " << cell.second << " changes twice in one scan";
+        }
+    }
+}
+
 /// What the production kernel says; fails the test when a cell comes twice.
 inline Verdicts run_kernel(const Case& c) {
     Verdicts verdicts;
-    const auto fan = make_beam_fan(c.angles, c.aperture);
-    const ModelGeometry geometry{{c.range_min, c.range_max, c.drop_no_return}, c.thickness, c.cell_size};
-    inverse_sensor_model(fan, c.ranges, c.T_map_sensor, geometry, [&](Verdict verdict, int j, int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const auto value = verdict == Verdict::kFree ? oracle::Verdict::kFree : oracle::Verdict::kOccupied;
-            EXPECT_TRUE(verdicts.emplace(std::pair(i, j), value).second)
-                << c.shape << ": cell " << i << ", " << j << " changes twice in one scan";
-        }
-    });
+    const auto ring = make_fan_ring(make_beam_fan(c.angles, c.aperture));
+    const Sweep::Band band{&ring, c.thickness};
+    Sweep sweep({c.ranges, c.T_map_sensor, {c.range_min, c.range_max, c.drop_no_return}, c.cell_size}, {&band, 1});
+    for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
+        sweep.visit(strip, [&](grid::ChunkKey key, std::span<const ChunkVerdicts> of_bands) {
+            add_verdicts(c, key, of_bands.front().free, oracle::Verdict::kFree, verdicts);
+            add_verdicts(c, key, of_bands.front().occupied, oracle::Verdict::kOccupied, verdicts);
+        });
+    }
     return verdicts;
 }
 

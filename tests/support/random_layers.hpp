@@ -11,15 +11,15 @@
 namespace scanloom::testing_support {
 
 /// Patches of free ground with a wall here and there; the rest unexplored.
-inline classify::OccPlane random_types(std::mt19937& random) {
-    classify::OccPlane types;
-    types.fill(classify::OccType::kUnexplored);
-    const auto side = 1 + random() % 64;
-    const auto wall = random() % 64;
-    for (std::size_t n = 0; n < types.size(); ++n) {
-        if (n % 64 >= side || n / 64 >= side) continue;
-        const bool is_wall = n % 64 == wall || random() % 500 == 0;
-        types[n] = is_wall ? classify::OccType::kOccupied : classify::OccType::kFree;
+inline classify::OccPlanes random_types(std::mt19937& random) {
+    classify::OccPlanes types;
+    const auto side = static_cast<std::int32_t>(1 + random() % 64);
+    const auto wall = static_cast<std::int32_t>(random() % 64);
+    for (std::int32_t j = 0; j < side; ++j) {
+        for (std::int32_t i = 0; i < side; ++i) {
+            const bool is_wall = i == wall || random() % 500 == 0;
+            types.set({i, j}, is_wall ? classify::OccType::kOccupied : classify::OccType::kFree);
+        }
     }
     return types;
 }
@@ -31,7 +31,7 @@ inline mapping::Snapshot random_layers(unsigned seed) {
     mapping::LaserLayers lasers{mapping::MapConfig{}};
     mapping::SonarLayer sonars{mapping::MapConfig{}};
     classify::ClassLayer classes(3);
-    std::map<grid::ChunkKey, classify::OccPlane> types;
+    std::map<grid::ChunkKey, classify::OccPlanes> types;
     std::vector<grid::ChunkKey> keys = scattered_chunks(random);
     for (const auto& key : keys) {
         auto& laser = lasers.restore(key, 1);

@@ -21,20 +21,17 @@ public:
     void set(Cell cell, OccType type) {
         const ChunkKey key = grid::chunk_of(cell);
         auto& plane = planes_[key];
-        if (!plane) {
-            plane = std::make_unique<OccPlane>();
-            plane->fill(OccType::kUnexplored);
-        }
-        (*plane)[grid::index_in_chunk(cell)] = type;
+        if (!plane) plane = std::make_unique<OccPlanes>();
+        plane->set(cell, type);
         if (std::ranges::find(changed_, key) == changed_.end()) changed_.push_back(key);
     }
 
     [[nodiscard]] OccType at(Cell cell) const {
-        const OccPlane* plane = find(grid::chunk_of(cell));
-        return plane == nullptr ? OccType::kUnexplored : (*plane)[grid::index_in_chunk(cell)];
+        const OccPlanes* planes = find(grid::chunk_of(cell));
+        return planes == nullptr ? OccType::kUnexplored : planes->at(cell);
     }
 
-    [[nodiscard]] const OccPlane* find(ChunkKey key) const {
+    [[nodiscard]] const OccPlanes* find(ChunkKey key) const {
         const auto found = planes_.find(key);
         return found == planes_.end() ? nullptr : found->second.get();
     }
@@ -53,7 +50,7 @@ public:
     }
 
 private:
-    std::map<ChunkKey, std::unique_ptr<OccPlane>> planes_;
+    std::map<ChunkKey, std::unique_ptr<OccPlanes>> planes_;
     std::vector<ChunkKey> changed_;
 };
 
@@ -271,8 +268,8 @@ TEST(ClassLayer, OnlyTheNamedChunksAreAskedFor) {
 TEST(ClassLayer, ChunksAtTheEndsOfTheNumbersAreChunksLikeOthers) {
     const auto low = std::numeric_limits<std::int32_t>::min();
     const auto high = std::numeric_limits<std::int32_t>::max();
-    OccPlane all_free;
-    all_free.fill(OccType::kFree);
+    OccPlanes all_free;
+    all_free.free.fill(~std::uint64_t{0});
     for (const ChunkKey corner : {ChunkKey{low, low}, {low, high}, {high, low}, {high, high}}) {
         ClassLayer layer(64);
         layer.update(

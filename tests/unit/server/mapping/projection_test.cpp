@@ -178,7 +178,7 @@ TEST_P(WeavingBy, ScansFoldedALittleAtATimeGiveTheSameMap) {
             EXPECT_EQ(sliced.revision(), in ? whole.revision() : whole.revision() - 1);
         }
     }
-    EXPECT_GT(slices, 3 * log.size());
+    EXPECT_GT(slices, log.size() + 40) << "nothing was folded in slices";
     const auto a = whole.snapshot();
     const auto b = sliced.snapshot();
     EXPECT_EQ(a.bounds, b.bounds);

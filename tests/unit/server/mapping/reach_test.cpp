@@ -82,38 +82,6 @@ TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
     }
 }
 
-TEST(SectorsWithin, GiveWayAfterTheWorkThereIsOrOneSector) {
-    std::mt19937 random(8);
-    for (int round = 0; round < 400; ++round) {
-        const MapConfig config;
-        const Sensor sensor = sensor_of(random);
-        const Scan scan = scan_of(sensor, random);
-        const ModelGeometry geometry{{sensor.range_min, sensor.range_max}, config.obstacle_thickness, config.cell_size};
-        const auto fan = make_beam_fan(sensor.angles, config.beam_aperture);
-        const double there_is = static_cast<double>(1 + random() % 20'000);
-        std::span<const Sector> missing = fan;
-        while (!missing.empty()) {
-            double work = there_is;
-            const auto count = sectors_within(work, missing, scan.ranges, geometry);
-            ASSERT_GE(count, 1U);
-            ASSERT_LE(count, missing.size());
-            EXPECT_TRUE(count == missing.size() || work <= 0.0) << "gives way although there is work left";
-            double all_but_the_last = there_is;
-            if (count > 1) {
-                EXPECT_EQ(sectors_within(all_but_the_last, missing.first(count - 1), scan.ranges, geometry), count - 1);
-                EXPECT_GT(all_but_the_last, 0.0) << "goes on although there is none";
-            }
-
-            double cells = 0.0;
-            inverse_sensor_model(
-                missing.first(count), scan.ranges, {}, geometry,
-                [&](Verdict, std::int32_t, std::int32_t begin, std::int32_t end) { cells += end - begin; });
-            EXPECT_LE(cells, 1.05 * (there_is - work)) << "takes more than it says";
-            missing = missing.subspan(count);
-        }
-    }
-}
-
 TEST(Reach, OfAScanThatShowsNothingIsEmpty) {
     Scan scan = testing_support::random_scan(1, 1);
     scan.ranges.assign(18, kInvalidRange);

@@ -78,19 +78,19 @@ mapping::Snapshot ground_with_a_wall(std::int32_t wall) {
     mapping::LaserLayers lasers{mapping::MapConfig{}};
     mapping::SonarLayer sonars{mapping::MapConfig{}};
     classify::ClassLayer classes(3);
-    std::map<grid::ChunkKey, classify::OccPlane> types;
+    std::map<grid::ChunkKey, classify::OccPlanes> types;
     std::vector<grid::ChunkKey> keys;
     for (std::int32_t cj = -11; cj < 11; ++cj) {
         for (std::int32_t ci = -2; ci < 2; ++ci) {
             auto& laser = lasers.restore({cj, ci}, 1);
             auto& sonar = sonars.restore({cj, ci}, 1);
-            auto& plane = types[{cj, ci}];
+            auto& planes = types[{cj, ci}];
             for (std::int32_t n = 0; n < 4096; ++n) {
                 const bool is_wall = 64 * ci + n % 64 == wall;
                 const auto at = static_cast<std::size_t>(n);
                 laser.occupancy[at] = sonar.cells[at] = is_wall ? LogOdds{3000} : LogOdds{-14000};
                 laser.himm[at] = is_wall ? 9 : 0;
-                plane[at] = is_wall ? classify::OccType::kOccupied : classify::OccType::kFree;
+                planes.set({n % 64, n / 64}, is_wall ? classify::OccType::kOccupied : classify::OccType::kFree);
             }
             keys.push_back({cj, ci});
         }

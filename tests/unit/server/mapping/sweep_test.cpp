@@ -1,10 +1,11 @@
-#include "server/mapping/inverse_sensor_model.hpp"
+#include "server/mapping/sweep/sweep.hpp"
 
 #include "tests/support/kernel_against_oracle.hpp"
 #include "tests/support/random_angles.hpp"
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <numbers>
 #include <random>
 
@@ -47,7 +48,7 @@ private:
     std::mt19937 random_;
 };
 
-TEST(InverseSensorModel, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
+TEST(Sweep, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
     std::size_t firm = 0;
     for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
         RandomCases cases(100 + shape);
@@ -57,6 +58,37 @@ TEST(InverseSensorModel, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
         }
     }
     EXPECT_GT(firm, 1'000'000U) << "too few cells had a firm verdict for the comparison to mean anything";
+}
+
+TEST(Sweep, OfManyStripsIsAsExactAsOneOfFew) {
+    RandomCases cases(7);
+    Case c = cases.next(0);
+    c.shape = "a whole turn";
+    c.angles = UniformAngles{-kPi, kPi / 200, 400};
+    c.cell_size = 0.01;
+    c.range_min = 0.0;
+    c.range_max = 9.0;
+    c.T_map_sensor = {3.003, -2.007, 0.4};
+    c.ranges.assign(400, 0);
+    for (auto& range : c.ranges) range = to_range_mm(cases.uniform(7.6, 8.2));
+    const auto ring = make_fan_ring(make_beam_fan(c.angles, c.aperture));
+    const Sweep::Band band{&ring, c.thickness};
+    ASSERT_GE(Sweep({c.ranges, c.T_map_sensor, {0.0, c.range_max, false}, c.cell_size}, {&band, 1}).strips(), 2U);
+    std::size_t firm = 0;
+    expect_equal_to_oracle(c, firm, Beams::kIndexed);
+    EXPECT_GT(firm, 1'000'000U);
+}
+
+TEST(Sweep, ThatWasBrokenOffLeavesNothingBehind) {
+    RandomCases cases(8);
+    const Case c = cases.next(0);
+    const auto whole = run_kernel(c);
+    const auto ring = make_fan_ring(make_beam_fan(c.angles, c.aperture));
+    const Sweep::Band band{&ring, c.thickness};
+    Sweep sweep({c.ranges, c.T_map_sensor, {c.range_min, c.range_max, false}, c.cell_size}, {&band, 1});
+    EXPECT_THROW(sweep.visit(0, [](grid::ChunkKey, std::span<const ChunkVerdicts>) { throw std::bad_alloc(); }),
+                 std::bad_alloc);
+    EXPECT_EQ(run_kernel(c), whole);
 }
 
 /// A sensor in the middle of cell (0, 0), one beam along +x.
@@ -77,7 +109,7 @@ oracle::Verdict cell(const Verdicts& verdicts, int i, int j) {
     return found == verdicts.end() ? oracle::Verdict::kNothing : found->second;
 }
 
-TEST(InverseSensorModel, FreesUpToTheHitAndMarksTheBand) {
+TEST(Sweep, FreesUpToTheHitAndMarksTheBand) {
     const auto verdicts = run_kernel(one_beam(1.0));
     EXPECT_EQ(cell(verdicts, 9, 0), oracle::Verdict::kFree);
     EXPECT_EQ(cell(verdicts, 10, 0), oracle::Verdict::kOccupied);
@@ -85,7 +117,7 @@ TEST(InverseSensorModel, FreesUpToTheHitAndMarksTheBand) {
     EXPECT_EQ(cell(verdicts, -1, 0), oracle::Verdict::kNothing) << "behind the sensor";
 }
 
-TEST(InverseSensorModel, AReadingBeyondTheRangeFreesTheWholeBeamAndMarksNothing) {
+TEST(Sweep, AReadingBeyondTheRangeFreesTheWholeBeamAndMarksNothing) {
     for (const double reading : {2.0, 2.5, HUGE_VAL}) {
         const auto verdicts = run_kernel(one_beam(reading));
         EXPECT_EQ(cell(verdicts, 19, 0), oracle::Verdict::kFree) << reading;
@@ -93,7 +125,7 @@ TEST(InverseSensorModel, AReadingBeyondTheRangeFreesTheWholeBeamAndMarksNothing)
     }
 }
 
-TEST(InverseSensorModel, InvalidReadingsChangeNothing) {
+TEST(Sweep, InvalidReadingsChangeNothing) {
     for (const double reading : {0.0, -1.0, static_cast<double>(NAN)}) {
         EXPECT_TRUE(run_kernel(one_beam(reading)).empty()) << reading;
     }
@@ -120,7 +152,7 @@ bool is_free_towards(const Verdicts& verdicts, double degrees) {
                 static_cast<int>(std::lround(200.0 * std::sin(angle)))) == oracle::Verdict::kFree;
 }
 
-TEST(InverseSensorModel, UnevenBeamsLeaveNoSpokesUnseen) {
+TEST(Sweep, UnevenBeamsLeaveNoSpokesUnseen) {
     ExplicitAngles tangent;
     for (int i = -60; i <= 60; ++i) tangent.push_back(std::atan(i / 60.0 * std::tan(kPi / 3)));
     const auto verdicts = run_kernel(all_around(tangent));
@@ -131,7 +163,7 @@ TEST(InverseSensorModel, UnevenBeamsLeaveNoSpokesUnseen) {
     EXPECT_FALSE(is_free_towards(verdicts, 180.0));
 }
 
-TEST(InverseSensorModel, ABlindPartOfTheCircleStaysUnseen) {
+TEST(Sweep, ABlindPartOfTheCircleStaysUnseen) {
     ExplicitAngles list; // a lidar with 10 degrees missing, and one beam alone behind it
     for (int degree = 0; degree <= 80; ++degree) {
         if (degree < 40 || degree >= 50) list.push_back(degree * kDegree);
@@ -146,7 +178,7 @@ TEST(InverseSensorModel, ABlindPartOfTheCircleStaysUnseen) {
     }
 }
 
-TEST(InverseSensorModel, OnlyTheIncrementJoinsUniformBeams) {
+TEST(Sweep, OnlyTheIncrementJoinsUniformBeams) {
     const auto verdicts = run_kernel(all_around(UniformAngles{0.0, -10 * kDegree, 5}));
     for (const double degrees : {4.5, 0.0, -5.0, -15.0, -35.0, -44.5}) {
         EXPECT_TRUE(is_free_towards(verdicts, degrees)) << degrees;
@@ -154,7 +186,7 @@ TEST(InverseSensorModel, OnlyTheIncrementJoinsUniformBeams) {
     for (const double degrees : {5.5, -45.5, 180.0}) EXPECT_FALSE(is_free_towards(verdicts, degrees)) << degrees;
 }
 
-TEST(InverseSensorModel, ABandThinnerThanACellIsWidenedSoThatWallsSurvive) {
+TEST(Sweep, ABandThinnerThanACellIsWidenedSoThatWallsSurvive) {
     auto c = one_beam(1.0);
     c.thickness = 0.001;
     EXPECT_EQ(cell(run_kernel(c), 10, 0), oracle::Verdict::kOccupied);

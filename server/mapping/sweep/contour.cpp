@@ -1,0 +1,526 @@
+#include "server/mapping/sweep/contour.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "server/mapping/sweep/contour.cpp"
+#include <hwy/foreach_target.h> // includes this file once for each instruction set
+#include <hwy/highway.h>
+
+// Seen once, whichever set is being compiled.
+#ifndef SCANLOOM_MAPPING_SWEEP_PIECES
+#define SCANLOOM_MAPPING_SWEEP_PIECES
+
+namespace scanloom::mapping::simd {
+
+constexpr std::size_t kLanesMax = 32; // of doubles
+static_assert(kRingPadding > kLanesMax);
+
+/// Pieces of a border that cross rows, as one array for each of their numbers.
+template <std::size_t numbers>
+struct Pieces {
+    std::array<double*, numbers> of;
+    std::size_t count = 0;
+};
+
+// The first two are the rows that a piece crosses: from, and up to but not including.
+enum : std::size_t { kFrom, kTo };
+enum : std::size_t { kSlope = 2, kEdgeY, kLeft, kRight, kSpokeNumbers };
+enum : std::size_t { kEdgeX = kSlope, kOneEnd = kLeft, kOtherEnd = kRight }; // at first
+enum : std::size_t { kSquare = 2, kSign, kArcNumbers };
+
+/// Those of a contour, and of the plane within it.
+struct Crossings {
+    Pieces<kSpokeNumbers> spokes; ///< of the contour, along an edge
+    Pieces<kArcNumbers> arcs;     ///< of the contour
+    Pieces<kSpokeNumbers> steps;  ///< of the plane alone, along an edge
+};
+
+/// Room for as many pieces as any contours may have. Kept from scan to scan by each thread that weaves.
+inline std::array<Crossings, kContoursMax> room_for(std::size_t sectors, std::size_t contours) {
+    static thread_local std::vector<double> room;
+    const std::size_t each = 2 * sectors + kRingPadding; // two steps an edge
+    const std::size_t all = contours * each * (2 * kSpokeNumbers + kArcNumbers);
+    if (room.size() < all) room.resize(all);
+    std::array<Crossings, kContoursMax> crossings;
+    double* next = room.data();
+    for (std::size_t k = 0; k < contours; ++k) {
+        for (double*& values : crossings[k].spokes.of) values = std::exchange(next, next + each);
+        for (double*& values : crossings[k].arcs.of) values = std::exchange(next, next + each);
+        for (double*& values : crossings[k].steps.of) values = std::exchange(next, next + each);
+    }
+    return crossings;
+}
+
+} // namespace scanloom::mapping::simd
+
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace scanloom::mapping::simd::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+/// The lanes that are set, moved to the front.
+HWY_INLINE V Packed(V values, M lanes) {
+#if HWY_TARGET == HWY_AVX3
+    return V{_mm512_maskz_compress_pd(lanes.raw, values.raw)}; // Highway 1.0 copies a table of 2 KiB each time
+#else
+    return hn::Compress(values, lanes);
+#endif
+}
+
+void TurnEdges(const FanRing& ring, double cosine, double sine, const Edges& turned) {
+    const D d;
+    const V c = hn::Set(d, cosine);
+    const V s = hn::Set(d, sine);
+    for (std::size_t n = 0; n < ring.sectors + 1; n += hn::Lanes(d)) {
+        const V ex = hn::LoadU(d, ring.edges_x.data() + n);
+        const V ey = hn::LoadU(d, ring.edges_y.data() + n);
+        const V x = hn::Sub(hn::Mul(c, ex), hn::Mul(s, ey));
+        const V y = hn::Add(hn::Mul(s, ex), hn::Mul(c, ey));
+        hn::StoreU(x, d, turned.x + n);
+        hn::StoreU(y, d, turned.y + n);
+    }
+}
+
+void RadiiOf(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
+             double* outer) {
+    const D d;
+    const hn::Rebind<std::int32_t, D> d32;
+    const V zero = hn::Zero(d);
+    const V range_min = hn::Set(d, rule.range_min);
+    const V range_max = hn::Set(d, rule.range_max);
+    const V half_band = hn::Set(d, rule.half_band);
+    const V per_metre = hn::Set(d, rule.cells_per_metre);
+    const V unreturned = hn::Set(d, rule.drop_no_return ? 0.0 : rule.range_max);
+    for (std::size_t n = 0; n < sectors; n += hn::Lanes(d)) {
+        const V whole = hn::PromoteTo(d, hn::LoadU(d32, millimetres + n));
+        const V metres = hn::Mul(whole, hn::Set(d, 0.001));
+        const M seen = hn::And(hn::Gt(whole, zero), hn::Ge(hn::Min(metres, range_max), range_min));
+        const M hit = hn::Lt(metres, range_max);
+        const V near_end = hn::IfThenElse(hit, hn::Max(zero, hn::Sub(metres, half_band)), unreturned);
+        const V far_end = hn::IfThenElse(hit, hn::Min(range_max, hn::Add(metres, half_band)), unreturned);
+        hn::StoreU(hn::IfThenElseZero(seen, hn::Mul(near_end, per_metre)), d, inner + n);
+        hn::StoreU(hn::IfThenElseZero(seen, hn::Mul(far_end, per_metre)), d, outer + n);
+    }
+}
+
+Box BoxOf(const Contours& contours) {
+    const D d;
+    const V zero = hn::Zero(d);
+    V x_min = zero;
+    V x_max = zero;
+    V y_min = zero;
+    V y_max = zero;
+    const auto include = [&](V x, V y) HWY_ATTR {
+        x_min = hn::Min(x_min, x);
+        x_max = hn::Max(x_max, x);
+        y_min = hn::Min(y_min, y);
+        y_max = hn::Max(y_max, y);
+    };
+    const double* radius = contours.radius[contours.count - 1];
+    for (std::size_t n = 0; n < contours.sectors; n += hn::Lanes(d)) {
+        const V r = hn::IfThenElseZero(hn::FirstN(d, contours.sectors - n), hn::LoadU(d, radius + n));
+        const V ex0 = hn::LoadU(d, contours.edges.x + n);
+        const V ey0 = hn::LoadU(d, contours.edges.y + n);
+        const V ex1 = hn::LoadU(d, contours.edges.x + n + 1);
+        const V ey1 = hn::LoadU(d, contours.edges.y + n + 1);
+        include(hn::Mul(r, ex0), hn::Mul(r, ey0));
+        include(hn::Mul(r, ex1), hn::Mul(r, ey1));
+        const M through_x = hn::Xor(hn::Lt(ey0, zero), hn::Lt(ey1, zero)); // the arc's end on the axis is its farthest
+        const M through_y = hn::Xor(hn::Lt(ex0, zero), hn::Lt(ex1, zero));
+        if (hn::AllFalse(d, hn::Or(through_x, through_y))) continue;
+        include(hn::IfThenElseZero(through_x, hn::CopySign(r, ex0)),
+                hn::IfThenElseZero(through_y, hn::CopySign(r, ey0)));
+    }
+    return {hn::GetLane(hn::MinOfLanes(d, x_min)), hn::GetLane(hn::MinOfLanes(d, y_min)),
+            hn::GetLane(hn::MaxOfLanes(d, x_max)), hn::GetLane(hn::MaxOfLanes(d, y_max))};
+}
+
+/// Appends those of a vector of pieces that cross any row.
+template <std::size_t numbers>
+HWY_INLINE void Append(D d, Pieces<numbers>& pieces, M crossing, const std::array<V, numbers>& values) {
+    if (hn::AllFalse(d, crossing)) return; // as mostly where cells are large
+    for (std::size_t k = 0; k < numbers; ++k) {
+        hn::StoreU(Packed(values[k], crossing), d, pieces.of[k] + pieces.count);
+    }
+    pieces.count += hn::CountTrue(d, crossing);
+}
+
+inline void AppendArc(Pieces<kArcNumbers>& arcs, double from, double to, double square, bool on_the_left) {
+    if (!(from < to)) return;
+    arcs.of[kFrom][arcs.count] = from;
+    arcs.of[kTo][arcs.count] = to;
+    arcs.of[kSquare][arcs.count] = square;
+    arcs.of[kSign][arcs.count] = on_the_left ? -0.0 : 0.0;
+    ++arcs.count;
+}
+
+/// An arc over the top, or through the bottom: it goes up on one side and down on the other.
+inline void AppendBentArc(Pieces<kArcNumbers>& arcs, const Edges& edges, double r, std::size_t n, const Strip& strip) {
+    const double first = strip.row;
+    const double end = first + strip.rows;
+    const auto row_of = [&](double y) { return std::ceil(y + (strip.sensor_y - 0.5)); };
+    const auto append = [&](double row, double other, double x) {
+        AppendArc(arcs, std::max(std::min(row, other), first), std::min(std::max(row, other), end), r * r, x < 0.0);
+    };
+    const double turning = row_of(edges.y[n] + edges.y[n + 1] > 0.0 ? r : -r);
+    append(row_of(r * edges.y[n]), turning, edges.x[n]);
+    append(row_of(r * edges.y[n + 1]), turning, edges.x[n + 1]);
+}
+
+/// A point of a contour on an edge: how far out it is, and the first row of cells whose centres are at its height or
+/// higher.
+struct Corner {
+    V radius;
+    V row;
+};
+
+/// The sectors of a vector: their edges, and the rows of the strip.
+struct Sectors {
+    V x0, y0, x1, y1;
+    M are_sectors;
+    V first_row, end_row;
+
+    /// The part of an edge between two of its points, where it crosses any row.
+    HWY_INLINE void AppendSpoke(Pieces<kSpokeNumbers>& spokes, const Corner& one, const Corner& other) const {
+        const V from = hn::Max(hn::Min(one.row, other.row), first_row);
+        const V to = hn::Min(hn::Max(one.row, other.row), end_row);
+        Append<kSpokeNumbers>(D(), spokes, hn::And(are_sectors, hn::Lt(from, to)),
+                              {from, to, x0, y0, hn::Mul(one.radius, x0), hn::Mul(other.radius, x0)});
+    }
+
+    /// Two contours along an edge, each from the sector before to this one: what is between them borders on the edge
+    /// where they differ, in whichever two parts are shorter.
+    HWY_INLINE void AppendSteps(Pieces<kSpokeNumbers>& spokes, const Corner& inner_before, const Corner& inner_here,
+                                const Corner& outer_before, const Corner& outer_here) const {
+        const auto rows = [](const Corner& a, const Corner& b) HWY_ATTR { return hn::Abs(hn::Sub(a.row, b.row)); };
+        const V along = hn::Add(rows(inner_before, inner_here), rows(outer_before, outer_here));
+        const V across = hn::Add(rows(inner_before, outer_before), rows(inner_here, outer_here));
+        const M goes_across = hn::Lt(across, along);
+        const auto chosen = [&](const Corner& a, const Corner& b) HWY_ATTR {
+            return Corner{hn::IfThenElse(goes_across, a.radius, b.radius), hn::IfThenElse(goes_across, a.row, b.row)};
+        };
+        AppendSpoke(spokes, inner_before, chosen(outer_before, inner_here));
+        AppendSpoke(spokes, outer_here, chosen(inner_here, outer_before));
+    }
+
+    HWY_INLINE void AppendArcs(Pieces<kArcNumbers>& arcs, const Corner& start, V end_of_arc) const {
+        const D d;
+        const M on_the_left = hn::Lt(x0, hn::Zero(d));
+        const V from = hn::Max(hn::Min(start.row, end_of_arc), first_row);
+        const V to = hn::Min(hn::Max(start.row, end_of_arc), end_row);
+        const M is_straight = hn::AndNot(AreBent(), are_sectors);
+        Append<kArcNumbers>(
+            d, arcs, hn::And(is_straight, hn::Lt(from, to)),
+            {from, to, hn::Mul(start.radius, start.radius), hn::IfThenElseZero(on_the_left, hn::Set(d, -0.0))});
+    }
+
+    /// Those that pass the y axis.
+    [[nodiscard]] HWY_INLINE M AreBent() const {
+        const V zero = hn::Zero(D());
+        return hn::Xor(hn::Lt(x0, zero), hn::Lt(x1, zero));
+    }
+};
+
+/// Rows from which a step is followed in one plane only; below, that would cost more than it saves.
+constexpr double kSteep = 4.0;
+
+/// The pieces of each plane's border that cross rows of the strip.
+template <std::size_t count>
+HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
+                           std::array<Crossings, kContoursMax>& crossings) {
+    const D d;
+    const Edges& edges = contours.edges;
+    const V offset = hn::Set(d, strip.sensor_y - 0.5);
+    const auto row_of = [&](V y) HWY_ATTR { return hn::Ceil(hn::Add(y, offset)); };
+    for (std::size_t n = 0; n < contours.sectors; n += hn::Lanes(d)) {
+        const Sectors sectors{hn::LoadU(d, edges.x + n),           hn::LoadU(d, edges.y + n),
+                              hn::LoadU(d, edges.x + n + 1),       hn::LoadU(d, edges.y + n + 1),
+                              hn::FirstN(d, contours.sectors - n), hn::Set(d, strip.row),
+                              hn::Set(d, strip.row + strip.rows)};
+        Corner before[count];
+        Corner start[count];
+        V end[count];
+        M has_spokes = hn::Lt(offset, offset);
+        M has_arcs = has_spokes;
+        for (std::size_t k = 0; k < count; ++k) {
+            const V radius_before = hn::LoadU(d, contours.radius[k] + n - 1);
+            const V radius = hn::LoadU(d, contours.radius[k] + n);
+            before[k] = {radius_before, row_of(hn::Mul(radius_before, sectors.y0))};
+            start[k] = {radius, row_of(hn::Mul(radius, sectors.y0))};
+            end[k] = row_of(hn::Mul(radius, sectors.y1));
+            has_spokes = hn::Or(has_spokes, hn::Ne(before[k].row, start[k].row));
+            has_arcs = hn::Or(has_arcs, hn::Ne(start[k].row, end[k]));
+        }
+        if (!hn::AllFalse(d, has_spokes)) { // rarely where cells are large
+            const V rise = hn::Abs(hn::Sub(before[0].row, start[0].row));
+            const bool is_steep = !hn::AllFalse(d, hn::Gt(rise, hn::Set(d, kSteep)));
+            for (std::size_t k = 0; k < count; ++k) {
+                if (!is_steep) {
+                    sectors.AppendSpoke(crossings[k].spokes, before[k], start[k]);
+                } else if (k == 0) {
+                    sectors.AppendSpoke(crossings[k].steps, before[k], start[k]);
+                } else {
+                    sectors.AppendSteps(crossings[k].steps, before[k - 1], start[k - 1], before[k], start[k]);
+                }
+            }
+        }
+        for (std::size_t k = 0; k < count && !hn::AllFalse(d, has_arcs); ++k) {
+            sectors.AppendArcs(crossings[k].arcs, start[k], end[k]);
+        }
+        if (hn::AllFalse(d, hn::And(sectors.are_sectors, sectors.AreBent()))) continue;
+        for (std::size_t m = n; m < std::min(n + hn::Lanes(d), contours.sectors); ++m) {
+            if ((edges.x[m] < 0.0) == (edges.x[m + 1] < 0.0)) continue;
+            for (std::size_t k = 0; k < count; ++k) {
+                if (contours.radius[k][m] > 0.0)
+                    AppendBentArc(crossings[k].arcs, edges, contours.radius[k][m], m, strip);
+            }
+        }
+    }
+}
+
+/// Flips bits of one plane of a strip, or of two, some crossings at a time.
+class Flipper {
+public:
+    HWY_INLINE Flipper(const Strip& strip, std::uint64_t* plane, std::uint64_t* other)
+        : plane_(plane), other_(other), rows_(static_cast<std::size_t>(strip.rows)), to_centre_(0.5 - strip.sensor_y),
+          x_offset_(strip.sensor_x - 0.5), column_(strip.column), row_(strip.row), column_max_(strip.columns - 1) {}
+
+    /// The height of rows' centres over the sensor.
+    [[nodiscard]] HWY_INLINE V HeightOf(V row) const { return hn::Add(row, hn::Set(D(), to_centre_)); }
+
+    /// At x in each of these rows.
+    HWY_INLINE void Flip(V row, V x, std::size_t count) const {
+        const D d;
+        const hn::Rebind<std::int32_t, D> d32;
+        const V column = hn::Sub(hn::Ceil(hn::Add(x, hn::Set(d, x_offset_))), hn::Set(d, column_));
+        const V within = hn::Min(hn::Max(column, hn::Zero(d)), hn::Set(d, column_max_));
+        HWY_ALIGN std::int32_t columns[kLanesMax];
+        HWY_ALIGN std::int32_t rows[kLanesMax];
+        hn::Store(hn::DemoteTo(d32, within), d32, columns);
+        hn::Store(hn::DemoteTo(d32, hn::Sub(row, hn::Set(d, row_))), d32, rows);
+        if (count == hn::Lanes(d)) {
+            for (std::size_t k = 0; k < hn::Lanes(d); ++k) FlipBit(columns[k], rows[k]);
+        } else {
+            for (std::size_t k = 0; k < count; ++k) FlipBit(columns[k], rows[k]);
+        }
+    }
+
+private:
+    HWY_INLINE void FlipBit(std::int32_t column, std::int32_t row) const {
+        const auto at = static_cast<std::uint32_t>(column);
+        const std::size_t word = (at >> 6) * rows_ + static_cast<std::uint32_t>(row);
+        const std::uint64_t bit = std::uint64_t{1} << (at & 63);
+        plane_[word] ^= bit;
+        if (other_ != nullptr) other_[word] ^= bit;
+    }
+
+    std::uint64_t* plane_;
+    std::uint64_t* other_; ///< or nullptr
+    std::size_t rows_;
+    double to_centre_;
+    double x_offset_;
+    double column_;
+    double row_;
+    double column_max_;
+};
+
+/// Flips a bit for each row of each piece: the first row of all pieces, then the second of those that have one, and
+/// so on; each of the last few pieces by itself.
+/// @param x_at  x_at(load, height), load(k) being the pieces' k-th number
+template <std::size_t numbers, class XAt>
+HWY_INLINE void FlipPieces(Pieces<numbers>& pieces, const Flipper& flipper, XAt&& x_at) {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    while (pieces.count >= lanes) {
+        std::size_t left = 0;
+        for (std::size_t n = 0; n < pieces.count; n += lanes) {
+            const auto load = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, pieces.of[k] + n); };
+            const std::size_t count = std::min(lanes, pieces.count - n);
+            const V row = load(kFrom);
+            flipper.Flip(row, x_at(load, flipper.HeightOf(row)), count);
+            const V next = hn::Add(row, hn::Set(d, 1.0));
+            const M goes_on = hn::And(hn::FirstN(d, count), hn::Lt(next, load(kTo)));
+            for (std::size_t k = 0; k < numbers; ++k) {
+                hn::StoreU(Packed(k == kFrom ? next : load(k), goes_on), d, pieces.of[k] + left);
+            }
+            left += hn::CountTrue(d, goes_on);
+        }
+        pieces.count = left;
+    }
+    for (std::size_t n = 0; n < pieces.count; ++n) {
+        const auto load = [&](std::size_t k) HWY_ATTR { return hn::Set(d, pieces.of[k][n]); };
+        const double to = pieces.of[kTo][n];
+        for (double from = pieces.of[kFrom][n]; from < to; from += static_cast<double>(lanes)) {
+            const V rows = hn::Iota(d, from);
+            const double missing = to - from;
+            const std::size_t count = missing < static_cast<double>(lanes) ? static_cast<std::size_t>(missing) : lanes;
+            flipper.Flip(rows, x_at(load, flipper.HeightOf(rows)), count);
+        }
+    }
+}
+
+/// What the crossings of a spoke need, for those that have any.
+HWY_INLINE void MeasureSpokes(Pieces<kSpokeNumbers>& spokes) {
+    const D d;
+    for (std::size_t n = 0; n < spokes.count; n += hn::Lanes(d)) {
+        const auto at = [&](std::size_t k) HWY_ATTR { return spokes.of[k] + n; };
+        const V one = hn::LoadU(d, at(kOneEnd));
+        const V other = hn::LoadU(d, at(kOtherEnd));
+        hn::StoreU(hn::Div(hn::LoadU(d, at(kEdgeX)), hn::LoadU(d, at(kEdgeY))), d, at(kSlope));
+        hn::StoreU(hn::Min(one, other), d, at(kLeft));
+        hn::StoreU(hn::Max(one, other), d, at(kRight));
+    }
+}
+
+void FlipCrossings(const Contours& contours, const Strip& strip, const Planes& planes) {
+    const D d;
+    auto crossings = room_for(contours.sectors, contours.count);
+    contours.count == 2 ? FindPieces<2>(contours, strip, crossings) : FindPieces<4>(contours, strip, crossings);
+    for (std::size_t k = 0; k < contours.count; ++k) {
+        auto& [spokes, arcs, steps] = crossings[k];
+        // A contour ends what is within, and begins what is between it and the next.
+        std::uint64_t* beyond = k + 1 < contours.count ? planes[k + 1] : nullptr;
+        const auto x_of_spoke = [](const auto& load, V height) HWY_ATTR {
+            return hn::Min(hn::Max(hn::Mul(load(kSlope), height), load(kLeft)), load(kRight)); // never beyond its ends
+        };
+        MeasureSpokes(spokes);
+        FlipPieces(spokes, Flipper(strip, planes[k], beyond), x_of_spoke);
+        MeasureSpokes(steps);
+        FlipPieces(steps, Flipper(strip, planes[k], nullptr), x_of_spoke);
+        FlipPieces(arcs, Flipper(strip, planes[k], beyond), [d](const auto& load, V height) HWY_ATTR {
+            const V square = hn::Max(hn::Zero(d), hn::Sub(load(kSquare), hn::Mul(height, height)));
+            return hn::Or(hn::Sqrt(square), load(kSign));
+        });
+    }
+}
+
+using D64 = hn::ScalableTag<std::uint64_t>;
+using V64 = hn::Vec<D64>;
+
+/// All ones where the highest bit is set.
+HWY_INLINE V64 Spread(V64 word) {
+    const D64 d;
+    const hn::RebindToSigned<D64> ds;
+    return hn::BitCast(d, hn::BroadcastSignBit(hn::BitCast(ds, word)));
+}
+
+/// The parity of the bits up to each.
+HWY_INLINE V64 Parity(V64 word) {
+    word = hn::Xor(word, hn::ShiftLeft<1>(word));
+    word = hn::Xor(word, hn::ShiftLeft<2>(word));
+    word = hn::Xor(word, hn::ShiftLeft<4>(word));
+    word = hn::Xor(word, hn::ShiftLeft<8>(word));
+    word = hn::Xor(word, hn::ShiftLeft<16>(word));
+    return hn::Xor(word, hn::ShiftLeft<32>(word));
+}
+
+HWY_INLINE bool AnySet(const std::uint64_t* words) {
+    const D64 d;
+    V64 all = hn::Zero(d);
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) all = hn::Or(all, hn::LoadU(d, words + n));
+    return !hn::AllFalse(d, hn::Ne(all, hn::Zero(d)));
+}
+
+/// Leaves the cells inside in `words`' place of `inside`.
+HWY_INLINE void Fill(std::uint64_t* words, std::uint64_t* carry, std::uint64_t* inside) {
+    const D64 d;
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
+        const V64 filled = hn::Xor(Parity(hn::LoadU(d, words + n)), hn::LoadU(d, carry + n));
+        hn::StoreU(filled, d, inside + n);
+        hn::StoreU(Spread(filled), d, carry + n);
+        hn::StoreU(hn::Zero(d), d, words + n);
+    }
+}
+
+HWY_INLINE void FillOrCarry(std::uint64_t* words, std::uint64_t* carry, std::uint64_t* inside) {
+    const D64 d;
+    if (AnySet(words)) return Fill(words, carry, inside);
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, carry + n), d, inside + n);
+}
+
+/// Which of the words have any bit set, a bit a word.
+HWY_INLINE void KeepRows(V64 words, std::size_t n, std::uint64_t& rows) {
+    const D64 d;
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, hn::Ne(words, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
+    rows |= bits << n;
+}
+
+/// What is free and what is occupied of 64 rows, and which of the rows have any.
+template <class Free, class Occupied>
+HWY_INLINE void Keep(ChunkVerdicts& verdicts, Free&& free_at, Occupied&& occupied_at) {
+    const D64 d;
+    verdicts.free_rows = 0;
+    verdicts.occupied_rows = 0;
+    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
+        const V64 free = free_at(n);
+        const V64 occupied = occupied_at(n);
+        hn::StoreU(free, d, verdicts.free.data() + n);
+        hn::StoreU(occupied, d, verdicts.occupied.data() + n);
+        KeepRows(free, n, verdicts.free_rows);
+        KeepRows(occupied, n, verdicts.occupied_rows);
+    }
+}
+
+void FillBands(const ChunkWords& words, std::size_t contours, ChunkVerdicts& narrow, ChunkVerdicts* wide) {
+    const D64 d;
+    HWY_ALIGN std::uint64_t filled[kContoursMax][64];
+    for (std::size_t k = 0; k < contours; ++k) FillOrCarry(words.flipped[k], words.carry[k], filled[k]);
+    const auto plane = [&](std::size_t k, std::size_t n) HWY_ATTR { return hn::Load(d, filled[k] + n); };
+    if (contours == 2) {
+        return Keep(
+            narrow, [&](std::size_t n) HWY_ATTR { return plane(0, n); },
+            [&](std::size_t n) HWY_ATTR { return hn::AndNot(plane(0, n), plane(1, n)); });
+    }
+    Keep(
+        narrow, [&](std::size_t n) HWY_ATTR { return hn::Or(plane(0, n), plane(1, n)); },
+        [&](std::size_t n) HWY_ATTR { return hn::AndNot(hn::Or(plane(0, n), plane(1, n)), plane(2, n)); });
+    Keep(
+        *wide, [&](std::size_t n) HWY_ATTR { return plane(0, n); },
+        [&](std::size_t n)
+            HWY_ATTR { return hn::AndNot(plane(0, n), hn::Or(hn::Or(plane(1, n), plane(2, n)), plane(3, n))); });
+}
+
+} // namespace scanloom::mapping::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scanloom::mapping::simd {
+
+HWY_EXPORT(TurnEdges);
+HWY_EXPORT(RadiiOf);
+HWY_EXPORT(BoxOf);
+HWY_EXPORT(FlipCrossings);
+HWY_EXPORT(FillBands);
+
+void turn_edges(const FanRing& ring, double cosine, double sine, const Edges& turned) {
+    HWY_DYNAMIC_DISPATCH(TurnEdges)(ring, cosine, sine, turned);
+}
+
+void radii_of(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
+              double* outer) {
+    HWY_DYNAMIC_DISPATCH(RadiiOf)(millimetres, sectors, rule, inner, outer);
+}
+
+Box box_of(const Contours& contours) { return HWY_DYNAMIC_DISPATCH(BoxOf)(contours); }
+
+void flip_crossings(const Contours& contours, const Strip& strip, const Planes& planes) {
+    HWY_DYNAMIC_DISPATCH(FlipCrossings)(contours, strip, planes);
+}
+
+void fill_bands(const ChunkWords& words, std::size_t contours, ChunkVerdicts& narrow, ChunkVerdicts* wide) {
+    HWY_DYNAMIC_DISPATCH(FillBands)(words, contours, narrow, wide);
+}
+
+} // namespace scanloom::mapping::simd
+#endif

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "common/scan/scan.hpp"
+#include "common/scan/sensor.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace scanloom::bench {
+
+/// What the usual mappers keep: one value a cell of a fixed square around the origin, row by row.
+template <class Value>
+struct FlatMap {
+    FlatMap(double half_side_m, double cell_size_m, Value initial)
+        : cells_per_metre(1.0 / cell_size_m), half(static_cast<int>(std::ceil(half_side_m * cells_per_metre)) + 2),
+          side(2 * half), cells(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), initial) {}
+
+    /// Metres to a row or column.
+    [[nodiscard]] int index_of(double metres) const noexcept {
+        return static_cast<int>(std::floor(metres * cells_per_metre)) + half;
+    }
+
+    [[nodiscard]] std::size_t at(int i, int j) const noexcept {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(side) + static_cast<std::size_t>(i);
+    }
+
+    double cells_per_metre;
+    int half;
+    int side;
+    std::vector<Value> cells;
+};
+
+/// Where a beam ends, metres in the map.
+struct BeamEnd {
+    double x;
+    double y;
+    bool is_hit;
+};
+
+/// The ends of a scan's beams; those without a return at range_max, those that are invalid at the sensor.
+inline void ends_of(const Scan& scan, const Sensor& sensor, std::vector<BeamEnd>& ends) {
+    ends.clear();
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+        const double direction = scan.pose.yaw + beam_angle(sensor.angles, beam);
+        const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < sensor.range_max;
+        const double range = is_hit ? scan.ranges[beam] * 0.001 : sensor.range_max;
+        ends.push_back({scan.pose.x + range * std::cos(direction), scan.pose.y + range * std::sin(direction),
+                        is_hit && scan.ranges[beam] != kInvalidRange});
+    }
+}
+
+/// Calls visit(index) for the cells of a line, without the last one.
+/// Source  Bresenham, Algorithm for computer control of a digital plotter (IBM Systems Journal 1965).
+template <class Visit>
+void for_each_on_line(int i, int j, int i_end, int j_end, int side, Visit&& visit) {
+    const int di = std::abs(i_end - i);
+    const int dj = -std::abs(j_end - j);
+    const int step_i = i < i_end ? 1 : -1;
+    const int step_j = j < j_end ? side : -side;
+    int error = di + dj;
+    auto at = static_cast<std::ptrdiff_t>(j) * side + i;
+    const auto end = static_cast<std::ptrdiff_t>(j_end) * side + i_end;
+    while (at != end) {
+        visit(static_cast<std::size_t>(at));
+        const int doubled = 2 * error;
+        if (doubled >= dj) {
+            error += dj;
+            at += step_i;
+        }
+        if (doubled <= di) {
+            error += di;
+            at += step_j;
+        }
+    }
+}
+
+} // namespace scanloom::bench

@@ -1,0 +1,119 @@
+#include "server/mapping/chunk_kernels.hpp"
+#include "server/mapping/instruction_set.hpp"
+#include "server/mapping/laser_layers.hpp"
+#include "server/mapping/sweep/sweep.hpp"
+#include "tests/bench/projection/columns.hpp"
+#include "tests/bench/projection/peers.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+// What it costs to put one scan into a map, ours and others', on the same scans in one run: times are per scan, after
+// all scans have been inserted once. "occupancy" is our exact log-odds alone, which others do; "all_layers" adds HIMM
+// and the classes' hysteresis. All but MRPT, which is Debian's, are built for this machine's instruction set.
+
+namespace scanloom::bench {
+namespace {
+
+mapping::MapConfig config_of(const Column& column) {
+    mapping::MapConfig config;
+    config.cell_size = column.cell_size;
+    return config;
+}
+
+mapping::ReadingRules readings_of(const Column& column) {
+    return {column.sensor.range_min, column.sensor.range_max, false};
+}
+
+class Occupancy final : public Mapper {
+public:
+    explicit Occupancy(const Column& column)
+        : column_(column), rule_(config_of(column)), ring_(mapping::make_fan_ring(mapping::make_beam_fan(
+                                                         column.sensor.angles, mapping::MapConfig{}.beam_aperture))) {}
+
+    void insert(const Scan& scan) override {
+        grid_.begin(++revision_);
+        const mapping::Sweep::Band band{&ring_, mapping::MapConfig{}.obstacle_thickness};
+        mapping::Sweep sweep({scan.ranges, scan.pose, readings_of(column_), column_.cell_size}, {&band, 1});
+        for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
+            sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
+                mapping::simd::add_evidence(*grid_.write(key), verdicts.front(), rule_);
+            });
+        }
+    }
+
+private:
+    static mapping::LaserChunk blank() {
+        mapping::LaserChunk chunk{};
+        chunk.occupancy.fill(mapping::kUnknownLogOdds);
+        return chunk;
+    }
+
+    const Column& column_;
+    mapping::OccupancyRule rule_;
+    mapping::FanRing ring_;
+    mapping::ChunkGrid<mapping::LaserChunk> grid_{blank()};
+    Revision revision_ = 0;
+};
+
+class AllLayers final : public Mapper {
+public:
+    explicit AllLayers(const Column& column)
+        : column_(column), fan_(mapping::make_laser_fan(config_of(column), column.sensor.angles, 0.0)),
+          layers_(config_of(column)) {}
+
+    void insert(const Scan& scan) override {
+        double unbounded = HUGE_VAL;
+        benchmark::DoNotOptimize(
+            layers_.integrate({fan_, scan.ranges, scan.pose, readings_of(column_)}, ++revision_, unbounded));
+    }
+
+private:
+    const Column& column_;
+    mapping::LaserFan fan_;
+    mapping::LaserLayers layers_;
+    Revision revision_ = 0;
+};
+
+void run(benchmark::State& state, const Column& column, const Peer& peer) {
+    const auto mapper = peer.make(column);
+    for (const Scan& scan : column.scans) mapper->insert(scan);
+    std::size_t next = 0;
+    for (auto _ : state) {
+        mapper->insert(column.scans[next]);
+        next = next + 1 == column.scans.size() ? 0 : next + 1;
+        benchmark::ClobberMemory();
+    }
+}
+
+template <class Made>
+Peer ours(std::string name) {
+    return {std::move(name), [](const Column& column) { return std::make_unique<Made>(column); }};
+}
+
+void register_all() {
+    std::vector<Peer> all{ours<Occupancy>("occupancy"), ours<AllLayers>("all_layers")};
+    all.insert(all.end(), peers().begin(), peers().end());
+    for (const Column& column : columns()) {
+        for (const Peer& peer : all) {
+            benchmark::RegisterBenchmark(("Insert/" + column.name + "/" + peer.name).c_str(),
+                                         [&column, peer](benchmark::State& state) { run(state, column, peer); })
+                ->Unit(benchmark::kMicrosecond);
+        }
+    }
+}
+
+} // namespace
+} // namespace scanloom::bench
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    benchmark::AddCustomContext("instruction_set", std::string(scanloom::mapping::simd::instruction_set()));
+    scanloom::bench::register_all();
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
+}

@@ -1,0 +1,179 @@
+#include "server/mapping/chunk_kernels.hpp"
+#include "server/mapping/instruction_set.hpp"
+#include "server/mapping/projection.hpp"
+#include "tests/support/digests.hpp"
+#include "tests/support/random_angles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+/// Every instruction set that this machine has, against the definitions and against the others.
+namespace scanloom::mapping {
+namespace {
+
+class InstructionSet : public testing::TestWithParam<std::string_view> {
+protected:
+    void SetUp() override { simd::use_instruction_set(GetParam()); }
+    void TearDown() override { simd::use_instruction_set({}); }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, InstructionSet, testing::ValuesIn(simd::instruction_sets()),
+                         [](const auto& tried) { return std::string(tried.param); });
+
+TEST_P(InstructionSet, IsTheOneThatWasChosen) { EXPECT_EQ(simd::instruction_set(), GetParam()); }
+
+/// Scans of sensors of every shape, on maps of every cell size: hits, no-returns and invalid readings.
+std::string digests_of_random_scans(unsigned shape, const SessionOptions& options) {
+    std::mt19937 random(shape);
+    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    std::string name;
+    Sensor sensor;
+    sensor.angles = testing_support::random_angles(random, shape, name);
+    sensor.range_max = *options.cell_size * 200.0;
+    Projection projection(resolve(options).value());
+    EXPECT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    EXPECT_TRUE(projection.fold(SensorDescribed{0, sensor}));
+    for (std::uint64_t seq = 1; seq <= 6; ++seq) {
+        Scan scan{.seq = seq, .pose = {uniform(-3.0, 3.0), uniform(-3.0, 3.0), uniform(-3.0, 3.0)}};
+        const double wall = uniform(0.1, 0.9) * sensor.range_max;
+        for (std::size_t beam = 0; beam < beam_count(sensor.angles); ++beam) {
+            const auto kind = random() % 16;
+            const double z = random() % 8 == 0 ? uniform(0.0, sensor.range_max) : wall * uniform(0.99, 1.01);
+            scan.ranges.push_back(kind == 0 ? kInvalidRange : kind == 1 ? kNoReturn : to_range_mm(z));
+        }
+        EXPECT_TRUE(projection.fold(ScanTaken{0, std::move(scan)}));
+    }
+    return testing_support::digests_of(projection.snapshot());
+}
+
+TEST_P(InstructionSet, GivesTheSameMapsAsTheOthersBitForBit) {
+    for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
+        for (const double cell_size : {0.01, 0.05, 0.5}) {
+            for (const auto class_source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
+                const SessionOptions options{.cell_size = cell_size, .class_source = class_source};
+                simd::use_instruction_set(GetParam());
+                const auto here = digests_of_random_scans(shape, options);
+                simd::use_instruction_set({});
+                simd::use_instruction_set(simd::instruction_sets().back());
+                EXPECT_EQ(here, digests_of_random_scans(shape, options)) << "shape " << shape << ", " << cell_size;
+            }
+        }
+    }
+}
+
+/// A chunk with values of every kind, and verdicts on some of its cells; rows that are wholly free among them.
+struct RandomChunk {
+    explicit RandomChunk(unsigned seed) {
+        std::mt19937_64 random(seed);
+        for (auto& cell : chunk.occupancy) cell = random() % 5 == 0 ? kUnknownLogOdds : static_cast<LogOdds>(random());
+        for (auto& count : chunk.himm) count = random() % 5 == 0 ? kUnseenHimm : static_cast<HimmCount>(random() % 16);
+        for (std::size_t j = 0; j < verdicts.free.size(); ++j) {
+            chunk.occ_types.free[j] = random();
+            chunk.occ_types.occupied[j] = random() & ~chunk.occ_types.free[j];
+            verdicts.free[j] = j % 3 == 0 ? ~std::uint64_t{0} : j % 3 == 1 ? random() : 0;
+            verdicts.occupied[j] = j % 3 == 0 || j % 4 == 0 ? 0 : random() & ~verdicts.free[j];
+            verdicts.free_rows |= std::uint64_t{verdicts.free[j] != 0} << j;
+            verdicts.occupied_rows |= std::uint64_t{verdicts.occupied[j] != 0} << j;
+        }
+    }
+
+    template <class Check>
+    void for_each_cell(Check&& check) const {
+        for (std::int32_t n = 0; n < static_cast<std::int32_t>(LaserChunk::kCells); ++n) {
+            check(static_cast<std::size_t>(n), grid::Cell{n % grid::kChunkSide, n / grid::kChunkSide});
+        }
+    }
+
+    LaserChunk chunk;
+    ChunkVerdicts verdicts;
+};
+
+OccupancyRule rule_of(double prior, double low, double high, double free, double occupied) {
+    MapConfig config;
+    config.p_prior = prior;
+    config.p_min = low;
+    config.p_max = high;
+    config.p_free = free;
+    config.p_occupied = occupied;
+    return OccupancyRule(config);
+}
+
+TEST_P(InstructionSet, AddsEvidenceAsDefined) {
+    const double nearly_one = 0.99999988;
+    for (const auto& rule : {rule_of(0.5, 0.001, 0.999, 0.1, 0.9), rule_of(0.3, 0.01, 0.9, 0.2, 0.6),
+                             rule_of(1.0 - nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one),
+                             rule_of(nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one)}) {
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            const RandomChunk before(seed);
+            LaserChunk after = before.chunk;
+            simd::add_evidence(after, before.verdicts, rule);
+            before.for_each_cell([&](std::size_t n, grid::Cell cell) {
+                const bool is_free = grid::is_set(before.verdicts.free, cell);
+                const bool is_occupied = grid::is_set(before.verdicts.occupied, cell);
+                const LogOdds known = before.chunk.occupancy[n];
+                const int from = known == kUnknownLogOdds ? rule.prior : known;
+                const int to = std::clamp<int>(from + (is_free ? rule.free : rule.occupied), rule.l_min, rule.l_max);
+                ASSERT_EQ(after.occupancy[n], is_free || is_occupied ? to : known) << "cell " << n << ", was " << known;
+            });
+        }
+    }
+}
+
+TEST_P(InstructionSet, CountsHitsAsDefined) {
+    MapConfig config;
+    for (const auto& [up, down] : {std::pair{3, 1}, {15, 15}, {1, 4}}) {
+        config.himm_increment = up;
+        config.himm_decrement = down;
+        const RandomChunk before(static_cast<unsigned>(up));
+        LaserChunk after = before.chunk;
+        simd::count_hits(after, before.verdicts, HimmRule(config));
+        before.for_each_cell([&](std::size_t n, grid::Cell cell) {
+            const bool is_free = grid::is_set(before.verdicts.free, cell);
+            const bool is_occupied = grid::is_set(before.verdicts.occupied, cell);
+            const int known = before.chunk.himm[n];
+            const int from = known == kUnseenHimm ? 0 : known;
+            const int to = std::clamp(is_free ? from - down : from + up, 0, 15);
+            ASSERT_EQ(after.himm[n], is_free || is_occupied ? to : known) << "cell " << n << ", was " << known;
+        });
+    }
+}
+
+/// Section 6 of the design models, for one cell.
+template <class Value>
+classify::OccType type_after(classify::OccType before, Value value, const classify::Hysteresis<Value>& rule) {
+    using classify::OccType;
+    if (value == rule.unseen) return before;
+    if (value >= rule.occupied) return OccType::kOccupied;
+    return value <= (before == OccType::kUnexplored ? rule.first_free : rule.free) ? OccType::kFree : before;
+}
+
+TEST_P(InstructionSet, FoldsTypesAsDefined) {
+    const classify::Hysteresis<LogOdds> by_occupancy{1200, -900, -900, kUnknownLogOdds};
+    const classify::Hysteresis<HimmCount> by_himm{8, 4, 0, kUnseenHimm};
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const RandomChunk before(seed);
+        const auto& touched = before.verdicts.free;
+        LaserChunk by_odds = before.chunk;
+        LaserChunk by_count = before.chunk;
+        simd::fold_types(by_odds, touched, by_occupancy);
+        simd::fold_types(by_count, touched, by_himm);
+        before.for_each_cell([&](std::size_t n, grid::Cell cell) {
+            const auto type = before.chunk.occ_types.at(cell);
+            const bool counts = grid::is_set(touched, cell);
+            ASSERT_EQ(by_odds.occ_types.at(cell),
+                      counts ? type_after(type, before.chunk.occupancy[n], by_occupancy) : type)
+                << "cell " << n;
+            ASSERT_EQ(by_count.occ_types.at(cell), counts ? type_after(type, before.chunk.himm[n], by_himm) : type)
+                << "cell " << n;
+        });
+        for (std::size_t j = 0; j < touched.size(); ++j) {
+            EXPECT_EQ(by_odds.occ_types.free[j] & by_odds.occ_types.occupied[j], 0U);
+        }
+    }
+}
+
+} // namespace
+} // namespace scanloom::mapping
