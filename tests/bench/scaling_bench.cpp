@@ -1,0 +1,160 @@
+#include "common/wire/log_codec.hpp"
+#include "server/mapping/projection.hpp"
+#include "server/session/recovery.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/room_scans.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <atomic>
+#include <numbers>
+#include <string>
+#include <vector>
+
+// What a scan costs, all layers and a snapshot each time as where viewers look on, as the map's cells, the sensor's beams and
+// the map itself grow; what a map needs of memory; and how long its recovery takes. Each argument doubles or more: what grows
+// faster than its work shows as a line that bends upwards.
+
+namespace scanloom::bench {
+namespace {
+
+constexpr int kRoomScans = 60;
+
+/// Scans of the room's round, taken in some room of many side by side: rooms go out from the origin in squares.
+Scan in_room(const Scan& scan, int room, std::uint64_t seq) {
+    const int side = static_cast<int>(std::sqrt(static_cast<double>(room)));
+    const int along = room - side * side;
+    Scan moved = scan;
+    moved.seq = seq;
+    moved.pose.x += 10.0 * (along <= side ? side : 2 * side - along);
+    moved.pose.y += 10.0 * (along <= side ? along : side);
+    return moved;
+}
+
+class Weaver {
+public:
+    Weaver(double cell_size_m, const Sensor& sensor) : projection_(config_of(cell_size_m)) {
+        keep(RobotJoined{0, "robot"});
+        keep(SensorDescribed{0, sensor});
+    }
+
+    void weave(const Scan& scan, int room = 0) {
+        keep(ScanTaken{0, in_room(scan, room, ++seq_)});
+    }
+    [[nodiscard]] mapping::Snapshot snapshot() { return projection_.snapshot(); }
+
+private:
+    static mapping::MapConfig config_of(double cell_size_m) {
+        mapping::MapConfig config;
+        config.cell_size = cell_size_m;
+        return config;
+    }
+
+    void keep(const LogEntry& entry) {
+        if (!projection_.fold(entry)) std::abort();
+    }
+
+    mapping::Projection projection_;
+    std::uint64_t seq_ = 0;
+};
+
+void run(benchmark::State& state, Weaver& weaver, const std::vector<Scan>& scans) {
+    for (const Scan& scan : scans) weaver.weave(scan);
+    mapping::Snapshot shown = weaver.snapshot();
+    std::size_t next = 0;
+    for (auto _ : state) {
+        weaver.weave(scans[next]);
+        shown = weaver.snapshot();
+        next = next + 1 == scans.size() ? 0 : next + 1;
+    }
+}
+
+/// The argument: millimetres.
+void ScanByCellSize(benchmark::State& state) {
+    Weaver weaver(static_cast<double>(state.range(0)) * 0.001, testing_support::reference_laser());
+    run(state, weaver, testing_support::room_scans(kRoomScans));
+}
+
+void ScanByBeams(benchmark::State& state) {
+    Sensor laser = testing_support::reference_laser();
+    const auto beams = static_cast<std::uint32_t>(state.range(0));
+    laser.angles = UniformAngles{-std::numbers::pi / 2, std::numbers::pi / beams, beams};
+    auto scans = testing_support::room_scans(kRoomScans);
+    for (Scan& scan : scans) {
+        scan.ranges.clear();
+        for (std::size_t beam = 0; beam < beams; ++beam) {
+            const double direction = scan.pose.yaw + beam_angle(laser.angles, beam);
+            const double range = testing_support::room_range({scan.pose.x, scan.pose.y}, direction);
+            scan.ranges.push_back(range < laser.range_max ? to_range_mm(range) : kNoReturn);
+        }
+    }
+    Weaver weaver(0.05, laser);
+    run(state, weaver, scans);
+}
+
+/// The argument: rooms of 10 x 10 m that are in the map besides.
+void ScanByExtent(benchmark::State& state) {
+    const auto scans = testing_support::room_scans(kRoomScans);
+    Weaver weaver(0.05, testing_support::reference_laser());
+    for (int room = 0; room < state.range(0); ++room) {
+        for (std::size_t n = 0; n < scans.size(); n += 6) weaver.weave(scans[n], room);
+    }
+    run(state, weaver, scans);
+}
+
+/// The argument: rooms. Counters tell the bytes of all layers, by cell that any scan has touched.
+void MemoryByArea(benchmark::State& state) {
+    const auto scans = testing_support::room_scans(kRoomScans);
+    for (auto _ : state) {
+        Weaver weaver(0.05, testing_support::reference_laser());
+        for (int room = 0; room < state.range(0); ++room) {
+            for (const Scan& scan : scans) weaver.weave(scan, room);
+        }
+        const mapping::Snapshot map = weaver.snapshot();
+        std::size_t chunks = 0;
+        std::size_t touched = 0;
+        map.laser.visit({}, 0, [&](grid::ChunkKey, const mapping::LaserChunk& chunk) {
+            ++chunks;
+            touched += static_cast<std::size_t>(std::ranges::count_if(chunk.himm, [](auto count) { return count != mapping::kUnseenHimm; }));
+        });
+        std::size_t classes = 0;
+        map.classes.visit({}, 0, [&](grid::ChunkKey, const classify::ClassChunk&) { ++classes; });
+        const double bytes = static_cast<double>(chunks * sizeof(mapping::LaserChunk) + classes * (sizeof(classify::ClassChunk) + 4 * sizeof(grid::BitPlane)));
+        state.counters["bytes"] = bytes;
+        state.counters["bytes_per_touched_cell"] = bytes / static_cast<double>(touched);
+        state.counters["square_metres"] = static_cast<double>(touched) * 0.0025;
+    }
+}
+
+/// The argument: scans in the log, without a checkpoint. Items are scans.
+void RecoveryByLogLength(benchmark::State& state) {
+    const auto scans = testing_support::room_scans(kRoomScans);
+    store::MemoryScanLog log;
+    const auto session = log.create_session({}).value();
+    std::vector<std::string> entries{wire::encode_entry(RobotJoined{0, "robot"}),
+                                     wire::encode_entry(SensorDescribed{0, testing_support::reference_laser()})};
+    for (std::int64_t n = 0; n < state.range(0); ++n) {
+        const auto seq = static_cast<std::uint64_t>(n) + 1;
+        entries.push_back(wire::encode_entry(ScanTaken{0, in_room(scans[seq % scans.size()], 0, seq)}));
+    }
+    log.append(session, 1, std::move(entries), [](const Result<>&) {});
+    const std::atomic<bool> stop = false;
+    for (auto _ : state) {
+        auto recovered = session::recover(log, session, {}, stop);
+        if (!recovered) return state.SkipWithError(recovered.error().message.c_str());
+        benchmark::DoNotOptimize(recovered);
+    }
+    state.SetItemsProcessed(state.range(0) * state.iterations());
+}
+
+BENCHMARK(ScanByCellSize)->Arg(500)->Arg(200)->Arg(100)->Arg(50)->Arg(20)->Arg(10)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ScanByBeams)->RangeMultiplier(4)->Range(16, 4096)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ScanByExtent)->RangeMultiplier(4)->Range(1, 1024)->Unit(benchmark::kMicrosecond);
+BENCHMARK(MemoryByArea)->RangeMultiplier(4)->Range(1, 256)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(RecoveryByLogLength)->RangeMultiplier(4)->Range(1024, 65536)->Unit(benchmark::kMillisecond);
+
+} // namespace
+} // namespace scanloom::bench
