@@ -55,11 +55,18 @@ std::string server_text(const Lately& shown, const Moment& now) {
 }
 
 std::string time_text(const RunSettings& settings, Micros begun, const Moment& now) {
-    return fmt::format("{:.0f} of {:g} s", std::max(in_seconds(now.at - begun), 0.0), settings.duration);
+    const double seconds = std::max(in_seconds(now.at - begun), 0.0);
+    if (seconds <= settings.duration + 0.5) return fmt::format("{:.0f} of {:g} s", seconds, settings.duration);
+    return fmt::format("{:.0f} s after the last scan", seconds - settings.duration);
 }
 
 std::uint64_t under_way(const FleetFigures& fleet) {
     return std::max(fleet.scans_due, fleet.scans_sent) - fleet.scans_acknowledged;
+}
+
+std::uint64_t without_link(const RunSettings& settings, const FleetFigures& fleet) {
+    const std::uint64_t accounted = std::uint64_t{fleet.linked} + fleet.finished; // the last one for a moment in both
+    return settings.robots - std::min<std::uint64_t>(accounted, settings.robots);
 }
 
 std::uint64_t faults_of(const FleetFigures& fleet) {
@@ -74,8 +81,8 @@ std::string live_line(const RunSettings& settings, Micros begun, const Moment& b
         fmt::format("{}: {}/s sent, {}/s acknowledged, {} under way; ack {}; generator {:.2f} cores, server {}",
                     time_text(settings, begun, now), whole(shown.sent), whole(shown.acknowledged),
                     grouped(under_way(now.fleet)), ack_text(shown.ack), shown.own_cores, server_text(shown, now));
-    if (now.fleet.linked < settings.robots) {
-        text += fmt::format("; {} of {} robots linked", grouped(now.fleet.linked), grouped(settings.robots));
+    if (const auto alone = without_link(settings, now.fleet); alone > 0) {
+        text += fmt::format("; {} of {} robots have no link", grouped(alone), grouped(settings.robots));
     }
     if (settings.viewers > 0) text += fmt::format("; {:.0f} events/s", shown.events);
     if (settings.tile_readers > 0) text += fmt::format("; {:.0f} tiles/s", shown.tiles);
@@ -91,7 +98,9 @@ std::vector<std::string> live_table(const RunSettings& settings, Micros begun, c
     };
     std::vector<std::string> rows{
         row("time", time_text(settings, begun, now)),
-        row("robots", fmt::format("{} of {} linked", grouped(fleet.linked), grouped(settings.robots))),
+        row("robots",
+            fmt::format("{}: {} linked, {} done, {} without a link", grouped(settings.robots), grouped(fleet.linked),
+                        grouped(fleet.finished), grouped(without_link(settings, fleet)))),
         row("sent", fmt::format("{:>10}/s {:>14} in all", whole(shown.sent), grouped(fleet.scans_sent))),
         row("acknowledged",
             fmt::format("{:>10}/s {:>14} in all", whole(shown.acknowledged), grouped(fleet.scans_acknowledged))),

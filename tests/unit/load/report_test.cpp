@@ -119,6 +119,8 @@ TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
     auto now = std::make_unique<Moment>();
     before->at = 10 * kSecond;
     now->at = 11 * kSecond;
+    before->fleet.linked = 17;
+    before->fleet.finished = 1;
     before->fleet.scans_sent = 900;
     before->fleet.scans_acknowledged = 890;
     before->fleet.from_intended.record(900 * kMillisecond, 890);
@@ -132,7 +134,9 @@ TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
     const auto asked = report()->settings;
     const auto line = live_line(asked, kSecond, *before, *now);
     EXPECT_THAT(line, HasSubstr("10 of 30 s: 200/s sent, 160/s acknowledged, 50 under way; ack p50 2.00  p99 2.00"));
-    EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MB; 0 of 20 robots linked"));
+    EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MB; 2 of 20 robots have no link"));
+    now->at = 45 * kSecond;
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), testing::StartsWith("14 s after the last scan: "));
     const auto rows = live_table(asked, kSecond, *before, *now);
     EXPECT_EQ(rows.size(), 8U);
     EXPECT_THAT(rows, Each(testing::SizeIs(testing::Lt(80U))));
