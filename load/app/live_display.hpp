@@ -21,10 +21,10 @@ public:
     void note(std::string_view text);
     /// A line that the next one takes the place of; nothing where lines cannot be written over.
     void passing(std::string_view text);
-
-private:
+    /// Takes away what is written over.
     void clear();
 
+private:
     StandardError& out_;
     std::size_t rows_ = 0; // that stand now, the cursor below them
 };

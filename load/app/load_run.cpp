@@ -118,6 +118,7 @@ asio::awaitable<Result<RunReport>> LoadRun::conduct() {
     co_await verify();
     co_await clean_up();
     report_.verdict = verdict_on(evidence);
+    display_.clear();
     co_return report_;
 }
 
@@ -272,7 +273,6 @@ asio::awaitable<void> LoadRun::clean_up() {
             fmt::format("the sessions from {} on are left on the server: {}", names[i], deleted.error().message));
         co_return;
     }
-    display_.passing("");
 }
 
 } // namespace scanloom::load
