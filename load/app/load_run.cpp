@@ -155,16 +155,15 @@ asio::awaitable<bool> LoadRun::connect_robots() {
     fleet_.connect();
     const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
     std::uint32_t greeted = 0;
-    Micros progress = clock_.now();
+    Micros advanced = clock_.now();
     for (;;) {
-        const auto look = fleet_.look();
-        display_.passing(fmt::format("{} of {} robots linked{}", grouped(look->figures.linked),
-                                     grouped(options_.robots),
-                                     look->troubles.newest.empty() ? "" : "; " + look->troubles.newest));
-        if (look->figures.greeted == options_.robots) co_return true;
-        if (look->figures.failed > 0 || interrupted_) co_return false;
-        if (std::exchange(greeted, look->figures.greeted) != look->figures.greeted) progress = clock_.now();
-        if (clock_.now() > progress + patience) co_return false;
+        const auto progress = fleet_.progress();
+        display_.passing(fmt::format("{} of {} robots linked{}", grouped(progress.linked), grouped(options_.robots),
+                                     progress.trouble.empty() ? "" : "; " + progress.trouble));
+        if (progress.greeted == options_.robots) co_return true;
+        if (progress.failed > 0 || interrupted_) co_return false;
+        if (std::exchange(greeted, progress.greeted) != progress.greeted) advanced = clock_.now();
+        if (clock_.now() > advanced + patience) co_return false;
         co_await pause(kPollPeriod);
     }
 }
@@ -193,15 +192,15 @@ asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
     const Micros end = begun_ + static_cast<Micros>(options_.duration * static_cast<double>(kSecond));
     Moment shown = co_await moment();
     std::uint64_t acknowledged = 0;
-    Micros progress = begun_;
+    Micros advanced = begun_;
     for (;;) {
         co_await pause(kPollPeriod);
-        const auto look = fleet_.look();
+        const auto progress = fleet_.progress();
         const Micros now = clock_.now();
-        if (look->figures.finished + look->figures.failed == options_.robots) co_return;
-        const std::uint64_t before = std::exchange(acknowledged, look->figures.scans_acknowledged);
-        if (acknowledged > before || (now < end && !interrupted_)) progress = now;
-        if (now > progress + patience) co_return;
+        if (progress.finished + progress.failed == options_.robots) co_return;
+        const std::uint64_t before = std::exchange(acknowledged, progress.acknowledged);
+        if (acknowledged > before || (now < end && !interrupted_)) advanced = now;
+        if (now > advanced + patience) co_return;
         if (now < shown.at + kShowPeriod) continue;
         Moment next = co_await moment();
         show(shown, next);

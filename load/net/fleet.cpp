@@ -51,6 +51,12 @@ std::unique_ptr<Shard::Look> Fleet::look() {
     return all;
 }
 
+Shard::Progress Fleet::progress() {
+    Shard::Progress all;
+    for (auto& shard : shards_) all.add(shard->progress());
+    return all;
+}
+
 std::vector<std::uint64_t> Fleet::acknowledged() const {
     std::size_t count = 0;
     for (const auto& shard : shards_) count += shard->robots().size();

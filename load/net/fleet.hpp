@@ -27,6 +27,7 @@ public:
     void stop();
 
     [[nodiscard]] std::unique_ptr<Shard::Look> look();
+    [[nodiscard]] Shard::Progress progress();
 
     /// What was acknowledged to each robot. Pre  stop() was called.
     [[nodiscard]] std::vector<std::uint64_t> acknowledged() const;

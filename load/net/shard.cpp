@@ -59,11 +59,33 @@ void Shard::stop() {
     thread_.join();
 }
 
+template <class Tell>
+auto Shard::on_thread(Tell tell) {
+    if (!thread_.joinable()) return tell();
+    std::promise<decltype(tell())> told;
+    asio::post(io_, [&] { told.set_value(tell()); });
+    return told.get_future().get();
+}
+
 std::unique_ptr<Shard::Look> Shard::look() {
-    if (!thread_.joinable()) return std::make_unique<Look>(Look{figures_, troubles_});
-    std::promise<std::unique_ptr<Look>> seen;
-    asio::post(io_, [&] { seen.set_value(std::make_unique<Look>(Look{figures_, troubles_})); });
-    return seen.get_future().get();
+    return on_thread([this] { return std::make_unique<Look>(Look{figures_, troubles_}); });
+}
+
+Shard::Progress Shard::progress() {
+    return on_thread([this] {
+        return Progress{
+            figures_.linked, figures_.greeted, figures_.finished, figures_.failed, figures_.scans_acknowledged,
+            troubles_.newest};
+    });
+}
+
+void Shard::Progress::add(const Progress& other) {
+    linked += other.linked;
+    greeted += other.greeted;
+    finished += other.finished;
+    failed += other.failed;
+    acknowledged += other.acknowledged;
+    if (trouble.empty()) trouble = other.trouble;
 }
 
 asio::awaitable<void> Shard::connect_all() {

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -38,6 +39,18 @@ public:
         Troubles troubles;
     };
 
+    /// How far the robots are.
+    struct Progress {
+        std::uint32_t linked = 0;
+        std::uint32_t greeted = 0;
+        std::uint32_t finished = 0;
+        std::uint32_t failed = 0;
+        std::uint64_t acknowledged = 0;
+        std::string trouble; ///< the newest
+
+        void add(const Progress& other);
+    };
+
     /// Makes no connection yet. `all` are the robots of all shards; the references stay until this is gone.
     Shard(std::uint32_t number, const FleetPlan& plan, const std::vector<RobotPlan>& all, const RunClock& clock,
           const Course& course, const RobotLinkOptions& link);
@@ -56,6 +69,8 @@ public:
 
     /// How things stand; waits for the shard's thread to tell.
     [[nodiscard]] std::unique_ptr<Look> look();
+    /// The same without histograms, which are large.
+    [[nodiscard]] Progress progress();
 
     /// Pre  stop() was called.
     [[nodiscard]] const std::vector<std::unique_ptr<Robot>>& robots() const noexcept { return robots_; }
@@ -67,6 +82,8 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> strike_at_random();
     [[nodiscard]] boost::asio::awaitable<void> look_after_all();
     [[nodiscard]] bool hand_out_due(Micros start);
+    template <class Tell>
+    [[nodiscard]] auto on_thread(Tell tell);
     void end_all();
 
     const std::uint32_t number_;
