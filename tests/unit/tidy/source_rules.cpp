@@ -82,6 +82,15 @@ const std::vector<Folder> kFolders = {
     {.path = "lab",
      .may_include = {"common", "server/grid", "server/mapping", "server/tiles", "robot_client/drive",
                      "robot_client/sim", "robot_client/source"}},
+
+    // Load on a server from outside: nothing of the server, and nothing includes it.
+    {.path = "load/core",
+     .may_include = {"common/error", "common/geometry", "common/scan", "common/wire", "robot_client/uplink"},
+     .pure = true},
+    {.path = "load/net", .may_include = {"common", "load/core", "robot_client/uplink"}},
+    {.path = "load/app",
+     .may_include = {"common", "load", "robot_client/drive", "robot_client/sim", "robot_client/source",
+                     "robot_client/uplink"}},
 };
 
 /// Headers that only some folders may include.
@@ -103,12 +112,13 @@ const std::vector<Package> kPackages = {
       "robot_client/app"}},
     {"boost/asio",
      {"common/net", "server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
-      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app"}},
-    {"boost/beast", {"server/live", "server/http", "server/app"}},
+      "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app",
+      "load/net", "load/app"}},
+    {"boost/beast", {"server/live", "server/http", "server/app", "load/net"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},
     {"zstd.h", {"common/wire"}},
-    {"CLI/", {"common/app", "server/app", "robot_client/app", "lab"}},
+    {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };
 
 // How a file, socket, clock, thread or log shows among the standard headers.
@@ -140,7 +150,7 @@ std::optional<std::string_view> included(std::string_view line) {
 }
 
 std::optional<std::string> forbidden_arrow(const Folder& folder, std::string_view header) {
-    const bool ours = any_holds({"common", "server", "robot_client", "lab", "tests"}, header);
+    const bool ours = any_holds({"common", "server", "robot_client", "lab", "load", "tests"}, header);
     if (ours && !holds(folder.path, header) && !any_holds(folder.may_include, header)) {
         return fmt::format("{} may not include {}", folder.path, header);
     }
@@ -168,7 +178,7 @@ void for_each_line(std::string_view text, Visit visit) {
 }
 
 void check_includes(std::string_view path, std::string_view text, std::vector<std::string>& complaints) {
-    if (!any_holds({"common", "server", "robot_client", "lab"}, path)) return;
+    if (!any_holds({"common", "server", "robot_client", "lab", "load"}, path)) return;
     const auto folder = std::ranges::find_if(kFolders, [&](const Folder& row) { return holds(row.path, path); });
     if (folder == kFolders.end()) {
         complaints.push_back(fmt::format("{}: its folder has no row in tests/unit/tidy/source_rules.cpp", path));

@@ -43,6 +43,13 @@ TEST(SourceRules, TheLabMayIncludeBothSidesAndNobodyTheLab) {
     EXPECT_THAT(including("robot_client/app/main.cpp", "\"lab/weaving.hpp\""), testing::SizeIs(1));
 }
 
+TEST(SourceRules, TheLoadToolKnowsNothingOfTheServerAndNobodyTheLoadTool) {
+    EXPECT_THAT(including("load/net/robot.cpp", "\"load/core/robot_talk.hpp\""), IsEmpty());
+    EXPECT_THAT(including("load/core/robot_talk.cpp", "\"load/net/robot.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("load/app/run.cpp", "\"server/session/session.hpp\""), testing::SizeIs(1));
+    EXPECT_THAT(including("robot_client/app/main.cpp", "\"load/app/run.hpp\""), testing::SizeIs(1));
+}
+
 TEST(SourceRules, ProductionCodeMayNotIncludeTests) {
     EXPECT_THAT(including("server/store/log_file.cpp", "\"tests/support/memory_scan_log.hpp\""), testing::SizeIs(1));
 }

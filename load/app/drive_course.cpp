@@ -1,0 +1,59 @@
+#include "load/app/drive_course.hpp"
+
+#include "common/wire/frame_decoder.hpp"
+#include "load/core/robot_talk.hpp"
+#include "robot_client/drive/wall_follower.hpp"
+#include "robot_client/sim/simulator.hpp"
+#include "robot_client/source/world_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace scanloom::load {
+namespace {
+
+Result<robot::Simulator> make_simulator(const LoadOptions& options) {
+    auto world = robot::load_world(options.world);
+    if (!world) return world.error();
+    auto laser = robot::find_laser(options.laser);
+    if (!laser) return laser.error();
+    robot::SimulatorOptions simulator;
+    simulator.world = std::move(*world);
+    simulator.laser = std::move(*laser);
+    simulator.seed = options.seed;
+    if (options.noise == "gaussian") simulator.noise = robot::Noise{};
+    return robot::Simulator(std::move(simulator), std::make_unique<robot::WallFollower>());
+}
+
+Result<> check_batch(const Course& course) {
+    std::vector<wire::NumberedScan> batch;
+    for (std::uint64_t i = 0; i < course.batch; ++i) {
+        batch.push_back({&course.scans.front(), RobotTalk::kEndless, 1.0}); // no number takes more bytes
+    }
+    const std::size_t size = wire::batch_frame_size(batch);
+    if (size <= wire::kFrameBytesMax) return {};
+    return Error{Errc::kTooLarge,
+                 fmt::format("--batch {}: a frame of so many scans has {} bytes, at most {} are allowed; use fewer",
+                             course.batch, size, wire::kFrameBytesMax)};
+}
+
+} // namespace
+
+Result<Course> drive_course(const LoadOptions& options) {
+    auto simulator = make_simulator(options);
+    if (!simulator) return simulator.error();
+    const bool is_paced = options.rate > 0.0;
+    std::uint64_t count = options.course;
+    if (is_paced) count = std::min(count, Schedule::scans_within(options.duration, options.rate));
+    std::vector<Scan> scans;
+    for (std::uint64_t i = 0; i < count; ++i) scans.push_back(simulator->next_scan());
+    const double rate = is_paced ? options.rate : 1.0 / robot::kScanPeriod;
+    Course course = make_course(*simulator->sensors().front(), scans, rate, options.batch);
+    if (is_paced) course.schedule = Schedule(options.robots, options.rate);
+    if (auto ok = check_batch(course); !ok) return ok.error();
+    return course;
+}
+
+} // namespace scanloom::load

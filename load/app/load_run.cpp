@@ -1,0 +1,277 @@
+#include "load/app/load_run.hpp"
+
+#include "load/core/words.hpp"
+#include "load/net/own_use.hpp"
+#include "load/net/server_api.hpp"
+#include "load/net/verification.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::load {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr Micros kPollPeriod = 100 * kMillisecond;
+constexpr Micros kShowPeriod = kSecond;
+constexpr Micros kHeadStart = 200 * kMillisecond; ///< from telling the robots when to begin until then
+constexpr std::chrono::seconds kPatience{60};     ///< with the server's HTTP, when it is not under load any more
+constexpr std::string_view kCalm = "calm";
+
+std::string prefix_of(const LoadOptions& options) { return fmt::format("load-{}-", options.seed); }
+
+std::vector<std::string> session_names(const LoadOptions& options) {
+    std::vector<std::string> names;
+    for (std::uint32_t i = 0; i < options.sessions; ++i) names.push_back(prefix_of(options) + std::to_string(i));
+    return names;
+}
+
+/// Whether this program gives such names: what else begins like them is somebody else's.
+bool is_ours(std::string_view name, std::string_view prefix) {
+    const auto rest = name.substr(prefix.size());
+    return rest == kCalm || std::ranges::all_of(rest, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+FleetPlan fleet_plan(const LoadOptions& options) {
+    return {.robots = options.robots,
+            .connections_per_second = options.connections_per_second,
+            .scans = options.rate > 0.0 ? Schedule::scans_within(options.duration, options.rate) : 0,
+            .duration = static_cast<Micros>(options.duration * static_cast<double>(kSecond)),
+            .faults = options.faults,
+            .seed = options.seed,
+            .threads = std::min(options.threads, options.robots)};
+}
+
+RunSettings settings_of(const LoadOptions& options, const Course& course) {
+    RunSettings settings;
+    settings.robots = options.robots;
+    settings.sessions = options.sessions;
+    settings.rate = options.rate;
+    settings.batch = options.batch;
+    settings.duration = options.duration;
+    settings.world = options.world;
+    settings.laser = options.laser;
+    settings.noise = options.noise;
+    settings.beams = course.beams;
+    settings.cell_size = options.cell_size;
+    settings.seed = options.seed;
+    settings.threads = options.threads;
+    settings.viewers = options.viewers;
+    settings.tile_readers = options.tile_readers;
+    settings.tile_rate = options.tile_rate;
+    settings.faults = options.faults_text;
+    return settings;
+}
+
+} // namespace
+
+LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
+                 LiveDisplay& display)
+    : io_(io), options_(options), course_(course), link_(link), display_(display), sessions_(session_names(options)),
+      robots_(spread_over(sessions_, options.robots, course.scans.size())), http_(io.get_executor(), options.http),
+      fleet_(fleet_plan(options), robots_, clock_, course_, link_),
+      audience_({options.viewers, options.tile_readers, options.tile_rate, options.http, sessions_}, clock_) {
+    report_.settings = settings_of(options, course);
+    report_.evidence.asked = options.verify;
+    report_.evidence.sessions = options.sessions;
+    report_.evidence.shares_sessions = options.sessions < options.robots;
+}
+
+bool LoadRun::needs_http() const noexcept {
+    return options_.verify != Verify::kNone || options_.viewers > 0 || options_.tile_readers > 0;
+}
+
+std::string LoadRun::calm_name() const { return prefix_of(options_) + std::string(kCalm); }
+
+void LoadRun::interrupt() {
+    interrupted_ = true;
+    fleet_.end();
+}
+
+asio::awaitable<Result<RunReport>> LoadRun::conduct() {
+    const auto room = co_await make_room();
+    if (!room) co_return room.error();
+    const bool all_there = co_await connect_robots();
+    if (all_there && !interrupted_) co_await stream();
+    const auto last = fleet_.look();
+    report_.audience = *audience_.look();
+    audience_.stop();
+    fleet_.stop();
+    report_.fleet = last->figures;
+    Evidence& evidence = report_.evidence;
+    evidence.scans_sent = last->figures.scans_sent;
+    evidence.scans_acknowledged = last->figures.scans_acknowledged;
+    evidence.scans_lost = last->figures.scans_lost;
+    evidence.failures = last->troubles.failures;
+    if (evidence.scans_sent == 0) {
+        evidence.failures.push_back(interrupted_ ? "interrupted before the first scan" : last->troubles.newest);
+    }
+    if (evidence.scans_acknowledged < evidence.scans_sent && !last->troubles.newest.empty()) {
+        evidence.failures.push_back(last->troubles.newest);
+    }
+    co_await verify();
+    co_await clean_up();
+    report_.verdict = verdict_on(evidence);
+    display_.clear();
+    co_return report_;
+}
+
+// Before --------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<Result<>> LoadRun::make_room() {
+    const auto prefix = prefix_of(options_);
+    auto names = co_await sessions_of(http_, prefix);
+    if (!names) {
+        if (needs_http()) co_return names.error();
+        co_return Result<>();
+    }
+    std::erase_if(*names, [&](const std::string& name) { return !is_ours(name, prefix); });
+    if (names->empty()) co_return Result<>();
+    if (!options_.replace) {
+        co_return Error{
+            Errc::kAlreadyExists,
+            fmt::format("{} of an earlier run with --seed {} {} there, {} first; delete {} with --replace, "
+                        "or take another --seed",
+                        names->size() == 1 ? "a session" : fmt::format("{} sessions", grouped(names->size())),
+                        options_.seed, names->size() == 1 ? "is" : "are", names->front(),
+                        names->size() == 1 ? "it" : "them")};
+    }
+    for (const auto& name : *names) {
+        display_.passing(fmt::format("deleting {}", name));
+        const auto deleted = co_await delete_session(http_, name);
+        if (!deleted) co_return deleted.error();
+    }
+    co_return Result<>();
+}
+
+/// @return false where a robot gave up, or none came any more.
+asio::awaitable<bool> LoadRun::connect_robots() {
+    fleet_.connect();
+    const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
+    std::uint32_t greeted = 0;
+    Micros advanced = clock_.now();
+    for (;;) {
+        const auto progress = fleet_.progress();
+        display_.passing(fmt::format("{} of {} robots linked{}", grouped(progress.linked), grouped(options_.robots),
+                                     progress.trouble.empty() ? "" : "; " + progress.trouble));
+        if (progress.greeted == options_.robots) co_return true;
+        if (progress.failed > 0 || interrupted_) co_return false;
+        if (std::exchange(greeted, progress.greeted) != progress.greeted) advanced = clock_.now();
+        if (clock_.now() > advanced + patience) co_return false;
+        co_await pause(kPollPeriod);
+    }
+}
+
+// While they stream ---------------------------------------------------------------------------------------------------
+
+asio::awaitable<void> LoadRun::stream() {
+    const Moment before = co_await moment();
+    begun_ = clock_.now() + kHeadStart;
+    fleet_.begin(begun_);
+    audience_.begin();
+    co_await wait_for_the_last_ack();
+    const Moment after = co_await moment();
+    report_.seconds = std::max(in_seconds(after.fleet.last_ack - begun_), 1e-3);
+    report_.own = {after.own.cpu_seconds - before.own.cpu_seconds, after.own.resident_bytes};
+    const bool is_same_process =
+        before.server && after.server && after.server->cpu_seconds >= before.server->cpu_seconds;
+    if (is_same_process) { // and not one that was started meanwhile
+        report_.server =
+            ProcessUse{after.server->cpu_seconds - before.server->cpu_seconds, after.server->resident_bytes};
+    }
+}
+
+asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
+    const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
+    const Micros end = begun_ + static_cast<Micros>(options_.duration * static_cast<double>(kSecond));
+    Moment shown = co_await moment();
+    std::uint64_t acknowledged = 0;
+    Micros advanced = begun_;
+    for (;;) {
+        co_await pause(kPollPeriod);
+        const auto progress = fleet_.progress();
+        const Micros now = clock_.now();
+        if (progress.finished + progress.failed == options_.robots) co_return;
+        const std::uint64_t before = std::exchange(acknowledged, progress.acknowledged);
+        if (acknowledged > before || (now < end && !interrupted_)) advanced = now;
+        if (now > advanced + patience) co_return;
+        if (now < shown.at + kShowPeriod) continue;
+        Moment next = co_await moment();
+        show(shown, next);
+        shown = std::move(next);
+    }
+}
+
+asio::awaitable<Moment> LoadRun::moment() {
+    Moment now;
+    http_.set_patience(std::chrono::seconds(2)); // a server that is slow now is no reason to show nothing
+    const auto use = co_await server_use(http_);
+    http_.set_patience(kPatience);
+    if (use) now.server = ProcessUse{use->cpu_seconds, use->resident_bytes};
+    now.fleet = fleet_.look()->figures;
+    now.audience = *audience_.look();
+    now.own = own_use();
+    now.at = clock_.now();
+    co_return now;
+}
+
+asio::awaitable<void> LoadRun::pause(Micros time) {
+    asio::steady_timer timer(io_);
+    timer.expires_after(std::chrono::microseconds(time));
+    co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+}
+
+void LoadRun::show(const Moment& before, const Moment& now) {
+    if (display_.is_table()) {
+        display_.show(live_table(report_.settings, begun_, before, now));
+    } else {
+        display_.note(live_line(report_.settings, begun_, before, now));
+    }
+}
+
+// Afterwards ----------------------------------------------------------------------------------------------------------
+
+std::vector<ExpectedSession> LoadRun::expected() const {
+    std::vector<ExpectedSession> sessions;
+    for (const auto& name : sessions_) sessions.push_back({name, {}});
+    const auto acknowledged = fleet_.acknowledged();
+    for (const RobotPlan& robot : robots_) {
+        sessions[robot.index % sessions.size()].robots.push_back({robot.name, acknowledged[robot.index]});
+    }
+    return sessions;
+}
+
+asio::awaitable<void> LoadRun::verify() {
+    Evidence& evidence = report_.evidence;
+    const bool is_complete = evidence.failures.empty() && evidence.scans_acknowledged == evidence.scans_sent;
+    if (options_.verify == Verify::kNone || !is_complete) co_return; // what is under way may still arrive
+    const auto tell = [this](const std::string& text) { display_.passing(text); };
+    const auto sessions = expected();
+    co_await verify_counts(http_, sessions, tell, evidence);
+    const bool compare = options_.verify == Verify::kDigests && !evidence.shares_sessions;
+    if (!compare || !evidence.failures.empty()) co_return;
+    calm_ = std::make_unique<CalmSession>(io_, calm_name(), clock_, course_, link_);
+    co_await verify_digests(http_, sessions, calm_name(), *calm_, tell, evidence);
+}
+
+asio::awaitable<void> LoadRun::clean_up() {
+    if (options_.keep) co_return;
+    auto names = sessions_;
+    if (calm_) names.push_back(calm_name());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        display_.passing(fmt::format("deleting {} of {} sessions", grouped(i), grouped(names.size())));
+        const auto deleted = co_await delete_session(http_, names[i]);
+        if (deleted) continue;
+        display_.note(
+            fmt::format("the sessions from {} on are left on the server: {}", names[i], deleted.error().message));
+        co_return;
+    }
+}
+
+} // namespace scanloom::load

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "load/app/live_display.hpp"
+#include "load/app/options.hpp"
+#include "load/core/live_view.hpp"
+#include "load/net/audience.hpp"
+#include "load/net/calm_session.hpp"
+#include "load/net/fleet.hpp"
+#include "load/net/http_connection.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace scanloom::load {
+
+/// One run from its first connection to its verdict: makes sure that its sessions are new, connects all robots, lets
+/// them stream, waits for the last acks, verifies, and deletes what it made.
+/// Thread  that of `io`, which is not run any more once this is destroyed.
+class LoadRun {
+public:
+    /// The references stay until this is gone.
+    LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
+            LiveDisplay& display);
+
+    /// Call once.
+    /// Errors  nothing was begun: kAlreadyExists: sessions of its names; those of HTTP.
+    [[nodiscard]] boost::asio::awaitable<Result<RunReport>> conduct();
+
+    /// No more scans; what was sent is waited for and verified.
+    void interrupt();
+
+private:
+    [[nodiscard]] boost::asio::awaitable<Result<>> make_room();
+    [[nodiscard]] boost::asio::awaitable<bool> connect_robots();
+    [[nodiscard]] boost::asio::awaitable<void> stream();
+    [[nodiscard]] boost::asio::awaitable<void> wait_for_the_last_ack();
+    [[nodiscard]] boost::asio::awaitable<void> verify();
+    [[nodiscard]] boost::asio::awaitable<void> clean_up();
+    [[nodiscard]] boost::asio::awaitable<Moment> moment();
+    [[nodiscard]] boost::asio::awaitable<void> pause(Micros time);
+    void show(const Moment& before, const Moment& now);
+    [[nodiscard]] std::vector<ExpectedSession> expected() const;
+    [[nodiscard]] bool needs_http() const noexcept;
+    [[nodiscard]] std::string calm_name() const;
+
+    boost::asio::io_context& io_;
+    const LoadOptions& options_;
+    const Course& course_;
+    const RobotLinkOptions& link_;
+    LiveDisplay& display_;
+    RunClock clock_;
+    std::vector<std::string> sessions_;
+    std::vector<RobotPlan> robots_;
+    HttpConnection http_;
+    Fleet fleet_;
+    Audience audience_;
+    std::unique_ptr<CalmSession> calm_;
+    RunReport report_;
+    Micros begun_ = 0;
+    bool interrupted_ = false;
+};
+
+} // namespace scanloom::load

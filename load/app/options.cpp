@@ -1,0 +1,180 @@
+#include "load/app/options.hpp"
+
+#include "common/app/environment_first.hpp"
+#include "common/app/option_checks.hpp"
+#include "common/app/parse_failure.hpp"
+#include "common/scan/limits.hpp"
+#include "robot_client/source/world_file.hpp"
+#include "robot_client/uplink/limits.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::load {
+namespace {
+
+constexpr const char* kAbout =
+    "Puts a Scanloom server under load: many robots that stream simulated scans at a fixed rate, with viewers and\n"
+    "readers of tiles beside them. Measures how long acknowledgements take from when each scan was meant to be\n"
+    "sent, and verifies in the end that nothing was lost. The sessions it makes are deleted again.\n"
+    "Exits 0 when every scan was acknowledged and is there, 1 when not, 2 when it was called wrongly.";
+constexpr const char* kFooter =
+    "Every option may also stand in the file of --config (TOML) or in the environment (--cell-size as\n"
+    "SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
+
+constexpr double kRobotsMax = 100'000;
+constexpr double kRateMax = 1000.0;
+constexpr double kSecondsMax = 1e6;
+constexpr double kThreadsMax = 64;
+constexpr double kOnlookersMax = 1000;
+
+/// As the parser fills it, before it is sorted into LoadOptions.
+struct Raw {
+    std::string server = "127.0.0.1:7447";
+    std::string http = "127.0.0.1:8080";
+    std::string verify = "digests";
+};
+
+template <class Number>
+CLI::Option* add_count(CLI::App& app, const char* name, Number& into, const char* help, double low, double high) {
+    return app.add_option(name, into, help)->check(check_within(low, high))->check(check_whole_number_from(0));
+}
+
+void add_link_options(CLI::App& app, LoadOptions& options, Raw& raw) {
+    app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
+    app.add_option("--http", raw.http, "HTTP port of the server, HOST:PORT: to watch, to verify, and for its CPU")
+        ->capture_default_str();
+    app.add_option("--token-file", options.token_file, "File that holds the token of the robots")
+        ->check(CLI::ExistingFile);
+    app.add_flag("--tls", options.tls, "Encrypt the links, and check that the server is the one that --server names");
+    app.add_option("--tls-ca", options.tls_ca_file,
+                   "File with the certificates to trust, in PEM, instead of the system's; means --tls")
+        ->check(CLI::ExistingFile);
+}
+
+void add_load_options(CLI::App& app, LoadOptions& options) {
+    add_count(app, "--robots", options.robots, "How many robots stream", 1, kRobotsMax)->capture_default_str();
+    add_count(app, "--sessions", options.sessions,
+              "How many sessions they are spread over. Default: one a robot, so that maps can be compared", 1,
+              kRobotsMax);
+    app.add_option("--rate", options.rate, "Scans a second of each robot; 0 = as fast as the server's credit allows")
+        ->check(check_within(0.0, kRateMax))
+        ->capture_default_str();
+    add_count(app, "--batch", options.batch, "Scans that are sent as one frame; the first waits for the last", 1,
+              static_cast<double>(kScansPerBatchMax))
+        ->capture_default_str();
+    app.add_option("--duration", options.duration, "Seconds of sending; connecting and verifying come on top")
+        ->check(check_above_up_to(0.0, kSecondsMax))
+        ->capture_default_str();
+    app.add_option("--connections-per-second", options.connections_per_second, "How fast the robots connect")
+        ->check(check_within(1.0, 1e5))
+        ->capture_default_str();
+    app.add_option("--give-up-after", options.give_up_after,
+                   "Seconds without a single ack until it ends, while connecting and after the last scan")
+        ->check(check_above_up_to(0.0, kSecondsMax))
+        ->capture_default_str();
+    add_count(app, "--threads", options.threads, "Threads of the robots; more where one falls behind", 1, kThreadsMax)
+        ->capture_default_str();
+}
+
+std::string check_world(const std::string& world) {
+    if (robot::is_world_file(world)) return {};
+    const auto found = robot::find_world(world);
+    return found ? "" : found.error().message + ", or the .yaml file of a ROS map";
+}
+
+void add_scan_options(CLI::App& app, LoadOptions& options) {
+    app.add_option("--world", options.world,
+                   "Where the robots drive: room, room_walker, office, hall, or FILE.yaml, a map of ROS")
+        ->check(check_world)
+        ->capture_default_str();
+    app.add_option("--laser", options.laser,
+                   "What they see with: 684 beams over 180 degrees and 5 m; 360 all round and 12 m; 1081 over 270 "
+                   "degrees and 30 m")
+        ->check(CLI::IsMember({"reference", "lidar360", "wide"}))
+        ->capture_default_str();
+    app.add_option("--noise", options.noise, "What their measurements suffer from")
+        ->check(CLI::IsMember({"none", "gaussian"}))
+        ->capture_default_str();
+    app.add_option("--seed", options.seed, "The same seed gives the same scans, faults and names of sessions")
+        ->check(check_whole_number_from(0))
+        ->capture_default_str();
+    add_count(app, "--course", options.course,
+              "Scans of the way that they drive, made before the start; then round again", 1, 1e5)
+        ->capture_default_str();
+    app.add_option("--cell-size", options.cell_size, "Metres a cell of the maps. Default: the server's")
+        ->check(check_within(robot::kCellSizeMin, robot::kCellSizeMax));
+}
+
+void add_onlooker_options(CLI::App& app, LoadOptions& options) {
+    add_count(app, "--viewers", options.viewers, "Viewers that watch over WebSockets", 0, kOnlookersMax)
+        ->capture_default_str();
+    add_count(app, "--tile-readers", options.tile_readers, "Readers that fetch the tiles of a session, round and round",
+              0, kOnlookersMax)
+        ->capture_default_str();
+    app.add_option("--tile-rate", options.tile_rate, "Tiles a second of each reader")
+        ->check(check_within(0.1, kRateMax))
+        ->capture_default_str();
+}
+
+void add_end_options(CLI::App& app, LoadOptions& options, Raw& raw) {
+    app.add_option("--faults", options.faults_text,
+                   "Links that fail: kinds with the mean seconds between two faults of a link, as in "
+                   "cut=20,half-open=60,stall=30")
+        ->type_name("KIND=SECONDS,...");
+    app.add_option("--verify", raw.verify,
+                   "What is verified in the end: that each session has the scans that were acknowledged, and that its "
+                   "maps are those of a session into which they are streamed in peace")
+        ->check(CLI::IsMember({"none", "counts", "digests"}))
+        ->capture_default_str();
+    app.add_flag("--keep", options.keep, "Leave the sessions load-SEED-0, load-SEED-1, ... on the server");
+    app.add_flag("--replace", options.replace, "Delete sessions of these names first, if there are any");
+    app.add_option("--json", options.json_file,
+                   "File for the report as JSON; - is standard output, in place of the text");
+}
+
+std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
+    const auto server = robot::parse_server_address(raw.server);
+    if (!server) return fmt::format("--server: '{}' is not HOST:PORT", raw.server);
+    const auto http = robot::parse_server_address(raw.http);
+    if (!http) return fmt::format("--http: '{}' is not HOST:PORT", raw.http);
+    const auto faults = parse_faults(options.faults_text);
+    if (!faults) return "--faults: " + faults.error().message;
+    if (options.sessions > options.robots) {
+        return fmt::format("--sessions: {} sessions need as many robots, there are {}", options.sessions,
+                           options.robots);
+    }
+    if (options.rate > 0.0 && options.rate * options.duration * options.robots > 1e15) return "--duration: too long";
+    options.server = *server;
+    options.http = *http;
+    options.faults = *faults;
+    options.tls = options.tls || !options.tls_ca_file.empty();
+    if (options.sessions == 0) options.sessions = options.robots;
+    options.verify = raw.verify == "none" ? Verify::kNone : raw.verify == "counts" ? Verify::kCounts : Verify::kDigests;
+    return std::nullopt;
+}
+
+} // namespace
+
+std::variant<LoadOptions, Leave> parse_options(int argc, const char* const* argv) {
+    LoadOptions options;
+    Raw raw;
+    CLI::App app(kAbout, "scanloom-load");
+    app.footer(kFooter);
+    app.set_version_flag("--version", fmt::format("scanloom-load {}", kVersion));
+    add_link_options(app, options, raw);
+    add_load_options(app, options);
+    add_scan_options(app, options);
+    add_onlooker_options(app, options);
+    add_end_options(app, options, raw);
+    try {
+        read_settings_from_environment_and_file(app);
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& reason) {
+        return leave_for(app, reason);
+    }
+    if (auto mistake = sort_in(raw, options)) return usage_error(app, *mistake);
+    return options;
+}
+
+} // namespace scanloom::load

@@ -1,0 +1,136 @@
+#include "load/app/run.hpp"
+
+#include "load/app/drive_course.hpp"
+#include "load/app/load_run.hpp"
+#include "load/core/words.hpp"
+#include "load/net/own_use.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
+
+#include <csignal>
+#include <fstream>
+
+namespace scanloom::load {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr std::uint64_t kDescriptorsBesides = 64; ///< of threads, files, and this program's own requests
+
+/// The first line of a token file.
+Result<std::string> read_token(const std::string& path) {
+    std::string token;
+    if (path.empty()) return token;
+    std::ifstream file(path);
+    std::getline(file, token);
+    if (token.ends_with('\r')) token.pop_back();
+    if (!token.empty()) return token;
+    return Error{Errc::kNotFound, fmt::format("{}: no token to be read; the first line is it", path)};
+}
+
+Result<std::vector<asio::ip::tcp::endpoint>> resolve(asio::io_context& io, const robot::ServerAddress& server) {
+    asio::ip::tcp::resolver resolver(io);
+    boost::system::error_code failed;
+    std::vector<asio::ip::tcp::endpoint> endpoints;
+    for (const auto& found : resolver.resolve(server.host, server.port, failed)) endpoints.push_back(found.endpoint());
+    if (!failed) return endpoints;
+    return Error{Errc::kUnreachable,
+                 fmt::format("cannot find {}:{}: {}; check --server", server.host, server.port, failed.message())};
+}
+
+Result<RobotLinkOptions> link_options(asio::io_context& io, const LoadOptions& options) {
+    RobotLinkOptions link;
+    auto endpoints = resolve(io, options.server);
+    if (!endpoints) return endpoints.error();
+    link.server = std::move(*endpoints);
+    link.host = options.server.host;
+    if (options.tls) {
+        auto tls = net::client_tls(options.tls_ca_file);
+        if (!tls) return tls.error();
+        link.tls = std::move(*tls);
+    }
+    auto token = read_token(options.token_file);
+    if (!token) return token.error();
+    link.hello.token = std::move(*token);
+    link.hello.create = SessionOptions{};
+    link.hello.create->cell_size = options.cell_size;
+    link.hello.client = fmt::format("scanloom-load {}", kVersion);
+    return link;
+}
+
+Result<> check_descriptors(const LoadOptions& options) {
+    const bool leaves_links = options.faults[static_cast<std::size_t>(Fault::kHalfOpen)] > 0.0;
+    const std::uint64_t needed = std::uint64_t{options.robots} * (leaves_links ? 2 : 1) + options.viewers +
+                                 options.tile_readers + kDescriptorsBesides;
+    const std::uint64_t allowed = raise_descriptor_limit();
+    if (allowed >= needed) return {};
+    return Error{Errc::kFull,
+                 fmt::format("{} descriptors are needed and {} allowed; raise that (ulimit -n), or use fewer "
+                             "robots",
+                             grouped(needed), grouped(allowed))};
+}
+
+/// The first signal ends the streaming, the second everything.
+asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDisplay& display) {
+    constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+    asio::signal_set signals(io, SIGINT, SIGTERM);
+    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    display.note("interrupted: waiting for what was sent, then verifying it; interrupt again to leave at once, which "
+                 "leaves the sessions on the server");
+    run.interrupt();
+    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    io.stop();
+}
+
+Result<> write_report(const RunReport& report, const std::string& json_file) {
+    if (json_file == "-") {
+        fmt::print("{}", to_json(report));
+        return {};
+    }
+    fmt::print("{}", to_text(report));
+    if (json_file.empty()) return {};
+    std::ofstream file(json_file, std::ios::binary);
+    file << to_json(report) << std::flush;
+    if (file) return {};
+    return Error{Errc::kStoreFailed, fmt::format("{}: the report cannot be written", json_file)};
+}
+
+} // namespace
+
+ExitCode run(const LoadOptions& options) {
+    LiveDisplay display(standard_error());
+    const auto fail = [&](const Error& error) {
+        display.note("scanloom-load: " + error.message);
+        return error.code == Errc::kTooLarge ? kExitUsage : kExitFailed;
+    };
+    asio::io_context io(1);
+    const auto link = link_options(io, options);
+    if (!link) return fail(link.error());
+    if (auto ok = check_descriptors(options); !ok) return fail(ok.error());
+    display.passing("driving through the world");
+    const auto course = drive_course(options);
+    if (!course) return fail(course.error());
+
+    LoadRun run(io, options, *course, *link, display);
+    std::optional<Result<RunReport>> outcome; // none where a second signal ends it
+    asio::co_spawn(io, obey_signals(io, run, display), asio::detached);
+    asio::co_spawn(io, run.conduct(), [&](std::exception_ptr failed, Result<RunReport> result) {
+        if (failed) std::rethrow_exception(failed);
+        outcome = std::move(result);
+        io.stop();
+    });
+    io.run();
+    if (!outcome) return fail({Errc::kShuttingDown, "interrupted; nothing was verified"});
+    if (!*outcome) return fail(outcome->error());
+    if (auto written = write_report(**outcome, options.json_file); !written) return fail(written.error());
+    return (*outcome)->verdict.is_good ? kExitDone : kExitFailed;
+}
+
+} // namespace scanloom::load

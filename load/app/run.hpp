@@ -1,0 +1,11 @@
+#pragma once
+
+#include "common/app/program.hpp"
+#include "load/app/options.hpp"
+
+namespace scanloom::load {
+
+/// The whole program: connects, streams, verifies, reports, cleans up.
+[[nodiscard]] ExitCode run(const LoadOptions& options);
+
+} // namespace scanloom::load

@@ -1,0 +1,124 @@
+#include "load/core/report.hpp"
+
+#include "load/core/words.hpp"
+
+#include <boost/json/object.hpp>
+#include <boost/json/serialize.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::load {
+
+namespace json = boost::json;
+
+namespace {
+
+double in_milliseconds(Micros time) { return static_cast<double>(time) / static_cast<double>(kMillisecond); }
+
+/// Six digits are more than any of these means.
+double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+json::object latency_json(const LatencyHistogram& latency) {
+    return {{"count", latency.count()},
+            {"p50_ms", in_milliseconds(latency.percentile(50))},
+            {"p90_ms", in_milliseconds(latency.percentile(90))},
+            {"p99_ms", in_milliseconds(latency.percentile(99))},
+            {"p99_9_ms", in_milliseconds(latency.percentile(99.9))},
+            {"max_ms", in_milliseconds(latency.max())}};
+}
+
+json::object settings_json(const RunSettings& asked) {
+    json::object object{{"robots", asked.robots},
+                        {"sessions", asked.sessions},
+                        {"rate", asked.rate},
+                        {"batch", asked.batch},
+                        {"duration", asked.duration},
+                        {"world", asked.world},
+                        {"laser", asked.laser},
+                        {"noise", asked.noise},
+                        {"beams", asked.beams},
+                        {"seed", asked.seed},
+                        {"threads", asked.threads},
+                        {"viewers", asked.viewers},
+                        {"tile_readers", asked.tile_readers},
+                        {"tile_rate", asked.tile_rate},
+                        {"faults", asked.faults}};
+    object["cell_size"] = asked.cell_size ? json::value(*asked.cell_size) : json::value();
+    return object;
+}
+
+json::object scans_json(const RunReport& report) {
+    const FleetFigures& fleet = report.fleet;
+    return {
+        {"due", fleet.scans_due},
+        {"sent", fleet.scans_sent},
+        {"sent_again", fleet.scans_resent},
+        {"acknowledged", fleet.scans_acknowledged},
+        {"acknowledged_per_second", rounded(per_second(static_cast<double>(fleet.scans_acknowledged), report.seconds))},
+        {"lost", fleet.scans_lost},
+        {"frames", fleet.frames_out}};
+}
+
+json::object links_json(const FleetFigures& fleet) {
+    json::object faults;
+    for (std::size_t i = 0; i < kFaultKinds; ++i) faults[kFaultNames[i]] = fleet.faults[i];
+    return {
+        {"faults", std::move(faults)}, {"reconnects", fleet.links - fleet.greeted}, {"robots_failed", fleet.failed}};
+}
+
+json::object audience_json(const AudienceFigures& seen) {
+    return {{"events", seen.events},
+            {"event_bytes", seen.event_bytes},
+            {"viewers_cut_off", seen.viewer_ends},
+            {"tile_requests", seen.tile_requests},
+            {"tiles_unchanged", seen.tiles_unchanged},
+            {"tiles_failed", seen.tiles_failed},
+            {"tile_bytes", seen.tile_bytes},
+            {"tile_latency", latency_json(seen.tile_latency)}};
+}
+
+json::object use_json(const ProcessUse& use, double seconds) {
+    return {{"cpu_seconds", rounded(use.cpu_seconds)},
+            {"cores", rounded(per_second(use.cpu_seconds, seconds))},
+            {"resident_bytes", use.resident_bytes}};
+}
+
+json::object verdict_json(const RunReport& report) {
+    json::array against;
+    for (const auto& sentence : report.evidence.contradictions) against.emplace_back(sentence);
+    for (const auto& sentence : report.evidence.failures) against.emplace_back(sentence);
+    return {{"nothing_lost", report.verdict.is_good},
+            {"sentence", report.verdict.sentence},
+            {"scans_in_sessions", report.evidence.scans_in_sessions},
+            {"digests_equal", report.evidence.digests_equal},
+            {"against", std::move(against)}};
+}
+
+} // namespace
+
+std::string to_json(const RunReport& report) {
+    json::object server;
+    if (report.server) {
+        server = use_json(*report.server, report.seconds);
+        const auto scans = static_cast<double>(std::max<std::uint64_t>(report.fleet.scans_acknowledged, 1));
+        server["cpu_us_per_scan"] = rounded(report.server->cpu_seconds / scans * 1e6);
+    }
+    return json::serialize(json::object{{"settings", settings_json(report.settings)},
+                                        {"seconds", rounded(report.seconds)},
+                                        {"scans", scans_json(report)},
+                                        {"bytes_out", report.fleet.bytes_out},
+                                        {"bytes_in", report.fleet.bytes_in},
+                                        {"ack_from_intended", latency_json(report.fleet.from_intended)},
+                                        {"ack_from_sending", latency_json(report.fleet.from_sending)},
+                                        {"sending_from_intended", latency_json(report.fleet.waiting_to_send)},
+                                        {"own_delay", latency_json(report.fleet.own_delay)},
+                                        {"generator", use_json(report.own, report.seconds)},
+                                        {"server", std::move(server)},
+                                        {"audience", audience_json(report.audience)},
+                                        {"links", links_json(report.fleet)},
+                                        {"verdict", verdict_json(report)}}) +
+           "\n";
+}
+
+} // namespace scanloom::load

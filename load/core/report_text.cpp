@@ -1,0 +1,134 @@
+#include "load/core/report.hpp"
+
+#include "load/core/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanloom::load {
+namespace {
+
+std::string line(std::string_view label, std::string_view text) { return fmt::format("{:<11}{}\n", label, text); }
+
+double per_second(std::uint64_t count, double seconds) { return load::per_second(static_cast<double>(count), seconds); }
+
+std::string counted(std::uint64_t count, std::string_view one) {
+    return fmt::format("{} {}{}", grouped(count), one, count == 1 ? "" : "s");
+}
+
+std::string title(const RunSettings& asked) {
+    const auto pace = asked.rate > 0.0 ? fmt::format("at {:g} scans/s", asked.rate) : "as fast as they may";
+    const auto cells = asked.cell_size ? fmt::format(", cells of {:g} m", *asked.cell_size) : "";
+    const auto batch = asked.batch > 1 ? fmt::format(", {} scans a frame", asked.batch) : "";
+    return fmt::format("{} {} for {:g} s into {}: world {}, laser {} of {} beams, noise {}{}{}, seed {}\n\n",
+                       counted(asked.robots, "robot"), pace, asked.duration, counted(asked.sessions, "session"),
+                       asked.world, asked.laser, asked.beams, asked.noise, cells, batch, asked.seed);
+}
+
+std::string scans(const RunReport& report) {
+    const FleetFigures& fleet = report.fleet;
+    const double intended = report.settings.rate * report.settings.robots;
+    return line("scans", fmt::format("{} sent, {} acknowledged: {}/s{}", grouped(fleet.scans_sent),
+                                     grouped(fleet.scans_acknowledged),
+                                     whole(per_second(fleet.scans_acknowledged, report.seconds)),
+                                     intended > 0.0 ? fmt::format(" of {}/s intended", whole(intended)) : ""));
+}
+
+std::string bytes(const RunReport& report) {
+    const auto each_way = [&](std::uint64_t count, std::string_view where) {
+        const auto total = static_cast<double>(count);
+        return fmt::format("{} {} ({}/s)", as_bytes(total), where, as_bytes(per_second(count, report.seconds)));
+    };
+    return line("bytes",
+                each_way(report.fleet.bytes_out, "to the server") + ", " + each_way(report.fleet.bytes_in, "back"));
+}
+
+std::string percentiles(std::string_view label, const LatencyHistogram& latency) {
+    return fmt::format("  {:<24}{:>9}{:>9}{:>9}{:>9}{:>9}\n", label, as_milliseconds(latency.percentile(50)),
+                       as_milliseconds(latency.percentile(90)), as_milliseconds(latency.percentile(99)),
+                       as_milliseconds(latency.percentile(99.9)), as_milliseconds(latency.max()));
+}
+
+std::string latencies(const RunReport& report) {
+    auto text =
+        fmt::format("{:<26}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "milliseconds until", "p50", "p90", "p99", "p99.9", "max");
+    const bool is_paced = report.settings.rate > 0.0;
+    if (is_paced) text += percentiles("ack, from intended time", report.fleet.from_intended);
+    text += percentiles("ack, from sending", report.fleet.from_sending);
+    if (is_paced) text += percentiles("sending, from intended", report.fleet.waiting_to_send);
+    if (report.audience.tile_requests > 0) text += percentiles("a tile is there", report.audience.tile_latency);
+    return text;
+}
+
+std::string generator(const RunReport& report) {
+    auto text = fmt::format("{:.2f} cores, memory {}", load::per_second(report.own.cpu_seconds, report.seconds),
+                            as_bytes(report.own.resident_bytes));
+    if (report.settings.rate > 0.0) {
+        const LatencyHistogram& delay = report.fleet.own_delay;
+        text +=
+            fmt::format("; behind its own times by {} ms (p99), {} ms at most: ", as_milliseconds(delay.percentile(99)),
+                        as_milliseconds(delay.max()));
+        text +=
+            delay.percentile(99) <= kOwnDelayFine
+                ? "it kept them"
+                : "IT FELL BEHIND, and the latencies hold that;\n           give it more --threads, another machine, "
+                  "or less to do";
+    }
+    return line("generator", text);
+}
+
+std::string server(const RunReport& report) {
+    if (!report.server) return line("server", "was not asked");
+    const double each =
+        report.server->cpu_seconds / std::fmax(1.0, static_cast<double>(report.fleet.scans_acknowledged));
+    return line("server", fmt::format("{:.2f} cores, {:.0f} us of CPU per acknowledged scan, memory {}",
+                                      load::per_second(report.server->cpu_seconds, report.seconds), each * 1e6,
+                                      as_bytes(report.server->resident_bytes)));
+}
+
+std::string viewers(const RunReport& report) {
+    if (report.settings.viewers == 0) return {};
+    const AudienceFigures& seen = report.audience;
+    auto text = fmt::format("{} watched: {} events, {:.1f}/s each, {}", report.settings.viewers, grouped(seen.events),
+                            per_second(seen.events, report.seconds) / report.settings.viewers,
+                            as_bytes(static_cast<double>(seen.event_bytes)));
+    if (seen.viewer_ends > 0) text += fmt::format("; {} ended early", counted(seen.viewer_ends, "connection"));
+    return line("viewers", text);
+}
+
+std::string tiles(const RunReport& report) {
+    if (report.settings.tile_readers == 0) return {};
+    const AudienceFigures& seen = report.audience;
+    const auto all = static_cast<double>(std::max<std::uint64_t>(seen.tile_requests, 1));
+    auto text = fmt::format("{} asked: {} tiles, {}/s, {:.0f} % of them unchanged (304), {}",
+                            counted(report.settings.tile_readers, "reader"), grouped(seen.tile_requests),
+                            whole(per_second(seen.tile_requests, report.seconds)),
+                            100.0 * static_cast<double>(seen.tiles_unchanged) / all,
+                            as_bytes(static_cast<double>(seen.tile_bytes)));
+    if (seen.tiles_failed > 0) text += fmt::format("; {} FAILED", grouped(seen.tiles_failed));
+    return line("tiles", text);
+}
+
+std::string links(const RunReport& report) {
+    const FleetFigures& fleet = report.fleet;
+    std::string struck;
+    for (std::size_t i = 0; i < kFaultKinds; ++i) {
+        if (fleet.faults[i] == 0) continue;
+        struck += fmt::format("{}{} {}", struck.empty() ? "" : ", ", grouped(fleet.faults[i]), kFaultNames[i]);
+    }
+    const std::uint64_t reconnects = fleet.links - fleet.greeted;
+    if (struck.empty() && reconnects == 0) return {};
+    return line("links", fmt::format("faults on demand: {}; {}, {} sent again", struck.empty() ? "none" : struck,
+                                     counted(reconnects, "reconnect"), counted(fleet.scans_resent, "scan")));
+}
+
+} // namespace
+
+std::string to_text(const RunReport& report) {
+    return title(report.settings) + scans(report) + bytes(report) + latencies(report) + generator(report) +
+           server(report) + viewers(report) + tiles(report) + links(report) + "\n" + report.verdict.sentence + "\n";
+}
+
+} // namespace scanloom::load

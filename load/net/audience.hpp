@@ -1,0 +1,50 @@
+#pragma once
+
+#include "load/core/audience_figures.hpp"
+#include "load/net/onlooker.hpp"
+#include "load/net/run_clock.hpp"
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace scanloom::load {
+
+struct AudiencePlan {
+    std::uint32_t viewers = 0;
+    std::uint32_t tile_readers = 0;
+    double tile_rate = 0.0; ///< requests a second of each reader
+    robot::ServerAddress http;
+    std::vector<std::string> sessions; ///< the first viewer watches the first, and so on, round and round
+};
+
+/// Those who look on, on a thread of their own: they do not delay the robots.
+///
+/// Thread  begin() and look() from any.
+class Audience {
+public:
+    Audience(const AudiencePlan& plan, const RunClock& clock);
+    ~Audience();
+    Audience(const Audience&) = delete;
+    Audience& operator=(const Audience&) = delete;
+
+    void begin();
+    /// How things stand; waits for this thread to tell.
+    [[nodiscard]] std::unique_ptr<AudienceFigures> look();
+    void stop();
+
+private:
+    AudiencePlan plan_;
+    AudienceFigures figures_;
+    OnlookerShared shared_;
+    boost::asio::io_context io_{1};
+    boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+    std::thread thread_;
+};
+
+} // namespace scanloom::load

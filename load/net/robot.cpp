@@ -1,0 +1,216 @@
+#include "load/net/robot.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace scanloom::load {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t kReadBytes = 512; // acks are some twenty bytes each
+constexpr Micros kConnectMax = 10 * kSecond;
+
+wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
+
+} // namespace
+
+void Troubles::add(const Troubles& other) {
+    for (const auto& failure : other.failures) {
+        if (failures.size() < kKept) failures.push_back(failure);
+    }
+    if (newest.empty()) newest = other.newest;
+}
+
+struct Robot::Link {
+    explicit Link(net::LinkStream carried, Micros now) : stream(std::move(carried)), begun(now) {}
+
+    net::LinkStream stream;
+    Micros begun;
+    bool is_up = false; // connected, and encrypted where it has to be
+    bool is_writing = false;
+    std::string out;
+    wire::FrameDecoder in{wire::kFrameBytesMax};
+};
+
+Robot::Robot(RobotPlan plan, Shared shared)
+    : shared_(shared), talk_(std::move(plan), shared.course, shared.link.hello), backoff_(talk_.plan().index + 1),
+      timer_(shared.io) {}
+
+void Robot::start() { asio::co_spawn(shared_.io, run(), asio::detached); }
+
+asio::awaitable<void> Robot::run() {
+    while (!stopped_) {
+        const wire::LinkError failure = co_await use_one_link();
+        const bool was_struck = std::exchange(struck_, false);
+        close_link();
+        talk_.close(shared_.figures);
+        if (stopped_ || talk_.is_done()) break;
+        if (was_struck) continue; // the radio is back at once
+        note(failure);
+        if (failed_) break;
+        timer_.expires_after(backoff_.next());
+        co_await timer_.async_wait(kUse);
+    }
+    if (talk_.is_done()) ++shared_.figures.finished;
+}
+
+void Robot::note(const wire::LinkError& failure) {
+    const auto text =
+        fmt::format("robot {} of session {}: {}", talk_.plan().name, talk_.plan().session, failure.error.message);
+    Troubles& troubles = shared_.troubles;
+    if (failure.retryable) {
+        troubles.newest = text;
+        return;
+    }
+    failed_ = true;
+    ++shared_.figures.failed;
+    if (troubles.failures.size() < Troubles::kKept) troubles.failures.push_back(text);
+}
+
+// A link
+// ---------------------------------------------------------------------------------------------------------------
+
+asio::awaitable<wire::LinkError> Robot::use_one_link() {
+    tcp::socket socket(shared_.io);
+    const auto& tls = shared_.link.tls;
+    link_ = std::make_shared<Link>(tls ? net::LinkStream(std::move(socket), *tls) : net::LinkStream(std::move(socket)),
+                                   shared_.clock.now());
+    const auto link = link_;
+    const boost::system::error_code failed = co_await connect(link);
+    if (failed) {
+        co_return lost(fmt::format("no connection: {}",
+                                   tls ? net::handshake_text(failed, link->stream.verify_result()) : failed.message()));
+    }
+    link->is_up = true;
+    talk_.open(shared_.clock.now());
+    flush();
+    co_return co_await read_frames(link);
+}
+
+asio::awaitable<boost::system::error_code> Robot::connect(std::shared_ptr<Link> link) {
+    auto& socket = link->stream.socket();
+    const auto [refused, endpoint] = co_await asio::async_connect(socket, shared_.link.server, kUse);
+    if (refused) co_return refused;
+    boost::system::error_code ignored; // without it small frames only wait longer
+    socket.set_option(tcp::no_delay(true), ignored);
+    if (!shared_.link.tls) co_return refused;
+    link->stream.expect_host(shared_.link.host);
+    const auto [failed] = co_await link->stream.async_handshake(net::LinkStream::Role::kClient, kUse);
+    co_return failed;
+}
+
+asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) {
+    for (;;) {
+        const auto room = link->in.prepare(kReadBytes);
+        const auto [failed, count] =
+            co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+        while (shared_.clock.now() < stalled_until_ && !stopped_) {
+            timer_.expires_at(shared_.clock.at(stalled_until_));
+            co_await timer_.async_wait(kUse);
+        }
+        if (auto failure = take(*link, count)) co_return *failure;
+        flush();
+    }
+}
+
+std::optional<wire::LinkError> Robot::take(Link& link, std::size_t bytes) {
+    shared_.figures.bytes_in += bytes;
+    link.in.commit(bytes);
+    for (;;) {
+        auto body = link.in.next();
+        if (!body) return wire::LinkError{body.error(), true};
+        if (!*body) return std::nullopt;
+        const auto message = wire::decode(**body);
+        if (!message) return wire::LinkError{message.error(), true};
+        const std::uint64_t before = talk_.acknowledged();
+        if (auto failure = talk_.receive(*message, shared_.clock.now(), shared_.figures)) return failure;
+        if (talk_.acknowledged() > before) backoff_.reset();
+    }
+}
+
+void Robot::flush() {
+    const auto link = link_;
+    if (!link || !link->is_up || link->is_writing || shared_.clock.now() < stalled_until_) return;
+    talk_.write(link->out, shared_.clock.now(), shared_.figures);
+    if (link->out.empty()) return;
+    link->is_writing = true;
+    asio::async_write(link->stream, asio::buffer(link->out),
+                      [this, link](const boost::system::error_code& failed, std::size_t count) {
+                          shared_.figures.bytes_out += count;
+                          link->is_writing = false;
+                          link->out.clear();
+                          if (failed && link != abandoned_) link->stream.close(); // whoever reads from it sees that
+                          if (!failed && link == link_) flush();
+                      });
+}
+
+void Robot::close_link() {
+    if (link_ && link_ != abandoned_) link_->stream.close();
+    link_.reset();
+}
+
+// What happens to it --------------------------------------------------------------------------------------------------
+
+void Robot::due(std::uint64_t scans) {
+    talk_.due(scans);
+    flush();
+}
+
+void Robot::end() {
+    talk_.end();
+    flush();
+}
+
+void Robot::look_after(Micros now) {
+    if (!link_ || now < stalled_until_) return;
+    const bool is_late = !link_->is_up && now - link_->begun > kConnectMax;
+    const auto failure = talk_.check(now);
+    if (failure) note(*failure);
+    if (is_late || failure) {
+        link_->stream.close();
+    } else {
+        flush();
+    }
+}
+
+bool Robot::strike(Fault fault) {
+    if (!talk_.is_welcome() || !link_ || shared_.clock.now() < stalled_until_ || stopped_) return false;
+    boost::system::error_code ignored;
+    auto& socket = link_->stream.socket();
+    switch (fault) {
+    case Fault::kStall: stalled_until_ = shared_.clock.now() + kStallTime; return true;
+    case Fault::kCut:
+        socket.set_option(tcp::socket::linger(true, 0), ignored); // a reset, and no farewell
+        link_->stream.close();
+        break;
+    case Fault::kHalfOpen:
+        if (abandoned_) abandoned_->stream.close();
+        abandoned_ = link_;
+        socket.cancel(ignored);
+        break;
+    }
+    struck_ = true;
+    return true;
+}
+
+void Robot::stop() {
+    stopped_ = true;
+    stalled_until_ = 0;
+    if (link_) link_->stream.close();
+    if (abandoned_) abandoned_->stream.close();
+    timer_.cancel();
+}
+
+} // namespace scanloom::load

@@ -1,0 +1,133 @@
+#include "load/net/server_api.hpp"
+
+#include <boost/json/parse.hpp>
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace scanloom::load {
+
+namespace asio = boost::asio;
+namespace json = boost::json;
+
+namespace {
+
+constexpr std::size_t kPageMax = 1000;
+constexpr unsigned kOk = 200;
+constexpr unsigned kNoContent = 204;
+constexpr unsigned kNotFound = 404;
+
+std::string path_of(const std::string& session) { return "/api/v1/sessions/" + session; }
+
+/// What `read` makes of a JSON answer; it throws what boost::json throws where the answer is another one.
+template <class Read>
+auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read read)
+    -> Result<decltype(read(json::value()))> {
+    if (!answer) return answer.error();
+    if (answer->status != kOk) return refusal(*answer, target);
+    try {
+        return read(json::parse(answer->body));
+    } catch (const boost::system::system_error& unreadable) {
+        return Error{Errc::kMalformed,
+                     fmt::format("{} was answered with what cannot be read: {}", target, unreadable.code().message())};
+    } catch (const std::exception& unreadable) {
+        return Error{Errc::kMalformed,
+                     fmt::format("{} was answered with what cannot be read: {}", target, unreadable.what())};
+    }
+}
+
+FoundSession read_session(const json::value& value) {
+    FoundSession found{
+        value.at("scans").to_number<std::uint64_t>(), value.at("revision").to_number<std::uint64_t>(), {}};
+    for (const auto& robot : value.at("robots").as_array()) {
+        found.robots.push_back({std::string(robot.at("name").as_string()), robot.at("scans").to_number<std::uint64_t>(),
+                                robot.at("last_seq").to_number<std::uint64_t>()});
+    }
+    return found;
+}
+
+std::vector<std::string> read_names(const json::value& value) {
+    std::vector<std::string> names;
+    for (const auto& session : value.at("sessions").as_array()) names.emplace_back(session.at("name").as_string());
+    return names;
+}
+
+std::vector<TilePlace> read_tiles(const json::value& value) {
+    std::vector<TilePlace> tiles;
+    for (const auto& tile : value.at("tiles").as_array()) {
+        tiles.push_back({tile.at("x").to_number<std::uint32_t>(), tile.at("y").to_number<std::uint32_t>()});
+    }
+    return tiles;
+}
+
+} // namespace
+
+asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& http, std::string prefix) {
+    std::vector<std::string> names;
+    std::string after = prefix; // sessions are listed in the order of their names
+    for (;;) {
+        const auto target = fmt::format("/api/v1/sessions?limit={}&after={}", kPageMax, after);
+        const auto answer = co_await http.get(target);
+        const auto page = read_json(answer, target, read_names);
+        if (!page) co_return page.error();
+        for (const auto& name : *page) {
+            if (!name.starts_with(prefix)) co_return names;
+            names.push_back(name);
+        }
+        if (page->size() < kPageMax) co_return names;
+        after = page->back();
+    }
+}
+
+asio::awaitable<Result<FoundSession>> find_session(HttpConnection& http, std::string session) {
+    const auto target = path_of(session);
+    const auto answer = co_await http.get(target);
+    co_return read_json(answer, target, read_session);
+}
+
+asio::awaitable<Result<std::string>> digest_of(HttpConnection& http, std::string session) {
+    const auto target = path_of(session) + "/digest";
+    const auto answer = co_await http.get(target);
+    co_return read_json(answer, target, [](const json::value& value) { return json::serialize(value.at("layers")); });
+}
+
+asio::awaitable<Result<>> delete_session(HttpConnection& http, std::string session) {
+    const auto target = path_of(session);
+    const auto answer = co_await http.ask(boost::beast::http::verb::delete_, target);
+    if (!answer) co_return answer.error();
+    if (answer->status != kOk && answer->status != kNoContent && answer->status != kNotFound)
+        co_return refusal(*answer, target);
+    co_return Result<>();
+}
+
+asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http) {
+    const std::string target = "/metrics";
+    const auto answer = co_await http.get(target);
+    if (!answer) co_return answer.error();
+    if (answer->status != kOk) co_return refusal(*answer, target);
+    co_return ServerUse{metric(answer->body, "process_cpu_seconds_total"),
+                        metric(answer->body, "process_resident_memory_bytes")};
+}
+
+asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session, std::string layer) {
+    const auto target = fmt::format("{}/changes?layer={}&since=0", path_of(session), layer);
+    const auto answer = co_await http.get(target);
+    co_return read_json(answer, target, read_tiles);
+}
+
+double metric(std::string_view text, std::string_view name) {
+    while (!text.empty()) {
+        const auto line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        if (!line.starts_with(name) || line.size() <= name.size() || line[name.size()] != ' ') continue;
+        const auto number = line.substr(name.size() + 1);
+        double value = 0.0;
+        std::from_chars(number.data(), number.data() + number.size(), value);
+        return value;
+    }
+    return 0.0;
+}
+
+} // namespace scanloom::load

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "load/core/verdict.hpp"
+#include "load/net/http_connection.hpp"
+
+#include <boost/asio/awaitable.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::load {
+
+/// What the server's process has used so far, by its own word.
+struct ServerUse {
+    double cpu_seconds = 0.0;
+    double resident_bytes = 0.0;
+};
+
+struct TilePlace {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+};
+
+// What is asked over HTTP, beside tiles. Each fails as HttpConnection::ask() does, and with refusal() where the answer
+// is not 200, or not what the API says.
+
+/// Names of the sessions that begin with `prefix`.
+[[nodiscard]] boost::asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& http,
+                                                                                   std::string prefix);
+[[nodiscard]] boost::asio::awaitable<Result<FoundSession>> find_session(HttpConnection& http, std::string session);
+/// One text for the digests of all layers.
+[[nodiscard]] boost::asio::awaitable<Result<std::string>> digest_of(HttpConnection& http, std::string session);
+/// One that is not there is fine.
+[[nodiscard]] boost::asio::awaitable<Result<>> delete_session(HttpConnection& http, std::string session);
+[[nodiscard]] boost::asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http);
+/// Tiles of zoom 9 that were ever touched.
+[[nodiscard]] boost::asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session,
+                                                                              std::string layer);
+
+/// Reads a value of the Prometheus text format; 0 where there is none of that name.
+[[nodiscard]] double metric(std::string_view text, std::string_view name);
+
+} // namespace scanloom::load

@@ -1,0 +1,68 @@
+#include "load/net/verification.hpp"
+
+#include "load/core/words.hpp"
+#include "load/net/server_api.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanloom::load {
+
+namespace asio = boost::asio;
+
+namespace {
+
+constexpr std::size_t kToldEvery = 50;
+
+void tell_now_and_then(const TellProgress& tell, std::string_view what, std::size_t done, std::size_t of) {
+    if (done % kToldEvery == 0) tell(fmt::format("{} {} of {} sessions", what, grouped(done), grouped(of)));
+}
+
+std::uint64_t scans_of(const ExpectedSession& session) { return session.robots.front().scans; }
+
+} // namespace
+
+asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<ExpectedSession>& sessions,
+                                    TellProgress tell, Evidence& evidence) {
+    for (std::size_t i = 0; i < sessions.size(); ++i) {
+        tell_now_and_then(tell, "counting the scans of", i, sessions.size());
+        const auto found = co_await find_session(http, sessions[i].name);
+        if (!found) {
+            evidence.failures.push_back(found.error().message);
+            if (found.error().code == Errc::kUnreachable || found.error().code == Errc::kTimeout) co_return;
+            continue;
+        }
+        evidence.scans_in_sessions += found->scans;
+        if (auto wrong = contradiction(sessions[i], *found)) evidence.contradictions.push_back(std::move(*wrong));
+    }
+}
+
+asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions, std::string calm_name,
+                                     CalmSession& calm, TellProgress tell, Evidence& evidence) {
+    std::ranges::sort(sessions, {}, scans_of);
+    std::uint64_t streamed = 0;
+    std::string right;
+    for (std::size_t i = 0; i < sessions.size(); ++i) {
+        tell_now_and_then(tell, "comparing the maps of", i, sessions.size());
+        if (const std::uint64_t scans = scans_of(sessions[i]); scans > streamed) {
+            const auto done = co_await calm.stream_to(scans);
+            if (!done) co_return evidence.failures.push_back(done.error().message);
+            auto digest = co_await digest_of(http, calm_name);
+            if (!digest) co_return evidence.failures.push_back(digest.error().message);
+            right = std::move(*digest);
+            streamed = scans;
+        }
+        const auto digest = co_await digest_of(http, sessions[i].name);
+        if (!digest) co_return evidence.failures.push_back(digest.error().message);
+        if (*digest == right) {
+            ++evidence.digests_equal;
+        } else {
+            evidence.contradictions.push_back(fmt::format(
+                "the maps of session {} differ from those that its {} scans make when nothing disturbs them",
+                sessions[i].name, grouped(streamed)));
+        }
+    }
+}
+
+} // namespace scanloom::load

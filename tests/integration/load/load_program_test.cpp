@@ -1,0 +1,226 @@
+#include "tests/integration/load/lying_front.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
+/// scanloom-load as its user sees it, on a server that runs.
+namespace scanloom::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using Words = std::vector<std::string>;
+
+/// Large cells: these tests are about links and counting, not about weaving.
+const Words kSmallLoad{"--robots", "20", "--rate", "40", "--duration", "3", "--cell-size", "0.2", "--world", "room"};
+constexpr std::uint64_t kSmallLoadScans = 20 * 40 * 3;
+
+struct Outcome {
+    int code = 0;
+    boost::json::value report; ///< null where there is none
+    std::string errors;
+
+    [[nodiscard]] std::string verdict() const { return std::string(report.at("verdict").at("sentence").as_string()); }
+    [[nodiscard]] std::uint64_t count(const char* part, const char* name) const {
+        return report.at(part).at(name).to_number<std::uint64_t>();
+    }
+};
+
+class LoadProgram : public testing::Test {
+protected:
+    [[nodiscard]] Words arguments(const Words& further, std::uint16_t http_port) const {
+        Words all{"--server", server_->robot_address(), "--http", "127.0.0.1:" + std::to_string(http_port), "--json",
+                  "-"};
+        all.insert(all.end(), further.begin(), further.end());
+        return all;
+    }
+
+    [[nodiscard]] Outcome finish(ChildProcess& load) const {
+        const auto line = load.read_line();
+        const int code = load.wait();
+        std::ifstream file(errors());
+        return {
+            code, line ? boost::json::parse(*line) : boost::json::value(), {std::istreambuf_iterator<char>(file), {}}};
+    }
+
+    [[nodiscard]] Outcome run(const Words& further, std::uint16_t http_port = 0) const {
+        std::filesystem::remove(errors());
+        ChildProcess load(program("scanloom-load"),
+                          arguments(further, http_port == 0 ? server_->http_port() : http_port), errors());
+        return finish(load);
+    }
+
+    [[nodiscard]] std::filesystem::path errors() const { return place_.path() / "errors"; }
+
+    [[nodiscard]] std::size_t sessions() const {
+        return server_->get_json("/api/v1/sessions").at("sessions").as_array().size();
+    }
+
+    void start_server(std::uint16_t robot_port = 0, std::uint16_t http_port = 0) {
+        server_.reset();
+        server_ =
+            std::make_unique<RunningServer>(place_.path() / "store", place_.path() / "log", robot_port, http_port);
+    }
+
+    TemporaryDirectory place_;
+    std::unique_ptr<RunningServer> server_ =
+        std::make_unique<RunningServer>(place_.path() / "store", place_.path() / "log");
+};
+
+Words operator+(Words words, const Words& further) {
+    words.insert(words.end(), further.begin(), further.end());
+    return words;
+}
+
+TEST_F(LoadProgram, EveryScanIsThereOnceThoughLinksFailAllTheTime) {
+    const auto outcome = run(kSmallLoad + Words{"--faults", "cut=1,half-open=2,stall=5"});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_THAT(outcome.verdict(),
+                StartsWith("nothing lost: 2,400 of 2,400 scans acknowledged, 2,400 in the 20 sessions"));
+    EXPECT_EQ(outcome.count("scans", "acknowledged"), kSmallLoadScans);
+    EXPECT_EQ(outcome.count("verdict", "scans_in_sessions"), kSmallLoadScans);
+    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 20U);
+    EXPECT_EQ(outcome.count("ack_from_intended", "count"), kSmallLoadScans);
+    EXPECT_GT(outcome.count("links", "reconnects"), 10U);
+    EXPECT_GT(outcome.report.at("links").at("faults").at("cut").to_number<int>(), 10);
+    EXPECT_GT(outcome.report.at("links").at("faults").at("half-open").to_number<int>(), 5);
+    EXPECT_GT(outcome.report.at("links").at("faults").at("stall").to_number<int>(), 1);
+    EXPECT_EQ(sessions(), 0U); // they are deleted again
+}
+
+TEST_F(LoadProgram, AServerThatIsKilledMeanwhileLosesNothing) {
+    ChildProcess load(program("scanloom-load"), arguments(kSmallLoad, server_->http_port()), errors());
+    while (server_->get("/api/v1/sessions/load-1-7").status != 200 ||
+           server_->get_json("/api/v1/sessions/load-1-7").at("scans").to_number<int>() < 10) {
+    }
+    server_->process().signal(SIGKILL);
+    server_->process().wait();
+    start_server(server_->robot_port(), server_->http_port());
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_EQ(outcome.count("scans", "acknowledged"), kSmallLoadScans);
+    EXPECT_EQ(outcome.count("links", "reconnects"), 20U);
+    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 20U);
+}
+
+TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
+    const Words load{"--robots", "6",           "--sessions", "2",           "--rate",
+                     "20",       "--duration",  "2",          "--cell-size", "0.2",
+                     "--world",  "room",        "--viewers",  "3",           "--tile-readers",
+                     "2",        "--tile-rate", "50",         "--keep",      "--threads",
+                     "2",        "--batch",     "3"};
+    const auto outcome = run(load);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_THAT(outcome.verdict(), HasSubstr("digests cannot be compared, as robots share a session"));
+    EXPECT_EQ(outcome.count("scans", "acknowledged"), 240U);
+    EXPECT_EQ(outcome.count("scans", "frames"), 84U); // 13 of three scans and a last one of each robot
+    EXPECT_GT(outcome.count("audience", "events"), 3U);
+    EXPECT_GT(outcome.count("audience", "tile_requests"), 10U);
+    EXPECT_EQ(outcome.count("audience", "tiles_failed"), 0U);
+    EXPECT_GT(outcome.report.at("server").at("cpu_seconds").to_number<double>(), 0.0);
+    EXPECT_EQ(server_->get_json("/api/v1/sessions/load-1-1").at("scans").to_number<int>(), 120);
+
+    const auto again = run(load);
+    EXPECT_EQ(again.code, 1);
+    EXPECT_THAT(again.errors,
+                HasSubstr("2 sessions of an earlier run with --seed 1 are there, load-1-0 first; delete them "
+                          "with --replace, or take another --seed"));
+    EXPECT_EQ(run(load + Words{"--replace"}).code, 0);
+    EXPECT_EQ(sessions(), 2U);
+}
+
+TEST_F(LoadProgram, AsFastAsTheServerTakesThemEachSessionIsComparedAtItsOwnLength) {
+    const auto outcome = run({"--robots", "3", "--rate", "0", "--duration", "1", "--cell-size", "0.2", "--world",
+                              "room", "--course", "50", "--threads", "2"});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 3U);
+    EXPECT_GT(outcome.count("scans", "acknowledged"), 50U);
+    EXPECT_EQ(outcome.count("scans", "due"), outcome.count("scans", "sent"));
+}
+
+const Words kShort{"--robots", "4", "--rate", "20", "--duration", "1", "--cell-size", "0.2", "--world", "room"};
+
+/// What the tool says when one session is not what it should be.
+TEST_F(LoadProgram, ALieOfTheServerIsFoundOut) {
+    const auto through = [&](LyingFront::Lie lie) {
+        const LyingFront front(server_->http_port(), std::move(lie));
+        return run(kShort, front.port());
+    };
+    const auto honest = through([](const std::string&, std::string body) { return body; });
+    EXPECT_EQ(honest.code, 0) << honest.errors;
+    EXPECT_EQ(honest.count("verdict", "digests_equal"), 4U);
+
+    const auto another_map = through([](const std::string& target, std::string body) {
+        if (target != "/api/v1/sessions/load-1-2/digest") return body;
+        const auto digit = body.find("\"himm\":\"") + 10;
+        body[digit] = body[digit] == '0' ? '1' : '0';
+        return body;
+    });
+    EXPECT_EQ(another_map.code, 1);
+    EXPECT_THAT(another_map.verdict(),
+                StartsWith("WRONG: 80 of 80 scans acknowledged, but the maps of session load-1-2 "
+                           "differ from those that its 20 scans make"));
+    EXPECT_EQ(another_map.count("verdict", "digests_equal"), 3U);
+
+    const auto one_less = through([](const std::string& target, std::string body) {
+        if (target != "/api/v1/sessions/load-1-3") return body;
+        return body.replace(body.find("\"scans\":20"), 10, "\"scans\":19");
+    });
+    EXPECT_EQ(one_less.code, 1);
+    EXPECT_THAT(one_less.verdict(), HasSubstr("session load-1-3 holds"));
+    EXPECT_THAT(one_less.verdict(), HasSubstr("19 scans"));
+
+    const auto gone = through([](const std::string& target, std::string body) {
+        return target == "/api/v1/sessions/load-1-0" ? "{}" : body;
+    });
+    EXPECT_EQ(gone.code, 1);
+    EXPECT_THAT(gone.verdict(), HasSubstr("/api/v1/sessions/load-1-0 was answered with what cannot be read"));
+}
+
+TEST_F(LoadProgram, WithoutAServerItSaysSoAndExits1) {
+    const Words nowhere{"--server", "127.0.0.1:1", "--http", "127.0.0.1:1", "--give-up-after", "0.5"};
+    std::filesystem::remove(errors());
+    ChildProcess load(program("scanloom-load"), nowhere + kShort, errors());
+    const auto asked = finish(load);
+    EXPECT_EQ(asked.code, 1);
+    EXPECT_THAT(asked.errors, HasSubstr("scanloom-load: 127.0.0.1:1 does not answer HTTP"));
+
+    ChildProcess unasked(program("scanloom-load"), nowhere + kShort + Words{"--verify", "none", "--json", "-"},
+                         errors());
+    const auto outcome = finish(unasked);
+    EXPECT_EQ(outcome.code, 1);
+    ASSERT_TRUE(outcome.report.is_object());
+    EXPECT_THAT(outcome.verdict(), HasSubstr("no connection: Connection refused"));
+}
+
+TEST_F(LoadProgram, InterruptedItVerifiesWhatItSent) {
+    ChildProcess load(program("scanloom-load"),
+                      arguments({"--robots", "3", "--duration", "100000", "--cell-size", "0.2", "--course", "10"},
+                                server_->http_port()),
+                      errors());
+    while (server_->get("/api/v1/sessions/load-1-2").status != 200 ||
+           server_->get_json("/api/v1/sessions/load-1-2").at("scans").to_number<int>() < 5) {
+    }
+    load.signal(SIGINT);
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_THAT(outcome.verdict(), StartsWith("nothing lost: "));
+    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 3U);
+    EXPECT_EQ(sessions(), 0U);
+}
+
+} // namespace
+} // namespace scanloom::test

@@ -1,0 +1,112 @@
+#include "load/app/options.hpp"
+
+#include "load/app/drive_course.hpp"
+#include "load/net/fleet.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+namespace scanloom::load {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::variant<LoadOptions, Leave> parse(const std::vector<const char*>& words) {
+    std::vector<const char*> argv{"scanloom-load"};
+    argv.insert(argv.end(), words.begin(), words.end());
+    return parse_options(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(LoadOptions, EveryRobotHasASessionUnlessToldOtherwise) {
+    EXPECT_EQ(std::get<LoadOptions>(parse({})).sessions, 100U);
+    EXPECT_EQ(std::get<LoadOptions>(parse({"--robots", "7"})).sessions, 7U);
+    EXPECT_EQ(std::get<LoadOptions>(parse({"--robots", "7", "--sessions", "2"})).sessions, 2U);
+}
+
+TEST(LoadOptions, AreReadAsTheyAreMeant) {
+    const auto options = std::get<LoadOptions>(
+        parse({"--server", "a:1", "--http", "b:2", "--rate", "0", "--batch", "5", "--faults", "cut=3,stall=4",
+               "--verify", "counts", "--viewers", "2", "--tls-ca", "/dev/null", "--keep"}));
+    EXPECT_EQ(options.server.host, "a");
+    EXPECT_EQ(options.http.port, "2");
+    EXPECT_EQ(options.rate, 0.0);
+    EXPECT_EQ(options.batch, 5U);
+    EXPECT_EQ(options.faults, (FaultMeans{3.0, 0.0, 4.0}));
+    EXPECT_EQ(options.verify, Verify::kCounts);
+    EXPECT_TRUE(options.tls && options.keep && !options.replace);
+}
+
+TEST(LoadOptions, EachMistakeIsOneLineAndAUsageError) {
+    const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
+        {{"--robots", "0"}, "--robots"},
+        {{"--robots", "1.5"}, "--robots"},
+        {{"--robots", "3", "--sessions", "4"}, "--sessions: 4 sessions need as many robots, there are 3"},
+        {{"--rate", "-1"}, "--rate"},
+        {{"--duration", "0"}, "--duration"},
+        {{"--batch", "1025"}, "--batch"},
+        {{"--faults", "fire=3"}, "--faults: 'fire=3' is no fault"},
+        {{"--server", "here"}, "--server: 'here' is not HOST:PORT"},
+        {{"--http", "here:0"}, "--http: 'here:0' is not HOST:PORT"},
+        {{"--world", "mars"}, "--world"},
+        {{"--verify", "all"}, "--verify"},
+        {{"surplus"}, "surplus"},
+    };
+    for (const auto& [words, hint] : mistakes) {
+        const auto outcome = parse(words);
+        ASSERT_TRUE(std::holds_alternative<Leave>(outcome)) << hint;
+        const auto& leave = std::get<Leave>(outcome);
+        EXPECT_EQ(leave.code, kExitUsage);
+        EXPECT_THAT(leave.text, HasSubstr(hint));
+        EXPECT_EQ(std::count(leave.text.begin(), leave.text.end(), '\n'), 1) << leave.text;
+    }
+}
+
+TEST(LoadOptions, HelpNamesEveryOption) {
+    const auto help = std::get<Leave>(parse({"--help"}));
+    EXPECT_EQ(help.code, kExitDone);
+    for (const auto* name : {"--robots", "--sessions", "--rate", "--faults", "--verify", "--json", "--replace"}) {
+        EXPECT_THAT(help.text, HasSubstr(name));
+    }
+}
+
+TEST(DriveCourse, TheSameSeedGivesTheSameScansAndAnotherOneOthers) {
+    auto options = std::get<LoadOptions>(parse({"--duration", "2", "--world", "room"}));
+    const auto course = drive_course(options);
+    ASSERT_TRUE(course);
+    EXPECT_EQ(course->scans.size(), 20U); // no more than are sent
+    EXPECT_EQ(course->beams, 684U);
+    EXPECT_EQ(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
+    options.seed = 2;
+    EXPECT_NE(drive_course(options)->scans.back().bytes(), course->scans.back().bytes());
+}
+
+TEST(DriveCourse, ABatchThatFitsNoFrameIsRefused) {
+    const auto options = std::get<LoadOptions>(parse({"--batch", "1024", "--laser", "wide", "--world", "room"}));
+    const auto course = drive_course(options);
+    ASSERT_FALSE(course);
+    EXPECT_EQ(course.error().code, Errc::kTooLarge);
+    EXPECT_THAT(course.error().message, HasSubstr("--batch 1024"));
+}
+
+TEST(SpreadOver, SessionsGetRobotsThatBeginAtTheSamePlacesOfTheCourse) {
+    const auto plans = spread_over({"a", "b"}, 6, 600);
+    std::vector<std::size_t> of_a;
+    std::vector<std::size_t> of_b;
+    std::set<std::string> names;
+    for (std::uint32_t i = 0; i < plans.size(); ++i) {
+        EXPECT_EQ(plans[i].index, i);
+        (plans[i].session == "a" ? of_a : of_b).push_back(plans[i].first_scan);
+        names.insert(plans[i].session + plans[i].name);
+    }
+    EXPECT_THAT(of_a, ElementsAre(0, 200, 400));
+    EXPECT_EQ(of_a, of_b);
+    EXPECT_EQ(names.size(), 6U);
+}
+
+} // namespace
+} // namespace scanloom::load

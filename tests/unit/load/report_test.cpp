@@ -1,0 +1,147 @@
+#include "load/core/live_view.hpp"
+#include "load/core/report.hpp"
+#include "load/core/words.hpp"
+
+#include <boost/json/parse.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace scanloom::load {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Words, FiguresAsPeopleReadThem) {
+    EXPECT_EQ(grouped(0), "0");
+    EXPECT_EQ(grouped(999), "999");
+    EXPECT_EQ(grouped(1'000), "1,000");
+    EXPECT_EQ(grouped(1'234'567), "1,234,567");
+    EXPECT_EQ(whole(999.6), "1,000");
+    EXPECT_EQ(whole(-0.1), "0");
+    EXPECT_EQ(as_milliseconds(420), "0.42");
+    EXPECT_EQ(as_milliseconds(9'994), "9.99");
+    EXPECT_EQ(as_milliseconds(9'996), "10.0");
+    EXPECT_EQ(as_milliseconds(99'949), "99.9");
+    EXPECT_EQ(as_milliseconds(99'960), "100");
+    EXPECT_EQ(as_milliseconds(4'567'000), "4,567");
+    EXPECT_EQ(as_bytes(512), "512 B");
+    EXPECT_EQ(as_bytes(1'500), "1.5 kB");
+    EXPECT_EQ(as_bytes(831.2e6), "831 MB");
+    EXPECT_EQ(as_bytes(2.5e15), "2,500 TB");
+}
+
+std::unique_ptr<RunReport> report() {
+    auto made = std::make_unique<RunReport>();
+    made->settings = {.robots = 20,
+                      .sessions = 20,
+                      .rate = 10.0,
+                      .duration = 30.0,
+                      .world = "office",
+                      .laser = "reference",
+                      .noise = "none",
+                      .beams = 684,
+                      .seed = 1};
+    made->seconds = 30.0;
+    made->fleet.scans_due = made->fleet.scans_sent = made->fleet.scans_acknowledged = 6000;
+    made->fleet.greeted = 20;
+    made->fleet.links = 20;
+    made->fleet.from_intended.record(4'200, 6000);
+    made->fleet.from_sending.record(4'000, 6000);
+    made->fleet.own_delay.record(300, 6000);
+    made->own = {3.0, 20e6};
+    made->server = ProcessUse{6.0, 120e6};
+    made->verdict = {true, "nothing lost"};
+    return made;
+}
+
+TEST(Report, TellsWhatEachPartyNeededAndEndsWithTheVerdict) {
+    const auto text = to_text(*report());
+    EXPECT_THAT(text, HasSubstr("20 robots at 10 scans/s for 30 s into 20 sessions"));
+    EXPECT_THAT(text, HasSubstr("6,000 sent, 6,000 acknowledged: 200/s of 200/s intended"));
+    EXPECT_THAT(text, HasSubstr("generator  0.10 cores"));
+    EXPECT_THAT(text, HasSubstr("it kept them"));
+    EXPECT_THAT(text, HasSubstr("server     0.20 cores, 1000 us of CPU per acknowledged scan, memory 120 MB"));
+    EXPECT_THAT(text, Not(HasSubstr("viewers")));
+    EXPECT_THAT(text, Not(HasSubstr("faults")));
+    EXPECT_THAT(text, testing::EndsWith("\nnothing lost\n"));
+}
+
+TEST(Report, AGeneratorThatFellBehindIsToldApartFromASlowServer) {
+    auto late = report();
+    late->fleet.own_delay.record(kOwnDelayFine * 3, 1000);
+    EXPECT_THAT(to_text(*late), HasSubstr("IT FELL BEHIND"));
+    auto slow_server = report();
+    slow_server->fleet.from_intended.record(5 * kSecond, 6000);
+    EXPECT_THAT(to_text(*slow_server), HasSubstr("it kept them"));
+}
+
+TEST(Report, FaultsViewersAndTilesAreToldWhereThereAreSome) {
+    auto made = report();
+    made->settings.viewers = 3;
+    made->settings.tile_readers = 1;
+    made->audience.events = 900;
+    made->audience.tile_requests = 600;
+    made->audience.tiles_unchanged = 150;
+    made->fleet.faults = {5, 0, 2};
+    made->fleet.links = 26;
+    made->fleet.scans_resent = 17;
+    const auto text = to_text(*made);
+    EXPECT_THAT(text, HasSubstr("3 watched: 900 events, 10.0/s each"));
+    EXPECT_THAT(text, HasSubstr("1 reader asked: 600 tiles, 20/s, 25 % of them unchanged (304)"));
+    EXPECT_THAT(text, HasSubstr("faults on demand: 5 cut, 2 stall; 6 reconnects, 17 scans sent again"));
+}
+
+TEST(Report, JsonHasTheSameFigures) {
+    auto made = report();
+    made->evidence.contradictions = {"a \"quoted\" one"};
+    const auto json = boost::json::parse(to_json(*made));
+    EXPECT_EQ(json.at("scans").at("acknowledged").to_number<int>(), 6000);
+    EXPECT_EQ(json.at("scans").at("acknowledged_per_second").to_number<double>(), 200.0);
+    EXPECT_EQ(json.at("ack_from_intended").at("p99_ms").to_number<double>(), 4.2);
+    EXPECT_EQ(json.at("server").at("cpu_us_per_scan").to_number<double>(), 1000.0);
+    EXPECT_EQ(json.at("generator").at("cores").to_number<double>(), 0.1);
+    EXPECT_TRUE(json.at("verdict").at("nothing_lost").as_bool());
+    EXPECT_EQ(json.at("verdict").at("against").at(0).as_string(), "a \"quoted\" one");
+    EXPECT_TRUE(json.at("settings").at("cell_size").is_null());
+    made->seconds = 0.0; // nothing was streamed
+    EXPECT_EQ(boost::json::parse(to_json(*made)).at("generator").at("cores").to_number<double>(), 0.0);
+    EXPECT_THAT(to_text(*made), Not(HasSubstr("inf")));
+    made->server.reset();
+    EXPECT_TRUE(boost::json::parse(to_json(*made)).at("server").as_object().empty());
+}
+
+TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
+    auto before = std::make_unique<Moment>();
+    auto now = std::make_unique<Moment>();
+    before->at = 10 * kSecond;
+    now->at = 11 * kSecond;
+    before->fleet.linked = 17;
+    before->fleet.finished = 1;
+    before->fleet.scans_sent = 900;
+    before->fleet.scans_acknowledged = 890;
+    before->fleet.from_intended.record(900 * kMillisecond, 890);
+    now->fleet = before->fleet;
+    now->fleet.scans_sent = 1'100;
+    now->fleet.scans_acknowledged = 1'050;
+    now->fleet.from_intended.record(2 * kMillisecond, 160);
+    now->own.cpu_seconds = 0.25;
+    before->server = ProcessUse{1.0, 1e6};
+    now->server = ProcessUse{1.5, 2e6};
+    const auto asked = report()->settings;
+    const auto line = live_line(asked, kSecond, *before, *now);
+    EXPECT_THAT(line, HasSubstr("10 of 30 s: 200/s sent, 160/s acknowledged, 50 under way; ack p50 2.00  p99 2.00"));
+    EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MB; 2 of 20 robots have no link"));
+    now->at = 45 * kSecond;
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), testing::StartsWith("14 s after the last scan: "));
+    const auto rows = live_table(asked, kSecond, *before, *now);
+    EXPECT_EQ(rows.size(), 8U);
+    EXPECT_THAT(rows, Each(testing::SizeIs(testing::Lt(80U))));
+    EXPECT_THAT(rows, testing::Contains(HasSubstr("ack           p50 2.00")));
+}
+
+} // namespace
+} // namespace scanloom::load

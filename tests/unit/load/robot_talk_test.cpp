@@ -1,0 +1,290 @@
+#include "load/core/robot_talk.hpp"
+
+#include "common/wire/frame_decoder.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace scanloom::load {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kRate = 10.0;
+constexpr Micros kPeriod = kSecond / 10;
+constexpr std::size_t kCourseScans = 5;
+
+/// One robot and the words of a server, at times that the test says.
+class RobotTalkTest : public testing::Test {
+protected:
+    RobotTalkTest() { set_up(1); }
+
+    void set_up(std::uint32_t batch, std::size_t first_scan = 0) {
+        scans_ = testing_support::random_scans(3, 1, kCourseScans);
+        course_ = make_course(testing_support::small_laser(), scans_, kRate, batch);
+        course_.schedule = Schedule(1, kRate);
+        talk_ = std::make_unique<RobotTalk>(RobotPlan{0, "load-1-0", "r0", first_scan}, course_, hello_);
+    }
+
+    /// What the robot says now.
+    std::vector<wire::Message> said(Micros now) {
+        std::string bytes;
+        talk_->write(bytes, now, *figures_);
+        wire::FrameDecoder decoder(wire::kFrameBytesMax);
+        const auto room = decoder.prepare(bytes.size());
+        std::memcpy(room.data(), bytes.data(), bytes.size());
+        decoder.commit(bytes.size());
+        std::vector<wire::Message> messages;
+        for (auto body = decoder.next(); body && *body; body = decoder.next()) {
+            messages.push_back(*wire::decode(**body));
+        }
+        return messages;
+    }
+
+    /// The scans among what it says now.
+    std::vector<Scan> sent(Micros now) {
+        std::vector<Scan> scans;
+        for (const auto& message : said(now)) {
+            const auto* batch = std::get_if<wire::ScanBatch>(&message);
+            if (batch) scans.insert(scans.end(), batch->scans.begin(), batch->scans.end());
+        }
+        return scans;
+    }
+
+    std::vector<std::uint64_t> sent_seqs(Micros now) {
+        std::vector<std::uint64_t> seqs;
+        for (const auto& scan : sent(now)) seqs.push_back(scan.seq);
+        return seqs;
+    }
+
+    void link(std::uint64_t durable = 0, Micros now = 0, std::uint64_t credit = 1 << 20) {
+        talk_->open(now);
+        static_cast<void>(said(now));
+        EXPECT_FALSE(heard(wire::Welcome{"5e55", durable, {}, credit, false}, now));
+    }
+
+    std::optional<wire::LinkError> heard(const wire::Message& message, Micros now) {
+        return talk_->receive(message, now, *figures_);
+    }
+    void acknowledge(std::uint64_t seq, Micros now, std::uint64_t credit = 1 << 20) {
+        EXPECT_FALSE(heard(wire::Ack{seq, seq, credit}, now));
+    }
+
+    std::vector<Scan> scans_;
+    Course course_;
+    wire::Hello hello_{.client = "scanloom-load"};
+    std::unique_ptr<FleetFigures> figures_ = std::make_unique<FleetFigures>();
+    std::unique_ptr<RobotTalk> talk_;
+};
+
+TEST_F(RobotTalkTest, GreetsDescribesItsLaserAndSendsItsScansRoundAndRound) {
+    talk_->open(0);
+    talk_->due(7);
+    auto messages = said(0);
+    ASSERT_EQ(messages.size(), 1U);
+    EXPECT_EQ(std::get<wire::Hello>(messages[0]).session, "load-1-0");
+    EXPECT_EQ(std::get<wire::Hello>(messages[0]).robot, "r0");
+    EXPECT_THAT(said(1), IsEmpty()); // nothing before the welcome
+
+    EXPECT_FALSE(heard(wire::Welcome{"5e55", 0, {}, 1 << 20, false}, 2));
+    messages = said(3);
+    ASSERT_EQ(messages.size(), 8U);
+    EXPECT_EQ(std::get<Sensor>(messages[0]), testing_support::small_laser());
+    for (std::uint64_t seq = 1; seq <= 7; ++seq) {
+        Scan expected = scans_[(seq - 1) % kCourseScans];
+        expected.seq = seq;
+        expected.stamp = static_cast<double>(seq - 1) / kRate;
+        EXPECT_THAT(std::get<wire::ScanBatch>(messages[seq]).scans, ElementsAre(expected));
+    }
+    EXPECT_EQ(figures_->scans_sent, 7U);
+}
+
+TEST_F(RobotTalkTest, BeginsWhereItsPlanSays) {
+    set_up(1, 3);
+    link();
+    talk_->due(3);
+    const auto scans = sent(0);
+    ASSERT_EQ(scans.size(), 3U);
+    EXPECT_EQ(scans[0].ranges, scans_[3].ranges);
+    EXPECT_EQ(scans[2].ranges, scans_[0].ranges);
+}
+
+TEST_F(RobotTalkTest, ScansWaitForTheirBatchAndTheLastOnesGoAlone) {
+    set_up(3);
+    link();
+    talk_->due(2);
+    EXPECT_THAT(sent_seqs(0), IsEmpty());
+    talk_->due(7);
+    EXPECT_THAT(sent_seqs(0), ElementsAre(1, 2, 3, 4, 5, 6));
+    EXPECT_EQ(figures_->frames_out, 2U);
+    talk_->end();
+    EXPECT_THAT(sent_seqs(0), ElementsAre(7));
+}
+
+TEST_F(RobotTalkTest, NoMoreIsUnderWayThanTheCreditAllows) {
+    link(0, 0, 350);
+    talk_->due(10);
+    const auto first = sent_seqs(0).size();
+    EXPECT_EQ(first, 2U); // a frame has some 140 bytes
+    acknowledge(1, 1, 350);
+    EXPECT_THAT(sent_seqs(1), ElementsAre(3));
+    acknowledge(3, 2);
+    EXPECT_EQ(sent_seqs(2).size(), 7U);
+}
+
+TEST_F(RobotTalkTest, AfterACutItSendsAgainWhatIsNotDurable) {
+    link();
+    talk_->due(6);
+    const auto before = sent(0);
+    acknowledge(2, 1);
+    talk_->close(*figures_);
+    EXPECT_EQ(figures_->linked, 0U);
+
+    link(4, 10); // two more had arrived
+    EXPECT_EQ(talk_->acknowledged(), 4U);
+    const auto again = sent(10);
+    ASSERT_EQ(again.size(), 2U);
+    EXPECT_EQ(again[0], before[4]);
+    EXPECT_EQ(again[1], before[5]);
+    EXPECT_EQ(figures_->scans_sent, 6U);
+    EXPECT_EQ(figures_->scans_resent, 2U);
+    EXPECT_EQ(figures_->links, 2U);
+    EXPECT_EQ(figures_->greeted, 1U);
+    acknowledge(6, 11);
+    EXPECT_EQ(figures_->scans_acknowledged, 6U);
+    EXPECT_EQ(figures_->from_intended.count(), 6U);
+}
+
+TEST_F(RobotTalkTest, AServerThatStandsStillIsMeasuredFromWhenScansWereMeantToBeSent) {
+    link(0, 0, 150); // one frame at a time
+    talk_->begin(0);
+    talk_->due(1);
+    EXPECT_THAT(sent_seqs(0), ElementsAre(1));
+    talk_->due(11);
+    EXPECT_THAT(sent_seqs(kSecond), IsEmpty());
+    for (std::uint64_t seq = 1; seq <= 11; ++seq) { // after a second it takes them all, one in no time
+        acknowledge(seq, kSecond, 150);
+        static_cast<void>(sent_seqs(kSecond));
+    }
+    EXPECT_EQ(figures_->from_intended.count(), 11U);
+    EXPECT_NEAR(static_cast<double>(figures_->from_intended.percentile(50)), 5 * kPeriod, kPeriod * 0.01);
+    EXPECT_EQ(figures_->from_intended.max(), kSecond);
+    EXPECT_EQ(figures_->from_sending.percentile(90), 0); // which is what a tool tells that waits with the server
+    EXPECT_NEAR(static_cast<double>(figures_->waiting_to_send.percentile(99)), 9 * kPeriod, kPeriod * 0.01);
+}
+
+TEST_F(RobotTalkTest, TimesCountFromTheStart) {
+    link();
+    talk_->begin(7 * kSecond);
+    talk_->due(2);
+    EXPECT_EQ(sent_seqs(7 * kSecond + kPeriod).size(), 2U);
+    acknowledge(2, 7 * kSecond + kPeriod + 500);
+    EXPECT_EQ(figures_->from_intended.percentile(50), 500);
+    EXPECT_EQ(figures_->from_intended.max(), kPeriod + 500);
+    EXPECT_EQ(figures_->last_ack, 7 * kSecond + kPeriod + 500);
+}
+
+TEST_F(RobotTalkTest, AServerThatForgetsWhatItAcknowledgedHasLostIt) {
+    link();
+    talk_->due(6);
+    static_cast<void>(sent(0));
+    acknowledge(5, 1);
+    talk_->close(*figures_);
+    talk_->open(2);
+    static_cast<void>(said(2));
+    const auto failure = heard(wire::Welcome{"5e55", 3, {}, 1 << 20, false}, 2);
+    ASSERT_TRUE(failure);
+    EXPECT_FALSE(failure->retryable);
+    EXPECT_THAT(failure->error.message,
+                HasSubstr("had acknowledged 5 scans of robot r0 in session load-1-0, and holds 3"));
+    EXPECT_EQ(figures_->scans_lost, 2U);
+}
+
+TEST_F(RobotTalkTest, ASessionMadeAnewHasLostAllOfIt) {
+    link();
+    talk_->due(6);
+    static_cast<void>(sent(0));
+    acknowledge(5, 1);
+    talk_->close(*figures_);
+    talk_->open(2);
+    static_cast<void>(said(2));
+    EXPECT_TRUE(heard(wire::Welcome{"07he4", 5, {}, 1 << 20, false}, 2));
+    EXPECT_EQ(figures_->scans_lost, 5U);
+}
+
+TEST_F(RobotTalkTest, WhatWasNeverSentIsNeitherHeldNorAcknowledged) {
+    talk_->open(0);
+    static_cast<void>(said(0));
+    const auto held = heard(wire::Welcome{"5e55", 1, {}, 1 << 20, false}, 0);
+    ASSERT_TRUE(held);
+    EXPECT_THAT(held->error.message, HasSubstr("somebody else streams into it"));
+
+    set_up(1);
+    link();
+    talk_->due(3);
+    static_cast<void>(sent(0));
+    const auto acknowledged = heard(wire::Ack{4, 4, 1 << 20}, 1);
+    ASSERT_TRUE(acknowledged);
+    EXPECT_FALSE(acknowledged->retryable);
+    EXPECT_EQ(figures_->scans_acknowledged, 0U);
+}
+
+TEST_F(RobotTalkTest, AnswersPingsSaysGoodbyeWhenAllIsAcknowledgedAndNotBefore) {
+    link();
+    talk_->due(1);
+    talk_->end();
+    static_cast<void>(said(0));
+    EXPECT_FALSE(heard(wire::Ping{42}, 1));
+    EXPECT_THAT(said(1), ElementsAre(wire::Message(wire::Pong{42})));
+    EXPECT_FALSE(talk_->is_done());
+    acknowledge(1, 2);
+    EXPECT_TRUE(talk_->is_done());
+    const auto last = said(2);
+    ASSERT_EQ(last.size(), 1U);
+    EXPECT_TRUE(std::holds_alternative<wire::Goodbye>(last[0]));
+    EXPECT_THAT(said(3), IsEmpty());
+}
+
+TEST_F(RobotTalkTest, AQuietLinkIsPingedAndADeadOneNoticed) {
+    link();
+    static_cast<void>(said(0)); // the sensor
+    EXPECT_THAT(said(RobotTalk::kPingAfter - 1), IsEmpty());
+    EXPECT_EQ(said(RobotTalk::kPingAfter).size(), 1U);
+    EXPECT_FALSE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax - 1));
+    EXPECT_TRUE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax));
+    EXPECT_FALSE(heard(wire::Pong{0}, RobotTalk::kPingAfter + 1));
+    EXPECT_FALSE(talk_->check(RobotTalk::kPingAfter + RobotTalk::kSilenceMax));
+}
+
+TEST_F(RobotTalkTest, AServerThatTakesScansAndAcknowledgesNoneIsNoticedWhileItIsBeingSentMore) {
+    link();
+    for (Micros now = 0; now < RobotTalk::kSilenceMax; now += kPeriod) {
+        talk_->due(static_cast<std::uint64_t>(now / kPeriod) + 1);
+        static_cast<void>(sent(now));
+        EXPECT_FALSE(talk_->check(now)) << now;
+    }
+    EXPECT_TRUE(talk_->check(RobotTalk::kSilenceMax));
+}
+
+TEST_F(RobotTalkTest, WithoutAScheduleItSendsAsLongAsItMayAndEndsWithWhatItSent) {
+    course_.schedule.reset();
+    link(0, 0, 1000);
+    talk_->due(RobotTalk::kEndless);
+    const auto first = sent_seqs(0).size();
+    EXPECT_GT(first, 3U);
+    acknowledge(first, 100, 1000);
+    EXPECT_EQ(sent_seqs(100).size(), first);
+    talk_->end();
+    EXPECT_THAT(sent_seqs(100), IsEmpty());
+    acknowledge(2 * first, 200, 1000);
+    EXPECT_TRUE(talk_->is_done());
+    EXPECT_EQ(figures_->from_intended.max(), 100);
+}
+
+} // namespace
+} // namespace scanloom::load

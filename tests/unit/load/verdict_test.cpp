@@ -1,0 +1,85 @@
+#include "load/core/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::load {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const ExpectedSession kExpected{"load-1-3", {{"r0", 300}, {"r1", 200}}};
+const FoundSession kFound{500, 504, {{"r0", 300, 300}, {"r1", 200, 200}}};
+
+std::string what_is_wrong_with(const FoundSession& found) {
+    return contradiction(kExpected, found).value_or("nothing");
+}
+
+TEST(Contradiction, ThereIsNoneWhereEachScanIsThereOnce) { EXPECT_EQ(what_is_wrong_with(kFound), "nothing"); }
+
+TEST(Contradiction, EveryWayInWhichASessionMayDifferIsFound) {
+    auto found = kFound;
+    found.robots[1].scans = 199;
+    EXPECT_EQ(what_is_wrong_with(found),
+              "session load-1-3 holds 199 scans of robot r1, the newest with seq 200; 200 were "
+              "acknowledged");
+    found = kFound;
+    found.robots[0].last_seq = 299;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("seq 299; 300 were acknowledged"));
+    found = kFound;
+    found.robots[0].name = "r7";
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("knows no robot r0"));
+    found = kFound;
+    found.robots.push_back({"r9", 0, 0});
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("has 3 robots; 2 streamed into it"));
+    found = kFound;
+    found.scans = 501;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("holds 501 scans; 500 were acknowledged"));
+    found = kFound;
+    found.revision = 505;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("at revision 505; its scans and robots make 504 entries"));
+}
+
+Evidence all_well() {
+    Evidence evidence;
+    evidence.scans_sent = evidence.scans_acknowledged = evidence.scans_in_sessions = 12'000;
+    evidence.sessions = evidence.digests_equal = 20;
+    return evidence;
+}
+
+TEST(Verdict, NothingLostSaysWhatWasVerified) {
+    auto evidence = all_well();
+    EXPECT_TRUE(verdict_on(evidence).is_good);
+    EXPECT_EQ(
+        verdict_on(evidence).sentence,
+        "nothing lost: 12,000 of 12,000 scans acknowledged, 12,000 in the 20 sessions, the digests of all 20 equal "
+        "that of an undisturbed fold");
+    evidence.shares_sessions = true;
+    EXPECT_TRUE(verdict_on(evidence).is_good);
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("digests cannot be compared"));
+    evidence.asked = Verify::kCounts;
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("digests were not asked for (--verify counts)"));
+    evidence.asked = Verify::kNone;
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("nobody has asked the server for them"));
+}
+
+TEST(Verdict, WhateverSpeaksAgainstItMakesItBad) {
+    auto evidence = all_well();
+    evidence.scans_acknowledged = 11'999;
+    EXPECT_FALSE(verdict_on(evidence).is_good);
+    EXPECT_THAT(verdict_on(evidence).sentence, StartsWith("NOT DONE: 11,999 of 12,000 scans acknowledged"));
+    evidence = all_well();
+    evidence.failures = {"robot r0 gave up"};
+    EXPECT_FALSE(verdict_on(evidence).is_good);
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("robot r0 gave up"));
+    evidence.contradictions = {"a", "b", "c", "d", "e"};
+    EXPECT_FALSE(verdict_on(evidence).is_good);
+    EXPECT_THAT(verdict_on(evidence).sentence, HasSubstr("but a; b; c; and 2 more"));
+    evidence.scans_lost = 7;
+    EXPECT_FALSE(verdict_on(evidence).is_good);
+    EXPECT_THAT(verdict_on(evidence).sentence, StartsWith("LOST: 7 scans that were acknowledged are gone"));
+}
+
+} // namespace
+} // namespace scanloom::load
