@@ -43,7 +43,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
       serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
       weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
-      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
+      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web), options.tile_cache_bytes), patience_(io_),
+      weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -105,11 +106,14 @@ Result<> Server::listen() {
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
     config.connections_max = limits_.http;
-    auto http = http::Server::listen(
-        io_,
-        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
-         planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
-        config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
+    auto http = http::Server::listen(io_,
+                                     {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(),
+                                      awaiting_.get_executor(), planning_.get_executor(), changing_.get_executor(),
+                                      showing_.get_executor()},
+                                     config,
+                                     {[this](const http::Request& request) { return api_.answer(request); },
+                                      [this](const http::Request& request) { return api_.look(request); }},
+                                     metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};

@@ -32,7 +32,7 @@ class RunningServer {
 public:
     explicit RunningServer(ServerConfig config = {}, Answer answer = echo) {
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
-        server_ = Server::listen(io_, executors(), config, std::move(answer), counters_).value();
+        server_ = Server::listen(io_, executors(), config, {std::move(answer)}, counters_).value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
     }
@@ -450,7 +450,7 @@ TEST(HttpServer, APortInUseIsAClearError) {
     RunningServer server;
     ServerConfig config;
     config.endpoint = {boost::asio::ip::address_v4::loopback(), server.port()};
-    const auto second = Server::listen(server.io(), server.executors(), config, echo, server.counters());
+    const auto second = Server::listen(server.io(), server.executors(), config, {echo}, server.counters());
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, Errc::kUnreachable);
     EXPECT_THAT(second.error().message, HasSubstr(fmt::format("127.0.0.1:{}", server.port())));
