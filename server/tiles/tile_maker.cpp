@@ -50,7 +50,7 @@ SharedBytes TileMaker::make(const TileSource& maps, const TilePlace& place, Revi
 /// From an earlier drawing, where there is one. It has to be of the same origin: a weave that is made once more has
 /// taken its snapshots at other times, and so tells the times of changes otherwise where they were taken back.
 KeptTile TileMaker::draw(const TileSource& maps, const TilePlace& codes, Revision revision) {
-        const auto earlier = cache_.newest(codes);
+    const auto earlier = cache_.newest(codes);
     const bool is_usable = earlier.bytes && earlier.revision <= revision && is_same(earlier.origin, maps.origin);
     auto drawn = is_usable ? tile_codes(maps.snapshot, codes.layer, codes.key, {earlier.bytes, earlier.revision})
                            : tile_codes(maps.snapshot, codes.layer, codes.key);

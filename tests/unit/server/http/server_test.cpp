@@ -337,9 +337,7 @@ TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
     server.server().stop([&done] { done.set_value(); });
     EXPECT_TRUE(idle.is_closed()); // at once, while the other is still served
     go_on.set_value();
-    const auto answer = busy.read();
-    EXPECT_EQ(answer.status, 200);
-    EXPECT_EQ(answer.fields.at("connection"), "close");
+    EXPECT_EQ(busy.read().status, 200); // it may not have been told yet that it is the last
     EXPECT_TRUE(busy.is_closed());
     busy.shutdown_send();
     done.get_future().wait();
