@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <iostream>
@@ -30,6 +31,9 @@ constexpr auto kWeavingPatience = std::chrono::seconds(5);
 double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
+
+/// Tiles that are kept are answered there: one core alone would not do where there are two.
+std::size_t io_threads_for(std::size_t threads) { return std::min(threads, std::max<std::size_t>(2, 1 + threads / 4)); }
 
 std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
     return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
@@ -123,7 +127,7 @@ Result<> Server::run() {
     wait_for_signal();
     http_->start();
     std::vector<std::jthread> threads;
-    for (std::size_t n = 0; n < 1 + options_.threads / 4; ++n)
+    for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
         threads.emplace_back([this] { sockets::run_to_the_end(io_); });
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();
