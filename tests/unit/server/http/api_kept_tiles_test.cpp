@@ -119,9 +119,10 @@ TEST_F(KeptTilesTest, TilesAreAskedForByManyWhileARobotDrivesAndASessionIsDelete
             for (unsigned round = n; !over; ++round) {
                 const auto zoom = round % 10;
                 const auto key = tiles::tile_of({0, 0}, zoom);
-                const Request request{.target = fmt::format("/api/v1/sessions/{}/tiles/{}/{}/{}/{}.{}", names[round % 2],
-                                                            round % 3 == 0 ? "classification" : "occupancy", zoom,
-                                                            key.x, key.y, round % 5 == 0 ? "bin" : "png")};
+                const Request request{.target =
+                                          fmt::format("/api/v1/sessions/{}/tiles/{}/{}/{}/{}.{}", names[round % 2],
+                                                      round % 3 == 0 ? "classification" : "occupancy", zoom, key.x,
+                                                      key.y, round % 5 == 0 ? "bin" : "png")};
                 auto outlook = api_.look(request);
                 const auto* found = std::get_if<Response>(&outlook);
                 const auto status = found != nullptr ? found->status : api_.answer(request).status;
