@@ -1,6 +1,7 @@
 #include "server/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
+#include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
 
 #include <CLI/CLI.hpp>
@@ -20,12 +21,15 @@ constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML) or in the environment "
     "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.";
 
+constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
+
 /// As the parser fills it, before it is settled.
 struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
     std::string web; ///< empty: not given
+    double tile_cache_mib = 64.0;
 };
 
 /// Beside the build's programs, or where a package puts it.
@@ -56,6 +60,10 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
     app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
         ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    app.add_option("--tile-cache", raw.tile_cache_mib,
+                   "MiB of tiles that are kept, drawn and encoded, for whoever asks next; 0 keeps none")
+        ->check(check_within(0.0, kTileCacheMibMax))
         ->capture_default_str();
     app.add_option("--log-level", options.log_level, "How much is told on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
@@ -98,6 +106,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
                      fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
     }
     options.store = raw.store;
+    options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
     if (auto found = settle_web(raw.web, options); !found) return found.error();
     if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
     return check_guarded(options);

@@ -23,6 +23,7 @@ struct ServerOptions {
     std::filesystem::path tls_key;
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
+    std::size_t tile_cache_bytes = std::size_t{64} << 20;
     std::string log_level = "info";
     bool insecure = false; ///< listen beyond loopback without a guard
 };

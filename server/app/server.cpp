@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <iostream>
@@ -31,6 +32,9 @@ double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+/// Tiles that are kept are answered there: one core alone would not do where there are two.
+std::size_t io_threads_for(std::size_t threads) { return std::min(threads, std::max<std::size_t>(2, 1 + threads / 4)); }
+
 std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
     return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
 }
@@ -43,7 +47,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
       serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
       weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
-      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web)), patience_(io_), weaving_patience_(io_) {}
+      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web), options.tile_cache_bytes), patience_(io_),
+      weaving_patience_(io_) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -105,11 +110,14 @@ Result<> Server::listen() {
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
     config.connections_max = limits_.http;
-    auto http = http::Server::listen(
-        io_,
-        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
-         planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
-        config, [this](const http::Request& request) { return api_.answer(request); }, metrics_.http());
+    auto http = http::Server::listen(io_,
+                                     {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(),
+                                      awaiting_.get_executor(), planning_.get_executor(), changing_.get_executor(),
+                                      showing_.get_executor()},
+                                     config,
+                                     {[this](const http::Request& request) { return api_.answer(request); },
+                                      [this](const http::Request& request) { return api_.look(request); }},
+                                     metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};
@@ -119,7 +127,7 @@ Result<> Server::run() {
     wait_for_signal();
     http_->start();
     std::vector<std::jthread> threads;
-    for (std::size_t n = 0; n < 1 + options_.threads / 4; ++n)
+    for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
         threads.emplace_back([this] { sockets::run_to_the_end(io_); });
     if (auto recovered = sessions_.recover(); !recovered) {
         io_.stop();

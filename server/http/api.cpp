@@ -31,6 +31,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <variant>
 
 namespace scanloom::http {
@@ -46,6 +47,12 @@ bool needs_sessions(Operation operation) {
     case Operation::kOpenapi: return false;
     default: return true;
     }
+}
+
+std::optional<tiles::TileFormat> tile_format_of(Operation operation) {
+    if (operation == Operation::kTilePng) return tiles::TileFormat::kPng;
+    if (operation == Operation::kTileBin) return tiles::TileFormat::kCodes;
+    return std::nullopt;
 }
 
 /// What a body must be.
@@ -84,6 +91,18 @@ Response Api::answer(const Request& request) {
     return response ? std::move(*response) : problem(response.error(), path);
 }
 
+Outlook Api::look(const Request& request) {
+    const auto target = parse_target(request.target);
+    if (!target) return Lane::kAtOnce;
+    const auto routing = find_route(request.method, target->segments);
+    const auto* match = std::get_if<Match>(&routing);
+    if (match == nullptr) return Lane::kAtOnce;
+    const auto format = tile_format_of(match->operation);
+    if (!format || !recovered_) return lane_of(*match, target->query);
+    auto outlook = look_at_tile(maps_, tiles_, {request, match->arguments, target->query}, *format);
+    return outlook ? std::move(*outlook) : problem(outlook.error(), instance_of(request.target));
+}
+
 Result<Response> Api::call(const Match& match, const Target& target, const Request& request) {
     if (needs_sessions(match.operation) && !recovered_) {
         return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
@@ -94,15 +113,15 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);
     case Operation::kLivez: return get_livez(call);
     case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, robots_, call);
-    case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, call);
+    case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, tiles_.stats(), call);
     case Operation::kOpenapi: return get_openapi(call);
     case Operation::kListSessions: return list_sessions(sessions_, call);
     case Operation::kCreateSession: return create_session(sessions_, call);
     case Operation::kGetSession: return get_session(sessions_, call);
-    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, call);
+    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, tiles_, call);
     case Operation::kImportMap: return import_map(sessions_, call);
-    case Operation::kTilePng: return get_tile_png(maps_, call);
-    case Operation::kTileBin: return get_tile_bin(maps_, call);
+    case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
+    case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);
     case Operation::kTileJson: return get_tilejson(maps_, call);
     case Operation::kChanges: return get_changes(maps_, call);
     case Operation::kMapPng: return get_map_png(maps_, slots_, call);

@@ -4,6 +4,7 @@
 #include "server/http/answer_slots.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/maps_lookup.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/web_files.hpp"
@@ -11,24 +12,25 @@
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/store/scan_log.hpp"
+#include "server/tiles/tile_maker.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <utility>
 
 namespace scanloom::http {
 
-struct Match;
 struct Target;
 
 /// From a request to its answer: target -> route -> handler. Here each handler is given what it uses.
-/// Bounds  large answers, map images of up to 64 MB above all, have slots.
+/// Bounds  large answers, map images of up to 64 MB above all, have slots; tiles that are kept take tile_bytes_max.
 /// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
 class Api {
 public:
     Api(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
-        const metrics::Metrics& metrics, WebFiles web)
-        : sessions_(sessions), weaves_(weaves), goals_(goals), maps_(sessions, weaves), log_(log), metrics_(metrics),
-          web_(std::move(web)) {}
+        const metrics::Metrics& metrics, WebFiles web, std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax)
+        : sessions_(sessions), weaves_(weaves), goals_(goals), maps_(sessions, weaves), tiles_(tile_bytes_max),
+          log_(log), metrics_(metrics), web_(std::move(web)) {}
 
     /// From now on the sessions are served; before, whoever asks for them is told to wait.
     void set_recovered() noexcept { recovered_ = true; }
@@ -39,6 +41,9 @@ public:
     /// Every failure is an answer too: application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
+    /// For I/O threads, before answer(): the answer if it is there, else the lane on which to call answer().
+    [[nodiscard]] Outlook look(const Request& request);
+
 private:
     [[nodiscard]] Result<Response> call(const Match& match, const Target& target, const Request& request);
 
@@ -46,6 +51,7 @@ private:
     session::Weaves& weaves_;
     guide::GoalBook& goals_;
     const MapsLookup maps_;
+    tiles::TileMaker tiles_;
     store::ScanLog& log_;
     const metrics::Metrics& metrics_;
     const WebFiles web_;

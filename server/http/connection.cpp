@@ -1,5 +1,6 @@
 #include "server/http/connection.hpp"
 
+#include "server/http/date.hpp"
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/incoming.hpp"
@@ -13,13 +14,14 @@
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
-#include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <ctime>
+#include <utility>
+#include <variant>
 
 namespace scanloom::http {
 namespace {
@@ -30,8 +32,6 @@ namespace net = boost::asio;
 constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
 constexpr std::size_t kReadBytes = 4096;
 constexpr std::size_t kLingerBytesMax = 256 * 1024;
-
-std::string date_now() { return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT", fmt::gmtime(std::time(nullptr))); }
 
 /// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
 bool is_frame(const beast::flat_buffer& unread) {
@@ -53,10 +53,11 @@ std::optional<Response> refusal_of(beast::error_code reason) {
     return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
 }
 
-/// The boundary at which a fault of ours costs one answer and nothing else.
-Response answer_guarded(const Answer& answer, const Request& request) {
+/// The boundary at which a fault of ours costs one answer and nothing else. `use` is one of Answering.
+template <class Use>
+auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
     try {
-        return answer(request);
+        return use(request);
     } catch (const std::exception& failure) {
         spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());
         return problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
@@ -76,31 +77,41 @@ Result<std::string> next_guarded(BodyStream& stream) {
 } // namespace
 
 Connection::Connection(net::ip::tcp::socket socket, std::shared_ptr<const Service> service)
-    : stream_(std::move(socket)), buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
-}
+    : socket_(std::move(socket)), deadline_(socket_.get_executor()),
+      buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {}
 
 net::awaitable<void> Connection::run() {
     // g++ 12 loses `this` where a condition mixes && and co_await: one co_await a statement in this file.
+    beast::error_code ignored;
+    socket_.non_blocking(true, ignored);
+    deadline_.watch(weak_from_this(), [this] { close(); });
     bool open = true;
     while (open && !stopping_) {
         open = co_await wait_for_request();
         if (open) open = co_await serve_request();
     }
     if (must_linger_) co_await linger();
-    stream_.close();
+    deadline_.stop();
+    close();
+}
+
+void Connection::close() {
+    beast::error_code ignored;
+    socket_.close(ignored);
 }
 
 void Connection::stop() {
-    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+    net::dispatch(socket_.get_executor(), [self = shared_from_this()] {
         self->stopping_ = true;
         if (self->viewer_) self->viewer_->stop();
-        if (self->idle_) self->stream_.cancel();
+        beast::error_code ignored;
+        if (self->idle_) self->socket_.cancel(ignored);
     });
 }
 
 void Connection::abort() {
-    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
-        self->stream_.close();
+    net::dispatch(socket_.get_executor(), [self = shared_from_this()] {
+        self->close();
         if (self->viewer_) self->viewer_->abort();
     });
 }
@@ -108,8 +119,9 @@ void Connection::abort() {
 net::awaitable<bool> Connection::wait_for_request() {
     if (buffer_.size() > 0) co_return true; // pipelined
     idle_ = true;
-    stream_.expires_after(service_->config.idle);
-    const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+    deadline_.set_after(service_->config.idle);
+    const auto [error, size] = co_await socket_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+    deadline_.clear();
     idle_ = false;
     buffer_.commit(size);
     co_return !error;
@@ -120,8 +132,7 @@ net::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
     parser.body_limit(service_->config.import_bytes_max); // of what it asks for, once that is known: refusal_of()
-    stream_.expires_after(service_->config.header);
-    const auto [error, size] = co_await beast::http::async_read_header(stream_, buffer_, parser, kAwaitTuple);
+    const auto error = co_await read_header(parser);
     if (error) {
         co_await refuse(error);
         co_return false;
@@ -130,22 +141,29 @@ net::awaitable<bool> Connection::serve_request() {
         co_await write(*refusal, {});
         co_return false;
     }
-    const Lane lane = lane_of(head_of(parser.get()));
     Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
-    if (lane == Lane::kImporting) slot = take_slot(*service_, lane); // its body is large
-    if (!slot) {
-        co_await write(problem(slot.error(), instance_of(view(parser.get().target()))), {});
-        co_return false;
+    if (!parser.is_done()) {
+        const Lane lane = lane_of(head_of(parser.get()));
+        if (lane == Lane::kImporting) slot = take_slot(*service_, lane); // its body is large
+        if (!slot) {
+            co_await write(problem(slot.error(), instance_of(view(parser.get().target()))), {});
+            co_return false;
+        }
+        const bool is_whole = co_await read_body(parser);
+        if (!is_whole) co_return false;
     }
-    const bool is_whole = co_await read_body(parser);
-    if (!is_whole) co_return false;
 
     Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
                   .keep_alive = parser.get().keep_alive(),
                   .takes_chunks = parser.get().version() >= 11};
     Incoming message = parser.release();
     const auto begin = std::chrono::steady_clock::now();
-    const Response response = co_await compute(lane, request_of(message));
+    Request request = request_of(message);
+    Outlook outlook = guarded(service_->answering.look, request);
+    if (const auto* lane = std::get_if<Lane>(&outlook)) {
+        outlook = co_await compute(*lane, std::move(request), std::move(*slot));
+    }
+    const Response& response = std::get<Response>(outlook);
     service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
     if (response.invitation) {
         co_await show(*response.invitation, message);
@@ -155,29 +173,40 @@ net::awaitable<bool> Connection::serve_request() {
     co_return co_await write(response, manner);
 }
 
+/// Most often all of it has come with the first bytes, and nothing is waited for.
+net::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
+    beast::error_code error;
+    buffer_.consume(parser.put(buffer_.data(), error));
+    if (error != beast::http::error::need_more) co_return error;
+    deadline_.set_after(service_->config.header);
+    const auto [failed, size] = co_await beast::http::async_read_header(socket_, buffer_, parser, kAwaitTuple);
+    deadline_.clear();
+    co_return failed;
+}
+
 /// What is wrong with a request whose body is therefore not read.
 std::optional<Response> Connection::refusal_of(const Parser& parser) const {
     using beast::http::field;
     const auto& message = parser.get();
-    const auto path = instance_of(view(message.target()));
+    const auto path = [&] { return instance_of(view(message.target())); };
     if (message.count(field::transfer_encoding) > 0) {
-        return problem(Status::length_required, "a Transfer-Encoding is not accepted; send a Content-Length", path);
+        return problem(Status::length_required, "a Transfer-Encoding is not accepted; send a Content-Length", path());
     }
     if (message.count(field::host) > 1 || (message.count(field::host) == 0 && message.version() >= 11)) {
-        return problem(Status::bad_request, "a request has exactly one Host field", path);
+        return problem(Status::bad_request, "a request has exactly one Host field", path());
     }
-    const bool is_import = lane_of(head_of(message)) == Lane::kImporting;
-    if (!is_import && parser.content_length().value_or(0) > service_->config.body_bytes_max) {
+    const bool is_large = parser.content_length().value_or(0) > service_->config.body_bytes_max;
+    if (is_large && lane_of(head_of(message)) != Lane::kImporting) {
         return problem(
             Status::payload_too_large,
             fmt::format("the body is too large; at most {} bytes are taken here", service_->config.body_bytes_max),
-            path);
+            path());
     }
     const auto host = view(message[field::host]);
     if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
         return problem(Status::misdirected_request,
                        fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(host)),
-                       path);
+                       path());
     }
     return std::nullopt;
 }
@@ -196,8 +225,9 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
         const auto received = static_cast<double>(bytes - parser.content_length_remaining().value_or(0));
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
         const auto end = begin + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
-        stream_.expires_at(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
-        const auto [error, size] = co_await beast::http::async_read_some(stream_, buffer_, parser, kAwaitTuple);
+        deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
+        const auto [error, size] = co_await beast::http::async_read_some(socket_, buffer_, parser, kAwaitTuple);
+        deadline_.clear();
         if (!error) continue;
         co_await refuse(error);
         co_return false;
@@ -222,20 +252,23 @@ net::awaitable<void> Connection::show(const live::Invitation& invitation, const 
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
     viewer_ = std::make_shared<live::Viewer>(
-        stream_.release_socket(), invitation, std::move(seat),
+        std::move(socket_), invitation, std::move(seat),
         live::Viewer::Services{service_->config.live, service_->executors.showing, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.
-net::awaitable<Response> Connection::compute(Lane lane, Request request) {
-    if (lane == Lane::kAtOnce) co_return answer_guarded(service_->answer, request);
-    Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
-    if (lane != Lane::kImporting) slot = take_slot(*service_, lane);
-    if (!slot) co_return problem(slot.error(), instance_of(request.target));
+/// `slot` is that of an import, whose body was read with it.
+net::awaitable<Response> Connection::compute(Lane lane, Request request, std::shared_ptr<const void> slot) {
+    if (lane == Lane::kAtOnce) co_return guarded(service_->answering.answer, request);
+    if (!slot) {
+        auto taken = take_slot(*service_, lane);
+        if (!taken) co_return problem(taken.error(), instance_of(request.target));
+        slot = std::move(*taken);
+    }
     auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
-        co_return answer_guarded(service->answer, request);
+        co_return guarded(service->answering.answer, request);
     };
     co_return co_await net::co_spawn(executor_of(service_->executors, lane), std::move(work), net::use_awaitable);
 }
@@ -290,19 +323,25 @@ net::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framin
     }
 }
 
-/// A deadline for each piece, so that a large answer may take its time as long as somebody reads it; and one for all,
-/// so that nobody holds one in memory by reading a byte now and then.
+/// What the socket takes at once, goes at once. For the rest a deadline for each piece, so that a large answer may take
+/// its time as long as somebody reads it; and one for all, so that nobody holds one in memory by reading a byte now and
+/// then.
 net::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
     const std::array<net::const_buffer, 2> whole = {net::buffer(head), net::buffer(body)};
     beast::buffers_suffix<std::array<net::const_buffer, 2>> rest(whole);
+    beast::error_code failed;
+    rest.consume(socket_.write_some(whole, failed));
+    if (failed && failed != net::error::would_block) co_return false;
+    if (beast::buffer_bytes(rest) == 0) co_return true;
     const auto& config = service_->config;
     const auto size_seconds =
         static_cast<double>(head.size() + body.size()) / static_cast<double>(config.write_rate_min);
     const auto end = std::chrono::steady_clock::now() + config.write +
                      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
     while (beast::buffer_bytes(rest) > 0) {
-        stream_.expires_at(std::min(end, std::chrono::steady_clock::now() + config.write));
-        const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
+        deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.write));
+        const auto [error, size] = co_await socket_.async_write_some(rest, kAwaitTuple);
+        deadline_.clear();
         if (error) co_return false;
         rest.consume(size);
     }
@@ -313,11 +352,11 @@ net::awaitable<bool> Connection::write_all(std::string_view head, std::string_vi
 /// So: say that nothing more comes, and read on for a while.
 net::awaitable<void> Connection::linger() {
     beast::error_code ignored;
-    stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
-    stream_.expires_after(service_->config.linger);
+    socket_.shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+    deadline_.set_after(service_->config.linger);
     std::array<char, kReadBytes> rubbish;
     for (std::size_t total = 0; total < kLingerBytesMax;) {
-        const auto [error, size] = co_await stream_.async_read_some(net::buffer(rubbish), kAwaitTuple);
+        const auto [error, size] = co_await socket_.async_read_some(net::buffer(rubbish), kAwaitTuple);
         if (error) break;
         total += size;
     }

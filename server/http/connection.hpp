@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/request.hpp"
@@ -8,8 +9,9 @@
 #include "server/live/viewer.hpp"
 
 #include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/error.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 
@@ -43,10 +45,12 @@ private:
 
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
+    [[nodiscard]] boost::asio::awaitable<boost::beast::error_code> read_header(Parser& parser);
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
-    [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request);
+    [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request,
+                                                           std::shared_ptr<const void> slot);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
     /// How the request wants to be answered.
     struct Manner {
@@ -59,8 +63,10 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> write_stream(BodyStream& stream, Framing framing);
     [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
     [[nodiscard]] boost::asio::awaitable<void> linger();
+    void close();
 
-    boost::beast::tcp_stream stream_;
+    boost::asio::ip::tcp::socket socket_; // never blocks
+    Deadline deadline_;                   // closes it
     boost::beast::flat_buffer buffer_;
     std::shared_ptr<const Service> service_;
     std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one

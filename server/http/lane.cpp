@@ -1,23 +1,12 @@
 #include "server/http/lane.hpp"
 
 #include "server/http/handlers/weave_request.hpp"
-#include "server/http/number.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
 
-#include <string>
 #include <variant>
 
 namespace scanloom::http {
-namespace {
-
-/// A tile of a lower zoom shows more than a thousand native ones.
-constexpr int kServedZoomMin = 5;
-
-Lane lane_of_tile(const std::string& zoom) {
-    const auto level = parse_integer<int>(zoom);
-    return level && *level < kServedZoomMin ? Lane::kSurvey : Lane::kServing;
-}
 
 Lane lane_of(const Match& match, const Query& query) {
     switch (match.operation) {
@@ -27,8 +16,6 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kReadyz:
     case Operation::kOpenapi: return Lane::kAtOnce;
     case Operation::kMetrics: return Lane::kTelling;
-    case Operation::kTilePng:
-    case Operation::kTileBin: return lane_of_tile(match.arguments["z"]);
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
     case Operation::kDifference:
     case Operation::kDifferencePng:
@@ -48,8 +35,6 @@ Lane lane_of(const Match& match, const Query& query) {
     default: return Lane::kServing;
     }
 }
-
-} // namespace
 
 Lane lane_of(const Request& request) {
     const auto target = parse_target(request.target);

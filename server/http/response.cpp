@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace scanloom::http {
 namespace {
@@ -43,23 +42,26 @@ Response not_modified(std::string_view etag, std::string_view cache_control) {
 }
 
 std::string head_text(const Response& response, bool keep_alive, std::string_view date, Framing framing) {
+    constexpr std::size_t kUsualBytes = 512;
     const auto reason = boost::beast::http::obsolete_reason(response.status);
-    std::string head = fmt::format("HTTP/1.1 {} {}\r\n", static_cast<unsigned>(response.status),
-                                   std::string_view(reason.data(), reason.size()));
+    std::string head;
+    head.reserve(kUsualBytes);
+    head.append("HTTP/1.1 ").append(fmt::format_int(static_cast<unsigned>(response.status)).c_str()).append(" ");
+    head.append(reason.data(), reason.size()).append("\r\n");
     const auto add = [&](std::string_view name, std::string_view value) {
-        fmt::format_to(std::back_inserter(head), "{}: {}\r\n", name, value);
+        head.append(name).append(": ").append(value).append("\r\n");
     };
     add("Date", date);
     for (const auto& [name, value] : response.fields) add(name, value);
     if (response.status != Status::no_content && response.status != Status::not_modified) {
-        if (framing == Framing::kLength) add("Content-Length", fmt::to_string(response.body.bytes().size()));
+        if (framing == Framing::kLength) add("Content-Length", fmt::format_int(response.body.bytes().size()).c_str());
         if (framing == Framing::kChunked) add("Transfer-Encoding", "chunked");
     }
     if (!keep_alive) add("Connection", "close");
     add("X-Content-Type-Options", "nosniff");
     add("Referrer-Policy", "no-referrer");
     if (response.get("Content-Security-Policy").empty()) add("Content-Security-Policy", kNothingAllowed);
-    return head += "\r\n";
+    return head.append("\r\n");
 }
 
 } // namespace scanloom::http

@@ -19,6 +19,14 @@ namespace scanloom::http {
 /// Computes the answer to a request. Called on several threads at once.
 using Answer = std::function<Response(const Request&)>;
 
+/// What is done with requests.
+struct Answering {
+    Answer answer; ///< on the lane's threads
+    std::function<Outlook(const Request&)> look = [](const Request& r) {
+        return lane_of(r);
+    }; ///< on I/O threads, first
+};
+
 /// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:
 /// deleting a session waits for the executor that the sessions work on.
 struct Executors {
@@ -36,7 +44,7 @@ struct Service {
     ServerConfig config;
     bool check_host = true;
     Executors executors;
-    Answer answer;
+    Answering answering;
     metrics::HttpCounters& counters;
     sockets::Slots changes; ///< requests in Lane::kChanging
     sockets::Slots imports; ///< requests in Lane::kImporting

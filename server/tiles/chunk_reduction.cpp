@@ -36,9 +36,20 @@ ColumnRange fold_rows(const LogOdds* cells, std::int32_t rows) noexcept {
     return range;
 }
 
-/// Of cells that are their own codes.
+// The saliences of cells that are their own codes, as compilers vectorise them; equal to LayerStyle::salience.
+
+constexpr Salience salience_of_cell(mapping::HimmCount count) noexcept { return static_cast<Salience>(count + 1); }
+static_assert(salience_of_cell(mapping::kUnseenHimm) == kUnknownSalience && salience_of_cell(0) == 1);
+
+constexpr Salience salience_of_cell(classify::CellClass cell) noexcept {
+    using classify::CellClass;
+    const auto when = [cell](CellClass is, int salience) { return cell == is ? salience : 0; };
+    return static_cast<Salience>(when(CellClass::kOccupied, 4) | when(CellClass::kDanger, 3) |
+                                 when(CellClass::kFrontier, 2) | when(CellClass::kFree, 1));
+}
+
 template <class Value>
-ReducedChunk reduce_codes(const mapping::ChunkCells<Value>& cells, std::int32_t block, const LayerStyle& style) {
+ReducedChunk reduce_codes(const mapping::ChunkCells<Value>& cells, std::int32_t block) {
     ReducedChunk reduced;
     reduced.side = kChunkSide / block;
     auto* pixel = reduced.pixels.data();
@@ -46,26 +57,40 @@ ReducedChunk reduce_codes(const mapping::ChunkCells<Value>& cells, std::int32_t 
         std::array<Salience, kChunkSide> column{};
         for (std::int32_t row = j; row < j + block; ++row) {
             const Value* cell = &cells[static_cast<std::size_t>(row) * kChunkSide];
-            for (Salience& highest : column) highest = std::max(highest, style.salience[static_cast<Code>(*cell++)]);
+            for (std::size_t i = 0; i < kChunkSide; ++i) column[i] = std::max(column[i], salience_of_cell(cell[i]));
         }
         for (std::int32_t i = 0; i < kChunkSide; i += block) {
-            *pixel++ = *std::max_element(column.begin() + i, column.begin() + i + block);
+            Salience highest = kUnknownSalience;
+            for (std::int32_t at = i; at < i + block; ++at)
+                highest = std::max(highest, column[static_cast<std::size_t>(at)]);
+            *pixel++ = highest;
         }
     }
+    return reduced;
+}
+
+/// Of a block of one cell.
+ReducedChunk saliences_of(const mapping::ChunkCells<LogOdds>& cells) {
+    const auto& salience = salience_table();
+    ReducedChunk reduced;
+    reduced.side = kChunkSide;
+    std::ranges::transform(cells, reduced.pixels.begin(),
+                           [&](LogOdds cell) { return salience[static_cast<std::uint16_t>(cell)]; });
     return reduced;
 }
 
 } // namespace
 
 ReducedChunk reduce(const mapping::ChunkCells<mapping::HimmCount>& cells, std::int32_t block) {
-    return reduce_codes(cells, block, style_of(mapping::Layer::kHimm));
+    return reduce_codes(cells, block);
 }
 
 ReducedChunk reduce(const mapping::ChunkCells<classify::CellClass>& cells, std::int32_t block) {
-    return reduce_codes(cells, block, style_of(mapping::Layer::kClassification));
+    return reduce_codes(cells, block);
 }
 
 ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int32_t block) {
+    if (block == 1) return saliences_of(cells);
     const auto& salience = salience_table();
     ReducedChunk reduced;
     reduced.side = kChunkSide / block;
@@ -73,8 +98,12 @@ ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int
     for (std::int32_t j = 0; j < kChunkSide; j += block) {
         const auto range = fold_rows(&cells[static_cast<std::size_t>(j) * kChunkSide], block);
         for (std::int32_t i = 0; i < kChunkSide; i += block) {
-            const auto high = *std::max_element(range.high.begin() + i, range.high.begin() + i + block);
-            const auto low = *std::min_element(range.low.begin() + i, range.low.begin() + i + block);
+            LogOdds high = mapping::kUnknownLogOdds;
+            std::uint16_t low = unknown_last(mapping::kUnknownLogOdds);
+            for (auto at = static_cast<std::size_t>(i); at < static_cast<std::size_t>(i + block); ++at) {
+                high = std::max(high, range.high[at]);
+                low = std::min(low, range.low[at]);
+            }
             const auto low_bits = static_cast<std::uint16_t>(low - 0x7FFFU);
             *pixel++ = std::max(salience[static_cast<std::uint16_t>(high)], salience[low_bits]);
         }

@@ -2,7 +2,7 @@
 
 #include "server/mapping/himm.hpp"
 #include "server/mapping/layer_cells.hpp"
-#include "server/tiles/indexed_png.hpp"
+#include "server/tiles/png.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -205,7 +205,7 @@ DifferenceSums compare(const ComparedMaps& maps, const MapFrame& frame, const Us
 }
 
 Bytes difference_png(const ComparedMaps& maps, const MapFrame& frame) {
-    IndexedPng png(frame.width(), frame.height(), kPalette);
+    PngWriter png(frame.width(), frame.height(), kPalette);
     std::vector<std::uint8_t> pixels(frame.pixels_wide());
     compare(maps, frame, [&](std::span<const Difference> row) {
         std::ranges::transform(row, pixels.begin(), [](Difference d) { return static_cast<std::uint8_t>(d); });

@@ -55,7 +55,9 @@ MapImage render_map(const mapping::Snapshot& snapshot, mapping::Layer layer, con
 }
 
 Bytes map_png(const MapImage& image) {
-    return png_of(image.codes, image.frame.width(), image.frame.height(), style_of(image.layer));
+    const auto& style = style_of(image.layer);
+    const auto write = style.is_grey ? grey_png : palette_png;
+    return write(image.codes, image.frame.width(), image.frame.height(), style);
 }
 
 } // namespace scanloom::tiles

@@ -51,7 +51,7 @@ struct MapImage {
 /// Cost: the pixels.
 [[nodiscard]] MapImage render_map(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame);
 
-/// A PNG in the colours of the tiles.
+/// A PNG in the colours of the tiles: 8-bit grey where all of them are, else with a palette.
 [[nodiscard]] Bytes map_png(const MapImage& image);
 
 } // namespace scanloom::tiles

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <vector>
 
 namespace scanloom::tiles {
 namespace {
@@ -19,8 +21,8 @@ struct Untouched {
     SharedBytes png;
 };
 
-SharedBytes png_of_tile(const Bytes& tile, mapping::Layer layer) {
-    return std::make_shared<const Bytes>(png_of(tile, kTileSide, kTileSide, style_of(layer)));
+SharedBytes png_of(const Bytes& tile, mapping::Layer layer) {
+    return std::make_shared<const Bytes>(palette_png(tile, kTileSide, kTileSide, style_of(layer)));
 }
 
 const Untouched& untouched(mapping::Layer layer) {
@@ -28,45 +30,109 @@ const Untouched& untouched(mapping::Layer layer) {
         std::array<Untouched, mapping::kLayers.size()> tiles;
         for (const mapping::Layer each : mapping::kLayers) {
             const auto codes = std::make_shared<const Bytes>(kTilePixels, style_of(each).unknown);
-            tiles[static_cast<std::size_t>(each)] = {codes, png_of_tile(*codes, each)};
+            tiles[static_cast<std::size_t>(each)] = {codes, png_of(*codes, each)};
         }
         return tiles;
     }();
     return all[static_cast<std::size_t>(layer)];
 }
 
-/// Merges a chunk into the saliences of a tile that contains it.
-void draw(Bytes& tile, const grid::CellBox& cells, std::int32_t scale, grid::ChunkKey at, const ReducedChunk& reduced) {
-    const std::int32_t left = (at.ci * grid::kChunkSide - cells.i_begin) / scale;
-    const std::int32_t bottom = (cells.j_end - 1 - at.cj * grid::kChunkSide) / scale;
-    for (std::int32_t row = 0; row < reduced.side; ++row) {
-        auto* pixel = &tile[static_cast<std::size_t>((bottom - row) * kTileSide + left)];
-        for (std::int32_t column = 0; column < reduced.side; ++column, ++pixel) {
-            *pixel = std::max(*pixel, reduced.at(column, row)); // below zoom 3 chunks share a pixel
+/// A tile's codes, on which chunks are drawn.
+class Canvas {
+public:
+    Canvas(Bytes codes, TileKey key, const LayerStyle& style)
+        : codes_(std::move(codes)), cells_(cells_of(key)), scale_(cells_per_pixel(key.zoom)), style_(style) {}
+
+    /// Draws all of the tile.
+    template <class View, class CellsOf>
+    void draw(const View& view, CellsOf&& cells_of_chunk) {
+        draw_region(view, cells_of_chunk, grid::chunks_of(cells_));
+    }
+
+    /// Draws what changed after `since`.
+    template <class View, class CellsOf>
+    void draw_changes(const View& view, CellsOf&& cells_of_chunk, Revision since) {
+        const std::int32_t shared = std::max(1, scale_ / grid::kChunkSide); // chunks along a pixel's side, a power of 2
+        std::vector<grid::ChunkKey> corners;
+        view.visit(grid::chunks_of(cells_), since, [&](grid::ChunkKey at, const auto&) {
+            corners.push_back({at.cj & ~(shared - 1), at.ci & ~(shared - 1)});
+        });
+        std::sort(corners.begin(), corners.end());
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+        for (const auto& [cj, ci] : corners) {
+            draw_region(view, cells_of_chunk, {ci, cj, std::int64_t{ci} + shared, std::int64_t{cj} + shared});
         }
     }
-}
+
+    [[nodiscard]] Bytes take() { return std::move(codes_); }
+
+private:
+    /// Draws anew the chunks of a region, with which no other chunk shares a pixel. Meanwhile the region's pixels are
+    /// saliences.
+    template <class View, class CellsOf>
+    void draw_region(const View& view, CellsOf&& cells_of_chunk, const grid::ChunkBox& region) {
+        const auto left = static_cast<std::int32_t>(region.ci_begin * grid::kChunkSide - cells_.i_begin) / scale_;
+        const auto top = static_cast<std::int32_t>(cells_.j_end - region.cj_end * grid::kChunkSide) / scale_;
+        const auto width = static_cast<std::int32_t>((region.ci_end - region.ci_begin) * grid::kChunkSide) / scale_;
+        const auto height = static_cast<std::int32_t>((region.cj_end - region.cj_begin) * grid::kChunkSide) / scale_;
+        for (std::int32_t row = top; row < top + height; ++row) std::fill_n(at(left, row), width, kUnknownSalience);
+        view.visit(region, 0, [&](grid::ChunkKey key, const auto& chunk) {
+            merge(key, reduce(cells_of_chunk(chunk), std::min(scale_, grid::kChunkSide)));
+        });
+        for (std::int32_t row = top; row < top + height; ++row) {
+            auto* const pixels = at(left, row);
+            std::transform(pixels, pixels + width, pixels, [&](Salience salience) { return style_.code[salience]; });
+        }
+    }
+
+    void merge(grid::ChunkKey key, const ReducedChunk& reduced) {
+        const std::int32_t left = (key.ci * grid::kChunkSide - cells_.i_begin) / scale_;
+        const std::int32_t bottom = (cells_.j_end - 1 - key.cj * grid::kChunkSide) / scale_;
+        for (std::int32_t row = 0; row < reduced.side; ++row) {
+            auto* pixel = at(left, bottom - row);
+            for (std::int32_t column = 0; column < reduced.side; ++column, ++pixel) {
+                *pixel = std::max(*pixel, reduced.at(column, row)); // below zoom 3 chunks share a pixel
+            }
+        }
+    }
+
+    [[nodiscard]] std::uint8_t* at(std::int32_t column, std::int32_t row) {
+        return &codes_[static_cast<std::size_t>(row * kTileSide + column)];
+    }
+
+    Bytes codes_;
+    grid::CellBox cells_;
+    std::int32_t scale_; // cells along a pixel's side
+    const LayerStyle& style_;
+};
 
 } // namespace
 
+SharedBytes untouched_codes(mapping::Layer layer) { return untouched(layer).codes; }
+
 SharedBytes tile_codes(const mapping::Snapshot& snapshot, mapping::Layer layer, TileKey key) {
     if (tile_revision(snapshot, layer, key) == 0) return untouched(layer).codes;
-    const auto cells = cells_of(key);
-    const std::int32_t scale = cells_per_pixel(key.zoom);
-    Bytes tile(kTilePixels, kUnknownSalience);
+    Canvas canvas(Bytes(kTilePixels), key, style_of(layer));
+    mapping::with_layer(snapshot, layer,
+                        [&](const auto& view, auto&& cells_of_chunk) { canvas.draw(view, cells_of_chunk); });
+    return std::make_shared<const Bytes>(canvas.take());
+}
+
+SharedBytes tile_codes(const mapping::Snapshot& snapshot, mapping::Layer layer, TileKey key, const DrawnTile& earlier) {
+    if (tile_revision(snapshot, layer, key) == earlier.revision) return earlier.codes;
+    Canvas canvas(*earlier.codes, key, style_of(layer));
     mapping::with_layer(snapshot, layer, [&](const auto& view, auto&& cells_of_chunk) {
-        view.visit(grid::chunks_of(cells), 0, [&](grid::ChunkKey at, const auto& chunk) {
-            draw(tile, cells, scale, at, reduce(cells_of_chunk(chunk), std::min(scale, grid::kChunkSide)));
-        });
+        canvas.draw_changes(view, cells_of_chunk, earlier.revision);
     });
-    const auto& style = style_of(layer);
-    std::ranges::transform(tile, tile.begin(), [&](Salience salience) { return style.code[salience]; });
-    return std::make_shared<const Bytes>(std::move(tile));
+    return std::make_shared<const Bytes>(canvas.take());
+}
+
+SharedBytes tile_png(const SharedBytes& codes, mapping::Layer layer) {
+    return codes == untouched(layer).codes ? untouched(layer).png : png_of(*codes, layer);
 }
 
 SharedBytes tile_png(const mapping::Snapshot& snapshot, mapping::Layer layer, TileKey key) {
-    const auto tile = tile_codes(snapshot, layer, key);
-    return tile == untouched(layer).codes ? untouched(layer).png : png_of_tile(*tile, layer);
+    return tile_png(tile_codes(snapshot, layer, key), layer);
 }
 
 } // namespace scanloom::tiles

@@ -11,7 +11,7 @@ namespace scanloom::tiles {
 
 /// How snapshots become the bytes of tiles and map files: raise it when the same snapshot gives others, so that no
 /// cache keeps what an older program drew.
-inline constexpr std::uint32_t kRenderingVersion = 3;
+inline constexpr std::uint32_t kRenderingVersion = 4;
 
 /// The newest change of any of the tile's cells in the layer; 0 when it was never touched. Changes elsewhere leave it
 /// as it is.

@@ -2,6 +2,7 @@
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
+import { required } from './environment.mjs';
 
 const kFlags = [
   '--no-sandbox',
@@ -13,15 +14,8 @@ const kFlags = [
   '--disable-sync',
 ];
 
-/** Folders and programs, as CTest passes them. */
 export const kWebDirectory = required('SCANLOOM_WEB_DIR');
 const kPictureDirectory = required('SCANLOOM_PICTURE_DIR');
-
-export function required(name) {
-  const value = process.env[name];
-  if (!value) throw new Error(`${name} is not set: run these tests with ctest -L e2e`);
-  return value;
-}
 
 export function launchBrowser() {
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: kFlags });

@@ -4,16 +4,18 @@ import { mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
-import { kWebDirectory, required } from './browser.mjs';
+import { required } from './environment.mjs';
 
 const kBinDirectory = required('SCANLOOM_BIN_DIR');
+/** The viewer's files, where the test looks at them. */
+const kWeb = process.env.SCANLOOM_WEB_DIR ? ['--web', process.env.SCANLOOM_WEB_DIR] : [];
 
 /** A server on free ports with an empty store of its own. */
 export class Server {
   static async start() {
     const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
     const child = start('scanloom-server', [
-      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, '--web', kWebDirectory],
+      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, ...kWeb],
     ]);
     const ready = await readyLine(child);
     return new Server(child, store, ready.robot_port, ready.http_port);

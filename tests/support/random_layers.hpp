@@ -24,18 +24,32 @@ inline classify::OccPlanes random_types(std::mt19937& random) {
     return types;
 }
 
-/// A snapshot with all layers filled at random, each apart from the others: around the origin, at the edges of what
-/// tiles show, and beyond.
-inline mapping::Snapshot random_layers(unsigned seed) {
-    std::mt19937 random(seed);
-    mapping::LaserLayers lasers{mapping::MapConfig{}};
-    mapping::SonarLayer sonars{mapping::MapConfig{}};
-    classify::ClassLayer classes(3);
-    std::map<grid::ChunkKey, classify::OccPlanes> types;
-    std::vector<grid::ChunkKey> keys = scattered_chunks(random);
-    for (const auto& key : keys) {
-        auto& laser = lasers.restore(key, 1);
-        auto& sonar = sonars.restore(key, 1);
+/// All layers, filled at random chunk by chunk, each apart from the others.
+class RandomLayers {
+public:
+    /// Fills these chunks anew.
+    void fill(const std::vector<grid::ChunkKey>& keys, std::mt19937& random, Revision revision) {
+        for (const auto& key : keys) fill(key, random, revision);
+        classes_.update(
+            keys,
+            [&](grid::ChunkKey key) {
+                const auto found = types_.find(key);
+                return found == types_.end() ? nullptr : &found->second;
+            },
+            revision);
+    }
+
+    [[nodiscard]] mapping::Snapshot snapshot(Revision revision) {
+        return {.revision = revision,
+                .laser = lasers_.snapshot(),
+                .sonar = sonars_.snapshot(),
+                .classes = classes_.snapshot()};
+    }
+
+private:
+    void fill(grid::ChunkKey key, std::mt19937& random, Revision revision) {
+        auto& laser = lasers_.restore(key, revision);
+        auto& sonar = sonars_.restore(key, revision);
         const unsigned keep_one_in = random() % 2 == 0 ? 1 : 1000; // so that whole chunks differ, too
         for (std::size_t n = 0; n < 4096; ++n) {
             const bool is_kept = random() % keep_one_in == 0;
@@ -45,16 +59,22 @@ inline mapping::Snapshot random_layers(unsigned seed) {
                                 : mapping::kUnseenHimm;
             sonar.cells[n] = random() % keep_one_in == 0 ? random_cell(random) : mapping::kUnknownLogOdds;
         }
-        if (random() % 3 != 0) types[key] = random_types(random);
+        if (random() % 3 != 0) types_[key] = random_types(random);
     }
-    classes.update(
-        keys,
-        [&](grid::ChunkKey key) {
-            const auto found = types.find(key);
-            return found == types.end() ? nullptr : &found->second;
-        },
-        1);
-    return {.revision = 1, .laser = lasers.snapshot(), .sonar = sonars.snapshot(), .classes = classes.snapshot()};
+
+    mapping::LaserLayers lasers_{mapping::MapConfig{}};
+    mapping::SonarLayer sonars_{mapping::MapConfig{}};
+    classify::ClassLayer classes_{3};
+    std::map<grid::ChunkKey, classify::OccPlanes> types_;
+};
+
+/// A snapshot with all layers filled around the origin, at the edges of what tiles show, and beyond.
+inline mapping::Snapshot random_layers(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto keys = scattered_chunks(random);
+    RandomLayers layers;
+    layers.fill(keys, random, 1);
+    return layers.snapshot(1);
 }
 
 } // namespace scanloom::testing_support

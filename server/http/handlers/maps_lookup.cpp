@@ -15,22 +15,22 @@ constexpr std::string_view kWeave = "weave";
 constexpr std::string_view kWith = "with";
 
 /// The maps of a weave, or why there are none.
-Result<Maps> maps_of(std::shared_ptr<session::Session> session, const session::Weave& weave,
+Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::Weave>& weave,
                      std::shared_ptr<const mapping::Snapshot> maps) {
     if (maps) {
-        auto tag = fmt::format("{}-{}", session_tag(session->info()), weave.id());
-        return Maps{std::move(session), std::move(maps), std::move(tag)};
+        auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
+        return Maps{std::move(session), std::move(maps), weave, std::move(tag)};
     }
-    const auto progress = weave.progress();
+    const auto progress = weave->progress();
     if (progress.error) return *progress.error;
     const auto earlier =
-        progress.revision ? fmt::format(", or take those with {} of them as weave={}", *progress.revision, weave.id())
+        progress.revision ? fmt::format(", or take those with {} of them as weave={}", *progress.revision, weave->id())
                           : std::string();
     return Error{
         Errc::kOverloaded,
         fmt::format("these maps are being woven, {} of {} entries are in; ask again soon, see weave/{} for how "
                     "far it is{}",
-                    progress.woven, progress.target, weave.id(), earlier)};
+                    progress.woven, progress.target, weave->id(), earlier)};
 }
 
 } // namespace
@@ -85,11 +85,11 @@ Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter) co
     if (!id) {
         auto snapshot = (*session)->snapshot();
         auto tag = session_tag((*session)->info());
-        return Maps{std::move(*session), std::move(snapshot), std::move(tag)};
+        return Maps{*session, std::move(snapshot), *session, std::move(tag)};
     }
     const auto weave = find_weave(weaves_, **session, *id);
     if (!weave) return weave.error();
-    return maps_of(std::move(*session), **weave, (*weave)->maps());
+    return maps_of(std::move(*session), *weave, (*weave)->maps());
 }
 
 Result<Maps> MapsLookup::woven(const Call& call) const {
@@ -100,7 +100,7 @@ Result<Maps> MapsLookup::woven(const Call& call) const {
     const Revision newest = (*session)->snapshot()->revision;
     const auto weave = weaves_.start((*session)->info(), *request, newest);
     if (!weave) return weave.error();
-    return maps_of(std::move(*session), **weave, (*weave)->wait(session::target_of(*request, newest), patience_));
+    return maps_of(std::move(*session), *weave, (*weave)->wait(session::target_of(*request, newest), patience_));
 }
 
 } // namespace scanloom::http

@@ -18,7 +18,8 @@ namespace scanloom::http {
 struct Maps {
     std::shared_ptr<session::Session> session;
     std::shared_ptr<const mapping::Snapshot> snapshot;
-    std::string tag; ///< tells them from those of every other session and weave: for entity tags
+    std::shared_ptr<const void> origin; ///< what makes them: the session or the weave
+    std::string tag;                    ///< tells them from those of every other session and weave: for entity tags
 };
 
 /// The maps that a request compares.

@@ -53,6 +53,17 @@ Families session_families(const session::SessionRegistry& sessions) {
     };
 }
 
+Families tile_families(const tiles::TileCache::Stats& stats) {
+    return {
+        counter_now("scanloom_tile_cache_hits_total", "Tiles asked for that were there.",
+                    static_cast<double>(stats.hits)),
+        counter_now("scanloom_tile_cache_misses_total", "Tiles asked for that had to be made.",
+                    static_cast<double>(stats.misses)),
+        gauge_now("scanloom_tile_cache_bytes", "Bytes of the tiles that are kept.", static_cast<double>(stats.bytes)),
+        gauge_now("scanloom_tile_cache_tiles", "Tiles that are kept.", static_cast<double>(stats.tiles)),
+    };
+}
+
 void append(Families& to, Families from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
@@ -60,11 +71,12 @@ void append(Families& to, Families from) {
 } // namespace
 
 Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                             const store::ScanLog& log, const Call& call) {
+                             const store::ScanLog& log, const tiles::TileCache::Stats& tiles, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     Families families = counted.collect();
     append(families, session_families(sessions));
     append(families, store_families(log));
+    append(families, tile_families(tiles));
     append(families, metrics::process_families());
     return ok("text/plain; version=0.0.4; charset=utf-8", Body(metrics::to_text(families)))
         .set("Cache-Control", kNotKept);

@@ -5,11 +5,13 @@
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
+#include "server/tiles/tile_cache.hpp"
 
 namespace scanloom::http {
 
 /// GET /metrics: what was counted, and what the process, the store and the sessions say of themselves.
 [[nodiscard]] Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                                           const store::ScanLog& log, const Call& call);
+                                           const store::ScanLog& log, const tiles::TileCache::Stats& tiles,
+                                           const Call& call);
 
 } // namespace scanloom::http

@@ -99,12 +99,16 @@ Result<Response> get_session(const session::SessionRegistry& sessions, const Cal
     return ok(to_json(**session));
 }
 
-Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves, const Call& call) {
+Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves, tiles::TileMaker& tiles,
+                                const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto& name = call.arguments["session"];
     const auto session = sessions.find(name);
     if (auto removed = sessions.remove(name); !removed) return removed.error();
-    if (session) weaves.remove_all(session->info().id);
+    if (session) {
+        weaves.remove_all(session->info().id);
+        tiles.forget(session_tag(session->info()));
+    }
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }
 

@@ -4,6 +4,7 @@
 #include "server/http/response.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/tiles/tile_maker.hpp"
 
 namespace scanloom::http {
 
@@ -19,6 +20,6 @@ namespace scanloom::http {
 
 /// DELETE /api/v1/sessions/{session}
 [[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves,
-                                              const Call& call);
+                                              tiles::TileMaker& tiles, const Call& call);
 
 } // namespace scanloom::http

@@ -4,12 +4,14 @@
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
-#include "server/tiles/tile.hpp"
 #include "server/tiles/tile_version.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -37,34 +39,60 @@ bool is_final(const Version& version, std::string_view tag, Revision tile, Revis
     return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
-using Render = tiles::SharedBytes (*)(const mapping::Snapshot&, mapping::Layer, tiles::TileKey);
+/// A tile that was asked for, before anything is drawn.
+struct Wanted {
+    Maps maps;
+    tiles::TilePlace place;
+    Revision revision; ///< of the tile
+    std::string etag;
+    std::string_view kept; ///< Cache-Control
+};
 
-Result<Response> get_tile(const MapsLookup& maps, const Call& call, std::string_view content_type, Render render) {
+Result<Wanted> wanted_tile(const MapsLookup& maps, const Call& call, tiles::TileFormat format) {
     const auto version = parse_version(call.query);
     if (!version) return version.error();
     const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
     if (!key) return key.error();
-    const auto found = maps.find(call, {"v", "id"});
+    auto found = maps.find(call, {"v", "id"});
     if (!found) return found.error();
     const auto layer = find_layer(call.arguments["layer"]);
     if (!layer) return layer.error();
 
-    const auto& [session, snapshot, tag] = *found;
-    const Revision revision = tiles::tile_revision(*snapshot, *layer, *key);
-    const auto etag = tiles::etag_of(tag, mapping::name_of(*layer), *key, revision);
-    const auto kept = is_final(*version, tag, revision, snapshot->revision) ? kImmutable : kRevalidate;
-    if (if_none_match_has(call.request.if_none_match, etag)) return not_modified(etag, kept);
-    return ok(content_type, Body(render(*snapshot, *layer, *key))).set("ETag", etag).set("Cache-Control", kept);
+    const Revision revision = tiles::tile_revision(*found->snapshot, *layer, *key);
+    auto etag = tiles::etag_of(found->tag, mapping::name_of(*layer), *key, revision);
+    const auto kept = is_final(*version, found->tag, revision, found->snapshot->revision) ? kImmutable : kRevalidate;
+    tiles::TilePlace place{found->tag, *layer, *key, format};
+    return Wanted{std::move(*found), std::move(place), revision, std::move(etag), kept};
+}
+
+bool is_known(const Wanted& wanted, const Call& call) {
+    return if_none_match_has(call.request.if_none_match, wanted.etag);
+}
+
+Response answer_of(const Wanted& wanted, tiles::SharedBytes bytes) {
+    const bool is_png = wanted.place.format == tiles::TileFormat::kPng;
+    return ok(is_png ? "image/png" : "application/octet-stream", Body(std::move(bytes)))
+        .set("ETag", wanted.etag)
+        .set("Cache-Control", wanted.kept);
 }
 
 } // namespace
 
-Result<Response> get_tile_png(const MapsLookup& maps, const Call& call) {
-    return get_tile(maps, call, "image/png", tiles::tile_png);
+Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call, tiles::TileFormat format) {
+    const auto wanted = wanted_tile(maps, call, format);
+    if (!wanted) return wanted.error();
+    if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
+    return answer_of(*wanted,
+                     maker.make({*wanted->maps.snapshot, wanted->maps.origin}, wanted->place, wanted->revision));
 }
 
-Result<Response> get_tile_bin(const MapsLookup& maps, const Call& call) {
-    return get_tile(maps, call, "application/octet-stream", tiles::tile_codes);
+Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
+                             tiles::TileFormat format) {
+    const auto wanted = wanted_tile(maps, call, format);
+    if (!wanted) return wanted.error();
+    if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
+    if (auto bytes = maker.find(wanted->place, wanted->revision)) return answer_of(*wanted, std::move(bytes));
+    return maker.is_quick(wanted->place) ? Lane::kServing : Lane::kSurvey;
 }
 
 } // namespace scanloom::http

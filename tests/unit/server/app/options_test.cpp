@@ -80,6 +80,18 @@ TEST_F(ServerOptionsTest, WithoutAWordTheViewerMayBeMissing) {
     EXPECT_TRUE(std::holds_alternative<ServerOptions>(read({})));
 }
 
+TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
+    const auto bytes = [](std::vector<std::string> arguments) {
+        return std::get<ServerOptions>(read(std::move(arguments))).tile_cache_bytes;
+    };
+    EXPECT_EQ(bytes({}), std::size_t{64} << 20);
+    EXPECT_EQ(bytes({"--tile-cache", "1.5"}), std::size_t{3} << 19);
+    EXPECT_EQ(bytes({"--tile-cache", "0"}), 0U);
+    for (const auto* wrong : {"-1", "64M", "nan"}) {
+        EXPECT_THAT(refusal({"--tile-cache", wrong}), HasSubstr("--tile-cache")) << wrong;
+    }
+}
+
 TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab", "--http-host", "maps"})).http_hosts,
                 ElementsAre("maps.lab", "maps"));

@@ -71,9 +71,9 @@ public:
         config.live = live;
         config.drain = std::chrono::hours(1); // so that viewers end by themselves
         const auto pool = pool_.get_executor();
-        server_ = http::Server::listen(
-                      io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,
-                      [this](const http::Request& request) { return api_.answer(request); }, metrics_.http())
+        server_ = http::Server::listen(io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,
+                                       {[this](const http::Request& request) { return api_.answer(request); }},
+                                       metrics_.http())
                       .value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });

@@ -126,8 +126,7 @@ TEST_P(TileOf, ThePngHasTheColoursOfItsCodes) {
         const auto tile = tile_codes(snapshot, layer, key);
         const auto png = tile_png(snapshot, layer, key);
         ASSERT_GT(png->size(), 26U);
-        EXPECT_EQ(png->at(24), 8) << "bits a sample";
-        EXPECT_EQ(png->at(25), layer == Layer::kClassification ? 2 : 0) << "grey or RGB, no alpha";
+        EXPECT_EQ(png->at(25), 3) << "the colour type of palettes";
         const cv::Mat image = cv::imdecode(*png, cv::IMREAD_COLOR);
         ASSERT_EQ(image.size(), cv::Size(256, 256));
         for (std::size_t n = 0; n < tile->size(); ++n) {
@@ -161,19 +160,20 @@ TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
               tile_png(mapping::Snapshot{}, Layer::kOccupancy, {9, 1, 2}));
 }
 
-TEST(Tile, ThePngIsEightBitGreyOfTheSamePixels) {
-    const auto snapshot = testing_support::random_map(13).snapshot();
-    for (const TileKey key : {TileKey{9, 256, 255}, TileKey{7, 63, 64}, TileKey{0, 0, 0}, TileKey{9, 0, 5}}) {
-        const auto tile = tile_codes(snapshot, Layer::kOccupancy, key);
-        const auto png = tile_png(snapshot, Layer::kOccupancy, key);
-        ASSERT_GT(png->size(), 26U);
-        EXPECT_EQ(png->at(24), 8) << "bits a pixel";
-        EXPECT_EQ(png->at(25), 0) << "grey, no alpha";
-        const cv::Mat image = cv::imdecode(*png, cv::IMREAD_UNCHANGED);
-        ASSERT_EQ(image.type(), CV_8UC1);
-        ASSERT_EQ(image.size(), cv::Size(256, 256));
-        for (std::size_t n = 0; n < tile->size(); ++n) ASSERT_EQ(image.data[n], grey_of((*tile)[n])) << n;
+TEST(Tile, ThePngHasAsFewBitsAPixelAsItsCodesNeed) {
+    HandMadeMap map;
+    const auto bits = [&] { return tile_png(map.snapshot(), Layer::kOccupancy, {9, 256, 255})->at(24); };
+    EXPECT_EQ(bits(), 1);
+    for (std::int32_t n = 0; n < 60; ++n) {
+        map.set({n, 0}, static_cast<LogOdds>(150 * n)); // each another percentage, 50 and above
+        const int colours = n + 2;                      // and unknown
+        ASSERT_EQ(bits(), colours <= 2 ? 1 : colours <= 4 ? 2 : colours <= 16 ? 4 : 8) << colours;
     }
+}
+
+TEST(Tile, TheSameCodesAreTheSameBytes) {
+    const auto codes = tile_codes(random_layers(13), Layer::kOccupancy, {8, 128, 127});
+    EXPECT_EQ(*tile_png(codes, Layer::kOccupancy), *tile_png(std::make_shared<Bytes>(*codes), Layer::kOccupancy));
 }
 
 TEST(TileVersion, ChangesWithTheTileAndNotWithOtherPlaces) {

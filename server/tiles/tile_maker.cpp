@@ -1,0 +1,60 @@
+#include "server/tiles/tile_maker.hpp"
+
+#include "server/tiles/tile.hpp"
+
+#include <utility>
+
+namespace scanloom::tiles {
+namespace {
+
+/// A tile of it shows 256 chunks. Finer ones are drawn from nothing about as fast as they are encoded.
+constexpr std::uint32_t kKeptDrawingZoomMax = 7;
+
+/// A tile of a coarser zoom shows more than a thousand native ones.
+constexpr std::uint32_t kPartZoomMin = 5;
+
+/// Also when another has the address of one that is gone.
+bool is_same(const std::weak_ptr<const void>& a, const std::shared_ptr<const void>& b) {
+    return !a.owner_before(b) && !b.owner_before(a);
+}
+
+TilePlace codes_of(TilePlace place) {
+    place.format = TileFormat::kCodes;
+    return place;
+}
+
+} // namespace
+
+SharedBytes TileMaker::find(const TilePlace& place, Revision revision) {
+    if (revision != 0) return cache_.find(place, revision);
+    const auto codes = untouched_codes(place.layer);
+    return place.format == TileFormat::kPng ? tile_png(codes, place.layer) : codes;
+}
+
+bool TileMaker::is_quick(const TilePlace& place) {
+    return place.key.zoom >= kPartZoomMin || cache_.newest(codes_of(place)).bytes;
+}
+
+SharedBytes TileMaker::make(const TileSource& maps, const TilePlace& place, Revision revision) {
+    if (revision == 0) return find(place, revision);
+    return cache_.get(place, revision, [&]() -> KeptTile {
+        if (place.format == TileFormat::kCodes) return draw(maps, place, revision);
+        const auto codes = codes_of(place);
+        auto drawn = draw(maps, codes, revision);
+        auto png = tile_png(drawn.bytes, place.layer);
+        if (place.key.zoom <= kKeptDrawingZoomMax) cache_.keep(codes, std::move(drawn));
+        return {std::move(png), revision};
+    });
+}
+
+/// From an earlier drawing, where there is one. It has to be of the same origin: a weave that is made once more has
+/// taken its snapshots at other times, and so tells the times of changes otherwise where they were taken back.
+KeptTile TileMaker::draw(const TileSource& maps, const TilePlace& codes, Revision revision) {
+    const auto earlier = cache_.newest(codes);
+    const bool is_usable = earlier.bytes && earlier.revision <= revision && is_same(earlier.origin, maps.origin);
+    auto drawn = is_usable ? tile_codes(maps.snapshot, codes.layer, codes.key, {earlier.bytes, earlier.revision})
+                           : tile_codes(maps.snapshot, codes.layer, codes.key);
+    return {std::move(drawn), revision, maps.origin};
+}
+
+} // namespace scanloom::tiles

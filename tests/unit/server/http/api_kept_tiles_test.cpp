@@ -1,0 +1,150 @@
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include "server/tiles/tile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace scanloom::http {
+namespace {
+
+const std::string kNative = "/api/v1/sessions/a/tiles/occupancy/9/256/255.png";
+const std::string kWhole = "/api/v1/sessions/a/tiles/occupancy/0/0/0.png";
+
+/// What is known of requests before a thread is looked for that answers them.
+class KeptTilesTest : public ApiTest {
+protected:
+    Outlook look(std::string target, std::string if_none_match = "") {
+        return api_.look({.target = std::move(target), .if_none_match = std::move(if_none_match)});
+    }
+
+    /// The answer, if it is there.
+    std::optional<Response> at_once(std::string target, std::string if_none_match = "") {
+        auto outlook = look(std::move(target), std::move(if_none_match));
+        auto* response = std::get_if<Response>(&outlook);
+        return response == nullptr ? std::nullopt : std::optional(std::move(*response));
+    }
+
+    Lane lane(std::string target) { return std::get<Lane>(look(std::move(target))); }
+
+    double counted(const std::string& name) {
+        const std::string text(get("/metrics").body.bytes());
+        const auto at = text.find("\n" + name + " ");
+        return at == std::string::npos ? -1.0 : std::stod(text.substr(at + name.size() + 2));
+    }
+};
+
+TEST_F(KeptTilesTest, ATileThatIsThereIsAnsweredAtOnceAsItWasMade) {
+    create("a");
+    stream("a", 1);
+    EXPECT_FALSE(at_once(kNative));
+    const auto made = get(kNative);
+    const auto kept = at_once(kNative);
+    ASSERT_TRUE(kept);
+    EXPECT_EQ(kept->body.bytes().data(), made.body.bytes().data()) << "the same bytes, not a copy";
+    EXPECT_EQ(kept->fields, made.fields);
+    stream("a", 2, 2);
+    EXPECT_FALSE(at_once(kNative)) << "which has changed";
+}
+
+TEST_F(KeptTilesTest, WhatIsKnownOrWasNeverTouchedOrCannotBeIsAnsweredAtOnce) {
+    create("a");
+    stream("a", 1);
+    EXPECT_EQ(at_once(kNative, std::string(get(kNative).get("ETag")))->status, Status::not_modified);
+    EXPECT_EQ(at_once("/api/v1/sessions/a/tiles/occupancy/9/0/0.png")->status, Status::ok);
+    EXPECT_EQ(at_once("/api/v1/sessions/a/tiles/occupancy/10/0/0.png")->status, Status::not_found);
+    EXPECT_EQ(at_once("/api/v1/sessions/b/tiles/occupancy/9/0/0.bin")->status, Status::not_found);
+}
+
+TEST_F(KeptTilesTest, OnlyTheFirstDrawingOfAWholeMapIsASurvey) {
+    create("a");
+    stream("a", 1);
+    EXPECT_EQ(lane(kNative), Lane::kServing);
+    EXPECT_EQ(lane(kWhole), Lane::kSurvey);
+    EXPECT_EQ(get(kWhole).status, Status::ok);
+    stream("a", 2, 2);
+    EXPECT_EQ(lane(kWhole), Lane::kServing);
+}
+
+TEST_F(KeptTilesTest, HitsMissesAndBytesAreCounted) {
+    create("a");
+    stream("a", 1);
+    static_cast<void>(get(kNative));
+    static_cast<void>(get(kNative));
+    static_cast<void>(get(kNative));
+    EXPECT_EQ(counted("scanloom_tile_cache_misses_total"), 1.0);
+    EXPECT_EQ(counted("scanloom_tile_cache_hits_total"), 2.0);
+    EXPECT_EQ(counted("scanloom_tile_cache_tiles"), 1.0);
+    EXPECT_GT(counted("scanloom_tile_cache_bytes"), static_cast<double>(get(kNative).body.bytes().size()));
+}
+
+TEST_F(KeptTilesTest, OfADeletedSessionNothingIsKept) {
+    create("a");
+    create("b");
+    stream("a", 1);
+    stream("b", 1);
+    for (const auto* session : {"a", "b"}) {
+        static_cast<void>(get(fmt::format("/api/v1/sessions/{}/tiles/occupancy/0/0/0.png", session)));
+    }
+    const double tiles = counted("scanloom_tile_cache_tiles");
+    EXPECT_EQ(tiles, 4.0) << "a PNG and the drawing of each";
+    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
+    EXPECT_EQ(counted("scanloom_tile_cache_tiles"), 2.0);
+    EXPECT_TRUE(at_once("/api/v1/sessions/b/tiles/occupancy/0/0/0.png"));
+}
+
+TEST_F(KeptTilesTest, BeforeTheSessionsAreRecoveredNothingIsLookedFor) {
+    Api fresh(registry_, weaves_, goals_, log_, metrics_, {});
+    EXPECT_TRUE(std::holds_alternative<Lane>(fresh.look({.target = kNative})));
+}
+
+/// What the threads do with each other is for the sanitizers; here every answer is one of those there may be.
+TEST_F(KeptTilesTest, TilesAreAskedForByManyWhileARobotDrivesAndASessionIsDeleted) {
+    create("a");
+    create("doomed");
+    stream("a", 1);
+    stream("doomed", 1);
+    std::atomic<bool> over = false;
+    std::atomic<int> wrong = 0;
+    std::vector<std::thread> viewers;
+    for (unsigned n = 0; n < 6; ++n) {
+        viewers.emplace_back([&, n] {
+            const std::array names = {"a", "doomed"};
+            for (unsigned round = n; !over; ++round) {
+                const auto zoom = round % 10;
+                const auto key = tiles::tile_of({0, 0}, zoom);
+                const Request request{.target =
+                                          fmt::format("/api/v1/sessions/{}/tiles/{}/{}/{}/{}.{}", names[round % 2],
+                                                      round % 3 == 0 ? "classification" : "occupancy", zoom, key.x,
+                                                      key.y, round % 5 == 0 ? "bin" : "png")};
+                auto outlook = api_.look(request);
+                const auto* found = std::get_if<Response>(&outlook);
+                const auto status = found != nullptr ? found->status : api_.answer(request).status;
+                const bool may_be_gone = round % 2 == 1;
+                if (status != Status::ok && !(may_be_gone && status == Status::not_found)) ++wrong;
+            }
+        });
+    }
+    for (std::uint64_t seq = 2; seq <= 40; ++seq) {
+        stream("a", seq, seq);
+        if (seq != 20) continue;
+        EXPECT_EQ(ask("DELETE", "/api/v1/sessions/doomed").status, Status::no_content);
+    }
+    over = true;
+    for (auto& viewer : viewers) viewer.join();
+    EXPECT_EQ(wrong, 0);
+    const auto snapshot = registry_.find("a")->snapshot();
+    const auto expected = tiles::tile_codes(*snapshot, mapping::Layer::kOccupancy, {0, 0, 0});
+    const auto shown = get("/api/v1/sessions/a/tiles/occupancy/0/0/0.bin");
+    EXPECT_TRUE(std::ranges::equal(shown.body.bytes(), *expected,
+                                   [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }));
+}
+
+} // namespace
+} // namespace scanloom::http
