@@ -30,7 +30,10 @@ TEST(PackedRanges, ComeBackAsTheyWere) {
         for (auto& one : ranges) {
             range += static_cast<RangeMm>(random() % 41) - 20;
             const auto kind = random() % 40;
-            one = kind == 0 ? kInvalidRange : kind == 1 ? kNoReturn : kind == 2 ? static_cast<RangeMm>(random()) : range;
+            one = kind == 0   ? kInvalidRange
+                  : kind == 1 ? kNoReturn
+                  : kind == 2 ? static_cast<RangeMm>(random())
+                              : range;
         }
         const auto packed = pack_ranges(ranges);
         ASSERT_EQ(unpack_ranges(packed), ranges) << beams;
@@ -44,7 +47,8 @@ TEST(PackedRanges, ComeBackAsTheyWere) {
 TEST(PackedRanges, OfALaserTakeAThirdOfTheirBytes) {
     std::mt19937 random(8);
     Ranges ranges;
-    for (std::uint32_t beam = 0; beam < 684; ++beam) ranges.push_back(2000 + 7 * beam % 900 + static_cast<RangeMm>(random() % 20));
+    for (std::uint32_t beam = 0; beam < 684; ++beam)
+        ranges.push_back(2000 + 7 * beam % 900 + static_cast<RangeMm>(random() % 20));
     EXPECT_LT(pack_ranges(ranges).size(), 684U * 4 / 3);
 }
 
