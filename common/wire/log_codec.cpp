@@ -1,6 +1,7 @@
 #include "common/wire/log_codec.hpp"
 
 #include "common/scan/limits.hpp"
+#include "common/wire/packed_ranges.hpp"
 #include "common/wire/proto_convert.hpp"
 #include "common/wire/session_convert.hpp"
 
@@ -34,7 +35,8 @@ struct ToProto {
     }
     void operator()(const ScanTaken& taken) const {
         out.mutable_scan_taken()->set_robot(taken.robot);
-        to_proto(taken.scan, *out.mutable_scan_taken()->mutable_scan());
+        to_proto_without_ranges(taken.scan, *out.mutable_scan_taken()->mutable_scan());
+        out.mutable_scan_taken()->set_packed_ranges(pack_ranges(taken.scan.ranges));
     }
     void operator()(const MapPatch& patch) const {
         auto& proto = *out.mutable_map_patch();
@@ -53,6 +55,16 @@ Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
         joined.body_radius = proto.body_radius();
     }
     return LogEntry(std::move(joined));
+}
+
+Result<LogEntry> read_scan_taken(const v1::ScanTaken& proto) {
+    const bool is_packed = !proto.packed_ranges().empty(); // not before format 2 of the store
+    if (is_packed && !proto.scan().ranges().empty()) return damaged("a log entry");
+    auto ranges = is_packed ? unpack_ranges(proto.packed_ranges()) : std::nullopt;
+    if (is_packed && !ranges) return damaged("a log entry");
+    auto scan = is_packed ? from_proto(proto.scan(), std::move(*ranges)) : from_proto(proto.scan());
+    if (!scan) return prefixed("scan_taken.", scan.error());
+    return LogEntry(ScanTaken{proto.robot(), std::move(*scan)});
 }
 
 Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
@@ -90,14 +102,23 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
         return LogEntry(SensorDescribed{proto->sensor_described().robot(), std::move(*sensor)});
     }
     case v1::LogEntry::kMapPatch: return read_map_patch(proto->map_patch());
-    case v1::LogEntry::kScanTaken: {
-        auto scan = from_proto(proto->scan_taken().scan());
-        if (!scan) return prefixed("scan_taken.", scan.error());
-        return LogEntry(ScanTaken{proto->scan_taken().robot(), std::move(*scan)});
-    }
+    case v1::LogEntry::kScanTaken: return read_scan_taken(proto->scan_taken());
     case v1::LogEntry::BODY_NOT_SET: break;
     }
     return damaged("a log entry");
+}
+
+Result<std::string> plain_entry(std::string_view bytes) {
+    google::protobuf::Arena arena;
+    auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
+    if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
+    if (!proto->has_scan_taken() || proto->scan_taken().packed_ranges().empty()) return std::string(bytes);
+    auto& taken = *proto->mutable_scan_taken();
+    const auto ranges = unpack_ranges(taken.packed_ranges());
+    if (!ranges) return damaged("a log entry");
+    taken.clear_packed_ranges();
+    taken.mutable_scan()->mutable_ranges()->Add(ranges->begin(), ranges->end());
+    return proto->SerializeAsString();
 }
 
 std::string encode_session(const SessionRecord& record) {

@@ -21,11 +21,17 @@ struct SessionRecord {
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };
 
+/// A scan's ranges are packed (packed_ranges.hpp).
 [[nodiscard]] std::string encode_entry(const LogEntry& entry);
 [[nodiscard]] std::string encode_session(const SessionRecord& record);
 
 /// Errors  kMalformed, kInvalidField: the entry was not written by this program or is damaged.
 [[nodiscard]] Result<LogEntry> decode_entry(std::string_view bytes);
 [[nodiscard]] Result<SessionRecord> decode_session(std::string_view bytes);
+
+/// The same entry as whoever knows nothing but the messages reads it: with the ranges in the scan, as they also were
+/// before format 2 of the store.
+/// Errors  kMalformed, as of decode_entry().
+[[nodiscard]] Result<std::string> plain_entry(std::string_view bytes);
 
 } // namespace scanloom::wire

@@ -203,6 +203,10 @@ Result<Sensor> from_proto(const v1::SensorDescription& proto) {
 }
 
 Result<Scan> from_proto(const v1::Scan& proto) {
+    return from_proto(proto, {proto.ranges().begin(), proto.ranges().end()});
+}
+
+Result<Scan> from_proto(const v1::Scan& proto, std::vector<RangeMm> ranges) {
     Scan scan;
     scan.seq = proto.seq();
     if (scan.seq == 0) return invalid_field("seq is 0; the first scan of a robot has seq 1");
@@ -222,7 +226,7 @@ Result<Scan> from_proto(const v1::Scan& proto) {
         if (!odometry) return prefixed("odometry.", odometry.error());
         scan.odometry = *odometry;
     }
-    scan.ranges.assign(proto.ranges().begin(), proto.ranges().end());
+    scan.ranges = std::move(ranges);
     scan.intensities.assign(proto.intensities().begin(), proto.intensities().end());
     if (proto.has_angles()) {
         auto angles = read_angles(proto.angles());
@@ -251,12 +255,16 @@ void to_proto(const Sensor& sensor, v1::SensorDescription& out) {
 }
 
 void to_proto(const Scan& scan, v1::Scan& out) {
+    to_proto_without_ranges(scan, out);
+    out.mutable_ranges()->Add(scan.ranges.begin(), scan.ranges.end());
+}
+
+void to_proto_without_ranges(const Scan& scan, v1::Scan& out) {
     out.set_seq(scan.seq);
     out.set_stamp(scan.stamp);
     out.set_sensor(scan.sensor);
     to_proto(scan.pose, *out.mutable_pose());
     if (scan.odometry) to_proto(*scan.odometry, *out.mutable_odometry());
-    out.mutable_ranges()->Add(scan.ranges.begin(), scan.ranges.end());
     out.mutable_intensities()->Add(scan.intensities.begin(), scan.intensities.end());
     if (scan.angles) write_angles(*scan.angles, *out.mutable_angles());
 }

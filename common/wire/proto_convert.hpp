@@ -12,10 +12,13 @@ namespace scanloom::wire {
 
 [[nodiscard]] Result<Sensor> from_proto(const v1::SensorDescription& description);
 [[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan);
+/// With ranges that came another way, in place of its own.
+[[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan, std::vector<RangeMm> ranges);
 [[nodiscard]] Result<Pose2> from_proto(const v1::Pose2& pose);
 
 void to_proto(const Sensor& sensor, v1::SensorDescription& out);
 void to_proto(const Scan& scan, v1::Scan& out);
+void to_proto_without_ranges(const Scan& scan, v1::Scan& out);
 void to_proto(const Pose2& pose, v1::Pose2& out);
 
 [[nodiscard]] Error invalid_field(std::string message);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/scan/log_entry.hpp"
 #include "server/grid/cell.hpp"
+#include "server/grid/item_ref.hpp"
 
 #include <array>
 #include <compare>
@@ -30,12 +30,6 @@ struct ChunkKey {
 [[nodiscard]] constexpr std::size_t index_in_chunk(Cell cell) noexcept {
     return static_cast<std::size_t>((cell.j & (kChunkSide - 1)) << kChunkBits | (cell.i & (kChunkSide - 1)));
 }
-
-/// A node or a leaf of a ChunkTree.
-struct TreeItem {
-    Revision revision = 0;   ///< the newest change in it or below it
-    std::uint64_t epoch = 0; ///< the epoch it was made in: while that lasts, only the writer sees it
-};
 
 /// 64 x 64 cells of one layer, row j at the bottom first.
 template <class CellValue>

@@ -17,14 +17,14 @@ inline constexpr std::uint32_t kFan = 1U << kFanBits; ///< children of a node al
 
 /// An inner node of 8 x 8 children: nodes of the level below, or chunks at the lowest.
 struct Node : TreeItem {
-    std::array<std::shared_ptr<TreeItem>, std::size_t{kFan} * kFan> children;
+    std::array<ItemRef<TreeItem>, std::size_t{kFan} * kFan> children;
 };
 
 /// One of the four trees around the origin. Along each axis it counts chunks away from the origin
 /// (0, 1, 2, ... or -1, -2, -3, ... as 0, 1, 2), so that it can grow outwards for ever: a new root
 /// takes the old one as its first child. `height` levels of nodes reach 8^height chunks.
 struct Quadrant {
-    std::shared_ptr<Node> root;
+    ItemRef<Node> root;
     int height = 0;
 };
 
@@ -156,10 +156,11 @@ private:
 };
 
 /// An unbounded map from ChunkKey to chunks with cheap immutable snapshots: a persistent radix tree.
-/// Chunks and nodes are shared with the snapshots that hold them and copied when next written,
-/// so that a snapshot costs four pointers and a write after it one copy per chunk touched.
+/// Chunks and nodes are shared with the snapshots that hold them. What is written is copied first if it is shared: if
+/// anything on the path from the root to it has another holder. So a snapshot costs four pointers, a write after it one
+/// copy per chunk touched, and none any more when that snapshot is gone.
 ///
-/// Thread  one writer; snapshots may be read by anyone at the same time.
+/// Thread  one writer; snapshots may be read, copied and let go of by anyone at the same time.
 /// Source  Driscoll, Sarnak, Sleator, Tarjan, Making Data Structures Persistent (1989): path copying.
 template <class ChunkType>
 class ChunkTree {
@@ -171,7 +172,7 @@ public:
     ~ChunkTree() = default;
 
     /// The chunk, to be written at `revision`; made if it was not there.
-    /// Valid until the next snapshot().
+    /// Valid until the next snapshot() or branch().
     [[nodiscard]] ChunkType& write(ChunkKey key, Revision revision) {
         auto& quadrant = quadrants_[tree::quadrant_of(key)];
         const std::uint32_t u = tree::away_from_origin(key.ci);
@@ -191,8 +192,7 @@ public:
 
     /// A second tree that holds the same. Either then copies what it writes, so that both have writers of their own.
     [[nodiscard]] ChunkTree branch() {
-        ++epoch_; // and copied_ stays: it may count too many, but never too few
-        ChunkTree other(*this);
+        ChunkTree other(*this); // and copied_ stays: it may count too many, but never too few
         other.copied_ = 0;
         return other;
     }
@@ -201,7 +201,7 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
     /// How many chunks of the last snapshot it has copied since, or a few more if it was branched: so many more there
-    /// are while that one is held.
+    /// are at most while that one is held.
     [[nodiscard]] std::size_t copied() const noexcept { return copied_; }
 
     /// What the tree holds now, for the writer to look at until its next write.
@@ -209,23 +209,20 @@ public:
 
     /// What the tree holds now. Later writes do not show in it.
     [[nodiscard]] ChunkView<ChunkType> snapshot() {
-        ++epoch_;
         copied_ = 0;
         return ChunkView<ChunkType>(quadrants_);
     }
 
 private:
-    ChunkTree(const ChunkTree&) = default; // for branch() alone: copies share what their epochs do not tell apart
+    ChunkTree(const ChunkTree&) = default; // for branch() alone
 
     void grow(tree::Quadrant& quadrant, std::uint32_t reach) {
         if (!quadrant.root) {
-            quadrant.root = std::make_shared<tree::Node>();
-            quadrant.root->epoch = epoch_;
+            quadrant.root = ItemRef<tree::Node>::of_new(new tree::Node);
             quadrant.height = 1;
         }
         while (!tree::reaches(quadrant.height, reach)) {
-            auto root = std::make_shared<tree::Node>();
-            root->epoch = epoch_;
+            auto root = ItemRef<tree::Node>::of_new(new tree::Node);
             root->revision = quadrant.root->revision;
             root->children[0] = std::move(quadrant.root);
             quadrant.root = std::move(root);
@@ -233,33 +230,37 @@ private:
         }
     }
 
-    tree::Node* own(std::shared_ptr<tree::Node>& node, Revision revision) {
-        if (node->epoch != epoch_) node = std::make_shared<tree::Node>(*node);
-        node->epoch = epoch_;
+    /// Pre, here and below: nobody else holds what the reference is in, so that a sole holder is the only way there.
+    tree::Node* own(ItemRef<tree::Node>& node, Revision revision) {
+        if (node.is_shared()) node = ItemRef<tree::Node>::of_new(new tree::Node(*node.get()));
         node->revision = std::max(node->revision, revision);
         return node.get();
     }
 
     template <class Item>
-    Item* own_as(std::shared_ptr<TreeItem>& child, Revision revision) {
+    Item* own_as(ItemRef<TreeItem>& child, Revision revision) {
         if (!child) {
-            if constexpr (std::is_same_v<Item, tree::Node>) {
-                child = std::make_shared<tree::Node>();
-            } else {
-                child = std::make_shared<ChunkType>(*blank_);
-                ++size_;
-            }
-        } else if (child->epoch != epoch_) {
-            child = std::make_shared<Item>(*static_cast<const Item*>(child.get()));
+            child = made<Item>();
+        } else if (child.is_shared()) {
+            child = ItemRef<Item>::of_new(new Item(*static_cast<const Item*>(child.get())));
             if constexpr (!std::is_same_v<Item, tree::Node>) ++copied_;
         }
-        child->epoch = epoch_;
         child->revision = std::max(child->revision, revision);
         return static_cast<Item*>(child.get());
     }
 
+    template <class Item>
+    ItemRef<Item> made() {
+        if constexpr (std::is_same_v<Item, tree::Node>) {
+            return ItemRef<Item>::of_new(new tree::Node);
+        } else {
+            auto chunk = ItemRef<Item>::of_new(new ChunkType(*blank_));
+            ++size_;
+            return chunk;
+        }
+    }
+
     tree::Quadrants quadrants_;
-    std::uint64_t epoch_ = 1;
     std::size_t size_ = 0;
     std::size_t copied_ = 0;
     std::shared_ptr<const ChunkType> blank_;

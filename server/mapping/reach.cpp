@@ -24,6 +24,33 @@ double sector_width(double aperture, const Sensor& sensor, const Scan& scan) {
     return uniform != nullptr ? std::max(aperture, std::abs(uniform->increment)) : 2.0 * std::numbers::pi;
 }
 
+/// What the readings of a scan are, in whole millimetres: one pass of integers, for all layers.
+struct Readings {
+    RangeMm longest_hit = 0;
+    std::uint64_t hits = 0;
+    std::uint64_t sum = 0; ///< of the hits
+    std::uint64_t sum_of_squares = 0;
+    std::uint64_t no_returns = 0;
+};
+
+Readings readings_of(const Scan& scan, const ReadingRules& rules) {
+    const auto mm = [](double metres) { return static_cast<RangeMm>(std::lround(metres * 1000.0)); };
+    const RangeMm least = std::max<RangeMm>(mm(rules.range_min), 1);
+    const RangeMm most = mm(rules.range_max); // and beyond: no return
+    Readings readings;
+    std::uint64_t valid = 0;
+    for (const RangeMm range : scan.ranges) {
+        const RangeMm hit = range >= least && range < most ? range : 0;
+        readings.longest_hit = std::max(readings.longest_hit, hit);
+        readings.hits += hit != 0 ? 1 : 0;
+        readings.sum += hit;
+        readings.sum_of_squares += std::uint64_t{hit} * hit;
+        valid += range >= least ? 1 : 0;
+    }
+    if (!rules.drop_no_return) readings.no_returns = valid - readings.hits;
+    return readings;
+}
+
 /// How far the readings show something, metres.
 struct Extent {
     double longest = 0.0;
@@ -31,14 +58,19 @@ struct Extent {
     double sum_of_squares = 0.0;
 };
 
-Extent extent_of(const Scan& scan, const ModelGeometry& geometry) {
+/// As if range_max cut off nothing of the band behind a hit but of the longest: never too little.
+Extent extent_of(const Readings& readings, const ModelGeometry& geometry) {
+    const double band = geometry.half_band();
+    const double range_max = geometry.readings.range_max;
+    const auto hits = static_cast<double>(readings.hits);
+    const auto no_returns = static_cast<double>(readings.no_returns);
+    const double sum = 1e-3 * static_cast<double>(readings.sum);
     Extent extent;
-    for (const RangeMm range : scan.ranges) {
-        const double metres = reached(range, geometry);
-        extent.longest = std::max(extent.longest, metres);
-        extent.sum += metres;
-        extent.sum_of_squares += metres * metres;
-    }
+    if (readings.hits > 0) extent.longest = std::min(range_max, 1e-3 * readings.longest_hit + band);
+    if (readings.no_returns > 0) extent.longest = range_max;
+    extent.sum = sum + hits * band + no_returns * range_max;
+    extent.sum_of_squares = 1e-6 * static_cast<double>(readings.sum_of_squares) + 2.0 * band * sum +
+                            hits * band * band + no_returns * range_max * range_max;
     return extent;
 }
 
@@ -67,8 +99,9 @@ grid::CellBox square_around(const Pose2& T_map_sensor, double metres, double per
 
 Reach reach_of_laser(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
     const ReadingRules rules = rules_of(config, sensor);
-    const auto counted = extent_of(scan, {rules, config.himm_obstacle_thickness, config.cell_size});
-    const auto seen = extent_of(scan, {rules, config.obstacle_thickness, config.cell_size});
+    const Readings readings = readings_of(scan, rules);
+    const auto counted = extent_of(readings, {rules, config.himm_obstacle_thickness, config.cell_size});
+    const auto seen = extent_of(readings, {rules, config.obstacle_thickness, config.cell_size});
     const double longest = std::max(seen.longest, counted.longest);
     if (longest == 0.0) return {};
 
@@ -89,7 +122,7 @@ Reach reach_of_laser(const MapConfig& config, const Sensor& sensor, const Scan& 
 
 Reach reach_of_sonar(const MapConfig& config, const Sensor& sensor, const Scan& scan) {
     const ModelGeometry geometry{rules_of(config, sensor), config.sonar_obstacle_thickness, config.cell_size};
-    const auto extent = extent_of(scan, geometry);
+    const auto extent = extent_of(readings_of(scan, geometry.readings), geometry);
     if (extent.longest == 0.0) return {};
     const double aperture = sensor.aperture > 0.0 ? sensor.aperture : config.sonar_beam_aperture;
     Reach reach{SensorKind::kSonar,

@@ -7,12 +7,11 @@ namespace scanloom::session {
 
 Group Backlog::next_group(std::int64_t room) {
     Group group;
-    double work = 0.0;
     // A robot's scans of a kind mostly overlap: one box for all of them.
     std::map<std::pair<RobotIndex, SensorKind>, grid::CellBox> boxes;
     while (!waiting_.empty() && group.entries.size() < kGroupEntriesMax) {
         const Submitted& next = waiting_.front();
-        if (!group.entries.empty() && work + next.reach.work > kGroupWorkMax) break;
+        if (!group.entries.empty() && group.work + next.reach.work > kGroupWorkMax) break;
         auto& box = boxes[{next.robot, next.reach.kind}];
         auto grown = box;
         grown.include(next.reach.cells);
@@ -20,7 +19,7 @@ Group Backlog::next_group(std::int64_t room) {
         if (chunks > room) break;
         box = grown;
         group.chunks = chunks;
-        work += next.reach.work;
+        group.work += next.reach.work;
         group.entries.push_back(std::move(waiting_.front()));
         waiting_.pop_front();
     }

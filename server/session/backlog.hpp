@@ -23,6 +23,7 @@ struct Submitted {
 struct Group {
     std::vector<Submitted> entries;
     std::int64_t chunks = 0; ///< at most as many chunks of the map will be new
+    double work = 0.0;       ///< as Reach::work
 };
 
 /// Bounds of a group: of the wait for its ack, and of what a restart has to weave again.

@@ -7,10 +7,13 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
+
 namespace scanloom::session {
 namespace {
 
 constexpr double kSliceWork = 5e6;            // as Reach::work: a few milliseconds
+constexpr double kInPlaceWork = 1e6;          // of a group: about a millisecond, for which readers may have to wait
 constexpr std::size_t kGroupsDurableMax = 2;  // one is folded, one waits for that
 constexpr Revision kCheckpointEvery = 4096;   // entries folded between two checkpoints, or
 constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again
@@ -34,18 +37,13 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
     publish();
 }
 
-std::shared_ptr<const mapping::Snapshot> Session::snapshot() const {
-    const std::lock_guard lock(published_mutex_);
-    return published_;
-}
-
 std::optional<Error> Session::failure() const {
-    const std::lock_guard lock(published_mutex_);
+    const std::lock_guard lock(failure_mutex_);
     return failure_;
 }
 
 std::optional<Error> Session::closing() const {
-    const std::lock_guard lock(published_mutex_);
+    const std::lock_guard lock(failure_mutex_);
     return closing_;
 }
 
@@ -149,12 +147,18 @@ void Session::on_appended(Group group, const Result<>& appended) {
     if (durable_.size() == 1) fold_slice();
 }
 
-/// Folds for a moment, then lets others have the thread.
+/// Folds for a moment, then lets others have the thread. A small group is folded as a whole, into the published maps
+/// themselves where nobody looks at them: else each chunk that a group touches would be copied first.
 void Session::fold_slice() {
     if (hurried_) return finish_closing();
     if (durable_.empty()) return; // dropped meanwhile
-    if (auto folded = fold_some(kSliceWork); !folded) return stop_writing(folded.error());
-    if (folded_ == durable_.front().entries.size()) finish_group();
+    const Group& group = durable_.front();
+    const bool in_place = group.work <= kInPlaceWork && published_.take_back();
+    const auto folded = fold_some(in_place ? HUGE_VAL : kSliceWork);
+    const bool finished = folded && folded_ == group.entries.size();
+    if (in_place && !finished) publish(); // failed, or in a hurry: readers wait for what there is
+    if (!folded) return stop_writing(folded.error());
+    if (finished) finish_group();
     if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
     finish_closing();
 }
@@ -206,8 +210,7 @@ void Session::publish() {
     for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
     auto snapshot = std::make_shared<const mapping::Snapshot>(std::move(maps));
     has_news_ = true;
-    const std::lock_guard lock(published_mutex_);
-    published_.swap(snapshot);
+    published_.set(std::move(snapshot));
 }
 
 bool Session::is_checkpoint_due() const {
@@ -244,7 +247,7 @@ void Session::stop_writing(const Error& error) {
     refusing_ = error;
     broken_ = true;
     {
-        const std::lock_guard lock(published_mutex_);
+        const std::lock_guard lock(failure_mutex_);
         failure_ = error;
     }
     has_news_ = true;
@@ -263,7 +266,7 @@ void Session::drop_what_is_under_way() {
 void Session::close(Error reason, std::function<void()> done) {
     on_strand([reason = std::move(reason), done = std::move(done)](Session& self) mutable {
         {
-            const std::lock_guard lock(self.published_mutex_);
+            const std::lock_guard lock(self.failure_mutex_);
             self.closing_ = reason;
         }
         self.has_news_ = true;

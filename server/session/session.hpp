@@ -5,6 +5,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/session/backlog.hpp"
 #include "server/session/members.hpp"
+#include "server/session/published.hpp"
 #include "server/session/robot_listener.hpp"
 #include "server/session/session_info.hpp"
 #include "server/session/watchers.hpp"
@@ -44,14 +45,15 @@ public:
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
-    /// The newest maps; they hold every scan acknowledged so far.
-    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const;
+    /// The newest maps; they hold every scan acknowledged so far. Waits about a millisecond where they are being
+    /// written.
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const { return published_.get(); }
 
     /// Entries that wait to be handed to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
     /// Why the session takes no scans until the server is started again, its maps being served all the same: the log
-    /// could not be written, or the memory ran out. Nothing while all is well.
+    /// could not be written, or the memory ran out, of which scan a part may show. Nothing while all is well.
     [[nodiscard]] std::optional<Error> failure() const;
 
     /// Why the session takes nothing more, since it is being closed: kGone, it is deleted, or kShuttingDown. Nothing
@@ -155,8 +157,9 @@ private:
     std::atomic<bool> hurried_ = false;         // set from any thread, as the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
-    mutable std::mutex published_mutex_; // guards what follows, held for a copy only
-    std::shared_ptr<const mapping::Snapshot> published_;
+    Published published_;
+
+    mutable std::mutex failure_mutex_; // guards what follows, held for a copy only
     std::optional<Error> failure_;
     std::optional<Error> closing_;
 };

@@ -70,8 +70,11 @@ Committer::Group Committer::next_group() {
 }
 
 void Committer::commit(Group group) {
-    rocksdb::WriteBatch batch;
+    std::uint64_t bytes = 0;
+    for (const Change& change : group) bytes += change.bytes;
+    rocksdb::WriteBatch batch(static_cast<std::size_t>(bytes)); // so that it need not grow
     std::vector<Result<>> results;
+    results.reserve(group.size());
     for (const Change& change : group) results.push_back(failed_ ? Result<>(*failed_) : change.add_to(batch));
     if (batch.Count() > 0) {
         const auto written = write(batch);

@@ -64,7 +64,8 @@ Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
                        "it holds a RocksDB database without the format record of scanloom-server; name another "
                        "directory if it is another program's, restore it from a backup if it is not");
     }
-    if (**version <= kFormatVersion) return {};
+    if (**version < kFormatVersion) return write_format(database, directory);
+    if (**version == kFormatVersion) return {};
     return Error{Errc::kUnsupportedVersion,
                  fmt::format("the store {} was written by a newer scanloom-server (format {}, this one knows up to "
                              "{}); update the server",

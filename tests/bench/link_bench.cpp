@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
-// What no server can do without: frames of one scan of 684 beams over TCP on this machine, read in pieces of 64 KiB by one
-// thread from another that sends as fast as it can. Items are frames; CPU is the reader's alone.
+// What no server can do without: frames of one scan of 684 beams over TCP on this machine, read in pieces of 64 KiB by
+// one thread from another that sends as fast as it can. Items are frames; CPU is the reader's alone.
 
 namespace scanloom::wire {
 namespace {

@@ -7,16 +7,16 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <atomic>
 #include <numbers>
 #include <string>
 #include <vector>
 
-// What a scan costs, all layers and a snapshot each time as where viewers look on, as the map's cells, the sensor's beams and
-// the map itself grow; what a map needs of memory; and how long its recovery takes. Each argument doubles or more: what grows
-// faster than its work shows as a line that bends upwards.
+// What a scan costs, all layers and a snapshot each time as where viewers look on, as the map's cells, the sensor's
+// beams and the map itself grow; what a map needs of memory; and how long its recovery takes. Each argument doubles or
+// more: what grows faster than its work shows as a line that bends upwards.
 
 namespace scanloom::bench {
 namespace {
@@ -41,9 +41,7 @@ public:
         keep(SensorDescribed{0, sensor});
     }
 
-    void weave(const Scan& scan, int room = 0) {
-        keep(ScanTaken{0, in_room(scan, room, ++seq_)});
-    }
+    void weave(const Scan& scan, int room = 0) { keep(ScanTaken{0, in_room(scan, room, ++seq_)}); }
     [[nodiscard]] mapping::Snapshot snapshot() { return projection_.snapshot(); }
 
 private:
@@ -118,11 +116,13 @@ void MemoryByArea(benchmark::State& state) {
         std::size_t touched = 0;
         map.laser.visit({}, 0, [&](grid::ChunkKey, const mapping::LaserChunk& chunk) {
             ++chunks;
-            touched += static_cast<std::size_t>(std::ranges::count_if(chunk.himm, [](auto count) { return count != mapping::kUnseenHimm; }));
+            touched += static_cast<std::size_t>(
+                std::ranges::count_if(chunk.himm, [](auto count) { return count != mapping::kUnseenHimm; }));
         });
         std::size_t classes = 0;
         map.classes.visit({}, 0, [&](grid::ChunkKey, const classify::ClassChunk&) { ++classes; });
-        const double bytes = static_cast<double>(chunks * sizeof(mapping::LaserChunk) + classes * (sizeof(classify::ClassChunk) + 4 * sizeof(grid::BitPlane)));
+        const double bytes = static_cast<double>(chunks * sizeof(mapping::LaserChunk) +
+                                                 classes * (sizeof(classify::ClassChunk) + 4 * sizeof(grid::BitPlane)));
         state.counters["bytes"] = bytes;
         state.counters["bytes_per_touched_cell"] = bytes / static_cast<double>(touched);
         state.counters["square_metres"] = static_cast<double>(touched) * 0.0025;

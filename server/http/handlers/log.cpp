@@ -38,10 +38,12 @@ public:
 class ProtobufFormat final : public Format {
 public:
     [[nodiscard]] std::string head() const override { return {}; }
-    [[nodiscard]] Result<> append(std::string& text, std::string_view entry) override {
+    [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
+        const auto entry = wire::plain_entry(bytes);
+        if (!entry) return entry.error();
         std::array<unsigned char, 4> length{};
-        boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(entry.size()));
-        text.append(reinterpret_cast<const char*>(length.data()), length.size()).append(entry);
+        boost::endian::store_big_u32(length.data(), static_cast<std::uint32_t>(entry->size()));
+        text.append(reinterpret_cast<const char*>(length.data()), length.size()).append(*entry);
         return {};
     }
 };

@@ -30,6 +30,34 @@ TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
     }
 }
 
+TEST(LogCodec, AnEntryOfTheFirstFormatIsStillRead) {
+    // seq 7, pose (1, 0, 0), ranges 1500 and 0 as fixed32, byte by byte as it lay on disk.
+    const std::string pose("\x22\x09\x09\0\0\0\0\0\0\xf0\x3f", 11);
+    const std::string ranges("\x32\x08\xdc\x05\0\0\0\0\0\0", 10);
+    const std::string scan = std::string("\x08\x07", 2) + pose + ranges;
+    const std::string bytes = std::string("\x1a\x1b\x08\x03\x12\x17", 6) + scan;
+    Scan expected;
+    expected.seq = 7;
+    expected.pose.x = 1.0;
+    expected.ranges = {1500, 0};
+    const LogEntry entry = ScanTaken{3, expected};
+    EXPECT_EQ(decode_entry(bytes).value(), entry);
+    EXPECT_EQ(plain_entry(bytes).value(), bytes);
+}
+
+TEST(LogCodec, APlainEntryIsTheSameWithTheRangesInTheScan) {
+    for (const auto& entry : one_of_each()) {
+        const auto plain = plain_entry(encode_entry(entry)).value();
+        EXPECT_EQ(decode_entry(plain).value(), entry);
+        EXPECT_EQ(plain_entry(plain).value(), plain);
+        if (!std::holds_alternative<ScanTaken>(entry)) continue;
+        EXPECT_NE(plain, encode_entry(entry)) << "else this tests nothing";
+        const auto packed = encode_entry(entry);
+        EXPECT_FALSE(decode_entry(packed + plain)) << "ranges twice over"; // protobuf merges what follows
+    }
+    EXPECT_FALSE(plain_entry("\xff"));
+}
+
 TEST(LogCodec, ABodyThatNoRobotCanStateIsDamage) {
     for (const double radius : {0.0, -1.0, 5.5, std::nan("")}) {
         const auto decoded = decode_entry(encode_entry(RobotJoined{0, "r", "", radius}));

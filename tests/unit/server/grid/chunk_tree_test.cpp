@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <random>
 #include <set>
+#include <thread>
 
 namespace scanloom::grid {
 namespace {
@@ -75,6 +79,92 @@ TEST(ChunkTree, CountsTheChunksOfASnapshotThatItHasCopied) {
     EXPECT_EQ(tree.copied(), 2U) << "each once, and none that is new";
     view = tree.snapshot();
     EXPECT_EQ(tree.copied(), 0U);
+}
+
+TEST(ChunkTree, WritesInPlaceOnceNobodyHoldsASnapshotAnyMore) {
+    ChunkTree<TestChunk> tree(blank());
+    const TestChunk* first = &tree.write({0, 0}, 1);
+    (void)tree.write({100, 100}, 1); // another root above both
+    {
+        const auto view = tree.snapshot();
+        EXPECT_EQ(view.find({0, 0}), first);
+    }
+    EXPECT_EQ(&tree.write({0, 0}, 2), first);
+    EXPECT_EQ(tree.copied(), 0U);
+    const auto view = tree.snapshot();
+    const auto of_a_reader = view;
+    EXPECT_NE(&tree.write({0, 0}, 3), first) << "it is held";
+    EXPECT_EQ(tree.copied(), 1U);
+    EXPECT_EQ(of_a_reader.find({0, 0}), first);
+}
+
+TEST(ChunkTree, WhatALostSnapshotSharedWithAnHeldOneIsStillCopied) {
+    ChunkTree<TestChunk> tree(blank());
+    tree.write({0, 0}, 1).cells[0] = 1;
+    tree.write({0, 1}, 1).cells[0] = 1;
+    const auto old = tree.snapshot();
+    tree.write({0, 0}, 2).cells[0] = 2;
+    { const auto gone = tree.snapshot(); }
+    tree.write({0, 0}, 3).cells[0] = 3; // the old one does not hold this copy
+    EXPECT_EQ(tree.copied(), 0U);
+    tree.write({0, 1}, 3).cells[0] = 3;
+    EXPECT_EQ(tree.copied(), 1U);
+    EXPECT_EQ(old.find({0, 0})->cells[0], 1);
+    EXPECT_EQ(old.find({0, 1})->cells[0], 1);
+}
+
+TEST(ChunkTree, BranchesDoNotShowInEachOther) {
+    ChunkTree<TestChunk> tree(blank());
+    tree.write({0, 0}, 1).cells[0] = 1;
+    tree.write({0, 1}, 1).cells[0] = 1;
+    auto branch = tree.branch();
+    tree.write({0, 0}, 2).cells[0] = 2;
+    branch.write({0, 1}, 2).cells[0] = 3;
+    EXPECT_EQ(branch.find({0, 0})->cells[0], 1);
+    EXPECT_EQ(tree.find({0, 1})->cells[0], 1);
+    EXPECT_EQ(tree.copied(), 1U);
+    EXPECT_EQ(branch.copied(), 1U);
+    EXPECT_EQ(branch.size(), 2U);
+}
+
+TEST(ChunkTree, ReadersThatComeAndGoSeeWholeSnapshotsWhileItIsWritten) {
+    ChunkTree<TestChunk> tree(blank());
+    std::mutex mutex;
+    std::optional<ChunkView<TestChunk>> published;
+    std::atomic<bool> done = false;
+    const auto look = [&] {
+        std::int16_t newest = -1;
+        while (!done) {
+            std::optional<ChunkView<TestChunk>> view;
+            {
+                const std::lock_guard lock(mutex);
+                view = published;
+            }
+            if (!view) continue; // taken back at the moment
+            const std::int16_t version = view->find({0, 0})->cells[0];
+            EXPECT_GE(version, newest) << "they come in order";
+            newest = version;
+            view->visit({}, 0, [&](ChunkKey, const TestChunk& chunk) {
+                for (const std::int16_t cell : chunk.cells) ASSERT_EQ(cell, version);
+            });
+        }
+    };
+    std::thread one(look);
+    std::thread other(look);
+    for (std::int16_t version = 0; version < 2000; ++version) {
+        {
+            const std::lock_guard lock(mutex);
+            published.reset();
+        }
+        for (std::int32_t ci = -2; ci < 2; ++ci) {
+            tree.write({0, ci}, static_cast<Revision>(version) + 1).cells.fill(version);
+        }
+        const std::lock_guard lock(mutex);
+        published = tree.snapshot();
+    }
+    done = true;
+    one.join();
+    other.join();
 }
 
 TEST(ChunkTree, ASnapshotNeverChanges) {

@@ -5,6 +5,7 @@
 #include "tests/support/store_files.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rocksdb/db.h>
@@ -135,7 +136,25 @@ TEST_F(OpenRocksdb, ANewerFormatIsRefused) {
     const auto log = open_rocksdb(directory_);
     ASSERT_FALSE(log);
     EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(log.error().message, HasSubstr("newer scanloom-server (format 2"));
+    EXPECT_THAT(log.error().message, HasSubstr(fmt::format("newer scanloom-server (format {}", kFormatVersion + 1)));
+}
+
+TEST_F(OpenRocksdb, AStoreOfTheFirstFormatBecomesOneThatOlderServersRefuse) {
+    SessionId session = 0;
+    {
+        auto log = open_rocksdb(directory_).value();
+        session = log->create_session("lab").value();
+        append_and_wait(*log, session, 1, {"entry"}).value();
+    }
+    const std::string key(kFormatKey);
+    write_raw(directory_, [&](rocksdb::DB& database) { return database.Put({}, key, sealed(key, number_bytes(1))); });
+    {
+        const auto log = open_rocksdb(directory_).value();
+        EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("entry"));
+    }
+    std::string format;
+    write_raw(directory_, [&](rocksdb::DB& database) { return database.Get({}, key, &format); });
+    EXPECT_EQ(unsealed(key, format).value(), number_bytes(2));
 }
 
 TEST_F(OpenRocksdb, AnotherProgramsDatabaseIsRefused) {

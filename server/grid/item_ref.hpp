@@ -1,0 +1,91 @@
+#pragma once
+
+#include "common/scan/log_entry.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <utility>
+
+namespace scanloom::grid {
+
+template <class Item>
+class ItemRef;
+
+/// A node or a leaf of a ChunkTree. It counts who holds it: trees, snapshots and the nodes above it.
+struct TreeItem {
+    Revision revision = 0; ///< the newest change in it or below it
+
+    TreeItem() = default;
+    TreeItem(const TreeItem& other) noexcept : revision(other.revision) {} // a copy has holders of its own
+    TreeItem& operator=(const TreeItem& other) noexcept {
+        revision = other.revision;
+        return *this;
+    }
+    virtual ~TreeItem() = default;
+
+private:
+    template <class Item>
+    friend class ItemRef;
+
+    std::atomic<std::uint32_t> holders_ = 0;
+};
+
+/// One holder of an item, which goes with its last one.
+///
+/// Beside std::shared_ptr it takes half the room in a node, and can tell a writer that nobody else looks any more, in
+/// such a way that whatever others read before happened before what it writes then.
+/// Thread  as std::shared_ptr: the count may be changed by anyone, one ItemRef by one at a time.
+template <class Item>
+class ItemRef {
+public:
+    ItemRef() = default;
+    ItemRef(const ItemRef& other) noexcept : item_(other.item_) { hold(); }
+    ItemRef(ItemRef&& other) noexcept : item_(std::exchange(other.item_, nullptr)) {}
+    ItemRef& operator=(ItemRef other) noexcept {
+        std::swap(item_, other.item_);
+        return *this;
+    }
+    ~ItemRef() { let_go(); }
+
+    /// The only holder of an item that was just made.
+    [[nodiscard]] static ItemRef of_new(Item* item) noexcept {
+        ItemRef ref;
+        ref.item_ = item;
+        ref.hold();
+        return ref;
+    }
+
+    /// The same holder of an item that is known as something more general.
+    template <class Base>
+    operator ItemRef<Base>() && noexcept { // NOLINT(google-explicit-constructor): as of pointers
+        ItemRef<Base> ref;
+        ref.item_ = std::exchange(item_, nullptr);
+        return ref;
+    }
+
+    [[nodiscard]] Item* get() const noexcept { return item_; }
+    [[nodiscard]] Item* operator->() const noexcept { return item_; }
+    [[nodiscard]] explicit operator bool() const noexcept { return item_ != nullptr; }
+
+    /// Whether somebody else holds the item, too. Once this is false it stays so, until this holder is copied.
+    /// Pre  it holds one.
+    [[nodiscard]] bool is_shared() const noexcept { return holders().load(std::memory_order_acquire) != 1; }
+
+private:
+    template <class Other>
+    friend class ItemRef;
+
+    [[nodiscard]] std::atomic<std::uint32_t>& holders() const noexcept {
+        return static_cast<TreeItem*>(item_)->holders_;
+    }
+    void hold() const noexcept {
+        if (item_ != nullptr) holders().fetch_add(1, std::memory_order_relaxed);
+    }
+    void let_go() const noexcept {
+        if (item_ != nullptr && holders().fetch_sub(1, std::memory_order_acq_rel) == 1) delete item_;
+    }
+
+    Item* item_ = nullptr;
+};
+
+} // namespace scanloom::grid
