@@ -180,6 +180,9 @@ inline void AppendBentArc(Pieces<kArcNumbers>& arcs, const Edges& edges, double 
 /// A point of a contour on an edge: how far out it is, and the first row of cells whose centres are at its height or
 /// higher.
 struct Corner {
+    HWY_INLINE Corner() {}
+    HWY_INLINE Corner(V distance, V first_row) : radius(distance), row(first_row) {}
+
     V radius;
     V row;
 };

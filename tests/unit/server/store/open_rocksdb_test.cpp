@@ -11,6 +11,7 @@
 #include <rocksdb/db.h>
 
 #include <random>
+#include <thread>
 
 /// Opening a store: again, for the first time, and where there is none to be had.
 namespace scanloom::store {
@@ -115,9 +116,7 @@ TEST_F(OpenRocksdb, ARemovedSessionsDiskIsFreed) {
     const auto before = log->bytes_on_disk();
     EXPECT_GT(before, 10'000'000U);
     ASSERT_TRUE(log->remove_session(removed));
-    log.reset(); // waits for what deletes files
-    log = open_rocksdb(directory_, options).value();
-    EXPECT_LT(log->bytes_on_disk(), before / 4);
+    while (log->bytes_on_disk() >= before / 4) std::this_thread::yield(); // tables that were being merged go afterwards
     EXPECT_THAT(entries_after(*log, kept, 0).value(), ElementsAre("entry"));
 }
 

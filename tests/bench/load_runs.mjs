@@ -1,0 +1,20 @@
+/** Runs of scanloom-load against a server of their own. */
+import { start } from '../e2e/programs.mjs';
+
+/** @returns the report of one run; throws where something was lost or could not be verified */
+export async function load(server, options) {
+  const child = start('scanloom-load', [
+    ...['--server', `127.0.0.1:${server.robotPort}`, '--http', `127.0.0.1:${server.httpPort}`, '--json', '-', '--replace'],
+    ...Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]),
+  ]);
+  const text = await textOf(child.stdout);
+  const report = JSON.parse(text.slice(text.indexOf('{')));
+  if (!report.verdict.nothing_lost) throw new Error(report.verdict.sentence);
+  return report;
+}
+
+async function textOf(stream) {
+  let text = '';
+  for await (const piece of stream) text += piece;
+  return text;
+}

@@ -1,0 +1,75 @@
+/**
+ * What the whole service costs for a scan, from a robot's socket to its ack, beside what no service can do without.
+ *
+ *   SCANLOOM_BIN_DIR=build/bin node tests/bench/service_bench.mjs build/bench/link_bench build/bench/service.json
+ *
+ * Everything is on: durable log, occupancy, HIMM, classes; scans of 684 beams, cells of 0.05 m. The generator runs on the same
+ * machine; what it takes is told beside.
+ */
+import { execFileSync } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
+import { Server } from '../e2e/programs.mjs';
+import { load } from './load_runs.mjs';
+import { inWords, machine } from './report/machine.mjs';
+import { table, threeDigits } from './report/table.mjs';
+
+const aims = { cpuMicroseconds: 25, ackMilliseconds: 100, liveRobots: 5000 };
+const kSeconds = 10;
+const kBatch = 10;
+
+const [linkBench, file] = process.argv.slice(2);
+const on = machine();
+const link = measureLink();
+const full = await measure({ robots: 64, rate: 0, batch: kBatch });
+const rate = (0.8 * full.scans.acknowledged_per_second) / 64;
+const most = await measure({ robots: 64, rate: rate.toFixed(2), batch: kBatch });
+const live = await measure({ robots: aims.liveRobots, rate: 10, batch: kBatch, 'connections-per-second': 1000, verify: 'counts' });
+const single = await measure({ robots: 100, rate: 10, batch: 1 });
+writeFileSync(file, `${JSON.stringify({ machine: on, aims, link, full, most, live, single }, null, 2)}\n`);
+tell();
+
+async function measure(options) {
+  const server = await Server.start();
+  try {
+    return await load(server, { duration: kSeconds, world: 'room', 'cell-size': 0.05, ...options });
+  } finally {
+    await server.stop();
+  }
+}
+
+/** @returns {read, parse}: microseconds of the reader's CPU for a frame of one scan */
+function measureLink() {
+  const run = JSON.parse(execFileSync(linkBench, ['--benchmark_format=json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }));
+  const of = (name) => run.benchmarks.find((benchmark) => benchmark.name === name).cpu_time;
+  return { read: of('ReadFrames'), parse: of('ReadAndParseFrames') };
+}
+
+function tell() {
+  const row = (name, run) => [
+    name,
+    run.scans.acknowledged_per_second.toFixed(0),
+    threeDigits(run.server.cpu_us_per_scan),
+    threeDigits(run.server.cores),
+    threeDigits(run.generator.cores),
+    threeDigits(run.ack_from_intended.p50_ms),
+    threeDigits(run.ack_from_intended.p99_ms),
+    threeDigits(run.own_delay.p99_ms),
+    (run.server.resident_bytes / 2 ** 20).toFixed(0),
+  ];
+  console.log(inWords(on), '\n');
+  console.log(
+    table(
+      ['', 'scans/s', 'server us/scan', 'cores', 'generator', 'ack p50 ms', 'p99', 'generator late p99', 'server MiB'],
+      [
+        row('64 robots, as fast as they may', full),
+        row(`the same at 80 %`, most),
+        row(`${aims.liveRobots} robots, 10 Hz, ${kBatch} scans a frame`, live),
+        row('100 robots, 10 Hz, a scan a frame', single),
+      ],
+    ),
+  );
+  console.log(`\nserver CPU a scan: ${threeDigits(full.server.cpu_us_per_scan)} us (aim: at most ${aims.cpuMicroseconds}); reading a frame alone ${threeDigits(link.read)}, reading and parsing ${threeDigits(link.parse)}`);
+  console.log(`ack p99 at 80 %: ${threeDigits(most.ack_from_sending.p99_ms)} ms from sending, ${threeDigits(most.ack_from_intended.p99_ms)} from the intended time of each scan of a frame (aim: below ${aims.ackMilliseconds})`);
+  console.log(`${aims.liveRobots} robots at 10 Hz: ${live.scans.acknowledged} of ${live.scans.due} scans, the generator took ${threeDigits(live.generator.cores)} cores of ${on.cores}`);
+  console.log(`written to ${file}`);
+}

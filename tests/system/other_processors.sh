@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# The kernels on a processor that this machine is not: built for 64-bit ARM (NEON), run by an emulator, and held to the
+# same bits. Needs Debian's g++-aarch64-linux-gnu and qemu-user-static; a minute.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+readonly sources=(tests/system/sweep_fingerprint.cpp common/scan/beam_angles.cpp common/scan/scan.cpp
+    server/mapping/beam_fan.cpp server/mapping/chunk_kernels.cpp server/mapping/sweep/*.cpp)
+readonly options=(-std=c++20 -O2 -ffp-contract=off -static -DHWY_COMPILE_ONLY_STATIC -I.)
+place=$(mktemp --directory --tmpdir scanloom-neon.XXXXXX)
+trap 'rm -rf "$place"' EXIT
+# Highway and Eigen are headers alone here, the same for all processors; the rest of this machine's are not.
+mkdir "$place/include"
+ln -s /usr/include/hwy /usr/include/eigen3/Eigen /usr/include/boost "$place/include"
+
+g++ "${options[@]}" -isystem "$place/include" "${sources[@]}" -o "$place/here"
+aarch64-linux-gnu-g++ "${options[@]}" -isystem "$place/include" "${sources[@]}" -o "$place/arm"
+here=$("$place/here")
+arm=$(qemu-aarch64-static "$place/arm")
+echo "here $here, ARM with NEON $arm"
+[[ $here == "$arm" ]] || { echo "the kernels give other bits on ARM" >&2; exit 1; }
