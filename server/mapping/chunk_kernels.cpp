@@ -37,6 +37,19 @@ HWY_INLINE void KeepLanes(D d, hn::Mask<D> lanes, std::uint64_t& row, std::size_
     }
 }
 
+/// Rows in which the verdicts may change a cell, a bit a row.
+HWY_INLINE std::uint64_t RowsWithNews(const ChunkVerdicts& verdicts, const grid::BitPlane& settled) {
+    const hn::ScalableTag<std::uint64_t> d;
+    std::uint64_t rows = verdicts.occupied_rows;
+    for (std::size_t j = 0; j < kSide; j += hn::Lanes(d)) {
+        const auto news = hn::AndNot(hn::LoadU(d, settled.data() + j), hn::LoadU(d, verdicts.free.data() + j));
+        std::uint64_t bits = 0;
+        hn::StoreMaskBits(d, hn::Ne(news, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
+        rows |= bits << j;
+    }
+    return rows;
+}
+
 /// Calls row(j) for each bit j that is set.
 template <class Row>
 HWY_INLINE void ForEachRow(std::uint64_t rows, Row&& row) {
@@ -69,30 +82,27 @@ void AddEvidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const Occupan
     const bool has_rest = free_step.rest != 0 || occupied_step.rest != 0;
     const auto before = [&](V cells) HWY_ATTR { return hn::IfThenElse(hn::Eq(cells, unknown), prior, cells); };
     const auto clamped = [&](V cells) HWY_ATTR { return hn::Min(hn::Max(cells, l_min), l_max); };
-    chunk.settled_occupancy &= ~verdicts.occupied_rows;
-    ForEachRow(verdicts.occupied_rows | (verdicts.free_rows & ~chunk.settled_occupancy), [&](std::size_t j) HWY_ATTR {
+    const bool can_settle = rule.free <= 0;
+    ForEachRow(RowsWithNews(verdicts, chunk.settled_occupancy), [&](std::size_t j) HWY_ATTR {
         LogOdds* row = chunk.occupancy.data() + j * kSide;
-        V highest = l_min;
-        if (verdicts.free[j] == kAll && !has_rest) {
-            for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
-                const V after = clamped(hn::SaturatedAdd(before(hn::LoadU(d, row + n)), free));
-                highest = hn::Max(highest, after);
-                hn::StoreU(after, d, row + n);
-            }
-        } else {
-            for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
+        std::uint64_t settled = 0;
+        const bool is_plain = verdicts.free[j] == kAll && !has_rest;
+        for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
+            const V cells = hn::LoadU(d, row + n);
+            V after;
+            if (is_plain) {
+                after = clamped(hn::SaturatedAdd(before(cells), free));
+            } else {
                 const auto is_free = LanesOf(d, verdicts.free[j], n);
                 const auto is_occupied = LanesOf(d, verdicts.occupied[j], n);
-                const V cells = hn::LoadU(d, row + n);
                 V sum = hn::SaturatedAdd(before(cells), hn::IfThenElse(is_occupied, occupied, free));
                 if (has_rest) sum = hn::SaturatedAdd(sum, hn::IfThenElse(is_occupied, occupied_rest, free_rest));
-                const V after = hn::IfThenElse(hn::Or(is_free, is_occupied), clamped(sum), cells);
-                highest = hn::Max(highest, hn::IfThenElse(hn::Eq(after, unknown), l_max, after));
-                hn::StoreU(after, d, row + n);
+                after = hn::IfThenElse(hn::Or(is_free, is_occupied), clamped(sum), cells);
             }
+            hn::StoreU(after, d, row + n);
+            KeepLanes(d, hn::Eq(after, l_min), settled, n);
         }
-        const bool is_settled = rule.free <= 0 && hn::AllTrue(d, hn::Eq(highest, l_min));
-        chunk.settled_occupancy |= std::uint64_t{is_settled} << j;
+        chunk.settled_occupancy[j] = can_settle ? settled : 0;
     });
 }
 
@@ -103,23 +113,21 @@ void CountHits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule&
     const V most = hn::Set(d, kHimmMax);
     const V up = hn::Set(d, static_cast<HimmCount>(rule.up));
     const V down = hn::Set(d, static_cast<HimmCount>(rule.down));
-    chunk.settled_himm &= ~verdicts.occupied_rows;
-    ForEachRow(verdicts.occupied_rows | (verdicts.free_rows & ~chunk.settled_himm), [&](std::size_t j) HWY_ATTR {
+    ForEachRow(RowsWithNews(verdicts, chunk.settled_himm), [&](std::size_t j) HWY_ATTR {
         HimmCount* row = chunk.himm.data() + j * kSide;
-        V highest = hn::Zero(d);
+        std::uint64_t settled = 0;
         for (std::size_t n = 0; n < kSide; n += hn::Lanes(d)) {
             const auto is_free = LanesOf(d, verdicts.free[j], n);
             const auto is_occupied = LanesOf(d, verdicts.occupied[j], n);
             const V cells = hn::LoadU(d, row + n);
-            const V before = hn::IfThenZeroElse(hn::Eq(cells, unseen), cells);
-            const V after = hn::IfThenElse(is_occupied, hn::Min(hn::SaturatedAdd(before, up), most),
-                                           hn::SaturatedSub(before, down));
-            const V kept = hn::IfThenElse(hn::Or(is_free, is_occupied), after, cells);
-            highest = hn::Max(highest, kept); // an unseen cell is the highest
-            hn::StoreU(kept, d, row + n);
+            const V known = hn::IfThenZeroElse(hn::Eq(cells, unseen), cells);
+            const V counted =
+                hn::IfThenElse(is_occupied, hn::Min(hn::SaturatedAdd(known, up), most), hn::SaturatedSub(known, down));
+            const V after = hn::IfThenElse(hn::Or(is_free, is_occupied), counted, cells);
+            hn::StoreU(after, d, row + n);
+            KeepLanes(d, hn::Eq(after, hn::Zero(d)), settled, n);
         }
-        const bool is_settled = hn::AllTrue(d, hn::Eq(highest, hn::Zero(d)));
-        chunk.settled_himm |= std::uint64_t{is_settled} << j;
+        chunk.settled_himm[j] = settled;
     });
 }
 

@@ -9,11 +9,15 @@
 /// for, chosen when it runs. Whole numbers throughout: all of them give the same cells.
 namespace scanloom::mapping::simd {
 
-/// Whether the verdicts would change nothing, as all they say is what settled rows hold already.
+/// Whether the verdicts would change nothing, as all they say is that settled cells are free.
 [[nodiscard]] constexpr bool is_settled(const LaserChunk& chunk, const ChunkVerdicts& evidence,
                                         const ChunkVerdicts& counted) noexcept {
-    return (evidence.occupied_rows | counted.occupied_rows) == 0 &&
-           (evidence.free_rows & ~chunk.settled_occupancy) == 0 && (counted.free_rows & ~chunk.settled_himm) == 0;
+    std::uint64_t news = evidence.occupied_rows | counted.occupied_rows;
+    for (std::size_t j = 0; j < evidence.free.size(); ++j) {
+        news |= evidence.free[j] & ~chunk.settled_occupancy[j];
+        news |= counted.free[j] & ~chunk.settled_himm[j];
+    }
+    return news == 0;
 }
 
 /// l = clamp(l + model(cell) - l0, l_min, l_max) for the cells with a verdict.

@@ -20,10 +20,10 @@ struct LaserChunk : grid::TreeItem {
     std::array<HimmCount, kCells> himm;
     classify::OccPlanes occ_types;
 
-    /// Rows of which every cell is as free as cells can be, a bit a row: what else is free there changes nothing, and
+    /// Cells that are as free as cells can be: more of that evidence changes nothing, and where it says no more a row
     /// need not be read. Not kept in checkpoints: a bit that is missing costs time alone.
-    std::uint64_t settled_occupancy = 0;
-    std::uint64_t settled_himm = 0;
+    grid::BitPlane settled_occupancy{};
+    grid::BitPlane settled_himm{};
 };
 
 /// What a scan says of the cells of one chunk. No cell is both.

@@ -33,7 +33,9 @@ LaserChunk blank() {
 /// Whole numbers only: no two libraries draw the same doubles.
 class Draw {
 public:
-    double milli(int low, int high) { return 0.001 * (low + static_cast<int>(random_() % static_cast<unsigned>(high - low))); }
+    double milli(int low, int high) {
+        return 0.001 * (low + static_cast<int>(random_() % static_cast<unsigned>(high - low)));
+    }
 
 private:
     std::mt19937 random_{1};
