@@ -291,12 +291,13 @@ HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
     }
 }
 
-/// Flips bits of one plane of a strip, or of two, some crossings at a time.
+/// Flips bits of some planes of a strip, some crossings at a time.
+template <std::size_t plane_count>
 class Flipper {
 public:
-    HWY_INLINE Flipper(const Strip& strip, std::uint64_t* plane, std::uint64_t* other)
-        : plane_(plane), other_(other), rows_(static_cast<std::size_t>(strip.rows)), to_centre_(0.5 - strip.sensor_y),
-          x_offset_(strip.sensor_x - 0.5), column_(strip.column), row_(strip.row), column_max_(strip.columns - 1) {}
+    HWY_INLINE Flipper(const Strip& strip, const std::array<std::uint64_t*, plane_count>& planes)
+        : planes_(planes), rows_(strip.rows), to_centre_(0.5 - strip.sensor_y), x_offset_(strip.sensor_x - 0.5),
+          column_(strip.column), row_(strip.row), column_max_(strip.columns - 1) {}
 
     /// The height of rows' centres over the sensor.
     [[nodiscard]] HWY_INLINE V HeightOf(V row) const { return hn::Add(row, hn::Set(D(), to_centre_)); }
@@ -307,29 +308,27 @@ public:
         const hn::Rebind<std::int32_t, D> d32;
         const V column = hn::Sub(hn::Ceil(hn::Add(x, hn::Set(d, x_offset_))), hn::Set(d, column_));
         const V within = hn::Min(hn::Max(column, hn::Zero(d)), hn::Set(d, column_max_));
-        HWY_ALIGN std::int32_t columns[kLanesMax];
-        HWY_ALIGN std::int32_t rows[kLanesMax];
-        hn::Store(hn::DemoteTo(d32, within), d32, columns);
-        hn::Store(hn::DemoteTo(d32, hn::Sub(row, hn::Set(d, row_))), d32, rows);
+        const auto bits = hn::DemoteTo(d32, within);
+        const auto rows = hn::DemoteTo(d32, hn::Sub(row, hn::Set(d, row_)));
+        HWY_ALIGN std::int32_t bit[kLanesMax];
+        HWY_ALIGN std::int32_t word[kLanesMax];
+        hn::Store(bits, d32, bit);
+        hn::Store(hn::Add(hn::Mul(hn::ShiftRight<6>(bits), hn::Set(d32, rows_)), rows), d32, word);
         if (count == hn::Lanes(d)) {
-            for (std::size_t k = 0; k < hn::Lanes(d); ++k) FlipBit(columns[k], rows[k]);
+            for (std::size_t k = 0; k < hn::Lanes(d); ++k) FlipBit(word[k], bit[k]);
         } else {
-            for (std::size_t k = 0; k < count; ++k) FlipBit(columns[k], rows[k]);
+            for (std::size_t k = 0; k < count; ++k) FlipBit(word[k], bit[k]);
         }
     }
 
 private:
-    HWY_INLINE void FlipBit(std::int32_t column, std::int32_t row) const {
-        const auto at = static_cast<std::uint32_t>(column);
-        const std::size_t word = (at >> 6) * rows_ + static_cast<std::uint32_t>(row);
-        const std::uint64_t bit = std::uint64_t{1} << (at & 63);
-        plane_[word] ^= bit;
-        if (other_ != nullptr) other_[word] ^= bit;
+    HWY_INLINE void FlipBit(std::int32_t word, std::int32_t bit) const {
+        const std::uint64_t flipped = std::uint64_t{1} << (bit & 63);
+        for (std::uint64_t* plane : planes_) plane[word] ^= flipped;
     }
 
-    std::uint64_t* plane_;
-    std::uint64_t* other_; ///< or nullptr
-    std::size_t rows_;
+    std::array<std::uint64_t*, plane_count> planes_;
+    std::int32_t rows_;
     double to_centre_;
     double x_offset_;
     double column_;
@@ -340,7 +339,7 @@ private:
 /// Flips a bit for each row of each piece: the first row of all pieces, then the second of those that have one, and
 /// so on; each of the last few pieces by itself.
 /// @param x_at  x_at(load, height), load(k) being the pieces' k-th number
-template <std::size_t numbers, class XAt>
+template <std::size_t numbers, class Flipper, class XAt>
 HWY_INLINE void FlipPieces(Pieces<numbers>& pieces, const Flipper& flipper, XAt&& x_at) {
     const D d;
     const std::size_t lanes = hn::Lanes(d);
@@ -385,26 +384,32 @@ HWY_INLINE void MeasureSpokes(Pieces<kSpokeNumbers>& spokes) {
     }
 }
 
-void FlipCrossings(const Contours& contours, const Strip& strip, const Planes& planes) {
+/// A contour's pieces, which end one plane and begin the next where there is one, and those of the plane alone.
+template <std::size_t plane_count>
+HWY_INLINE void FlipContour(Crossings& crossings, const Strip& strip,
+                            const std::array<std::uint64_t*, plane_count>& planes) {
     const D d;
+    const auto x_of_spoke = [](const auto& load, V height) HWY_ATTR {
+        return hn::Min(hn::Max(hn::Mul(load(kSlope), height), load(kLeft)), load(kRight)); // never beyond its ends
+    };
+    const auto x_of_arc = [d](const auto& load, V height) HWY_ATTR {
+        const V square = hn::Max(hn::Zero(d), hn::Sub(load(kSquare), hn::Mul(height, height)));
+        return hn::Or(hn::Sqrt(square), load(kSign));
+    };
+    MeasureSpokes(crossings.spokes);
+    FlipPieces(crossings.spokes, Flipper<plane_count>(strip, planes), x_of_spoke);
+    FlipPieces(crossings.arcs, Flipper<plane_count>(strip, planes), x_of_arc);
+    MeasureSpokes(crossings.steps);
+    FlipPieces(crossings.steps, Flipper<1>(strip, {planes[0]}), x_of_spoke);
+}
+
+void FlipCrossings(const Contours& contours, const Strip& strip, const Planes& planes) {
     auto crossings = room_for(contours.sectors, contours.count);
     contours.count == 2 ? FindPieces<2>(contours, strip, crossings) : FindPieces<4>(contours, strip, crossings);
-    for (std::size_t k = 0; k < contours.count; ++k) {
-        auto& [spokes, arcs, steps] = crossings[k];
-        // A contour ends what is within, and begins what is between it and the next.
-        std::uint64_t* beyond = k + 1 < contours.count ? planes[k + 1] : nullptr;
-        const auto x_of_spoke = [](const auto& load, V height) HWY_ATTR {
-            return hn::Min(hn::Max(hn::Mul(load(kSlope), height), load(kLeft)), load(kRight)); // never beyond its ends
-        };
-        MeasureSpokes(spokes);
-        FlipPieces(spokes, Flipper(strip, planes[k], beyond), x_of_spoke);
-        MeasureSpokes(steps);
-        FlipPieces(steps, Flipper(strip, planes[k], nullptr), x_of_spoke);
-        FlipPieces(arcs, Flipper(strip, planes[k], beyond), [d](const auto& load, V height) HWY_ATTR {
-            const V square = hn::Max(hn::Zero(d), hn::Sub(load(kSquare), hn::Mul(height, height)));
-            return hn::Or(hn::Sqrt(square), load(kSign));
-        });
+    for (std::size_t k = 0; k + 1 < contours.count; ++k) {
+        FlipContour<2>(crossings[k], strip, {planes[k], planes[k + 1]});
     }
+    FlipContour<1>(crossings[contours.count - 1], strip, {planes[contours.count - 1]});
 }
 
 using D64 = hn::ScalableTag<std::uint64_t>;
