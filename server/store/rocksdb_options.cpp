@@ -43,7 +43,7 @@ void set_memory(rocksdb::Options& rocksdb, const StoreOptions& options) {
 
 void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
     rocksdb.compression = rocksdb::kLZ4Compression;
-    rocksdb.bottommost_compression = rocksdb::kZSTD; // nearly all of the log ends there and is seldom read again
+    rocksdb.bottommost_compression = rocksdb::kLZ4Compression;
     rocksdb.level_compaction_dynamic_level_bytes = true;
     rocksdb.target_file_size_base = rocksdb.write_buffer_size;
     rocksdb.max_bytes_for_level_base = 4 * rocksdb.write_buffer_size;
