@@ -1,5 +1,7 @@
 #include "server/mapping/sweep/sweep.hpp"
 
+#include "server/mapping/sweep/fill.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include "common/scan/scan.hpp"
 #include "server/mapping/laser_chunk.hpp"
 #include "server/mapping/reading.hpp"
-#include "server/mapping/sweep/contour.hpp"
 #include "server/mapping/sweep/fan_ring.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "server/mapping/sweep/contour.hpp"
+#include "server/mapping/sweep/crossings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "server/mapping/sweep/contour.cpp"
+#define HWY_TARGET_INCLUDE "server/mapping/sweep/crossings.cpp"
 #include <hwy/foreach_target.h> // includes this file once for each instruction set
 #include <hwy/highway.h>
 
@@ -75,74 +75,6 @@ HWY_INLINE V Packed(V values, M lanes) {
 #else
     return hn::Compress(values, lanes);
 #endif
-}
-
-void TurnEdges(const FanRing& ring, double cosine, double sine, const Edges& turned) {
-    const D d;
-    const V c = hn::Set(d, cosine);
-    const V s = hn::Set(d, sine);
-    for (std::size_t n = 0; n < ring.sectors + 1; n += hn::Lanes(d)) {
-        const V ex = hn::LoadU(d, ring.edges_x.data() + n);
-        const V ey = hn::LoadU(d, ring.edges_y.data() + n);
-        const V x = hn::Sub(hn::Mul(c, ex), hn::Mul(s, ey));
-        const V y = hn::Add(hn::Mul(s, ex), hn::Mul(c, ey));
-        hn::StoreU(x, d, turned.x + n);
-        hn::StoreU(y, d, turned.y + n);
-    }
-}
-
-void RadiiOf(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
-             double* outer) {
-    const D d;
-    const hn::Rebind<std::int32_t, D> d32;
-    const V zero = hn::Zero(d);
-    const V range_min = hn::Set(d, rule.range_min);
-    const V range_max = hn::Set(d, rule.range_max);
-    const V half_band = hn::Set(d, rule.half_band);
-    const V per_metre = hn::Set(d, rule.cells_per_metre);
-    const V unreturned = hn::Set(d, rule.drop_no_return ? 0.0 : rule.range_max);
-    for (std::size_t n = 0; n < sectors; n += hn::Lanes(d)) {
-        const V whole = hn::PromoteTo(d, hn::LoadU(d32, millimetres + n));
-        const V metres = hn::Mul(whole, hn::Set(d, 0.001));
-        const M seen = hn::And(hn::Gt(whole, zero), hn::Ge(hn::Min(metres, range_max), range_min));
-        const M hit = hn::Lt(metres, range_max);
-        const V near_end = hn::IfThenElse(hit, hn::Max(zero, hn::Sub(metres, half_band)), unreturned);
-        const V far_end = hn::IfThenElse(hit, hn::Min(range_max, hn::Add(metres, half_band)), unreturned);
-        hn::StoreU(hn::IfThenElseZero(seen, hn::Mul(near_end, per_metre)), d, inner + n);
-        hn::StoreU(hn::IfThenElseZero(seen, hn::Mul(far_end, per_metre)), d, outer + n);
-    }
-}
-
-Box BoxOf(const Contours& contours) {
-    const D d;
-    const V zero = hn::Zero(d);
-    V x_min = zero;
-    V x_max = zero;
-    V y_min = zero;
-    V y_max = zero;
-    const auto include = [&](V x, V y) HWY_ATTR {
-        x_min = hn::Min(x_min, x);
-        x_max = hn::Max(x_max, x);
-        y_min = hn::Min(y_min, y);
-        y_max = hn::Max(y_max, y);
-    };
-    const double* radius = contours.radius[contours.count - 1];
-    for (std::size_t n = 0; n < contours.sectors; n += hn::Lanes(d)) {
-        const V r = hn::IfThenElseZero(hn::FirstN(d, contours.sectors - n), hn::LoadU(d, radius + n));
-        const V ex0 = hn::LoadU(d, contours.edges.x + n);
-        const V ey0 = hn::LoadU(d, contours.edges.y + n);
-        const V ex1 = hn::LoadU(d, contours.edges.x + n + 1);
-        const V ey1 = hn::LoadU(d, contours.edges.y + n + 1);
-        include(hn::Mul(r, ex0), hn::Mul(r, ey0));
-        include(hn::Mul(r, ex1), hn::Mul(r, ey1));
-        const M through_x = hn::Xor(hn::Lt(ey0, zero), hn::Lt(ey1, zero)); // the arc's end on the axis is its farthest
-        const M through_y = hn::Xor(hn::Lt(ex0, zero), hn::Lt(ex1, zero));
-        if (hn::AllFalse(d, hn::Or(through_x, through_y))) continue;
-        include(hn::IfThenElseZero(through_x, hn::CopySign(r, ex0)),
-                hn::IfThenElseZero(through_y, hn::CopySign(r, ey0)));
-    }
-    return {hn::GetLane(hn::MinOfLanes(d, x_min)), hn::GetLane(hn::MinOfLanes(d, y_min)),
-            hn::GetLane(hn::MaxOfLanes(d, x_max)), hn::GetLane(hn::MaxOfLanes(d, y_max))};
 }
 
 /// Appends those of a vector of pieces that cross any row.
@@ -412,122 +344,16 @@ void FlipCrossings(const Contours& contours, const Strip& strip, const Planes& p
     FlipContour<1>(crossings[contours.count - 1], strip, {planes[contours.count - 1]});
 }
 
-using D64 = hn::ScalableTag<std::uint64_t>;
-using V64 = hn::Vec<D64>;
-
-/// All ones where the highest bit is set.
-HWY_INLINE V64 Spread(V64 word) {
-    const D64 d;
-    const hn::RebindToSigned<D64> ds;
-    return hn::BitCast(d, hn::BroadcastSignBit(hn::BitCast(ds, word)));
-}
-
-/// The parity of the bits up to each.
-HWY_INLINE V64 Parity(V64 word) {
-    word = hn::Xor(word, hn::ShiftLeft<1>(word));
-    word = hn::Xor(word, hn::ShiftLeft<2>(word));
-    word = hn::Xor(word, hn::ShiftLeft<4>(word));
-    word = hn::Xor(word, hn::ShiftLeft<8>(word));
-    word = hn::Xor(word, hn::ShiftLeft<16>(word));
-    return hn::Xor(word, hn::ShiftLeft<32>(word));
-}
-
-HWY_INLINE bool AnySet(const std::uint64_t* words) {
-    const D64 d;
-    V64 all = hn::Zero(d);
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) all = hn::Or(all, hn::LoadU(d, words + n));
-    return !hn::AllFalse(d, hn::Ne(all, hn::Zero(d)));
-}
-
-/// Leaves the cells inside in `words`' place of `inside`.
-HWY_INLINE void Fill(std::uint64_t* words, std::uint64_t* carry, std::uint64_t* inside) {
-    const D64 d;
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
-        const V64 filled = hn::Xor(Parity(hn::LoadU(d, words + n)), hn::LoadU(d, carry + n));
-        hn::StoreU(filled, d, inside + n);
-        hn::StoreU(Spread(filled), d, carry + n);
-        hn::StoreU(hn::Zero(d), d, words + n);
-    }
-}
-
-HWY_INLINE void FillOrCarry(std::uint64_t* words, std::uint64_t* carry, std::uint64_t* inside) {
-    const D64 d;
-    if (AnySet(words)) return Fill(words, carry, inside);
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, carry + n), d, inside + n);
-}
-
-/// Which of the words have any bit set, a bit a word.
-HWY_INLINE void KeepRows(V64 words, std::size_t n, std::uint64_t& rows) {
-    const D64 d;
-    std::uint64_t bits = 0;
-    hn::StoreMaskBits(d, hn::Ne(words, hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
-    rows |= bits << n;
-}
-
-/// What is free and what is occupied of 64 rows, and which of the rows have any.
-template <class Free, class Occupied>
-HWY_INLINE void Keep(ChunkVerdicts& verdicts, Free&& free_at, Occupied&& occupied_at) {
-    const D64 d;
-    verdicts.free_rows = 0;
-    verdicts.occupied_rows = 0;
-    for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
-        const V64 free = free_at(n);
-        const V64 occupied = occupied_at(n);
-        hn::StoreU(free, d, verdicts.free.data() + n);
-        hn::StoreU(occupied, d, verdicts.occupied.data() + n);
-        KeepRows(free, n, verdicts.free_rows);
-        KeepRows(occupied, n, verdicts.occupied_rows);
-    }
-}
-
-void FillBands(const ChunkWords& words, std::size_t contours, ChunkVerdicts& narrow, ChunkVerdicts* wide) {
-    const D64 d;
-    HWY_ALIGN std::uint64_t filled[kContoursMax][64];
-    for (std::size_t k = 0; k < contours; ++k) FillOrCarry(words.flipped[k], words.carry[k], filled[k]);
-    const auto plane = [&](std::size_t k, std::size_t n) HWY_ATTR { return hn::Load(d, filled[k] + n); };
-    if (contours == 2) {
-        return Keep(
-            narrow, [&](std::size_t n) HWY_ATTR { return plane(0, n); },
-            [&](std::size_t n) HWY_ATTR { return hn::AndNot(plane(0, n), plane(1, n)); });
-    }
-    Keep(
-        narrow, [&](std::size_t n) HWY_ATTR { return hn::Or(plane(0, n), plane(1, n)); },
-        [&](std::size_t n) HWY_ATTR { return hn::AndNot(hn::Or(plane(0, n), plane(1, n)), plane(2, n)); });
-    Keep(
-        *wide, [&](std::size_t n) HWY_ATTR { return plane(0, n); },
-        [&](std::size_t n)
-            HWY_ATTR { return hn::AndNot(plane(0, n), hn::Or(hn::Or(plane(1, n), plane(2, n)), plane(3, n))); });
-}
-
 } // namespace scanloom::mapping::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace scanloom::mapping::simd {
 
-HWY_EXPORT(TurnEdges);
-HWY_EXPORT(RadiiOf);
-HWY_EXPORT(BoxOf);
 HWY_EXPORT(FlipCrossings);
-HWY_EXPORT(FillBands);
-
-void turn_edges(const FanRing& ring, double cosine, double sine, const Edges& turned) {
-    HWY_DYNAMIC_DISPATCH(TurnEdges)(ring, cosine, sine, turned);
-}
-
-void radii_of(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
-              double* outer) {
-    HWY_DYNAMIC_DISPATCH(RadiiOf)(millimetres, sectors, rule, inner, outer);
-}
-
-Box box_of(const Contours& contours) { return HWY_DYNAMIC_DISPATCH(BoxOf)(contours); }
 
 void flip_crossings(const Contours& contours, const Strip& strip, const Planes& planes) {
     HWY_DYNAMIC_DISPATCH(FlipCrossings)(contours, strip, planes);
-}
-
-void fill_bands(const ChunkWords& words, std::size_t contours, ChunkVerdicts& narrow, ChunkVerdicts* wide) {
-    HWY_DYNAMIC_DISPATCH(FillBands)(words, contours, narrow, wide);
 }
 
 } // namespace scanloom::mapping::simd
