@@ -1,6 +1,5 @@
 #include "server/mapping/sweep/contours.hpp"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mapping/sweep/contours.cpp"
 #include <hwy/foreach_target.h> // includes this file once for each instruction set

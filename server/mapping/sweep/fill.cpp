@@ -1,6 +1,5 @@
 #include "server/mapping/sweep/fill.hpp"
 
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "server/mapping/sweep/fill.cpp"
 #include <hwy/foreach_target.h> // includes this file once for each instruction set

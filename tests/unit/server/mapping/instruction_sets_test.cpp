@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <random>
 #include <string>
+#include <vector>
 
 /// Every instruction set that this machine has, against the definitions and against the others.
 namespace scanloom::mapping {
@@ -101,19 +102,29 @@ OccupancyRule rule_of(double prior, double low, double high, double free, double
     return OccupancyRule(config);
 }
 
+/// The same verdicts again and again settle cells; others unsettle them.
+std::vector<ChunkVerdicts> random_verdicts(unsigned seed) {
+    std::vector<ChunkVerdicts> all;
+    for (unsigned n = 0; n < 4; ++n) all.insert(all.end(), 6, RandomChunk(100 * seed + n).verdicts);
+    return all;
+}
+
 TEST_P(InstructionSet, AddsEvidenceAsDefined) {
     const double nearly_one = 0.99999988;
-    for (const auto& rule : {rule_of(0.5, 0.001, 0.999, 0.1, 0.9), rule_of(0.3, 0.01, 0.9, 0.2, 0.6),
-                             rule_of(1.0 - nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one),
-                             rule_of(nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one)}) {
-        for (unsigned seed = 0; seed < 20; ++seed) {
-            const RandomChunk before(seed);
-            LaserChunk after = before.chunk;
-            simd::add_evidence(after, before.verdicts, rule);
-            before.for_each_cell([&](std::size_t n, grid::Cell cell) {
-                const bool is_free = grid::is_set(before.verdicts.free, cell);
-                const bool is_occupied = grid::is_set(before.verdicts.occupied, cell);
-                const LogOdds known = before.chunk.occupancy[n];
+    for (const auto& rule :
+         {rule_of(0.5, 0.001, 0.999, 0.1, 0.9), rule_of(0.3, 0.01, 0.9, 0.2, 0.6), rule_of(0.2, 0.01, 0.99, 0.4, 0.9),
+          rule_of(1.0 - nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one),
+          rule_of(nearly_one, 1.0 - nearly_one, nearly_one, 1.0 - nearly_one, nearly_one)}) {
+        RandomChunk random(7);
+        for (std::size_t j = 0; j < 32; ++j) std::fill_n(&random.chunk.occupancy[64 * j], 64, LogOdds{-32767});
+        LaserChunk after = random.chunk;
+        for (const ChunkVerdicts& verdicts : random_verdicts(1)) {
+            const LaserChunk before = after;
+            simd::add_evidence(after, verdicts, rule);
+            random.for_each_cell([&](std::size_t n, grid::Cell cell) {
+                const bool is_free = grid::is_set(verdicts.free, cell);
+                const bool is_occupied = grid::is_set(verdicts.occupied, cell);
+                const LogOdds known = before.occupancy[n];
                 const int from = known == kUnknownLogOdds ? rule.prior : known;
                 const int to = std::clamp<int>(from + (is_free ? rule.free : rule.occupied), rule.l_min, rule.l_max);
                 ASSERT_EQ(after.occupancy[n], is_free || is_occupied ? to : known) << "cell " << n << ", was " << known;
@@ -127,18 +138,40 @@ TEST_P(InstructionSet, CountsHitsAsDefined) {
     for (const auto& [up, down] : {std::pair{3, 1}, {15, 15}, {1, 4}}) {
         config.himm_increment = up;
         config.himm_decrement = down;
-        const RandomChunk before(static_cast<unsigned>(up));
-        LaserChunk after = before.chunk;
-        simd::count_hits(after, before.verdicts, HimmRule(config));
-        before.for_each_cell([&](std::size_t n, grid::Cell cell) {
-            const bool is_free = grid::is_set(before.verdicts.free, cell);
-            const bool is_occupied = grid::is_set(before.verdicts.occupied, cell);
-            const int known = before.chunk.himm[n];
-            const int from = known == kUnseenHimm ? 0 : known;
-            const int to = std::clamp(is_free ? from - down : from + up, 0, 15);
-            ASSERT_EQ(after.himm[n], is_free || is_occupied ? to : known) << "cell " << n << ", was " << known;
-        });
+        const RandomChunk random(7);
+        LaserChunk after = random.chunk;
+        for (const ChunkVerdicts& verdicts : random_verdicts(2)) {
+            const LaserChunk before = after;
+            simd::count_hits(after, verdicts, HimmRule(config));
+            random.for_each_cell([&](std::size_t n, grid::Cell cell) {
+                const bool is_free = grid::is_set(verdicts.free, cell);
+                const bool is_occupied = grid::is_set(verdicts.occupied, cell);
+                const int known = before.himm[n];
+                const int from = known == kUnseenHimm ? 0 : known;
+                const int to = std::clamp(is_free ? from - down : from + up, 0, 15);
+                ASSERT_EQ(after.himm[n], is_free || is_occupied ? to : known) << "cell " << n << ", was " << known;
+            });
+        }
     }
+}
+
+TEST_P(InstructionSet, WhatIsSettledIsNotChangedByMoreOfTheSame) {
+    RandomChunk random(9);
+    random.verdicts.occupied.fill(0);
+    random.verdicts.occupied_rows = 0;
+    LaserChunk chunk = random.chunk;
+    EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
+    for (int n = 0; n < 30; ++n) {
+        simd::add_evidence(chunk, random.verdicts, OccupancyRule({}));
+        simd::count_hits(chunk, random.verdicts, HimmRule({}));
+    }
+    EXPECT_TRUE(simd::is_settled(chunk, random.verdicts, random.verdicts));
+    const grid::Cell cell{3, 0}; // of a row that is free all over
+    ChunkVerdicts hit;
+    grid::set(hit.occupied, cell, true);
+    hit.occupied_rows = 1;
+    simd::add_evidence(chunk, hit, OccupancyRule({}));
+    EXPECT_FALSE(simd::is_settled(chunk, random.verdicts, random.verdicts));
 }
 
 /// Section 6 of the design models, for one cell.
