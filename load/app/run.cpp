@@ -1,5 +1,6 @@
 #include "load/app/run.hpp"
 
+#include "common/app/token_file.hpp"
 #include "load/app/drive_course.hpp"
 #include "load/app/load_run.hpp"
 #include "load/core/words.hpp"
@@ -23,17 +24,6 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr std::uint64_t kDescriptorsBesides = 64; ///< of threads, files, and this program's own requests
-
-/// The first line of a token file.
-Result<std::string> read_token(const std::string& path) {
-    std::string token;
-    if (path.empty()) return token;
-    std::ifstream file(path);
-    std::getline(file, token);
-    if (token.ends_with('\r')) token.pop_back();
-    if (!token.empty()) return token;
-    return Error{Errc::kNotFound, fmt::format("{}: no token to be read; the first line is it", path)};
-}
 
 Result<std::vector<asio::ip::tcp::endpoint>> resolve(asio::io_context& io, const robot::ServerAddress& server) {
     asio::ip::tcp::resolver resolver(io);

@@ -1,5 +1,6 @@
 #include "robot_client/app/run.hpp"
 
+#include "common/app/token_file.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/app/recent_rate.hpp"
@@ -18,7 +19,6 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <fstream>
 #include <random>
 
 namespace scanloom::robot {
@@ -28,17 +28,6 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-
-/// The first line of a token file.
-Result<std::string> read_token(const std::string& path) {
-    std::string token;
-    if (path.empty()) return token;
-    std::ifstream file(path);
-    std::getline(file, token);
-    if (token.ends_with('\r')) token.pop_back();
-    if (!token.empty()) return token;
-    return Error{Errc::kNotFound, fmt::format("{}: no token to be read; the first line is it", path)};
-}
 
 /// What the server has from earlier runs.
 std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
