@@ -52,6 +52,12 @@ std::string Outbox::take_bytes() {
     return std::exchange(bytes_, {});
 }
 
+Outbox::Answer Outbox::take_answer() {
+    Answer first = std::move(answers_.front());
+    answers_.pop_front();
+    return first;
+}
+
 void Outbox::start(std::shared_ptr<void> owner) {
     if (std::exchange(writing_, true)) return;
     asio::co_spawn(stream_.get_executor(), write(std::move(owner)), asio::detached);
@@ -61,11 +67,9 @@ void Outbox::start(std::shared_ptr<void> owner) {
 asio::awaitable<void> Outbox::write([[maybe_unused]] std::shared_ptr<void> owner) {
     while (ack_ || !bytes_.empty() || !answers_.empty()) {
         put_ack();
-        const bool answering = bytes_.empty();
-        const std::string sending = answering ? std::exchange(answers_.front().frame, {}) : take_bytes();
+        const Answer next = bytes_.empty() ? take_answer() : Answer{take_bytes(), nullptr};
         const auto [error, written] =
-            co_await asio::async_write(stream_, asio::buffer(sending), asio::as_tuple(asio::use_awaitable));
-        if (answering) answers_.pop_front();
+            co_await asio::async_write(stream_, asio::buffer(next.frame), asio::as_tuple(asio::use_awaitable));
         if (error) break;
     }
     writing_ = false;

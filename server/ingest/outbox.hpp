@@ -38,7 +38,8 @@ public:
     /// Sends a whole frame after all else. `kept` is let go of when it was written.
     void answer(std::string frame, std::shared_ptr<const void> kept, std::shared_ptr<void> owner);
 
-    /// Answers that are not wholly written yet.
+    /// Answers that are not being written yet. The one being written is not among them: the robot may have read the
+    /// whole of it, and ask the next, before this side hears that it was written.
     [[nodiscard]] std::size_t answers_waiting() const noexcept { return answers_.size(); }
 
     /// Nothing may follow what is in it.
@@ -51,19 +52,20 @@ public:
     [[nodiscard]] boost::asio::awaitable<void> emptied();
 
 private:
+    struct Answer {
+        std::string frame;
+        std::shared_ptr<const void> kept;
+    };
+
     void put_ack();
     [[nodiscard]] std::string take_bytes();
+    [[nodiscard]] Answer take_answer();
     void start(std::shared_ptr<void> owner);
     [[nodiscard]] boost::asio::awaitable<void> write(std::shared_ptr<void> owner);
 
     net::LinkStream& stream_;
     std::function<void(std::uint64_t)> told_;
     std::string bytes_;
-    struct Answer {
-        std::string frame;
-        std::shared_ptr<const void> kept;
-    };
-
     std::deque<Answer> answers_;
     std::optional<wire::Ack> ack_;             // the newest, not in bytes_ yet
     std::optional<std::uint64_t> durable_seq_; // of the newest ack in bytes_
