@@ -10,10 +10,13 @@ namespace {
 
 constexpr std::int32_t kSide = grid::kChunkSide;
 
-ClassChunk blank_chunk() {
-    ClassChunk chunk;
-    chunk.cells.fill(CellClass::kUnexplored);
-    return chunk;
+const std::shared_ptr<const ClassChunk>& blank_chunk() {
+    static const auto blank = [] {
+        ClassChunk chunk;
+        chunk.cells.fill(CellClass::kUnexplored);
+        return std::make_shared<const ClassChunk>(chunk);
+    }();
+    return blank;
 }
 
 /// The chunk `di` to the right and `dj` above, unless chunks cannot be numbered there.
@@ -101,7 +104,13 @@ std::size_t ClassLayer::KeyHash::operator()(grid::ChunkKey key) const noexcept {
     return static_cast<std::size_t>(mixed ^ mixed >> 32);
 }
 
-ClassLayer::ClassLayer(std::int32_t danger_cells) : danger_cells_(danger_cells), tree_(blank_chunk()) {
+const std::shared_ptr<const ClassLayer::PlanesChunk>& ClassLayer::blank_planes() {
+    static const auto blank = std::make_shared<const PlanesChunk>();
+    return blank;
+}
+
+ClassLayer::ClassLayer(std::int32_t danger_cells)
+    : danger_cells_(danger_cells), planes_(blank_planes()), tree_(blank_chunk()) {
     assert(danger_cells >= 1);
     assert(danger_cells <= kDangerCellsMax);
 }

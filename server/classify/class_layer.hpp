@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -60,6 +61,8 @@ private:
     };
     using StaleChunks = std::unordered_map<grid::ChunkKey, BitPlane, KeyHash>; // with the cells of another OccType
 
+    [[nodiscard]] static const std::shared_ptr<const PlanesChunk>& blank_planes();
+
     ClassLayer(std::int32_t danger_cells, grid::ChunkTree<PlanesChunk> planes, grid::ChunkTree<ClassChunk> tree)
         : danger_cells_(danger_cells), planes_(std::move(planes)), tree_(std::move(tree)) {}
 
@@ -69,7 +72,7 @@ private:
     void write(grid::ChunkKey key, const Planes& planes, const BitPlane& reclassified, Revision revision);
 
     std::int32_t danger_cells_;
-    grid::ChunkTree<PlanesChunk> planes_{PlanesChunk{}};
+    grid::ChunkTree<PlanesChunk> planes_;
     grid::ChunkTree<ClassChunk> tree_;
 };
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 namespace scanloom::grid {
 
@@ -165,8 +166,8 @@ private:
 template <class ChunkType>
 class ChunkTree {
 public:
-    /// `blank` is what a chunk holds before its first write.
-    explicit ChunkTree(const ChunkType& blank) : blank_(std::make_shared<const ChunkType>(blank)) {}
+    /// `blank` is what a chunk holds before its first write; trees of the same kind share it.
+    explicit ChunkTree(std::shared_ptr<const ChunkType> blank) : blank_(std::move(blank)) {}
     ChunkTree(ChunkTree&&) noexcept = default;
     ChunkTree& operator=(ChunkTree&&) noexcept = default;
     ~ChunkTree() = default;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@ namespace scanloom::mapping {
 template <class ChunkType>
 class ChunkGrid {
 public:
-    explicit ChunkGrid(const ChunkType& blank) : tree_(blank) {}
+    explicit ChunkGrid(std::shared_ptr<const ChunkType> blank) : tree_(std::move(blank)) {}
 
     /// To be called before the entry of that revision is woven. Pre: revisions rise.
     void begin(Revision revision) {

@@ -16,11 +16,14 @@
 namespace scanloom::mapping {
 namespace {
 
-LaserChunk blank_chunk() {
-    LaserChunk chunk;
-    chunk.occupancy.fill(kUnknownLogOdds);
-    chunk.himm.fill(kUnseenHimm);
-    return chunk;
+const std::shared_ptr<const LaserChunk>& blank_chunk() {
+    static const auto blank = [] {
+        LaserChunk chunk;
+        chunk.occupancy.fill(kUnknownLogOdds);
+        chunk.himm.fill(kUnseenHimm);
+        return std::make_shared<const LaserChunk>(chunk);
+    }();
+    return blank;
 }
 
 /// Rounded as evidence is, so that evidence of exactly a threshold's probability, and a clamp there, reach it.

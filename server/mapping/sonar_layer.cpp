@@ -9,10 +9,13 @@
 namespace scanloom::mapping {
 namespace {
 
-SonarChunk blank_chunk() {
-    SonarChunk chunk;
-    chunk.cells.fill(kUnknownLogOdds);
-    return chunk;
+const std::shared_ptr<const SonarChunk>& blank_chunk() {
+    static const auto blank = [] {
+        SonarChunk chunk;
+        chunk.cells.fill(kUnknownLogOdds);
+        return std::make_shared<const SonarChunk>(chunk);
+    }();
+    return blank;
 }
 
 } // namespace

@@ -2,59 +2,22 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
+#include "server/session/part_bytes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
-#include <cstring>
 #include <optional>
-#include <type_traits>
 
 namespace scanloom::session {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");
-
 constexpr std::string_view kLaserChunk = "weave/laser/";
 constexpr std::string_view kSonarChunk = "weave/sonar/";
 
-template <class Value>
-void put(std::string& out, const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-/// Takes values off the front of a part; fails for good when it is too short.
-class PartReader {
-public:
-    explicit PartReader(std::string_view bytes) : rest_(bytes) {}
-
-    template <class Value>
-    Value take() {
-        static_assert(std::is_trivially_copyable_v<Value>);
-        Value value{};
-        if (rest_.size() < sizeof value) {
-            failed_ = true;
-            return value;
-        }
-        std::memcpy(&value, rest_.data(), sizeof value);
-        rest_.remove_prefix(sizeof value);
-        return value;
-    }
-
-    /// So many bytes, or all that are left.
-    void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
-
-    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
-    [[nodiscard]] bool complete() const noexcept { return !failed_ && rest_.empty(); }
-    [[nodiscard]] bool failed() const noexcept { return failed_; }
-
-private:
-    std::string_view rest_;
-    bool failed_ = false;
-};
+constexpr std::uint32_t kPartsVersion = 2; // 1 had no number of its own, and chunks as they are in memory
+constexpr std::size_t kChunkBytesMax = sizeof(mapping::LaserChunk) + sizeof(mapping::SonarChunk);
 
 Error damaged(std::string_view key) { return {Errc::kMalformed, fmt::format("checkpoint part '{}' is damaged", key)}; }
 
@@ -75,6 +38,7 @@ std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
 std::string format_part() {
     std::string value;
     put(value, mapping::kWeavingVersion);
+    put(value, kPartsVersion);
     return value;
 }
 
@@ -134,6 +98,12 @@ public:
     PieceWriter(store::ScanLog& log, store::SessionId session, const std::atomic<bool>& stop)
         : log_(log), session_(session), stop_(stop) {}
 
+    /// Counts for a piece's size as much as it is uncompressed: a piece is as much of the map, however it compresses.
+    void add_compressed(std::string key, std::string_view value) {
+        bytes_ += key.size() + value.size();
+        parts_.push_back({std::move(key), compressor_.compressed(value)});
+    }
+
     void add(std::string key, std::string value) {
         bytes_ += key.size() + value.size();
         parts_.push_back({std::move(key), std::move(value)});
@@ -158,6 +128,7 @@ private:
     store::ScanLog& log_;
     store::SessionId session_;
     const std::atomic<bool>& stop_;
+    PartCompressor compressor_;
     std::vector<store::CheckpointPart> parts_;
     std::size_t bytes_ = 0;
     Result<> written_;
@@ -179,7 +150,7 @@ template <class View>
 void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, Revision since) {
     view.visit({}, since, [&](grid::ChunkKey key, const auto& chunk) {
         if (!out.written()) return;
-        out.add(chunk_key(prefix, key), chunk_part(chunk));
+        out.add_compressed(chunk_key(prefix, key), chunk_part(chunk));
         out.write_if_full();
     });
 }
@@ -241,12 +212,20 @@ Result<> CheckpointReader::add(std::string_view key, std::string_view value) {
 Result<> CheckpointReader::add_format(std::string_view value) {
     PartReader part(value);
     const auto version = part.take<std::uint32_t>();
+    const auto parts_version = part.rest().empty() ? 1 : part.take<std::uint32_t>();
     if (!part.complete()) return damaged("format");
     has_format_ = true;
-    if (version == mapping::kWeavingVersion) return {};
-    return Error{Errc::kUnsupportedVersion,
-                 fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
-                             mapping::kWeavingVersion)};
+    if (version != mapping::kWeavingVersion) {
+        return Error{Errc::kUnsupportedVersion,
+                     fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
+                                 mapping::kWeavingVersion)};
+    }
+    if (parts_version != kPartsVersion) {
+        return Error{Errc::kUnsupportedVersion, fmt::format("the checkpoint's parts are of version {}, this program's "
+                                                            "of version {}",
+                                                            parts_version, kPartsVersion)};
+    }
+    return {};
 }
 
 Result<> CheckpointReader::add_head(std::string_view value) {
@@ -298,7 +277,9 @@ bool CheckpointReader::add_points(const Numbers& numbers, std::string_view value
 
 bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
     begin_weaving();
-    PartReader part(value);
+    const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
+    if (!bytes) return false;
+    PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto occupancy = part.take<decltype(mapping::LaserChunk::occupancy)>();
     const auto himm = part.take<decltype(mapping::LaserChunk::himm)>();
@@ -318,7 +299,9 @@ bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view 
 
 bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view value) {
     begin_weaving();
-    PartReader part(value);
+    const auto bytes = decompressor_.decompressed(value, kChunkBytesMax);
+    if (!bytes) return false;
+    PartReader part(*bytes);
     const auto revision = part.take<Revision>();
     const auto cells = part.take<decltype(mapping::SonarChunk::cells)>();
     if (!part.complete()) return false;

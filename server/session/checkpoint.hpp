@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/mapping/projection.hpp"
+#include "server/session/part_compression.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
@@ -13,19 +14,19 @@
 /// What a projection keeps in the store, so that recovery folds only the rest of the log.
 ///
 /// Parts, in the order in which the store visits them, integers little-endian:
-///   format                   weaving version
+///   format                   weaving version, version of the parts
 ///   head                     revision, bounds
 ///   robot/<index>            last seq, scan count, name, a zero byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
 ///   track/<index>/<block>    512 points of a trajectory
-///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer
-///   weave/sonar/<chunk>      revision and cells of one chunk
+///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer, compressed
+///   weave/sonar/<chunk>      revision and cells of one chunk, compressed
 /// <index>, <block> and the like are fixed-width hexadecimal.
 ///
-/// Written in pieces of 4 MiB: the format first, then tracks and chunks. What depends on the revision comes last
-/// and at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves is usable:
-/// tracks and chunks may then be newer than the head, and a chunk knows by its revision which entries of the log it
-/// holds already.
+/// Written in pieces of 4 MiB, uncompressed: the format first, then tracks and chunks. What depends on the revision
+/// comes last and at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves
+/// is usable: tracks and chunks may then be newer than the head, and a chunk knows by its revision which entries of the
+/// log it holds already.
 namespace scanloom::session {
 
 /// Writes the parts that changed after `since`; for none all of them, in place of whatever was there.
@@ -69,6 +70,7 @@ private:
     [[nodiscard]] bool add_sonar_chunk(const Numbers& numbers, std::string_view value);
     void begin_weaving();
 
+    PartDecompressor decompressor_;
     mapping::Projection projection_;
     mapping::ProjectionState state_;
     bool has_format_ = false;

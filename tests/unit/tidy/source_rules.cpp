@@ -117,7 +117,7 @@ const std::vector<Package> kPackages = {
     {"boost/beast", {"server/live", "server/http", "server/app", "load/net"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},
-    {"zstd.h", {"common/wire"}},
+    {"zstd.h", {"common/wire", "server/session"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };
 

@@ -21,7 +21,7 @@ using Cells = std::set<Cell, ByRows>;
 ClassView view_of(const Cells& frontier_cells) {
     ClassChunk blank;
     blank.cells.fill(CellClass::kUnexplored);
-    grid::ChunkTree<ClassChunk> tree(blank);
+    grid::ChunkTree<ClassChunk> tree(std::make_shared<const ClassChunk>(blank));
     for (const Cell cell : frontier_cells) tree.write(grid::chunk_of(cell), 1).at(cell) = CellClass::kFrontier;
     return tree.snapshot();
 }
@@ -126,7 +126,7 @@ TEST(Frontiers, SmallOnesAreLeftOut) {
 TEST(Frontiers, ChunksWhoseCellsHaveNoNumbersAreLeftOut) {
     ClassChunk frontier;
     frontier.cells.fill(CellClass::kFrontier);
-    grid::ChunkTree<ClassChunk> tree(frontier);
+    grid::ChunkTree<ClassChunk> tree(std::make_shared<const ClassChunk>(frontier));
     (void)tree.write({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, 1);
     (void)tree.write({1 << 25, 0}, 1);
     (void)tree.write({0, (1 << 25) - 1}, 1);

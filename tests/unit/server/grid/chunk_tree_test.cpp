@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <random>
@@ -16,10 +17,10 @@ namespace {
 using TestChunk = Chunk<std::int16_t>;
 using Keys = std::set<ChunkKey>;
 
-TestChunk blank() {
+std::shared_ptr<const TestChunk> blank() {
     TestChunk chunk;
     chunk.cells.fill(-1);
-    return chunk;
+    return std::make_shared<const TestChunk>(chunk);
 }
 
 Keys visited(const ChunkView<TestChunk>& view, const ChunkBox& box = {}, Revision since = 0) {

@@ -153,7 +153,8 @@ TEST(Checkpoint, EveryPartCutShortIsReported) {
             damaged[key].resize(kept);
             const auto refused = read(damaged);
             ASSERT_FALSE(refused) << key << " cut to " << kept;
-            EXPECT_EQ(refused.error().code, Errc::kMalformed);
+            const bool is_of_version_1 = key == "format" && kept == 4; // which had no number after the weaving version
+            EXPECT_EQ(refused.error().code, is_of_version_1 ? Errc::kUnsupportedVersion : Errc::kMalformed);
         }
     }
 }
