@@ -24,6 +24,13 @@ double sector_width(double aperture, const Sensor& sensor, const Scan& scan) {
     return uniform != nullptr ? std::max(aperture, std::abs(uniform->increment)) : 2.0 * std::numbers::pi;
 }
 
+/// The shortest reading that is not below so many metres, by the very comparison of reading_of().
+RangeMm first_from(double metres) {
+    auto range = static_cast<RangeMm>(std::max(std::floor(metres * 1000.0) - 1.0, 0.0));
+    while (range * 0.001 < metres) ++range;
+    return range;
+}
+
 /// What the readings of a scan are, in whole millimetres: one pass of integers, for all layers.
 struct Readings {
     RangeMm longest_hit = 0;
@@ -34,9 +41,8 @@ struct Readings {
 };
 
 Readings readings_of(const Scan& scan, const ReadingRules& rules) {
-    const auto mm = [](double metres) { return static_cast<RangeMm>(std::lround(metres * 1000.0)); };
-    const RangeMm least = std::max<RangeMm>(mm(rules.range_min), 1);
-    const RangeMm most = mm(rules.range_max); // and beyond: no return
+    const RangeMm least = std::max<RangeMm>(first_from(rules.range_min), 1);
+    const RangeMm most = first_from(rules.range_max); // and beyond: no return
     Readings readings;
     std::uint64_t valid = 0;
     for (const RangeMm range : scan.ranges) {

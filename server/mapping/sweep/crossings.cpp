@@ -125,18 +125,18 @@ struct Sectors {
     M are_sectors;
     V first_row, end_row;
 
-    /// The part of an edge between two of its points, where it crosses any row.
-    HWY_INLINE void AppendSpoke(Pieces<kSpokeNumbers>& spokes, const Corner& one, const Corner& other) const {
+    /// The part of some sectors' edges between two of their points, where it crosses any row.
+    HWY_INLINE void AppendSpoke(Pieces<kSpokeNumbers>& spokes, M which, const Corner& one, const Corner& other) const {
         const V from = hn::Max(hn::Min(one.row, other.row), first_row);
         const V to = hn::Min(hn::Max(one.row, other.row), end_row);
-        Append<kSpokeNumbers>(D(), spokes, hn::And(are_sectors, hn::Lt(from, to)),
+        Append<kSpokeNumbers>(D(), spokes, hn::And(which, hn::Lt(from, to)),
                               {from, to, x0, y0, hn::Mul(one.radius, x0), hn::Mul(other.radius, x0)});
     }
 
     /// Two contours along an edge, each from the sector before to this one: what is between them borders on the edge
     /// where they differ, in whichever two parts are shorter.
-    HWY_INLINE void AppendSteps(Pieces<kSpokeNumbers>& spokes, const Corner& inner_before, const Corner& inner_here,
-                                const Corner& outer_before, const Corner& outer_here) const {
+    HWY_INLINE void AppendSteps(Pieces<kSpokeNumbers>& spokes, M which, const Corner& inner_before,
+                                const Corner& inner_here, const Corner& outer_before, const Corner& outer_here) const {
         const auto rows = [](const Corner& a, const Corner& b) HWY_ATTR { return hn::Abs(hn::Sub(a.row, b.row)); };
         const V along = hn::Add(rows(inner_before, inner_here), rows(outer_before, outer_here));
         const V across = hn::Add(rows(inner_before, outer_before), rows(inner_here, outer_here));
@@ -144,8 +144,8 @@ struct Sectors {
         const auto chosen = [&](const Corner& a, const Corner& b) HWY_ATTR {
             return Corner{hn::IfThenElse(goes_across, a.radius, b.radius), hn::IfThenElse(goes_across, a.row, b.row)};
         };
-        AppendSpoke(spokes, inner_before, chosen(outer_before, inner_here));
-        AppendSpoke(spokes, outer_here, chosen(inner_here, outer_before));
+        AppendSpoke(spokes, which, inner_before, chosen(outer_before, inner_here));
+        AppendSpoke(spokes, which, outer_here, chosen(inner_here, outer_before));
     }
 
     HWY_INLINE void AppendArcs(Pieces<kArcNumbers>& arcs, const Corner& start, V end_of_arc) const {
@@ -197,15 +197,17 @@ HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
             has_arcs = hn::Or(has_arcs, hn::Ne(start[k].row, end[k]));
         }
         if (!hn::AllFalse(d, has_spokes)) { // rarely where cells are large
+            // Each sector for itself: which way it goes decides how a crossing is rounded, and must not depend on how
+            // many sectors a vector holds.
             const V rise = hn::Abs(hn::Sub(before[0].row, start[0].row));
-            const bool is_steep = !hn::AllFalse(d, hn::Gt(rise, hn::Set(d, kSteep)));
-            for (std::size_t k = 0; k < count; ++k) {
-                if (!is_steep) {
-                    sectors.AppendSpoke(crossings[k].spokes, before[k], start[k]);
-                } else if (k == 0) {
-                    sectors.AppendSpoke(crossings[k].steps, before[k], start[k]);
-                } else {
-                    sectors.AppendSteps(crossings[k].steps, before[k - 1], start[k - 1], before[k], start[k]);
+            const M is_steep = hn::And(sectors.are_sectors, hn::Gt(rise, hn::Set(d, kSteep)));
+            const M is_flat = hn::AndNot(is_steep, sectors.are_sectors);
+            for (std::size_t k = 0; k < count; ++k)
+                sectors.AppendSpoke(crossings[k].spokes, is_flat, before[k], start[k]);
+            if (!hn::AllFalse(d, is_steep)) {
+                sectors.AppendSpoke(crossings[0].steps, is_steep, before[0], start[0]);
+                for (std::size_t k = 1; k < count; ++k) {
+                    sectors.AppendSteps(crossings[k].steps, is_steep, before[k - 1], start[k - 1], before[k], start[k]);
                 }
             }
         }

@@ -7,8 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Every instruction set that this machine has, against the definitions and against the others.
@@ -62,6 +66,61 @@ TEST_P(InstructionSet, GivesTheSameMapsAsTheOthersBitForBit) {
                 EXPECT_EQ(here, digests_of_random_scans(shape, options)) << "shape " << shape << ", " << cell_size;
             }
         }
+    }
+}
+
+/// A sensor on a cell's centre or corner, edges between sectors that go through those of other cells, and readings
+/// whose bands begin or end there: the rounding of each crossing decides.
+std::string digests_of_scans_through_centres(unsigned seed) {
+    struct Direction {
+        int x, y, length; // whole numbers all three
+    };
+    constexpr Direction kDirections[] = {{3, 4, 5},   {4, 3, 5},    {5, 12, 13},  {12, 5, 13}, {8, 15, 17},
+                                         {15, 8, 17}, {20, 21, 29}, {21, 20, 29}, {1, 0, 1},   {0, 1, 1}};
+    constexpr double kAperture = 0.04;
+    std::mt19937 random(seed);
+    const double cell = std::array{0.25, 0.5, 1.0}[random() % 3];
+    const double narrow = cell * static_cast<double>(1 + random() % 4);
+    const double wide = narrow + cell * static_cast<double>(random() % 3);
+    Sensor sensor;
+    sensor.range_max = 150.0 * cell;
+    ExplicitAngles angles;
+    Scan scan;
+    const auto half_cells = [&] { return 0.5 * cell * static_cast<double>(random() % 7); };
+    for (const Direction& direction : kDirections) {
+        for (const double turned : {0.0, 0.5, 1.0, 1.5}) { // of pi
+            const double edge = std::atan2(direction.y, direction.x) + turned * std::numbers::pi;
+            const double corner =
+                cell * direction.length * static_cast<double>(1 + random() % (140 / direction.length));
+            for (const double side : {-0.5, 0.5}) { // the edge is in the middle between two beams
+                angles.push_back(edge + side * kAperture);
+                const double ahead = 0.5 * (random() % 2 == 0 ? narrow : wide) * (random() % 2 == 0 ? 1.0 : -1.0);
+                scan.ranges.push_back(random() % 6 == 0 ? kInvalidRange : to_range_mm(corner + ahead + half_cells()));
+            }
+        }
+    }
+    sensor.angles = angles;
+    scan.seq = 1;
+    scan.pose = {half_cells(), half_cells(), 0.0};
+    const SessionOptions options{.cell_size = cell,
+                                 .obstacle_thickness = narrow,
+                                 .beam_aperture = kAperture,
+                                 .himm_obstacle_thickness = wide,
+                                 .himm_beam_aperture = kAperture};
+    Projection projection(resolve(options).value());
+    EXPECT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    EXPECT_TRUE(projection.fold(SensorDescribed{0, sensor}));
+    EXPECT_TRUE(projection.fold(ScanTaken{0, std::move(scan)}));
+    return testing_support::digests_of(projection.snapshot());
+}
+
+TEST_P(InstructionSet, GivesTheSameMapsWhereEdgesGoThroughCentres) {
+    for (unsigned seed = 0; seed < 1500; ++seed) {
+        simd::use_instruction_set(GetParam());
+        const auto here = digests_of_scans_through_centres(seed);
+        simd::use_instruction_set({});
+        simd::use_instruction_set(simd::instruction_sets().back());
+        ASSERT_EQ(here, digests_of_scans_through_centres(seed)) << "seed " << seed;
     }
 }
 

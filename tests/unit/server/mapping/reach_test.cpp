@@ -82,6 +82,35 @@ TEST(Reach, IsNeverLessThanWhatWeavingTheScanDoes) {
     }
 }
 
+/// The limits of a sensor may lie between two millimetres: a float of 4.9 m is 4.900000095.
+TEST(Reach, OfReadingsAtTheLimitsIsThatOfWhatIsWoven) {
+    std::mt19937 random(8);
+    for (int round = 0; round < 400; ++round) {
+        Sensor sensor = testing_support::small_laser();
+        const auto limit = [&] {
+            return 0.5 + 0.001 * static_cast<double>(random() % 5000) + 1e-4 * static_cast<double>(random() % 11);
+        };
+        sensor.range_max = round % 4 == 0 ? static_cast<double>(static_cast<float>(limit())) : limit();
+        sensor.range_min = round % 2 == 0 ? 0.0 : sensor.range_max * 0.5;
+        MapConfig config;
+        config.drop_no_return = round % 3 != 0;
+        const double of = random() % 2 == 0 ? sensor.range_max : sensor.range_min;
+        Scan scan = testing_support::random_scan(1, 1);
+        scan.ranges.assign(18, static_cast<RangeMm>(std::lround(of * 1000.0) + static_cast<int>(random() % 3) - 1));
+
+        Projection projection(config);
+        ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+        ASSERT_TRUE(projection.fold(SensorDescribed{0, sensor}));
+        ASSERT_TRUE(projection.fold(ScanTaken{0, scan}));
+        const Reach reach = reach_of(config, sensor, scan);
+        const auto seen = cells_seen(projection.snapshot());
+        EXPECT_EQ(reach.work > 0.0, seen > 0)
+            << sensor.range_min << " .. " << sensor.range_max << ", " << scan.ranges[0];
+        EXPECT_GE(reach.work, 0.95 * static_cast<double>(seen));
+        EXPECT_GE(chunk_count_of(reach.cells), static_cast<std::int64_t>(projection.chunk_count()));
+    }
+}
+
 TEST(Reach, OfAScanThatShowsNothingIsEmpty) {
     Scan scan = testing_support::random_scan(1, 1);
     scan.ranges.assign(18, kInvalidRange);
