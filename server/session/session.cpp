@@ -25,6 +25,16 @@ Error full(std::size_t chunks, std::size_t chunks_max) {
                                      chunks, chunks_max)};
 }
 
+Error no_memory() {
+    return {Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
+}
+
+/// What is shown of a session whose maps were taken back when the memory ran out.
+const std::shared_ptr<const mapping::Snapshot>& no_maps() {
+    static const auto none = std::make_shared<const mapping::Snapshot>();
+    return none;
+}
+
 } // namespace
 
 Session::Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed,
@@ -34,7 +44,8 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
       may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), members_(info_, *counters_),
       projection_(std::move(projection)), appended_(projection_.revision()), checkpointed_(checkpointed) {
     members_.restore(projection_.state());
-    publish();
+    static_cast<void>(no_maps()); // made while there is memory
+    if (!publish()) throw std::bad_alloc();
 }
 
 std::optional<Error> Session::failure() const {
@@ -154,9 +165,12 @@ void Session::fold_slice() {
     if (durable_.empty()) return; // dropped meanwhile
     const Group& group = durable_.front();
     const bool in_place = group.work <= kInPlaceWork && published_.take_back();
-    const auto folded = fold_some(in_place ? HUGE_VAL : kSliceWork);
+    auto folded = fold_some(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = folded && folded_ == group.entries.size();
-    if (in_place && !finished) publish(); // failed, or in a hurry: readers wait for what there is
+    if (in_place && !finished) { // failed, or in a hurry: readers wait for what there is
+        const auto published = publish();
+        if (folded) folded = published;
+    }
     if (!folded) return stop_writing(folded.error());
     if (finished) finish_group();
     if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
@@ -181,7 +195,7 @@ Result<> Session::fold_some(double work) {
         }
         return {};
     } catch (const std::bad_alloc&) {
-        return Error{Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
+        return no_memory();
     }
 }
 
@@ -199,18 +213,25 @@ void Session::finish_group() {
     durable_.pop_front();
     folded_ = 0;
     chunks_under_way_ -= group.chunks;
-    publish();
+    const auto published = publish();
     members_.release(group);
+    if (!published) return stop_writing(published.error());
     if (is_checkpoint_due()) begin_checkpoint();
     append_next();
 }
 
-void Session::publish() {
-    auto maps = projection_.snapshot();
-    for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
-    auto snapshot = std::make_shared<const mapping::Snapshot>(std::move(maps));
-    has_news_ = true;
-    published_.set(std::move(snapshot));
+/// Fails for want of memory; whoever asks has the maps from before then, or none.
+Result<> Session::publish() {
+    try {
+        auto maps = projection_.snapshot();
+        for (std::size_t n = 0; n < newest_scans_.size(); ++n) maps.robots[n].newest_scan = newest_scans_[n];
+        published_.set(std::make_shared<const mapping::Snapshot>(std::move(maps)));
+        has_news_ = true;
+        return {};
+    } catch (const std::bad_alloc&) {
+        published_.fall_back_to(no_maps());
+        return no_memory();
+    }
 }
 
 bool Session::is_checkpoint_due() const {

@@ -49,6 +49,9 @@ public:
     /// written.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const { return published_.get(); }
 
+    /// The same for threads that may not wait: null where they are being written.
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return published_.try_get(); }
+
     /// Entries that wait to be handed to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
@@ -116,7 +119,7 @@ private:
     [[nodiscard]] Result<> fold_some(double work);
     void keep_newest(LogEntry& folded);
     void finish_group();
-    void publish();
+    [[nodiscard]] Result<> publish();
     void tell_watchers();
     void stop_writing(const Error& error);
     void drop_what_is_under_way();

@@ -46,10 +46,10 @@ public:
     }
 
 private:
-    static mapping::LaserChunk blank() {
+    static std::shared_ptr<const mapping::LaserChunk> blank() {
         mapping::LaserChunk chunk{};
         chunk.occupancy.fill(mapping::kUnknownLogOdds);
-        return chunk;
+        return std::make_shared<const mapping::LaserChunk>(chunk);
     }
 
     const Column& column_;

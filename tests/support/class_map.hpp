@@ -25,10 +25,10 @@ public:
     [[nodiscard]] ClassView view() { return tree_.snapshot(); }
 
 private:
-    static classify::ClassChunk blank() {
+    static std::shared_ptr<const classify::ClassChunk> blank() {
         classify::ClassChunk chunk;
         chunk.cells.fill(CellClass::kUnexplored);
-        return chunk;
+        return std::make_shared<const classify::ClassChunk>(chunk);
     }
 
     grid::ChunkTree<classify::ClassChunk> tree_{blank()};

@@ -43,11 +43,20 @@ Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves, cons
         fmt::format("there is no weave {} of this session, or no longer; start it with POST .../weave", in_quotes(id))};
 }
 
-Result<Maps> MapsLookup::find(const Call& call, std::initializer_list<std::string_view> known) const {
+Result<> MapsLookup::check(const Call& call, std::initializer_list<std::string_view> known) {
     std::vector<std::string_view> all(known);
     all.push_back(kWeave);
-    if (auto ok = call.query.check_only(all); !ok) return ok.error();
+    return call.query.check_only(all);
+}
+
+Result<Maps> MapsLookup::find(const Call& call, std::initializer_list<std::string_view> known) const {
+    if (auto ok = check(call, known); !ok) return ok.error();
     return chosen(call, kWeave);
+}
+
+Result<Maps> MapsLookup::find_at_once(const Call& call, std::initializer_list<std::string_view> known) const {
+    if (auto ok = check(call, known); !ok) return ok.error();
+    return chosen(call, kWeave, Waiting::kNotAllowed);
 }
 
 Result<TwoMaps> MapsLookup::find_two(const Call& call, std::initializer_list<std::string_view> known) const {
@@ -78,12 +87,12 @@ Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<s
 }
 
 /// Those of the weave that the parameter names, or the session's own.
-Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter) const {
+Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter, Waiting waiting) const {
     auto session = find_session(sessions_, call);
     if (!session) return session.error();
     const auto id = call.query.find(parameter);
     if (!id) {
-        auto snapshot = (*session)->snapshot();
+        auto snapshot = waiting == Waiting::kAllowed ? (*session)->snapshot() : (*session)->try_snapshot();
         auto tag = session_tag((*session)->info());
         return Maps{*session, std::move(snapshot), *session, std::move(tag)};
     }

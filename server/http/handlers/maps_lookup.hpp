@@ -46,7 +46,10 @@ public:
     ///         has none yet; its own, where it failed.
     [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// The same, and weaves them if settings are given; waits until what the session shows now is in.
+    /// The same for threads that may not wait: without a snapshot where the session's own maps are being written.
+    [[nodiscard]] Result<Maps> find_at_once(const Call& call, std::initializer_list<std::string_view> known) const;
+
+    /// The same as find(), and weaves them if settings are given; waits until what the session shows now is in.
     /// Errors  also those of weave_request().
     [[nodiscard]] Result<Maps> find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const;
 
@@ -59,7 +62,11 @@ public:
     [[nodiscard]] session::Weaves& weaves() const noexcept { return weaves_; }
 
 private:
-    [[nodiscard]] Result<Maps> chosen(const Call& call, std::string_view parameter) const;
+    enum class Waiting { kAllowed, kNotAllowed };
+
+    [[nodiscard]] static Result<> check(const Call& call, std::initializer_list<std::string_view> known);
+    [[nodiscard]] Result<Maps> chosen(const Call& call, std::string_view parameter,
+                                      Waiting waiting = Waiting::kAllowed) const;
     [[nodiscard]] Result<Maps> woven(const Call& call) const;
 
     const session::SessionRegistry& sessions_;

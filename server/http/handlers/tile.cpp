@@ -39,6 +39,23 @@ bool is_final(const Version& version, std::string_view tag, Revision tile, Revis
     return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
+/// What the request says.
+struct Asked {
+    Version version;
+    tiles::TileKey key;
+    mapping::Layer layer;
+};
+
+Result<Asked> parse(const Call& call) {
+    const auto version = parse_version(call.query);
+    if (!version) return version.error();
+    const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
+    if (!key) return key.error();
+    const auto layer = find_layer(call.arguments["layer"]);
+    if (!layer) return layer.error();
+    return Asked{*version, *key, *layer};
+}
+
 /// A tile that was asked for, before anything is drawn.
 struct Wanted {
     Maps maps;
@@ -48,21 +65,16 @@ struct Wanted {
     std::string_view kept; ///< Cache-Control
 };
 
-Result<Wanted> wanted_tile(const MapsLookup& maps, const Call& call, tiles::TileFormat format) {
-    const auto version = parse_version(call.query);
-    if (!version) return version.error();
-    const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
-    if (!key) return key.error();
-    auto found = maps.find(call, {"v", "id"});
-    if (!found) return found.error();
-    const auto layer = find_layer(call.arguments["layer"]);
-    if (!layer) return layer.error();
+tiles::TilePlace place_of(const Asked& asked, const Maps& maps, tiles::TileFormat format) {
+    return {maps.tag, asked.layer, asked.key, format};
+}
 
-    const Revision revision = tiles::tile_revision(*found->snapshot, *layer, *key);
-    auto etag = tiles::etag_of(found->tag, mapping::name_of(*layer), *key, revision);
-    const auto kept = is_final(*version, found->tag, revision, found->snapshot->revision) ? kImmutable : kRevalidate;
-    tiles::TilePlace place{found->tag, *layer, *key, format};
-    return Wanted{std::move(*found), std::move(place), revision, std::move(etag), kept};
+Wanted wanted_tile(const Asked& asked, Maps maps, tiles::TileFormat format) {
+    const Revision revision = tiles::tile_revision(*maps.snapshot, asked.layer, asked.key);
+    auto etag = tiles::etag_of(maps.tag, mapping::name_of(asked.layer), asked.key, revision);
+    const bool is_kept = is_final(asked.version, maps.tag, revision, maps.snapshot->revision);
+    auto place = place_of(asked, maps, format);
+    return Wanted{std::move(maps), std::move(place), revision, std::move(etag), is_kept ? kImmutable : kRevalidate};
 }
 
 bool is_known(const Wanted& wanted, const Call& call) {
@@ -79,20 +91,29 @@ Response answer_of(const Wanted& wanted, tiles::SharedBytes bytes) {
 } // namespace
 
 Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call, tiles::TileFormat format) {
-    const auto wanted = wanted_tile(maps, call, format);
-    if (!wanted) return wanted.error();
-    if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
-    return answer_of(*wanted,
-                     maker.make({*wanted->maps.snapshot, wanted->maps.origin}, wanted->place, wanted->revision));
+    const auto asked = parse(call);
+    if (!asked) return asked.error();
+    auto found = maps.find(call, {"v", "id"});
+    if (!found) return found.error();
+    const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
+    if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
+    return answer_of(wanted, maker.make({*wanted.maps.snapshot, wanted.maps.origin}, wanted.place, wanted.revision));
 }
 
 Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
                              tiles::TileFormat format) {
-    const auto wanted = wanted_tile(maps, call, format);
-    if (!wanted) return wanted.error();
-    if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
-    if (auto bytes = maker.find(wanted->place, wanted->revision)) return answer_of(*wanted, std::move(bytes));
-    return maker.is_quick(wanted->place) ? Lane::kServing : Lane::kSurvey;
+    const auto asked = parse(call);
+    if (!asked) return asked.error();
+    auto found = maps.find_at_once(call, {"v", "id"});
+    if (!found) return found.error();
+    const auto lane_of = [&](const tiles::TilePlace& place) {
+        return maker.is_quick(place) ? Lane::kServing : Lane::kSurvey;
+    };
+    if (!found->snapshot) return lane_of(place_of(*asked, *found, format));
+    const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
+    if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
+    if (auto bytes = maker.find(wanted.place, wanted.revision)) return answer_of(wanted, std::move(bytes));
+    return lane_of(wanted.place);
 }
 
 } // namespace scanloom::http

@@ -3,6 +3,7 @@
 #include "tests/unit/server/session/session_fixture.hpp"
 
 #include <atomic>
+#include <future>
 #include <map>
 #include <thread>
 
@@ -36,6 +37,47 @@ TEST(Published, WhoeverAsksForMapsThatWereTakenBackWaitsForTheNext) {
         reader.join();
         ASSERT_EQ(seen, revision + 1);
     }
+}
+
+TEST(Published, MapsThatSomebodyWaitsForAreNotTakenBackBeforeTheyAreThere) {
+    Published published;
+    published.set(maps_at(1));
+    for (Revision revision = 2; revision <= 200; ++revision) {
+        ASSERT_TRUE(published.take_back());
+        std::promise<void> let_go;
+        Revision seen = 0;
+        std::thread reader([&] {
+            const auto maps = published.get();
+            seen = maps->revision;
+            let_go.get_future().wait();
+        });
+        while (!published.is_waited_for()) std::this_thread::yield();
+        published.set(maps_at(revision));
+        EXPECT_FALSE(published.take_back()) << "the reader is on its way, or has them";
+        let_go.set_value();
+        reader.join();
+        ASSERT_EQ(seen, revision);
+    }
+}
+
+TEST(Published, WhoeverMayNotWaitHearsThatTheMapsWereTakenBack) {
+    Published published;
+    published.set(maps_at(1));
+    EXPECT_EQ(published.try_get()->revision, 1U);
+    ASSERT_TRUE(published.take_back());
+    EXPECT_EQ(published.try_get(), nullptr);
+    published.set(maps_at(2));
+    EXPECT_EQ(published.try_get()->revision, 2U);
+}
+
+TEST(Published, OthersTakeThePlaceOfMapsThatWereTakenBackOnly) {
+    Published published;
+    published.set(maps_at(1));
+    published.fall_back_to(maps_at(7));
+    EXPECT_EQ(published.get()->revision, 1U);
+    ASSERT_TRUE(published.take_back());
+    published.fall_back_to(maps_at(7));
+    EXPECT_EQ(published.get()->revision, 7U);
 }
 
 const mapping::LaserChunk* chunk_at_origin(const mapping::Snapshot& maps) { return maps.laser.find({0, 0}); }
