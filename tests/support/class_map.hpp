@@ -25,9 +25,9 @@ public:
     [[nodiscard]] ClassView view() { return tree_.snapshot(); }
 
 private:
-    static classify::ClassChunk blank() {
-        classify::ClassChunk chunk;
-        chunk.cells.fill(CellClass::kUnexplored);
+    static std::shared_ptr<const classify::ClassChunk> blank() {
+        auto chunk = std::make_shared<classify::ClassChunk>();
+        chunk->cells.fill(CellClass::kUnexplored);
         return chunk;
     }
 
