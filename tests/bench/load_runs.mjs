@@ -1,11 +1,16 @@
 /** Runs of scanloom-load against a server of their own. */
-import { start } from '../e2e/programs.mjs';
+import { Server, start } from '../e2e/programs.mjs';
+
+/** A server that says nothing but what goes wrong, so that figures are not buried. */
+export function startServer() {
+  return Server.start(['--log-level', 'warn']);
+}
 
 /** @returns the report of one run; throws where something was lost or could not be verified */
 export async function load(server, options) {
   const child = start('scanloom-load', [
     ...['--server', `127.0.0.1:${server.robotPort}`, '--http', `127.0.0.1:${server.httpPort}`, '--json', '-', '--replace'],
-    ...Object.entries(options).flatMap(([name, value]) => [`--${name}`, String(value)]),
+    ...Object.entries(options).flatMap(([name, value]) => (value === true ? [`--${name}`] : [`--${name}`, String(value)])),
   ]);
   const text = await textOf(child.stdout);
   const report = JSON.parse(text.slice(text.indexOf('{')));
