@@ -27,7 +27,7 @@ const aims = {
 };
 
 const [program, file] = named;
-announce('projection', '2 minutes', 'half a minute');
+announce('projection', '1 minute', 'half a minute');
 const on = machine();
 const columns = compared(measure());
 /** Those whose geometric mean counts; the others only show what noise costs. */

@@ -38,7 +38,7 @@ const nginx = findProgram('nginx');
 const wrk = findProgram('wrk') ?? fail("wrk is missing; install Debian's wrk: ./scanloom install bench");
 if (!nginx) console.log("nginx is missing: the server is measured alone (./scanloom install bench)");
 
-announce('tiles', '2 minutes', '20 seconds');
+announce('tiles', '3 minutes', '20 seconds');
 const on = machineWithStore();
 const server = await startServer();
 await makeMap();
@@ -179,7 +179,7 @@ async function tell() {
   console.log();
   for (const { name, rate, us, us_304 } of ratios) {
     line(`of ${name}`, rate.toFixed(2), verdict(rate >= kRatioAim, `at least ${kRatioAim}`));
-    line('CPU, by that of it', us.toFixed(2), `304: ${us_304.toFixed(2)}`);
+    line("CPU, times nginx's", us.toFixed(2), `${us_304.toFixed(2)} for a 304`);
   }
   line('first time, mean', `${first.ms.toFixed(2)} ms`, `${verdict(first.ms < kFirstMsAim, `below ${kFirstMsAim} ms`)}, ${first.tiles} tiles of all zooms, codes and PNG`);
   await writeFile(result, `${JSON.stringify({

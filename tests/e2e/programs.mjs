@@ -54,8 +54,8 @@ export async function stop(child) {
   await over;
 }
 
-export function start(program, args) {
-  const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', 'inherit'] });
+export function start(program, args, { stderr = 'inherit' } = {}) {
+  const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', stderr] });
   child.on('error', (error) => console.error(`${program} cannot be started: ${error.message}`));
   return child;
 }
