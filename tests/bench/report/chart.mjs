@@ -19,7 +19,7 @@ export function drawCharts(charts, columns = 3) {
 <clipPath id="frame"><rect x="${kLeft}" y="${kTop}" width="${kWidth - kLeft - kRight}" height="${kHeight - kTop - kBottom}"/></clipPath>
 <rect width="100%" height="100%" fill="#ffffff"/>
 ${parts.join('\n')}
-<text x="${(columns * kWidth) / 2}" y="${rows * kHeight + 6}" text-anchor="middle">Both axes of every chart are logarithmic. Dashed: as much more as there is more work, from the first point.</text>
+<text x="${(columns * kWidth) / 2}" y="${rows * kHeight + 10}" text-anchor="middle">Both axes of every chart are logarithmic. Dashed: from the first point on, growing as the work does.</text>
 </svg>
 `;
 }
