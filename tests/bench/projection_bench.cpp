@@ -13,7 +13,10 @@
 
 // What it costs to put one scan into a map, ours and others', on the same scans in one run: times are per scan, after
 // all scans have been inserted once. "occupancy" is our exact log-odds alone, which others do; "all_layers" adds HIMM
-// and the classes' hysteresis. All but MRPT, which is Debian's, are built for this machine's instruction set.
+// and the classes' hysteresis. Where the same ground is seen again and again its cells settle, and rows of them are
+// passed by: "unsettled" is "occupancy" that forgets this before each scan (and pays for the forgetting), so that every
+// cell is read and written, as on new ground. Others take as long for either.
+// All but MRPT, which is Debian's, are built for this machine's instruction set.
 
 namespace scanloom::bench {
 namespace {
@@ -28,6 +31,16 @@ mapping::ReadingRules readings_of(const Column& column) {
     return {column.sensor.range_min, column.sensor.range_max, false};
 }
 
+std::shared_ptr<const mapping::LaserChunk> unknown_chunk() {
+    auto chunk = std::make_shared<mapping::LaserChunk>();
+    chunk->occupancy.fill(mapping::kUnknownLogOdds);
+    return chunk;
+}
+
+/// Whether a row of cells that are as free as cells can be is passed by.
+enum class Settling { kKnown, kForgotten };
+
+template <Settling kSettling>
 class Occupancy final : public Mapper {
 public:
     explicit Occupancy(const Column& column)
@@ -40,22 +53,18 @@ public:
         mapping::Sweep sweep({scan.ranges, scan.pose, readings_of(column_), column_.cell_size}, {&band, 1});
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {
-                mapping::simd::add_evidence(*grid_.write(key), verdicts.front(), rule_);
+                mapping::LaserChunk& chunk = *grid_.write(key);
+                if constexpr (kSettling == Settling::kForgotten) chunk.settled_occupancy = {};
+                mapping::simd::add_evidence(chunk, verdicts.front(), rule_);
             });
         }
     }
 
 private:
-    static std::shared_ptr<const mapping::LaserChunk> blank() {
-        mapping::LaserChunk chunk{};
-        chunk.occupancy.fill(mapping::kUnknownLogOdds);
-        return std::make_shared<const mapping::LaserChunk>(chunk);
-    }
-
     const Column& column_;
     mapping::OccupancyRule rule_;
     mapping::FanRing ring_;
-    mapping::ChunkGrid<mapping::LaserChunk> grid_{blank()};
+    mapping::ChunkGrid<mapping::LaserChunk> grid_{unknown_chunk()};
     Revision revision_ = 0;
 };
 
@@ -95,7 +104,8 @@ Peer ours(std::string name) {
 }
 
 void register_all() {
-    std::vector<Peer> all{ours<Occupancy>("occupancy"), ours<AllLayers>("all_layers")};
+    std::vector<Peer> all{ours<Occupancy<Settling::kKnown>>("occupancy"),
+                          ours<Occupancy<Settling::kForgotten>>("unsettled"), ours<AllLayers>("all_layers")};
     all.insert(all.end(), peers().begin(), peers().end());
     for (const Column& column : columns()) {
         for (const Peer& peer : all) {
@@ -112,6 +122,7 @@ void register_all() {
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     benchmark::AddCustomContext("instruction_set", std::string(scanloom::mapping::simd::instruction_set()));
+    benchmark::AddCustomContext("mrpt", scanloom::bench::mrpt_version());
     scanloom::bench::register_all();
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();

@@ -1,21 +1,24 @@
 /**
  * What it costs to put a scan into a map, ours and others', as ratios of one run, beside what we aim at.
  *
- *   node tests/bench/projection_report.mjs build/bench/projection_bench build/bench/projection.json
+ *   node tests/bench/projection_report.mjs build/bench/projection_bench build/bench/projection.json [--quick]
  *
  * Each benchmark runs kRounds times, all of them mixed, and its median counts: so that what else the machine does meanwhile
  * meets all alike. Times are of the processor, not of the clock.
  */
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
+import { announce, fullOrQuick, named } from './report/arguments.mjs';
 import { inWords, machine } from './report/machine.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
-const kRounds = 5;
-/** Mappers; "spans" is a limit, and "fill_poly" knows no occupied cells. */
-const kRivals = ['mark_and_clear', 'once_a_scan', 'mrpt'];
-/** Those columns whose geometric mean counts; the others only show what noise costs. */
-const counts = (column) => !column.includes('+noise');
+const kRounds = fullOrQuick(5, 3);
+const kSeconds = fullOrQuick(0.05, 0.005); // of each benchmark in each round, at least
+
+/** Mappers, whose fastest is what ours is compared with, and how they are called for short. */
+const kRivals = { once_a_scan: 'Hector', mrpt: 'MRPT', mark_and_clear: 'Nav2' };
+/** In the order in which they are told. */
+const kPlaces = ['room', 'office', 'hall', 'intel', 'fr079', 'room+noise'];
 
 const aims = {
   meanOverRivals: 6,
@@ -23,15 +26,18 @@ const aims = {
   allOverOccupancy: 2, // at most
 };
 
-const [program, file] = process.argv.slice(2);
+const [program, file] = named;
+announce('projection', '1 minute', 'half a minute');
 const on = machine();
-const times = measure();
-const columns = Object.keys(times).map(compare);
-const counted = columns.filter((column) => counts(column.name));
+const columns = compared(measure());
+/** Those whose geometric mean counts; the others only show what noise costs. */
+const counted = columns.filter((column) => !column.name.includes('+noise'));
 const result = {
   machine: on,
   aims,
-  mean_over_rivals: Math.exp(counted.reduce((sum, column) => sum + Math.log(column.over_rivals), 0) / counted.length),
+  mean_over_rivals: geometricMean('over_rivals'),
+  mean_over_rivals_unsettled: geometricMean('over_rivals_unsettled'),
+  mean_over_fill_poly: geometricMean('over_fill_poly'),
   slower_than_a_rival_in: columns.filter((column) => column.over_rivals < 1).map((column) => column.name),
   columns,
 };
@@ -40,9 +46,10 @@ tell();
 
 /** @returns {column: {mapper: microseconds a scan}} */
 function measure() {
-  const options = [`--benchmark_repetitions=${kRounds}`, '--benchmark_enable_random_interleaving=true', '--benchmark_report_aggregates_only=true', '--benchmark_min_time=0.05', '--benchmark_format=json'];
+  const options = [`--benchmark_repetitions=${kRounds}`, '--benchmark_enable_random_interleaving=true', '--benchmark_report_aggregates_only=true', `--benchmark_min_time=${kSeconds}`, '--benchmark_format=json'];
   const run = JSON.parse(execFileSync(program, options, { encoding: 'utf8', maxBuffer: 2 ** 28, stdio: ['ignore', 'pipe', 'ignore'] }));
   on.instruction_set = run.context.instruction_set;
+  on.mrpt = run.context.mrpt;
   const found = {};
   for (const benchmark of run.benchmarks) {
     if (benchmark.aggregate_name !== 'median') continue;
@@ -53,36 +60,83 @@ function measure() {
   return found;
 }
 
-function compare(name) {
-  const of = times[name];
-  const fastest = kRivals.filter((rival) => rival in of).reduce((a, b) => (of[a] <= of[b] ? a : b));
-  return {
-    name,
-    microseconds: of,
-    fastest_rival: fastest,
-    over_rivals: of[fastest] / of.occupancy,
-    over_spans: of.occupancy / of.spans,
-    all_over_occupancy: of.all_layers / of.occupancy,
-  };
+function compared(times) {
+  const rank = (name) => kPlaces.indexOf(name.split(' ')[0]) + Number(name.split(' ')[1]); // cells are smaller than 1 m
+  const inOrder = Object.entries(times).sort(([a], [b]) => rank(a) - rank(b));
+  return inOrder.map(([name, of]) => {
+    const fastest = Object.keys(kRivals).filter((rival) => rival in of).reduce((a, b) => (of[a] <= of[b] ? a : b));
+    return {
+      name,
+      microseconds: of,
+      fastest_rival: fastest,
+      over_rivals: of[fastest] / of.occupancy,
+      over_rivals_unsettled: of[fastest] / of.unsettled,
+      over_fill_poly: of.fill_poly / of.occupancy,
+      over_spans: of.occupancy / of.spans,
+      all_over_occupancy: of.all_layers / of.occupancy,
+    };
+  });
+}
+
+function geometricMean(key) {
+  return Math.exp(counted.reduce((sum, column) => sum + Math.log(column[key]), 0) / counted.length);
 }
 
 function tell() {
-  const mappers = Object.keys(columns[0].microseconds);
   console.log(inWords(on), `\ninstructions: ${on.instruction_set}; microseconds a scan, medians of ${kRounds}\n`);
-  console.log(table(['', ...mappers], columns.map((column) => [column.name, ...mappers.map((mapper) => threeDigits(column.microseconds[mapper]))])));
-  console.log();
+  console.log(timesOf(counted));
+  console.log("\nAll but MRPT are written anew from their idea. fillPoly is no mapper: it knows no occupied cells, and joins the ends of beams\nby straight lines, also where no beam has been; it shows what filling one polygon costs.\n");
+  const ratio = (what, key) => [what, ...counted.map((column) => threeDigits(column[key]))];
   console.log(
     table(
-      ['', 'times as fast as', 'the fastest', 'over the spans', 'all layers over occupancy'],
-      columns.map((column) => [column.name, threeDigits(column.over_rivals), column.fastest_rival, threeDigits(column.over_spans), threeDigits(column.all_over_occupancy)]),
+      ['', ...names(counted)],
+      [
+        ['the fastest of these: as Hector, MRPT, as Nav2', ...counted.map((column) => kRivals[column.fastest_rival])],
+        ratio('Scanloom, times as fast as that', 'over_rivals'),
+        ratio('the same on ground that is not settled yet', 'over_rivals_unsettled'),
+        ratio('Scanloom, times as fast as fillPoly', 'over_fill_poly'),
+        ratio('Scanloom, times as long as the limit', 'over_spans'),
+        ratio('all layers, times as long as occupancy', 'all_over_occupancy'),
+      ],
     ),
   );
-  console.log(`\ngeometric mean over the fastest rival: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals})`);
+  tellNoise();
+  console.log(`\ngeometric mean over the fastest: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals}); on ground that is not settled yet ${threeDigits(result.mean_over_rivals_unsettled)}; over fillPoly ${threeDigits(result.mean_over_fill_poly)}`);
   const isFine = (column) => Number(column.name.split(' ')[1]) <= 0.05;
-  tellLimit('over the span limit, cells of 0.05 m and finer', columns.filter(isFine), 'over_spans', aims.overSpans);
+  tellLimit('over the limit, cells of 0.05 m and finer', columns.filter(isFine), 'over_spans', aims.overSpans);
   tellLimit('all layers over occupancy', columns, 'all_over_occupancy', aims.allOverOccupancy);
-  console.log(`slower than a rival in: ${result.slower_than_a_rival_in.join(', ') || 'no column'}`);
+  console.log(`slower than one of them in: ${result.slower_than_a_rival_in.join(', ') || 'no column'}`);
   console.log(`written to ${file}`);
+}
+
+function tellNoise() {
+  const noisy = columns.filter((column) => !counted.includes(column));
+  console.log('\nThe room again with noise, 0.02 m of each range and 0.005 rad of each direction (standard deviations): ranges jump from beam to beam\n');
+  console.log(timesOf(noisy));
+}
+
+/** A row for each mapper, a column for each place. */
+function timesOf(places) {
+  const rows = Object.entries(mappers()).filter(([mapper]) => mapper in places[0].microseconds);
+  return table(['', ...names(places)], rows.map(([mapper, label]) => [label, ...places.map((place) => threeDigits(place.microseconds[mapper]))]));
+}
+
+function mappers() {
+  return {
+    bresenham: 'hand-written Bresenham, float',
+    once_a_scan: 'each cell once a scan, returns only, as Hector SLAM',
+    mrpt: `MRPT ${on.mrpt}, COccupancyGridMap2D`,
+    mark_and_clear: "mark and clear, bytes, as Nav2's obstacle layer",
+    fill_poly: 'OpenCV fillPoly and subtract',
+    occupancy: 'Scanloom, occupancy, exact',
+    unsettled: 'Scanloom, on ground that is not settled yet',
+    all_layers: 'Scanloom, with HIMM and classes',
+    spans: 'limit: adding to the same rows of cells',
+  };
+}
+
+function names(places) {
+  return places.map((place) => place.name);
 }
 
 function tellLimit(what, among, key, aim) {

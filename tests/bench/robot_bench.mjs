@@ -1,7 +1,7 @@
 /**
  * What a robot's program costs: processor time, memory and bytes on the wire, while it reads an LD06 in real time.
  *
- *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin node tests/bench/robot_bench.mjs CAPTURE
+ *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin node tests/bench/robot_bench.mjs CAPTURE [--quick]
  *
  * CAPTURE holds bytes of a real LD06. They come over TCP, 375 packets of 47 bytes a second.
  */
@@ -9,17 +9,20 @@ import { mkdtemp, readFile, rm } from 'node:fs/promises';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { Server, start, stop } from '../e2e/programs.mjs';
+import { start, stop } from '../e2e/programs.mjs';
+import { startServer } from './load_runs.mjs';
+import { announce, fullOrQuick, named } from './report/arguments.mjs';
+import { memoryBytes, processorSeconds } from './report/process_use.mjs';
 
 const kBytesPerSecond = 4500 / 12 * 47;
 const kTickMs = 20;
 const kWarmUpMs = 4000; // not measured: start, connecting
-const kMeasuredMs = 15000;
-const kTicksPerSecond = 100; // of /proc, on every Linux of today
+const kMeasuredMs = fullOrQuick(15000, 3000);
 
-const capture = await readFile(process.argv[2] ?? missing());
+const capture = await readFile(named[0] ?? missing());
+announce('robot', '100 seconds', '40 seconds');
 const place = await mkdtemp(join(tmpdir(), 'scanloom-robot-bench-'));
-const server = await Server.start();
+const server = await startServer();
 console.log(['', 'of one core', 'memory, most', 'bytes a scan'].map((title) => title.padStart(18)).join(''));
 await tell('plain', []);
 await tell('zstd', ['--compression', 'zstd']);
@@ -44,10 +47,10 @@ async function tell(name, options, port = server.robotPort) {
   ]);
   const printed = textOf(robot.stdout);
   await milliseconds(kWarmUpMs);
-  const before = await processorTime(robot.pid);
+  const before = processorSeconds(robot.pid);
   await milliseconds(kMeasuredMs);
-  const share = ((await processorTime(robot.pid)) - before) / (kMeasuredMs / 1000);
-  const memory = (await readFile(`/proc/${robot.pid}/status`, 'utf8')).match(/VmHWM:\s+(\d+) kB/)[1] / 1024;
+  const share = (processorSeconds(robot.pid) - before) / (kMeasuredMs / 1000);
+  const memory = memoryBytes(robot.pid, 'VmHWM') / 2 ** 20;
   await stop(robot);
   lidar.close();
   const summary = JSON.parse(await printed);
@@ -71,12 +74,6 @@ async function startLidar() {
   });
   await new Promise((resolve) => lidar.listen(0, '127.0.0.1', resolve));
   return lidar;
-}
-
-/** Seconds that a process has used of a processor. */
-async function processorTime(pid) {
-  const fields = (await readFile(`/proc/${pid}/stat`, 'utf8')).split(') ')[1].split(' ');
-  return (Number(fields[11]) + Number(fields[12])) / kTicksPerSecond;
 }
 
 async function textOf(stream) {

@@ -1,22 +1,28 @@
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/recovery.hpp"
+#include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/support/room_scans.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 #include <benchmark/benchmark.h>
+
+#include <malloc.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
-// What a scan costs, all layers and a snapshot each time as where viewers look on, as the map's cells, the sensor's
-// beams and the map itself grow; what a map needs of memory; and how long its recovery takes. Each argument doubles or
-// more: what grows faster than its work shows as a line that bends upwards.
+// What a scan costs, all layers and a snapshot each time as where viewers look on without a pause (and, by extent, also
+// where nobody looks), as the map's cells, the sensor's beams and the map itself grow; what a map needs of memory; and
+// how long its recovery takes, from memory and from a store on disk. Each argument doubles or more: what grows faster
+// than its work shows as a line that bends upwards.
 
 namespace scanloom::bench {
 namespace {
@@ -59,6 +65,7 @@ private:
     std::uint64_t seq_ = 0;
 };
 
+/// The worst case: somebody holds the newest maps at every scan.
 void run(benchmark::State& state, Weaver& weaver, const std::vector<Scan>& scans) {
     for (const Scan& scan : scans) weaver.weave(scan);
     mapping::Snapshot shown = weaver.snapshot();
@@ -93,54 +100,80 @@ void ScanByBeams(benchmark::State& state) {
     run(state, weaver, scans);
 }
 
+Weaver weaver_of_rooms(std::int64_t rooms, const std::vector<Scan>& scans) {
+    Weaver weaver(0.05, testing_support::reference_laser());
+    for (int room = 0; room < rooms; ++room) {
+        for (std::size_t n = 0; n < scans.size(); n += 6) weaver.weave(scans[n], room);
+    }
+    return weaver;
+}
+
 /// The argument: rooms of 10 x 10 m that are in the map besides.
 void ScanByExtent(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    Weaver weaver(0.05, testing_support::reference_laser());
-    for (int room = 0; room < state.range(0); ++room) {
-        for (std::size_t n = 0; n < scans.size(); n += 6) weaver.weave(scans[n], room);
-    }
+    Weaver weaver = weaver_of_rooms(state.range(0), scans);
     run(state, weaver, scans);
 }
 
-/// The argument: rooms. Counters tell the bytes of all layers, by cell that any scan has touched.
+/// The same while nobody holds the maps, as in a server at which nobody looks.
+void UnseenScanByExtent(benchmark::State& state) {
+    const auto scans = testing_support::room_scans(kRoomScans);
+    Weaver weaver = weaver_of_rooms(state.range(0), scans);
+    for (const Scan& scan : scans) weaver.weave(scan);
+    std::size_t next = 0;
+    for (auto _ : state) {
+        weaver.weave(scans[next]);
+        next = next + 1 == scans.size() ? 0 : next + 1;
+    }
+}
+
+/// What the allocator has given out, its own overhead included.
+double allocated_bytes() {
+    const auto info = ::mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+std::size_t touched_cells(const mapping::Snapshot& map) {
+    std::size_t touched = 0;
+    map.laser.visit({}, 0, [&](grid::ChunkKey, const mapping::LaserChunk& chunk) {
+        touched += static_cast<std::size_t>(
+            std::ranges::count_if(chunk.himm, [](auto count) { return count != mapping::kUnseenHimm; }));
+    });
+    return touched;
+}
+
+/// The argument: rooms. Counters tell the bytes of all that a map keeps: layers, trees, trajectory, what the
+/// allocator adds; and the same by cell that any scan has touched.
 void MemoryByArea(benchmark::State& state) {
     const auto scans = testing_support::room_scans(kRoomScans);
+    weaver_of_rooms(1, scans); // so that what is made once for all maps is there
     for (auto _ : state) {
+        const double before = allocated_bytes();
         Weaver weaver(0.05, testing_support::reference_laser());
         for (int room = 0; room < state.range(0); ++room) {
             for (const Scan& scan : scans) weaver.weave(scan, room);
         }
-        const mapping::Snapshot map = weaver.snapshot();
-        std::size_t chunks = 0;
-        std::size_t touched = 0;
-        map.laser.visit({}, 0, [&](grid::ChunkKey, const mapping::LaserChunk& chunk) {
-            ++chunks;
-            touched += static_cast<std::size_t>(
-                std::ranges::count_if(chunk.himm, [](auto count) { return count != mapping::kUnseenHimm; }));
-        });
-        std::size_t classes = 0;
-        map.classes.visit({}, 0, [&](grid::ChunkKey, const classify::ClassChunk&) { ++classes; });
-        const double bytes = static_cast<double>(chunks * sizeof(mapping::LaserChunk) +
-                                                 classes * (sizeof(classify::ClassChunk) + 4 * sizeof(grid::BitPlane)));
+        const double bytes = allocated_bytes() - before;
+        const auto touched = static_cast<double>(touched_cells(weaver.snapshot()));
         state.counters["bytes"] = bytes;
-        state.counters["bytes_per_touched_cell"] = bytes / static_cast<double>(touched);
-        state.counters["square_metres"] = static_cast<double>(touched) * 0.0025;
+        state.counters["bytes_per_touched_cell"] = bytes / touched;
+        state.counters["square_metres"] = touched * 0.0025;
     }
 }
 
-/// The argument: scans in the log, without a checkpoint. Items are scans.
-void RecoveryByLogLength(benchmark::State& state) {
+/// What a robot has sent that drove around in one room.
+std::vector<std::string> entries_of(std::int64_t count) {
     const auto scans = testing_support::room_scans(kRoomScans);
-    store::MemoryScanLog log;
-    const auto session = log.create_session({}).value();
     std::vector<std::string> entries{wire::encode_entry(RobotJoined{0, "robot"}),
                                      wire::encode_entry(SensorDescribed{0, testing_support::reference_laser()})};
-    for (std::int64_t n = 0; n < state.range(0); ++n) {
+    for (std::int64_t n = 0; n < count; ++n) {
         const auto seq = static_cast<std::uint64_t>(n) + 1;
         entries.push_back(wire::encode_entry(ScanTaken{0, in_room(scans[seq % scans.size()], 0, seq)}));
     }
-    log.append(session, 1, std::move(entries), [](const Result<>&) {});
+    return entries;
+}
+
+void recover_each_time(benchmark::State& state, store::ScanLog& log, store::SessionId session) {
     const std::atomic<bool> stop = false;
     for (auto _ : state) {
         auto recovered = session::recover(log, session, {}, stop);
@@ -150,11 +183,38 @@ void RecoveryByLogLength(benchmark::State& state) {
     state.SetItemsProcessed(state.range(0) * state.iterations());
 }
 
+/// The argument: scans in the log, without a checkpoint. Items are scans.
+void RecoveryByLogLength(benchmark::State& state) {
+    store::MemoryScanLog log;
+    const auto session = log.create_session({}).value();
+    store::append_and_wait(log, session, 1, entries_of(state.range(0))).value();
+    recover_each_time(state, log, session);
+}
+
+/// The same from a store in the system's temporary directory (TMPDIR names another), opened anew; the system may have
+/// its files in memory.
+void RecoveryFromDisk(benchmark::State& state) {
+    constexpr std::size_t kBatch = 512;
+    TemporaryDirectory directory;
+    auto log = store::open_rocksdb(directory.path()).value();
+    const auto session = log->create_session({}).value();
+    const auto entries = entries_of(state.range(0));
+    for (std::size_t n = 0; n < entries.size(); n += kBatch) {
+        const auto batch = std::span(entries).subspan(n, std::min(kBatch, entries.size() - n));
+        store::append_and_wait(*log, session, n + 1, {batch.begin(), batch.end()}).value();
+    }
+    log.reset();
+    log = store::open_rocksdb(directory.path()).value();
+    recover_each_time(state, *log, session);
+}
+
 BENCHMARK(ScanByCellSize)->Arg(500)->Arg(200)->Arg(100)->Arg(50)->Arg(20)->Arg(10)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ScanByBeams)->RangeMultiplier(4)->Range(16, 4096)->Unit(benchmark::kMicrosecond);
 BENCHMARK(ScanByExtent)->RangeMultiplier(4)->Range(1, 1024)->Unit(benchmark::kMicrosecond);
+BENCHMARK(UnseenScanByExtent)->RangeMultiplier(4)->Range(1, 1024)->Unit(benchmark::kMicrosecond);
 BENCHMARK(MemoryByArea)->RangeMultiplier(4)->Range(1, 256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(RecoveryByLogLength)->RangeMultiplier(4)->Range(1024, 65536)->Unit(benchmark::kMillisecond);
+BENCHMARK(RecoveryByLogLength)->RangeMultiplier(4)->Range(1024, 65536)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RecoveryFromDisk)->RangeMultiplier(4)->Range(1024, 65536)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 } // namespace
 } // namespace scanloom::bench

@@ -1,24 +1,25 @@
 /**
  * What the whole service costs for a scan, from a robot's socket to its ack, beside what no service can do without.
  *
- *   SCANLOOM_BIN_DIR=build/bin node tests/bench/service_bench.mjs build/bench/link_bench build/bench/service.json
+ *   SCANLOOM_BIN_DIR=build/bin node tests/bench/service_bench.mjs build/bench/link_bench build/bench/service.json [--quick]
  *
  * Everything is on: durable log, occupancy, HIMM, classes; scans of 684 beams, cells of 0.05 m. The generator runs on the same
  * machine; what it takes is told beside.
  */
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
-import { Server } from '../e2e/programs.mjs';
-import { load } from './load_runs.mjs';
-import { inWords, machine } from './report/machine.mjs';
+import { load, startServer } from './load_runs.mjs';
+import { announce, fullOrQuick, named } from './report/arguments.mjs';
+import { inWords, machineWithStore } from './report/machine.mjs';
 import { table, threeDigits } from './report/table.mjs';
 
 const aims = { cpuMicroseconds: 25, ackMilliseconds: 100, liveRobots: 5000 };
-const kSeconds = 10;
+const kSeconds = fullOrQuick(10, 2);
 const kBatch = 10;
 
-const [linkBench, file] = process.argv.slice(2);
-const on = machine();
+const [linkBench, file] = named;
+announce('service', '2 minutes', '1 minute');
+const on = machineWithStore();
 const link = measureLink();
 const full = await measure({ robots: 64, rate: 0, batch: kBatch });
 const rate = (0.8 * full.scans.acknowledged_per_second) / 64;
@@ -29,7 +30,7 @@ writeFileSync(file, `${JSON.stringify({ machine: on, aims, link, full, most, liv
 tell();
 
 async function measure(options) {
-  const server = await Server.start();
+  const server = await startServer();
   try {
     return await load(server, { duration: kSeconds, world: 'room', 'cell-size': 0.05, ...options });
   } finally {
@@ -59,10 +60,10 @@ function tell() {
   console.log(inWords(on), '\n');
   console.log(
     table(
-      ['', 'scans/s', 'server us/scan', 'cores', 'generator', 'ack p50 ms', 'p99', 'generator late p99', 'server MiB'],
+      ['', 'scans/s', 'server, us a scan', 'server, cores', 'generator, cores', 'ack p50, ms', 'p99, ms', 'generator late, p99, ms', 'server, MiB'],
       [
-        row('64 robots, as fast as they may', full),
-        row(`the same at 80 %`, most),
+        row(`64 robots as fast as they may, ${kBatch} scans a frame`, full),
+        row('the same robots at 80 % of that', most),
         row(`${aims.liveRobots} robots, 10 Hz, ${kBatch} scans a frame`, live),
         row('100 robots, 10 Hz, a scan a frame', single),
       ],

@@ -2,9 +2,11 @@
  * How fast tiles are served: those that are kept beside nginx with the very same bytes in a file, those that are known
  * already, and those that are drawn for the first time.
  *
- *   SCANLOOM_BIN_DIR=build/bin node tests/bench/tiles_bench.mjs RESULT.json [LOG]
+ *   SCANLOOM_BIN_DIR=build/bin node tests/bench/tiles_bench.mjs RESULT.json [LOG] [--quick]
  *
  * wrk asks all of them in turn, round after round, over 64 connections that stay; figures are medians of the rounds.
+ * wrk shares the processors with who answers, and is most of the work: rates are bound by it, so that the processor time that
+ * a request takes of the server, or of nginx, is told beside.
  * LOG is a recorded CARMEN log; without it a robot drives through a simulated office. Where nginx is missing, the server
  * is measured alone.
  */
@@ -15,34 +17,40 @@ import { createServer } from 'node:net';
 import { cpus, tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { promisify } from 'node:util';
-import { ended, Server, startRobot, stop } from '../e2e/programs.mjs';
+import { ended, startRobot, stop } from '../e2e/programs.mjs';
+import { startServer } from './load_runs.mjs';
+import { announce, fullOrQuick, named } from './report/arguments.mjs';
+import { inWords, machineWithStore } from './report/machine.mjs';
+import { processorSeconds } from './report/process_use.mjs';
+import { table, threeDigits } from './report/table.mjs';
 
 const kConnections = 64;
-const kRounds = 7;
-const kSeconds = 3;
-const kScans = 1500;
+const kRounds = fullOrQuick(7, 2);
+const kSeconds = fullOrQuick(3, 1);
+const kScans = fullOrQuick(1500, 300);
 const kLayers = ['occupancy', 'himm', 'classification'];
 const kRatioAim = 0.7;
 const kFirstMsAim = 1;
 
-const [result, log] = process.argv.slice(2);
+const [result, log] = named;
 if (!result) fail('name the file for the result: tiles_bench.mjs RESULT.json [LOG]');
 const nginx = findProgram('nginx');
 const wrk = findProgram('wrk') ?? fail("wrk is missing; install Debian's wrk: ./scanloom install bench");
 if (!nginx) console.log("nginx is missing: the server is measured alone (./scanloom install bench)");
 
-const server = await Server.start();
+announce('tiles', '3 minutes', '20 seconds');
+const on = machineWithStore();
+const server = await startServer();
 await makeMap();
 const first = await drawAllTiles();
 const tile = first.largest;
 const place = await mkdtemp(join(tmpdir(), 'scanloom-tiles-bench-'));
+const kept = { name: 'scanloom, a tile that is kept', pid: server.child.pid, address: tile.address, headers: [] };
+const known = { ...kept, name: 'scanloom, 304', headers: ['-H', `If-None-Match: ${tile.etag}`] };
 const rivals = nginx ? [await startNginx(1), await startNginx(cpus().length)] : [];
-const asked = [
-  { name: 'scanloom', address: tile.address, headers: [] },
-  ...rivals.map(({ name, address }) => ({ name, address, headers: [] })),
-  { name: 'scanloom, 304', address: tile.address, headers: ['-H', `If-None-Match: ${tile.etag}`] },
-];
-const rates = await measure();
+const rivalsKnown = rivals.map((rival) => ({ ...rival, name: `${rival.name}, 304`, headers: ['-H', `If-None-Match: ${rival.etag}`] }));
+const asked = [kept, ...rivals, known, ...rivalsKnown];
+const rounds = await measure();
 for (const rival of rivals) await stop(rival.child);
 await server.stop();
 await rm(place, { recursive: true });
@@ -126,11 +134,12 @@ async function startNginx(workers) {
   const address = `http://127.0.0.1:${port}/tile.png`;
   for (let tries = 0; ; ++tries) {
     const answer = await fetch(address).catch(() => null);
-    if (answer?.status === 200) break;
+    if (answer?.status === 200) {
+      return { name: `nginx, ${workers} worker${workers === 1 ? '' : 's'}`, pid: child.pid, address, headers: [], etag: answer.headers.get('etag'), child };
+    }
     if (child.exitCode !== null || tries > 100) fail(`nginx does not serve ${address}: ${answer?.status ?? 'it ended'}`);
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  return { name: `nginx, ${workers} worker${workers === 1 ? '' : 's'}`, address, child };
 }
 
 function freePort() {
@@ -142,39 +151,49 @@ function freePort() {
   });
 }
 
-/** @returns of each name the requests a second of every round */
+/** @returns of each name {rate: requests a second, us: of a processor for each}, of every round */
 async function measure() {
   const found = new Map(asked.map(({ name }) => [name, []]));
   for (let round = 0; round < kRounds; ++round) {
-    for (const { name, address, headers } of asked) {
+    for (const { name, pid, address, headers } of asked) {
+      const before = processorSeconds(pid);
       const args = ['-t1', `-c${kConnections}`, `-d${kSeconds}s`, ...headers, address];
       const { stdout } = await promisify(execFile)(wrk, args);
+      const seconds = processorSeconds(pid) - before;
       if (/Non-2xx or 3xx|Socket errors/.test(stdout)) fail(`${name} did not answer all requests: ${stdout}`);
-      found.get(name).push(Number(stdout.match(/Requests\/sec: *([0-9.]+)/)[1]));
+      const requests = Number(stdout.match(/(\d+) requests in/)[1]);
+      found.get(name).push({ rate: Number(stdout.match(/Requests\/sec: *([0-9.]+)/)[1]), us: (1e6 * seconds) / requests });
     }
   }
   return found;
 }
 
-/** Prints a table, and writes the same for programs. */
+/** Prints tables, and writes the same for programs. */
 async function tell() {
-  const own = rates.get('scanloom');
+  const figures = Object.fromEntries([...rounds].map(([name, each]) => [name, { requests_per_second: median(each.map(({ rate }) => rate)), cpu_us: median(each.map(({ us }) => us)), rounds: each }]));
   // Round by round: what else the machine does then slows both.
-  const ratios = rivals.map(({ name }) => ({ name, ratio: median(own.map((rate, n) => rate / rates.get(name)[n])) }));
-  line('a tile of', `${tile.bytes.length} bytes`);
-  for (const [name, each] of rates) line(name, `${median(each).toFixed(0)}/s`, `of ${kRounds} rounds, ${Math.min(...each).toFixed(0)} to ${Math.max(...each).toFixed(0)}`);
-  for (const { name, ratio } of ratios) line(`of ${name}`, ratio.toFixed(2), verdict(ratio >= kRatioAim, `at least ${kRatioAim}`));
+  const over = (one, other, figure) => median(rounds.get(one.name).map((round, n) => round[figure] / rounds.get(other.name)[n][figure]));
+  const ratios = rivals.map((rival, n) => ({ name: rival.name, rate: over(kept, rival, 'rate'), us: over(kept, rival, 'us'), us_304: over(known, rivalsKnown[n], 'us') }));
+  console.log(inWords(on), '\n');
+  console.log(table([`a tile of ${tile.bytes.length} bytes, medians of ${kRounds} rounds`, 'requests/s', 'CPU, us a request'], Object.entries(figures).map(([name, of]) => [name, of.requests_per_second.toFixed(0), threeDigits(of.cpu_us)])));
+  console.log();
+  for (const { name, rate, us, us_304 } of ratios) {
+    line(`of ${name}`, rate.toFixed(2), verdict(rate >= kRatioAim, `at least ${kRatioAim}`));
+    line("CPU, times nginx's", us.toFixed(2), `${us_304.toFixed(2)} for a 304`);
+  }
   line('first time, mean', `${first.ms.toFixed(2)} ms`, `${verdict(first.ms < kFirstMsAim, `below ${kFirstMsAim} ms`)}, ${first.tiles} tiles of all zooms, codes and PNG`);
   await writeFile(result, `${JSON.stringify({
+    machine: on,
     tile_bytes: tile.bytes.length,
     connections: kConnections,
-    requests_per_second: Object.fromEntries([...rates].map(([name, each]) => [name, { median: median(each), rounds: each }])),
-    ratios: Object.fromEntries(ratios.map(({ name, ratio }) => [name, ratio])),
+    asked: figures,
+    ratios: Object.fromEntries(ratios.map(({ name, ...of }) => [name, of])),
     ratio_aim: kRatioAim,
     first_ms: first.ms,
     first_tiles: first.tiles,
     first_ms_aim: kFirstMsAim,
   }, null, 2)}\n`);
+  console.log(`written to ${result}`);
 }
 
 function line(name, value, remark = '') {

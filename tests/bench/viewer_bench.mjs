@@ -1,7 +1,7 @@
 /**
  * How fast the viewer is, in a headless Chromium: its size, the first map, and frames while tiles change.
  *
- *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin SCANLOOM_PICTURE_DIR=build/e2e node tests/bench/viewer_bench.mjs
+ *   SCANLOOM_WEB_DIR=build/web SCANLOOM_BIN_DIR=build/bin SCANLOOM_PICTURE_DIR=build/e2e node tests/bench/viewer_bench.mjs [--quick]
  */
 import { readdir, readFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -9,16 +9,19 @@ import { gzipSync } from 'node:zlib';
 import { kWebDirectory, launchBrowser, openPage, showsColour } from '../e2e/browser.mjs';
 import { FakeServer } from '../e2e/fake_server.mjs';
 import { FakeSession } from '../e2e/fake_session.mjs';
-import { Server, startRobot, stop } from '../e2e/programs.mjs';
+import { startRobot, stop } from '../e2e/programs.mjs';
+import { startServer } from './load_runs.mjs';
+import { announce, fullOrQuick } from './report/arguments.mjs';
 
-const kRounds = 9;
-const kSeconds = 10;
+const kRounds = fullOrQuick(9, 3);
+const kSeconds = fullOrQuick(10, 2);
 /** Native tiles, which a screen of this size shows a little smaller than they are. */
 const kAcross = 10;
 const kDown = 6;
 const kScreen = [2560, 1440];
 const kChangesPerSecond = 20;
 
+announce('viewer', '1 minute', '30 seconds');
 const browser = await launchBrowser();
 await tellSize();
 await tellFirstMap();
@@ -36,7 +39,7 @@ async function tellSize() {
 
 /** From the address being entered to cells being drawn, with the real server and nothing cached. */
 async function tellFirstMap() {
-  const server = await Server.start();
+  const server = await startServer();
   const robot = startRobot(server, 'office', 'r1', ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '20']);
   await scansOf(server, 600);
   await stop(robot);

@@ -12,10 +12,10 @@ const kWeb = process.env.SCANLOOM_WEB_DIR ? ['--web', process.env.SCANLOOM_WEB_D
 
 /** A server on free ports with an empty store of its own. */
 export class Server {
-  static async start() {
+  static async start(options = []) {
     const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
     const child = start('scanloom-server', [
-      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, ...kWeb],
+      ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, ...kWeb, ...options],
     ]);
     const ready = await readyLine(child);
     return new Server(child, store, ready.robot_port, ready.http_port);
@@ -54,8 +54,8 @@ export async function stop(child) {
   await over;
 }
 
-export function start(program, args) {
-  const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', 'inherit'] });
+export function start(program, args, { stderr = 'inherit' } = {}) {
+  const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', stderr] });
   child.on('error', (error) => console.error(`${program} cannot be started: ${error.message}`));
   return child;
 }

@@ -2,6 +2,7 @@
 
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
+#include "server/mapping/beam_fan.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -38,17 +39,38 @@ struct BeamEnd {
     bool is_hit;
 };
 
-/// The ends of a scan's beams; those without a return at range_max, those that are invalid at the sensor.
-inline void ends_of(const Scan& scan, const Sensor& sensor, std::vector<BeamEnd>& ends) {
-    ends.clear();
-    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
-        const double direction = scan.pose.yaw + beam_angle(sensor.angles, beam);
-        const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < sensor.range_max;
-        const double range = is_hit ? scan.ranges[beam] * 0.001 : sensor.range_max;
-        ends.push_back({scan.pose.x + range * std::cos(direction), scan.pose.y + range * std::sin(direction),
-                        is_hit && scan.ranges[beam] != kInvalidRange});
+/// Where the beams of one sensor end, scan by scan. Their directions are known beforehand, as they are to every mapper
+/// that takes care: a scan turns them by its heading, and asks for no sine but that one's.
+class BeamEnds {
+public:
+    explicit BeamEnds(const Sensor& sensor) : range_max_(sensor.range_max) {
+        for (std::size_t beam = 0; beam < beam_count(sensor.angles); ++beam) {
+            const double angle = beam_angle(sensor.angles, beam);
+            directions_.push_back({std::cos(angle), std::sin(angle)});
+        }
     }
-}
+
+    /// Beams without a return end at range_max, those that are invalid at the sensor. Valid until the next call.
+    [[nodiscard]] const std::vector<BeamEnd>& of(const Scan& scan) {
+        ends_.clear();
+        const double cos_yaw = std::cos(scan.pose.yaw);
+        const double sin_yaw = std::sin(scan.pose.yaw);
+        for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+            const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < range_max_;
+            const double range = is_hit ? scan.ranges[beam] * 0.001 : range_max_;
+            const auto [x, y] = directions_[beam];
+            ends_.push_back({scan.pose.x + range * (cos_yaw * x - sin_yaw * y),
+                             scan.pose.y + range * (sin_yaw * x + cos_yaw * y),
+                             is_hit && scan.ranges[beam] != kInvalidRange});
+        }
+        return ends_;
+    }
+
+private:
+    double range_max_;
+    std::vector<mapping::Direction> directions_;
+    std::vector<BeamEnd> ends_;
+};
 
 /// Calls visit(index) for the cells of a line, without the last one.
 /// Source  Bresenham, Algorithm for computer control of a digital plotter (IBM Systems Journal 1965).

@@ -9,36 +9,46 @@ namespace {
 class Mrpt final : public Mapper {
 public:
     explicit Mrpt(const Column& column)
-        : sensor_(column.sensor), grid_(static_cast<float>(-column.half_side), static_cast<float>(column.half_side),
-                                        static_cast<float>(-column.half_side), static_cast<float>(column.half_side),
-                                        static_cast<float>(column.cell_size)) {
-        const auto beams = beam_count(sensor_.angles);
-        grid_.insertionOptions.maxDistanceInsertion = static_cast<float>(sensor_.range_max);
+        : grid_(static_cast<float>(-column.half_side), static_cast<float>(column.half_side),
+                static_cast<float>(-column.half_side), static_cast<float>(column.half_side),
+                static_cast<float>(column.cell_size)) {
+        grid_.insertionOptions.maxDistanceInsertion = static_cast<float>(column.sensor.range_max);
         grid_.insertionOptions.considerInvalidRangesAsFreeSpace = true;
-        const double spread = beam_angle(sensor_.angles, beams - 1) - beam_angle(sensor_.angles, 0);
-        observation_.aperture = static_cast<float>(spread);
-        observation_.rightToLeft = true;
-        observation_.maxRange = static_cast<float>(sensor_.range_max);
-        observation_.resizeScan(beams);
-        // Its scans are centred on the robot's heading; ours need not be.
-        turn_ = beam_angle(sensor_.angles, 0) + spread / 2.0;
+        for (const Scan& scan : column.scans) observations_.push_back(observation_of(scan, column.sensor));
     }
 
     void insert(const Scan& scan) override {
-        for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
-            const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < sensor_.range_max;
-            observation_.setScanRange(beam, static_cast<float>(is_hit ? scan.ranges[beam] * 0.001 : sensor_.range_max));
-            observation_.setScanRangeValidity(beam, is_hit && scan.ranges[beam] != kInvalidRange);
-        }
-        const mrpt::poses::CPose3D pose(scan.pose.x, scan.pose.y, 0.0, scan.pose.yaw + turn_, 0.0, 0.0);
-        grid_.insertObservation(observation_, pose);
+        const auto& [observation, pose] = observations_[scan.seq - 1];
+        grid_.insertObservation(observation, pose);
     }
 
 private:
-    const Sensor& sensor_;
+    /// A scan as MRPT wants it, made beforehand: that costs it nothing here.
+    struct Observation {
+        mrpt::obs::CObservation2DRangeScan scan;
+        mrpt::poses::CPose3D pose;
+    };
+
+    static Observation observation_of(const Scan& scan, const Sensor& sensor) {
+        const auto beams = beam_count(sensor.angles);
+        const double spread = beam_angle(sensor.angles, beams - 1) - beam_angle(sensor.angles, 0);
+        // Its scans are centred on the robot's heading; ours need not be.
+        const double turn = beam_angle(sensor.angles, 0) + spread / 2.0;
+        Observation made{{}, {scan.pose.x, scan.pose.y, 0.0, scan.pose.yaw + turn, 0.0, 0.0}};
+        made.scan.aperture = static_cast<float>(spread);
+        made.scan.rightToLeft = true;
+        made.scan.maxRange = static_cast<float>(sensor.range_max);
+        made.scan.resizeScan(beams);
+        for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+            const bool is_hit = scan.ranges[beam] != kNoReturn && scan.ranges[beam] * 0.001 < sensor.range_max;
+            made.scan.setScanRange(beam, static_cast<float>(is_hit ? scan.ranges[beam] * 0.001 : sensor.range_max));
+            made.scan.setScanRangeValidity(beam, is_hit && scan.ranges[beam] != kInvalidRange);
+        }
+        return made;
+    }
+
     mrpt::maps::COccupancyGridMap2D grid_;
-    mrpt::obs::CObservation2DRangeScan observation_;
-    double turn_;
+    std::vector<Observation> observations_;
 };
 
 } // namespace
@@ -46,5 +56,7 @@ private:
 std::vector<Peer> mrpt_peer() {
     return {{"mrpt", [](const Column& column) { return std::make_unique<Mrpt>(column); }}};
 }
+
+std::string mrpt_version() { return MRPT_PEER_VERSION; }
 
 } // namespace scanloom::bench

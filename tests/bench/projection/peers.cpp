@@ -19,16 +19,17 @@ constexpr float kClamp = 6.907F;
 
 class Bresenham final : public Mapper {
 public:
-    explicit Bresenham(const Column& column) : sensor_(column.sensor), map_(column.half_side, column.cell_size, 0.0F) {}
+    explicit Bresenham(const Column& column)
+        : beam_ends_(column.sensor), map_(column.half_side, column.cell_size, 0.0F) {}
 
     void insert(const Scan& scan) override {
-        ends_of(scan, sensor_, ends_);
+        const auto& ends = beam_ends_.of(scan);
         const int i = map_.index_of(scan.pose.x);
         const int j = map_.index_of(scan.pose.y);
         const auto add = [&](std::size_t at, float amount) {
             map_.cells[at] = std::clamp(map_.cells[at] + amount, -kClamp, kClamp);
         };
-        for (const BeamEnd& end : ends_) {
+        for (const BeamEnd& end : ends) {
             const int i_end = map_.index_of(end.x);
             const int j_end = map_.index_of(end.y);
             for_each_on_line(i, j, i_end, j_end, map_.side, [&](std::size_t at) { add(at, kFree); });
@@ -37,50 +38,49 @@ public:
     }
 
 private:
-    const Sensor& sensor_;
+    BeamEnds beam_ends_;
     FlatMap<float> map_;
-    std::vector<BeamEnd> ends_;
 };
 
 class MarkAndClear final : public Mapper {
 public:
     explicit MarkAndClear(const Column& column)
-        : sensor_(column.sensor), map_(column.half_side, column.cell_size, std::uint8_t{255}) {}
+        : beam_ends_(column.sensor), map_(column.half_side, column.cell_size, std::uint8_t{255}) {}
 
     void insert(const Scan& scan) override {
-        ends_of(scan, sensor_, ends_);
+        const auto& ends = beam_ends_.of(scan);
         const int i = map_.index_of(scan.pose.x);
         const int j = map_.index_of(scan.pose.y);
-        for (const BeamEnd& end : ends_) {
+        for (const BeamEnd& end : ends) {
             for_each_on_line(i, j, map_.index_of(end.x), map_.index_of(end.y), map_.side,
                              [&](std::size_t at) { map_.cells[at] = 0; });
         }
-        for (const BeamEnd& end : ends_) {
+        for (const BeamEnd& end : ends) {
             if (end.is_hit) map_.cells[map_.at(map_.index_of(end.x), map_.index_of(end.y))] = 254;
         }
     }
 
 private:
-    const Sensor& sensor_;
+    BeamEnds beam_ends_;
     FlatMap<std::uint8_t> map_;
-    std::vector<BeamEnd> ends_;
 };
 
 class OnceAScan final : public Mapper {
 public:
     explicit OnceAScan(const Column& column)
-        : sensor_(column.sensor), map_(column.half_side, column.cell_size, Cell{}) {}
+        : beam_ends_(column.sensor), map_(column.half_side, column.cell_size, Cell{}) {}
 
     void insert(const Scan& scan) override {
-        ends_of(scan, sensor_, ends_);
+        const auto& ends = beam_ends_.of(scan);
         const int i = map_.index_of(scan.pose.x);
         const int j = map_.index_of(scan.pose.y);
         passed_ += 2;
-        for (const BeamEnd& end : ends_) {
+        for (const BeamEnd& end : ends) {
+            if (!end.is_hit) continue; // tells nothing here, not even of what is free before it
             const int i_end = map_.index_of(end.x);
             const int j_end = map_.index_of(end.y);
             for_each_on_line(i, j, i_end, j_end, map_.side, [&](std::size_t at) { pass(map_.cells[at]); });
-            if (end.is_hit) hit(map_.cells[map_.at(i_end, j_end)]);
+            hit(map_.cells[map_.at(i_end, j_end)]);
         }
     }
 
@@ -103,23 +103,22 @@ private:
         cell.changed = passed_ + 1;
     }
 
-    const Sensor& sensor_;
+    BeamEnds beam_ends_;
     FlatMap<Cell> map_;
     std::int32_t passed_ = 0;
-    std::vector<BeamEnd> ends_;
 };
 
 class FillPoly final : public Mapper {
 public:
     explicit FillPoly(const Column& column)
-        : sensor_(column.sensor), map_(column.half_side, column.cell_size, std::int16_t{0}),
+        : beam_ends_(column.sensor), map_(column.half_side, column.cell_size, std::int16_t{0}),
           mask_(map_.side, map_.side, CV_8UC1, cv::Scalar(0)) {}
 
     void insert(const Scan& scan) override {
-        ends_of(scan, sensor_, ends_);
+        const auto& ends = beam_ends_.of(scan);
         corners_.clear();
         corners_.emplace_back(map_.index_of(scan.pose.x), map_.index_of(scan.pose.y));
-        for (const BeamEnd& end : ends_) corners_.emplace_back(map_.index_of(end.x), map_.index_of(end.y));
+        for (const BeamEnd& end : ends) corners_.emplace_back(map_.index_of(end.x), map_.index_of(end.y));
         const cv::Rect box = cv::boundingRect(corners_);
         cv::Mat seen = mask_(box);
         cv::Mat cells = cv::Mat(map_.side, map_.side, CV_16SC1, map_.cells.data())(box);
@@ -130,10 +129,9 @@ public:
     }
 
 private:
-    const Sensor& sensor_;
+    BeamEnds beam_ends_;
     FlatMap<std::int16_t> map_;
     cv::Mat mask_;
-    std::vector<BeamEnd> ends_;
     std::vector<cv::Point> corners_;
 };
 

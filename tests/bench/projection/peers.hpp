@@ -27,14 +27,25 @@ struct Peer {
     std::function<std::unique_ptr<Mapper>(const Column&)> make;
 };
 
-/// "bresenham": float log-odds along each beam. "mark_and_clear": bytes, as of costmaps: each beam clears its cells,
-/// then hits are marked. "once_a_scan": float log-odds, each cell once a scan, a hit beating a pass, as mappers do that
-/// count updates by scan. "fill_poly": OpenCV fills the polygon of the beams' ends, its cells are taken off with
-/// saturation. "mrpt": COccupancyGridMap2D, where this was built with it. Two are limits rather than mappers: "spans"
-/// adds with saturation to the very rows of cells that the exact model frees or occupies, which were found before.
+/// Each stands for what a known mapper does, written anew from its idea; "mrpt" is that library itself.
+///   bresenham       float log-odds along each beam, as one writes it by hand
+///   once_a_scan     float log-odds, each cell once a scan, a hit beating a pass; beams without a return are left out:
+///   as
+///                   Hector SLAM does it
+///   mark_and_clear  bytes; each beam clears its cells, then hits are marked: as Nav2's obstacle layer does it
+///   mrpt            COccupancyGridMap2D, where this was built with it
+///   fill_poly       OpenCV fills the polygon of the beams' ends, its cells are taken off with saturation. No mapper:
+///   it knows
+///                   no occupied cells, and joins the ends where no beam has been
+///   spans           a limit: adds with saturation to the very rows of cells that the exact model frees or occupies,
+///   which
+///                   were found before
 [[nodiscard]] const std::vector<Peer>& peers();
 
 /// Where MRPT is not installed: nothing.
 [[nodiscard]] std::vector<Peer> mrpt_peer();
+
+/// Empty where MRPT is not installed.
+[[nodiscard]] std::string mrpt_version();
 
 } // namespace scanloom::bench

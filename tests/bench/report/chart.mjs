@@ -1,4 +1,4 @@
-/** Charts of measured points, as SVG: both axes in powers, so that what grows with its work is a straight line. */
+/** Charts of measured points, as SVG: both axes logarithmic, so that what grows with its work is a straight line. */
 
 const kWidth = 300;
 const kHeight = 210;
@@ -6,17 +6,20 @@ const kLeft = 52;
 const kRight = 12;
 const kTop = 30;
 const kBottom = 40;
+const kFoot = 18; // of the drawing: what holds for all charts
 
 /**
  * @param {{title: string, x: string, y: string, points: [number, number][], expected?: number}[]} charts  `expected`: the power
- *     of x with which y may grow, drawn through the last point as a dashed line
+ *     of x with which y may grow, drawn from the first point as a dashed line, as far as it stays within the frame
  */
 export function drawCharts(charts, columns = 3) {
   const rows = Math.ceil(charts.length / columns);
   const parts = charts.map((chart, n) => `<g transform="translate(${(n % columns) * kWidth} ${Math.floor(n / columns) * kHeight})">${draw(chart)}</g>`);
-  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${columns * kWidth} ${rows * kHeight}" font-family="sans-serif" font-size="10">
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${columns * kWidth} ${rows * kHeight + kFoot}" font-family="sans-serif" font-size="10">
+<clipPath id="frame"><rect x="${kLeft}" y="${kTop}" width="${kWidth - kLeft - kRight}" height="${kHeight - kTop - kBottom}"/></clipPath>
 <rect width="100%" height="100%" fill="#ffffff"/>
 ${parts.join('\n')}
+<text x="${(columns * kWidth) / 2}" y="${rows * kHeight + 10}" text-anchor="middle">Both axes of every chart are logarithmic. Dashed: from the first point on, growing as the work does.</text>
 </svg>
 `;
 }
@@ -33,9 +36,9 @@ function draw({ title, x, y, points, expected }) {
     ...up.ticks.map((tick) => `<path d="M${kLeft} ${up.at(tick)}H${kWidth - kRight}" stroke="#dddddd"/><text x="${kLeft - 4}" y="${up.at(tick) + 3}" text-anchor="end">${label(tick)}</text>`),
   ];
   if (expected !== undefined) {
-    const [lastX, lastY] = points.at(-1);
-    const guide = points.map(([px]) => [px, Math.min(up.max, Math.max(up.min, lastY * (px / lastX) ** expected))]);
-    lines.push(`<polyline points="${guide.map(at).join(' ')}" fill="none" stroke="#888888" stroke-dasharray="4 3"/>`);
+    const [firstX, firstY] = points[0];
+    const guide = [points[0], [across.max, firstY * (across.max / firstX) ** expected]];
+    lines.push(`<polyline points="${guide.map(at).join(' ')}" clip-path="url(#frame)" fill="none" stroke="#888888" stroke-dasharray="4 3"/>`);
   }
   lines.push(`<polyline points="${points.map(at).join(' ')}" fill="none" stroke="#1f5fa8" stroke-width="1.5"/>`);
   lines.push(...points.map((point) => `<circle cx="${at(point).replace(',', '" cy="')}" r="2.5" fill="#1f5fa8"/>`));

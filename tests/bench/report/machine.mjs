@@ -1,7 +1,8 @@
 /** What figures were measured on. */
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { arch, cpus, loadavg, release, totalmem } from 'node:os';
+import { arch, cpus, loadavg, release, tmpdir, totalmem } from 'node:os';
+import { quick } from './arguments.mjs';
 
 export function machine() {
   const processors = cpus();
@@ -13,11 +14,23 @@ export function machine() {
     system: system(),
     compiler: firstLine('c++', ['--version']),
     load_average: loadavg()[0],
+    quick,
   };
 }
 
+/** The same, and where servers of a bench keep their stores. */
+export function machineWithStore() {
+  return { ...machine(), store: fileSystemOf(tmpdir()) };
+}
+
 export function inWords(of) {
-  return `${of.cores} cores of ${of.processor}, ${of.memory_gib} GiB, ${of.system}, Linux ${of.kernel}, ${of.compiler}, load average ${of.load_average.toFixed(1)} at the start`;
+  const store = of.store ? `, stores in ${of.store.directory} on ${of.store.kind} of ${of.store.gib} GiB (${of.store.device})` : '';
+  return `${of.cores} cores of ${of.processor}, ${of.memory_gib} GiB${store}, ${of.system}, Linux ${of.kernel}, ${of.compiler}, load average ${of.load_average.toFixed(1)} at the start${of.quick ? '; a quick run' : ''}`;
+}
+
+function fileSystemOf(directory) {
+  const [device, kind, bytes] = execFileSync('df', ['--block-size=1', '--output=source,fstype,size', directory], { encoding: 'utf8' }).split('\n')[1].trim().split(/\s+/);
+  return { directory, device, kind, gib: Math.round(Number(bytes) / 2 ** 30) };
 }
 
 function system() {

@@ -1,0 +1,23 @@
+/** What a process takes of the machine, as /proc tells it. */
+import { readFileSync } from 'node:fs';
+
+const kTicksPerSecond = 100; // of /proc, on every Linux of today
+
+/** Seconds of a processor that a process has used, and all that it started and that still run. */
+export function processorSeconds(pid) {
+  return [pid, ...startedBy(pid)].reduce((sum, each) => sum + ticks(each), 0) / kTicksPerSecond;
+}
+
+/** Bytes of a process in memory: `VmRSS` now, `VmHWM` at most so far. */
+export function memoryBytes(pid, field = 'VmRSS') {
+  return Number(new RegExp(`^${field}:\\s+(\\d+) kB`, 'm').exec(readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) * 1024;
+}
+
+function ticks(pid) {
+  const fields = readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' ');
+  return Number(fields[11]) + Number(fields[12]);
+}
+
+function startedBy(pid) {
+  return readFileSync(`/proc/${pid}/task/${pid}/children`, 'utf8').split(' ').filter(Boolean).map(Number);
+}
