@@ -80,6 +80,8 @@ private:
 
     [[nodiscard]] Result<> check_new(std::string_view name) const;
     [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
+    [[nodiscard]] std::shared_ptr<Session> forget(std::string_view name);
+    void give_back_memory();
     void recover_one(const store::StoredSession& stored);
     void keep_recovered(std::shared_ptr<Session> session);
     [[nodiscard]] Result<std::shared_ptr<Session>> weave(const store::StoredSession& stored, std::string& name);
@@ -94,6 +96,7 @@ private:
     std::atomic<bool> hurried_ = false;
 
     std::mutex changing_;             // held over recover(), create() and remove(), which write to the store first
+    std::size_t freed_chunks_ = 0;    // by remove(), since memory was given back
     mutable std::shared_mutex mutex_; // guards the maps below
     std::map<std::string, std::shared_ptr<Session>, std::less<>> sessions_;
     std::map<std::string, Damaged, std::less<>> damaged_;

@@ -14,7 +14,7 @@ mkdir "$place/include"
 ln -s /usr/include/hwy /usr/include/eigen3/Eigen /usr/include/boost "$place/include"
 
 # As the project compiles them, for every set that its processors may have.
-sets=$(grep -o 'HWY_DISABLED_TARGETS=[^"]*' server/mapping/CMakeLists.txt)
+sets=$(grep -o 'HWY_[A-Z]*_TARGETS=[^"]*' server/mapping/CMakeLists.txt)
 for source in server/mapping/chunk_kernels.cpp server/mapping/sweep/{contours,crossings,fill}.cpp; do
     aarch64-linux-gnu-g++ -std=c++20 -O2 -ffp-contract=off "-D$sets" -I. -isystem "$place/include" -c "$source" \
         -o "$place/$(basename "$source").o"
