@@ -69,6 +69,8 @@ bool is_known(const Wanted& wanted, const Call& call) {
     return if_none_match_has(call.request.if_none_match, wanted.etag);
 }
 
+tiles::TileSource source_of(const Maps& maps) { return {*maps.snapshot, maps.origin}; }
+
 Response answer_of(const Wanted& wanted, tiles::SharedBytes bytes) {
     const bool is_png = wanted.place.format == tiles::TileFormat::kPng;
     return ok(is_png ? "image/png" : "application/octet-stream", Body(std::move(bytes)))
@@ -82,8 +84,7 @@ Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const
     const auto wanted = wanted_tile(maps, call, format);
     if (!wanted) return wanted.error();
     if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
-    return answer_of(*wanted,
-                     maker.make({*wanted->maps.snapshot, wanted->maps.origin}, wanted->place, wanted->revision));
+    return answer_of(*wanted, maker.make(source_of(wanted->maps), wanted->place, wanted->revision));
 }
 
 Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
@@ -92,7 +93,8 @@ Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, co
     if (!wanted) return wanted.error();
     if (is_known(*wanted, call)) return not_modified(wanted->etag, wanted->kept);
     if (auto bytes = maker.find(wanted->place, wanted->revision)) return answer_of(*wanted, std::move(bytes));
-    return maker.is_quick(wanted->place) ? Lane::kServing : Lane::kSurvey;
+    const bool is_quick = maker.is_quick(source_of(wanted->maps), wanted->place, wanted->revision);
+    return is_quick ? Lane::kServing : Lane::kSurvey;
 }
 
 } // namespace scanloom::http
