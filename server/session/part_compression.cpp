@@ -35,7 +35,8 @@ std::optional<std::string> PartDecompressor::decompressed(std::string_view bytes
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size > bytes_max) return std::nullopt; // an error is a larger number
     std::string out(static_cast<std::size_t>(size), '\0');
-    const std::size_t got = ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), bytes.data(), bytes.size());
+    const std::size_t got =
+        ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), bytes.data(), bytes.size());
     if (ZSTD_isError(got) != 0 || got != out.size()) return std::nullopt;
     return out;
 }

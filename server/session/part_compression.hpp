@@ -9,8 +9,8 @@
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
-/// The parts of a checkpoint that are worth compressing, by Zstandard at its fastest. The store compresses nothing
-/// itself: most of what it holds are scans, whose ranges are packed already.
+/// The parts of a checkpoint that are worth compressing, by Zstandard at its fastest. The store compresses nothing itself:
+/// most of what it holds are scans, whose ranges are packed already.
 namespace scanloom::session {
 
 /// Keeps its tables from part to part: some hundred KiB.
