@@ -3,7 +3,9 @@
 add_library(scanloom_options INTERFACE)
 target_include_directories(scanloom_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(scanloom_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers
-                                                  # the same bits from the same scans on every machine:
+                                                  # nothing is fused: the same bits whatever instructions the kernels
+                                                  # are compiled for. The C library's sin, cos and atan2 may still differ
+                                                  # in their last bits between its versions and between processors.
                                                   -ffp-contract=off)
 if(DEFINED ENV{CI})
   target_compile_options(scanloom_options INTERFACE -Werror)

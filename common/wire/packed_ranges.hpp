@@ -20,7 +20,8 @@ namespace scanloom::wire {
 /// Pre  at most kBeamsMax ranges.
 [[nodiscard]] std::string pack_ranges(std::span<const RangeMm> ranges);
 
-/// Nothing when the bytes are not what pack_ranges() makes of at most kBeamsMax ranges.
+/// Nothing when the bytes have not the shape above, to the last one, for at most kBeamsMax ranges. Blocks may be wider
+/// than their numbers need.
 [[nodiscard]] std::optional<std::vector<RangeMm>> unpack_ranges(std::string_view packed);
 
 } // namespace scanloom::wire

@@ -179,12 +179,7 @@ asio::awaitable<void> LoadRun::stream() {
     const Moment after = co_await moment();
     report_.seconds = std::max(in_seconds(after.fleet.last_ack - begun_), 1e-3);
     report_.own = {after.own.cpu_seconds - before.own.cpu_seconds, after.own.resident_bytes};
-    const bool is_same_process =
-        before.server && after.server && after.server->cpu_seconds >= before.server->cpu_seconds;
-    if (is_same_process) { // and not one that was started meanwhile
-        report_.server =
-            ProcessUse{after.server->cpu_seconds - before.server->cpu_seconds, after.server->resident_bytes};
-    }
+    report_.server = used_between(before.server, after.server);
 }
 
 asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
@@ -213,7 +208,7 @@ asio::awaitable<Moment> LoadRun::moment() {
     http_.set_patience(std::chrono::seconds(2)); // a server that is slow now is no reason to show nothing
     const auto use = co_await server_use(http_);
     http_.set_patience(kPatience);
-    if (use) now.server = ProcessUse{use->cpu_seconds, use->resident_bytes};
+    if (use) now.server = *use;
     now.fleet = fleet_.look()->figures;
     now.audience = *audience_.look();
     now.own = own_use();

@@ -3,6 +3,7 @@
 #include "common/app/token_file.hpp"
 #include "load/app/drive_course.hpp"
 #include "load/app/load_run.hpp"
+#include "load/app/report_file.hpp"
 #include "load/core/words.hpp"
 #include "load/net/own_use.hpp"
 
@@ -15,7 +16,7 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <fstream>
+#include <optional>
 
 namespace scanloom::load {
 
@@ -79,17 +80,12 @@ asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDispl
     io.stop();
 }
 
-Result<> write_report(const RunReport& report, const std::string& json_file) {
-    if (json_file == "-") {
-        fmt::print("{}", to_json(report));
-        return {};
-    }
-    fmt::print("{}", to_text(report));
-    if (json_file.empty()) return {};
-    std::ofstream file(json_file, std::ios::binary);
-    file << to_json(report) << std::flush;
-    if (file) return {};
-    return Error{Errc::kStoreFailed, fmt::format("{}: the report cannot be written", json_file)};
+bool goes_to_a_file(const std::string& json_file) { return !json_file.empty() && json_file != "-"; }
+
+/// @param file  that of --json; none where there is none, or it is standard output.
+Result<> write_report(const RunReport& report, const std::string& json_file, std::optional<ReportFile>& file) {
+    fmt::print("{}", json_file == "-" ? to_json(report) : to_text(report));
+    return file ? file->write(to_json(report)) : Result<>();
 }
 
 } // namespace
@@ -100,6 +96,15 @@ ExitCode run(const LoadOptions& options) {
         display.note("scanloom-load: " + error.message);
         return error.code == Errc::kTooLarge ? kExitUsage : kExitFailed;
     };
+    std::optional<ReportFile> file;
+    if (goes_to_a_file(options.json_file)) {
+        auto prepared = ReportFile::prepare(options.json_file);
+        if (!prepared) {
+            fail(prepared.error());
+            return kExitUsage;
+        }
+        file.emplace(std::move(*prepared));
+    }
     asio::io_context io(1);
     const auto link = link_options(io, options);
     if (!link) return fail(link.error());
@@ -119,7 +124,7 @@ ExitCode run(const LoadOptions& options) {
     io.run();
     if (!outcome) return fail({Errc::kShuttingDown, "interrupted; nothing was verified"});
     if (!*outcome) return fail(outcome->error());
-    if (auto written = write_report(**outcome, options.json_file); !written) return fail(written.error());
+    if (auto written = write_report(**outcome, options.json_file, file); !written) return fail(written.error());
     return (*outcome)->verdict.is_good ? kExitDone : kExitFailed;
 }
 

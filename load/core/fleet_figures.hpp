@@ -27,6 +27,7 @@ struct FleetFigures {
     std::array<std::uint64_t, kFaultKinds> faults{};
     Micros last_ack = 0;
 
+    // The first and the last two are empty where nothing tells when a scan is meant to be sent.
     LatencyHistogram from_intended;   ///< from when a scan was meant to be sent until its ack was read
     LatencyHistogram from_sending;    ///< from when it was handed to its socket (the last time) until then
     LatencyHistogram waiting_to_send; ///< from when it was meant to be sent until it was (the first time)

@@ -18,7 +18,7 @@ struct Lately {
     LatencyHistogram ack;
     LatencyHistogram own_delay;
     double own_cores = 0.0;
-    std::optional<double> server_cores;
+    std::optional<ServerUsed> server;
     double events = 0.0; ///< a second
     double tiles = 0.0;
 };
@@ -35,9 +35,7 @@ Lately lately(bool is_paced, const Moment& before, const Moment& now) {
                          : now.fleet.from_sending.since(before.fleet.from_sending);
     shown.own_delay = now.fleet.own_delay.since(before.fleet.own_delay);
     shown.own_cores = (now.own.cpu_seconds - before.own.cpu_seconds) / shown.seconds;
-    if (now.server && before.server) {
-        shown.server_cores = (now.server->cpu_seconds - before.server->cpu_seconds) / shown.seconds;
-    }
+    shown.server = used_between(before.server, now.server);
     shown.events = rate(before.audience.events, now.audience.events);
     shown.tiles = rate(before.audience.tile_requests, now.audience.tile_requests);
     return shown;
@@ -49,9 +47,12 @@ std::string ack_text(const LatencyHistogram& ack) {
                        as_milliseconds(ack.percentile(99)), as_milliseconds(ack.max()));
 }
 
-std::string server_text(const Lately& shown, const Moment& now) {
-    if (!shown.server_cores) return "does not say";
-    return fmt::format("{:.2f} cores, {}", *shown.server_cores, as_bytes(now.server->resident_bytes));
+std::string server_text(const Lately& shown) {
+    if (!shown.server) return "does not say";
+    const auto& cpu_seconds = shown.server->cpu_seconds;
+    return fmt::format("{}, {}",
+                       cpu_seconds ? fmt::format("{:.2f} cores", *cpu_seconds / shown.seconds) : "started anew",
+                       as_bytes(shown.server->resident_bytes));
 }
 
 std::string time_text(const RunSettings& settings, Micros begun, const Moment& now) {
@@ -77,10 +78,9 @@ std::uint64_t faults_of(const FleetFigures& fleet) {
 
 std::string live_line(const RunSettings& settings, Micros begun, const Moment& before, const Moment& now) {
     const Lately shown = lately(settings.rate > 0.0, before, now);
-    auto text =
-        fmt::format("{}: {}/s sent, {}/s acknowledged, {} under way; ack {}; generator {:.2f} cores, server {}",
-                    time_text(settings, begun, now), whole(shown.sent), whole(shown.acknowledged),
-                    grouped(under_way(now.fleet)), ack_text(shown.ack), shown.own_cores, server_text(shown, now));
+    auto text = fmt::format("{}: {}/s sent, {}/s acknowledged, {} under way; ack {}; generator {:.2f} cores, server {}",
+                            time_text(settings, begun, now), whole(shown.sent), whole(shown.acknowledged),
+                            grouped(under_way(now.fleet)), ack_text(shown.ack), shown.own_cores, server_text(shown));
     if (const auto alone = without_link(settings, now.fleet); alone > 0) {
         text += fmt::format("; {} of {} robots have no link", grouped(alone), grouped(settings.robots));
     }
@@ -111,7 +111,7 @@ std::vector<std::string> live_table(const RunSettings& settings, Micros begun, c
                         shown.own_delay.count() == 0
                             ? ""
                             : fmt::format(", behind by {} ms (p99)", as_milliseconds(shown.own_delay.percentile(99))))),
-        row("server", server_text(shown, now))};
+        row("server", server_text(shown))};
     if (settings.viewers > 0) {
         rows.push_back(row("viewers", fmt::format("{} watch, {:.0f} events/s", now.audience.watching, shown.events)));
     }

@@ -16,7 +16,7 @@ struct Moment {
     FleetFigures fleet;
     AudienceFigures audience;
     ProcessUse own;
-    std::optional<ProcessUse> server;
+    std::optional<ServerUse> server;
 };
 
 /// What happened between two moments, in one line for a log. `begun` is when the first scan was meant to be sent.

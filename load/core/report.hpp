@@ -2,6 +2,7 @@
 
 #include "load/core/audience_figures.hpp"
 #include "load/core/fleet_figures.hpp"
+#include "load/core/process_use.hpp"
 #include "load/core/verdict.hpp"
 
 #include <cstdint>
@@ -30,20 +31,14 @@ struct RunSettings {
     std::string faults; ///< as they were given
 };
 
-/// What a process has used between the first scan and the last ack.
-struct ProcessUse {
-    double cpu_seconds = 0.0;
-    double resident_bytes = 0.0; ///< at the end
-};
-
 /// All that a run tells.
 struct RunReport {
     RunSettings settings;
     double seconds = 0.0; ///< from when the first scan was meant to be sent until the last ack
     FleetFigures fleet;
     AudienceFigures audience;
-    ProcessUse own;
-    std::optional<ProcessUse> server; ///< absent: nobody asked it
+    ProcessUse own;                   ///< between the first scan and the last ack, as that of the server
+    std::optional<ServerUsed> server; ///< absent: it did not say
     Evidence evidence;
     Verdict verdict;
 };

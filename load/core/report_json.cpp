@@ -1,9 +1,9 @@
 #include "load/core/report.hpp"
 
+#include "common/json/json_text.hpp"
 #include "load/core/words.hpp"
 
 #include <boost/json/object.hpp>
-#include <boost/json/serialize.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -68,20 +68,33 @@ json::object links_json(const FleetFigures& fleet) {
 }
 
 json::object audience_json(const AudienceFigures& seen) {
-    return {{"events", seen.events},
+    return {{"viewers_let_in", seen.viewers_let_in},
+            {"viewers_refused", seen.viewers_refused},
+            {"events", seen.events},
             {"event_bytes", seen.event_bytes},
             {"viewers_cut_off", seen.viewer_ends},
             {"tile_requests", seen.tile_requests},
             {"tiles_unchanged", seen.tiles_unchanged},
             {"tiles_failed", seen.tiles_failed},
             {"tile_bytes", seen.tile_bytes},
-            {"tile_latency", latency_json(seen.tile_latency)}};
+            {"tile_latency", latency_json(seen.tile_latency)},
+            {"trouble", seen.trouble}};
 }
 
 json::object use_json(const ProcessUse& use, double seconds) {
     return {{"cpu_seconds", rounded(use.cpu_seconds)},
             {"cores", rounded(per_second(use.cpu_seconds, seconds))},
             {"resident_bytes", use.resident_bytes}};
+}
+
+json::object server_json(const RunReport& report) {
+    if (!report.server) return {};
+    const auto& cpu_seconds = report.server->cpu_seconds;
+    if (!cpu_seconds) return {{"resident_bytes", report.server->resident_bytes}};
+    auto server = use_json({*cpu_seconds, report.server->resident_bytes}, report.seconds);
+    const auto scans = static_cast<double>(std::max<std::uint64_t>(report.fleet.scans_acknowledged, 1));
+    server["cpu_us_per_scan"] = rounded(*cpu_seconds / scans * 1e6);
+    return server;
 }
 
 json::object verdict_json(const RunReport& report) {
@@ -98,27 +111,23 @@ json::object verdict_json(const RunReport& report) {
 } // namespace
 
 std::string to_json(const RunReport& report) {
-    json::object server;
-    if (report.server) {
-        server = use_json(*report.server, report.seconds);
-        const auto scans = static_cast<double>(std::max<std::uint64_t>(report.fleet.scans_acknowledged, 1));
-        server["cpu_us_per_scan"] = rounded(report.server->cpu_seconds / scans * 1e6);
+    json::object all{{"settings", settings_json(report.settings)},
+                     {"seconds", rounded(report.seconds)},
+                     {"scans", scans_json(report)},
+                     {"bytes_out", report.fleet.bytes_out},
+                     {"bytes_in", report.fleet.bytes_in},
+                     {"ack_from_sending", latency_json(report.fleet.from_sending)},
+                     {"generator", use_json(report.own, report.seconds)},
+                     {"server", server_json(report)},
+                     {"audience", audience_json(report.audience)},
+                     {"links", links_json(report.fleet)},
+                     {"verdict", verdict_json(report)}};
+    if (report.settings.rate > 0.0) { // else no scan is meant to be sent at any time
+        all["ack_from_intended"] = latency_json(report.fleet.from_intended);
+        all["sending_from_intended"] = latency_json(report.fleet.waiting_to_send);
+        all["own_delay"] = latency_json(report.fleet.own_delay);
     }
-    return json::serialize(json::object{{"settings", settings_json(report.settings)},
-                                        {"seconds", rounded(report.seconds)},
-                                        {"scans", scans_json(report)},
-                                        {"bytes_out", report.fleet.bytes_out},
-                                        {"bytes_in", report.fleet.bytes_in},
-                                        {"ack_from_intended", latency_json(report.fleet.from_intended)},
-                                        {"ack_from_sending", latency_json(report.fleet.from_sending)},
-                                        {"sending_from_intended", latency_json(report.fleet.waiting_to_send)},
-                                        {"own_delay", latency_json(report.fleet.own_delay)},
-                                        {"generator", use_json(report.own, report.seconds)},
-                                        {"server", std::move(server)},
-                                        {"audience", audience_json(report.audience)},
-                                        {"links", links_json(report.fleet)},
-                                        {"verdict", verdict_json(report)}}) +
-           "\n";
+    return json_text(all) + "\n";
 }
 
 } // namespace scanloom::load

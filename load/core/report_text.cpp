@@ -80,20 +80,28 @@ std::string generator(const RunReport& report) {
 }
 
 std::string server(const RunReport& report) {
-    if (!report.server) return line("server", "was not asked");
-    const double each =
-        report.server->cpu_seconds / std::fmax(1.0, static_cast<double>(report.fleet.scans_acknowledged));
+    if (!report.server) return line("server", "did not say what it used");
+    const auto memory = as_bytes(report.server->resident_bytes);
+    const auto& cpu_seconds = report.server->cpu_seconds;
+    if (!cpu_seconds) {
+        return line("server", fmt::format("was started anew meanwhile, its CPU is not known; memory {}", memory));
+    }
+    const double each = *cpu_seconds / std::fmax(1.0, static_cast<double>(report.fleet.scans_acknowledged));
     return line("server", fmt::format("{:.2f} cores, {:.0f} us of CPU per acknowledged scan, memory {}",
-                                      load::per_second(report.server->cpu_seconds, report.seconds), each * 1e6,
-                                      as_bytes(report.server->resident_bytes)));
+                                      load::per_second(*cpu_seconds, report.seconds), each * 1e6, memory));
 }
 
 std::string viewers(const RunReport& report) {
     if (report.settings.viewers == 0) return {};
     const AudienceFigures& seen = report.audience;
-    auto text = fmt::format("{} watched: {} events, {:.1f}/s each, {}", report.settings.viewers, grouped(seen.events),
-                            per_second(seen.events, report.seconds) / report.settings.viewers,
+    const std::uint32_t asked = report.settings.viewers;
+    auto text = fmt::format("{}{} watched: {} events, {:.1f}/s each, {}", seen.viewers_let_in,
+                            seen.viewers_let_in < asked ? fmt::format(" of {}", asked) : "", grouped(seen.events),
+                            per_second(seen.events, report.seconds) / std::max(seen.viewers_let_in, 1U),
                             as_bytes(static_cast<double>(seen.event_bytes)));
+    if (seen.viewers_refused > 0) text += fmt::format("; {} REFUSED", grouped(seen.viewers_refused));
+    const std::uint32_t came = seen.viewers_let_in + seen.viewers_refused;
+    if (came < asked) text += fmt::format("; {} HAD NO CONNECTION", grouped(asked - came));
     if (seen.viewer_ends > 0) text += fmt::format("; {} ended early", counted(seen.viewer_ends, "connection"));
     return line("viewers", text);
 }
@@ -109,6 +117,10 @@ std::string tiles(const RunReport& report) {
                             as_bytes(static_cast<double>(seen.tile_bytes)));
     if (seen.tiles_failed > 0) text += fmt::format("; {} FAILED", grouped(seen.tiles_failed));
     return line("tiles", text);
+}
+
+std::string trouble(const RunReport& report) {
+    return report.audience.trouble.empty() ? "" : line("trouble", report.audience.trouble);
 }
 
 std::string links(const RunReport& report) {
@@ -128,7 +140,8 @@ std::string links(const RunReport& report) {
 
 std::string to_text(const RunReport& report) {
     return title(report.settings) + scans(report) + bytes(report) + latencies(report) + generator(report) +
-           server(report) + viewers(report) + tiles(report) + links(report) + "\n" + report.verdict.sentence + "\n";
+           server(report) + viewers(report) + tiles(report) + trouble(report) + links(report) + "\n" +
+           report.verdict.sentence + "\n";
 }
 
 } // namespace scanloom::load

@@ -101,9 +101,8 @@ void RobotTalk::acknowledge(std::uint64_t seq, Micros now, FleetFigures& figures
         const std::uint64_t acknowledged = durable_ + 1;
         while (!sendings_.empty() && sendings_.front().last_seq < acknowledged) sendings_.pop_front();
         if (sendings_.empty()) continue;
-        const Micros sent_at = sendings_.front().at;
-        figures.from_sending.record(now - sent_at);
-        figures.from_intended.record(now - (course_->schedule ? intended(acknowledged) : sent_at));
+        figures.from_sending.record(now - sendings_.front().at);
+        if (course_->schedule) figures.from_intended.record(now - intended(acknowledged));
     }
 }
 

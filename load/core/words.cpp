@@ -26,13 +26,13 @@ std::string as_milliseconds(Micros time) {
 }
 
 std::string as_bytes(double bytes) {
-    constexpr double kStep = 1000.0;
+    constexpr double kStep = 1024.0;
     if (bytes < kStep) return fmt::format("{:.0f} B", bytes);
-    for (const char* unit : {"kB", "MB", "GB"}) {
+    for (const char* unit : {"KiB", "MiB", "GiB"}) {
         bytes /= kStep;
         if (bytes < kStep) return fmt::format("{:.{}f} {}", bytes, bytes < 100.0 ? 1 : 0, unit);
     }
-    return fmt::format("{} TB", whole(bytes / kStep));
+    return fmt::format("{} TiB", whole(bytes / kStep));
 }
 
 } // namespace scanloom::load

@@ -11,7 +11,7 @@ namespace scanloom::load {
 [[nodiscard]] std::string grouped(std::uint64_t count); ///< 1,234,567
 [[nodiscard]] std::string whole(double count);          ///< the same, rounded
 [[nodiscard]] std::string as_milliseconds(Micros time); ///< 0.42, 7.5, 123, 4,567
-[[nodiscard]] std::string as_bytes(double bytes);       ///< 512 B, 1.5 kB, 12.3 MB: powers of 1000
+[[nodiscard]] std::string as_bytes(double bytes);       ///< 512 B, 1.5 KiB, 12.3 MiB
 
 /// 0 where no time has passed.
 [[nodiscard]] constexpr double per_second(double count, double seconds) noexcept {

@@ -20,7 +20,8 @@ struct OnlookerShared {
 };
 
 /// Watches a session as a page of the viewer does, over a WebSocket: all layers and points; takes every event as soon
-/// as it comes. A connection that ends is made anew after a second. `shared` stays until the executor has stopped.
+/// as it comes. A connection that ends is made anew after a second, and so it asks again where it is not let in.
+/// `shared` stays until the executor has stopped.
 [[nodiscard]] boost::asio::awaitable<void> watch(OnlookerShared& shared, std::string session);
 
 /// Fetches the tiles of a session one after the other, round and round, `rate` a second, each with the ETag that it had

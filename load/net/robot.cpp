@@ -39,6 +39,7 @@ struct Robot::Link {
     Micros begun;
     bool is_up = false; // connected, and encrypted where it has to be
     bool is_writing = false;
+    bool has_heard = false; // anything
     std::string out;
     wire::FrameDecoder in{wire::kFrameBytesMax};
 };
@@ -115,7 +116,7 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
         const auto room = link->in.prepare(kReadBytes);
         const auto [failed, count] =
             co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kUse);
-        if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
+        if (failed) co_return lost(ended(*link, failed));
         while (shared_.clock.now() < stalled_until_ && !stopped_) {
             timer_.expires_at(shared_.clock.at(stalled_until_));
             co_await timer_.async_wait(kUse);
@@ -125,8 +126,16 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
     }
 }
 
+/// A server that speaks TLS hangs up on the first bytes that are none.
+std::string Robot::ended(const Link& link, const boost::system::error_code& why) const {
+    const bool may_want_tls = !shared_.link.tls && !link.has_heard;
+    return fmt::format("the connection was lost: {}{}", why.message(),
+                       may_want_tls ? " before the server said a word; it may want TLS (--tls)" : "");
+}
+
 std::optional<wire::LinkError> Robot::take(Link& link, std::size_t bytes) {
     shared_.figures.bytes_in += bytes;
+    link.has_heard = true;
     link.in.commit(bytes);
     for (;;) {
         auto body = link.in.next();

@@ -81,6 +81,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> use_one_link();
     [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect(std::shared_ptr<Link> link);
     [[nodiscard]] boost::asio::awaitable<wire::LinkError> read_frames(std::shared_ptr<Link> link);
+    [[nodiscard]] std::string ended(const Link& link, const boost::system::error_code& why) const;
     [[nodiscard]] std::optional<wire::LinkError> take(Link& link, std::size_t bytes);
     void flush();
     void close_link();

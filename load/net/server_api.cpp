@@ -107,8 +107,9 @@ asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http) {
     const auto answer = co_await http.get(target);
     if (!answer) co_return answer.error();
     if (answer->status != kOk) co_return refusal(*answer, target);
-    co_return ServerUse{metric(answer->body, "process_cpu_seconds_total"),
-                        metric(answer->body, "process_resident_memory_bytes")};
+    const ProcessUse so_far{metric(answer->body, "process_cpu_seconds_total"),
+                            metric(answer->body, "process_resident_memory_bytes")};
+    co_return ServerUse{so_far, metric(answer->body, "process_start_time_seconds")};
 }
 
 asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session, std::string layer) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "load/core/process_use.hpp"
+#include "load/core/tile_tour.hpp"
 #include "load/core/verdict.hpp"
 #include "load/net/http_connection.hpp"
 
@@ -12,17 +14,6 @@
 #include <vector>
 
 namespace scanloom::load {
-
-/// What the server's process has used so far, by its own word.
-struct ServerUse {
-    double cpu_seconds = 0.0;
-    double resident_bytes = 0.0;
-};
-
-struct TilePlace {
-    std::uint32_t x = 0;
-    std::uint32_t y = 0;
-};
 
 // What is asked over HTTP, beside tiles. Each fails as HttpConnection::ask() does, and with refusal() where the answer
 // is not 200, or not what the API says.

@@ -1,3 +1,4 @@
+#include "load/core/tile_tour.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
 #include "load/net/server_api.hpp"
@@ -8,8 +9,8 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <unordered_map>
+#include <vector>
 
 namespace scanloom::load {
 
@@ -18,42 +19,39 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-constexpr std::array<const char*, 2> kLayers{"occupancy", "classification"}; ///< what the viewer shows first
 constexpr unsigned kOk = 200;
 constexpr unsigned kNotModified = 304;
 
-/// One reader: what it has seen, and when it is to ask for more.
+/// One reader: what it has seen, and what it is to ask for next.
 class TileReader {
 public:
-    TileReader(OnlookerShared& shared, std::string session, asio::any_io_executor executor, double rate, Micros first)
-        : shared_(shared), session_(std::move(session)), http_(executor, shared.http), timer_(executor),
-          period_(static_cast<Micros>(static_cast<double>(kSecond) / rate)), next_(first) {}
+    TileReader(OnlookerShared& shared, std::string session, asio::any_io_executor executor, const TileTour& tour)
+        : shared_(shared), session_(std::move(session)), http_(executor, shared.http), timer_(executor), tour_(tour) {}
 
     asio::awaitable<void> run() {
-        for (std::size_t round = 0; !shared_.stopped; ++round) {
-            const std::string layer = kLayers[round % kLayers.size()];
-            co_await wait_for_turn();
-            const auto tiles = co_await tiles_of(http_, session_, layer);
-            if (!tiles) note(tiles.error());
-            if (!tiles || shared_.stopped) continue;
-            for (const TilePlace& tile : *tiles) {
-                co_await wait_for_turn();
-                if (shared_.stopped) co_return;
-                co_await fetch(
-                    fmt::format("/api/v1/sessions/{}/tiles/{}/9/{}/{}.png", session_, layer, tile.x, tile.y));
+        for (;;) {
+            const TileTour::Step step = tour_.next();
+            timer_.expires_at(shared_.clock.at(step.at));
+            co_await timer_.async_wait(kUse);
+            if (shared_.stopped) co_return;
+            if (step.is_list) {
+                co_await list(step.layer);
+            } else {
+                co_await fetch(fmt::format("/api/v1/sessions/{}/tiles/{}/9/{}/{}.png", session_, step.layer,
+                                           step.tile.x, step.tile.y),
+                               step.at);
             }
         }
     }
 
 private:
-    asio::awaitable<void> wait_for_turn() {
-        meant_ = next_;
-        next_ += period_;
-        timer_.expires_at(shared_.clock.at(meant_));
-        co_await timer_.async_wait(kUse);
+    asio::awaitable<void> list(std::string layer) {
+        auto tiles = co_await tiles_of(http_, session_, std::move(layer));
+        if (!tiles && !shared_.stopped) note(tiles.error());
+        tour_.listed(tiles ? std::move(*tiles) : std::vector<TilePlace>());
     }
 
-    asio::awaitable<void> fetch(std::string target) {
+    asio::awaitable<void> fetch(std::string target, Micros meant) {
         AudienceFigures& figures = shared_.figures;
         std::string& etag = etags_[target];
         const std::uint64_t before = http_.bytes_in();
@@ -63,7 +61,7 @@ private:
         figures.tile_bytes += http_.bytes_in() - before;
         if (!answer) co_return note(answer.error());
         if (answer->status != kOk && answer->status != kNotModified) co_return note(refusal(*answer, target));
-        figures.tile_latency.record(shared_.clock.now() - meant_);
+        figures.tile_latency.record(shared_.clock.now() - meant);
         if (answer->status == kNotModified) ++figures.tiles_unchanged;
         if (answer->status == kOk) etag = answer->etag;
     }
@@ -77,16 +75,15 @@ private:
     std::string session_;
     HttpConnection http_;
     asio::steady_timer timer_;
-    Micros period_;
-    Micros next_;
-    Micros meant_ = 0;
+    TileTour tour_;
     std::unordered_map<std::string, std::string> etags_; // by target
 };
 
 } // namespace
 
 asio::awaitable<void> read_tiles(OnlookerShared& shared, std::string session, double rate, Micros delay) {
-    TileReader reader(shared, std::move(session), co_await asio::this_coro::executor, rate, shared.clock.now() + delay);
+    TileReader reader(shared, std::move(session), co_await asio::this_coro::executor,
+                      TileTour(rate, shared.clock.now() + delay));
     co_await reader.run();
 }
 

@@ -1,3 +1,4 @@
+#include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
 
 #include <boost/asio/as_tuple.hpp>
@@ -24,20 +25,27 @@ constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's
 
 using Stream = beast::websocket::stream<beast::tcp_stream>;
 
-asio::awaitable<boost::system::error_code> connect(Stream& stream, const robot::ServerAddress& server,
-                                                   std::string session) {
+/// What came of asking to watch.
+struct Entry {
+    boost::system::error_code failed;
+    std::string refusal; ///< what the server said instead of letting it in; empty: nothing
+};
+
+asio::awaitable<Entry> enter(Stream& stream, const robot::ServerAddress& server, std::string session) {
     asio::ip::tcp::resolver resolver(stream.get_executor());
     const auto [unresolved, addresses] = co_await resolver.async_resolve(server.host, server.port, kUse);
-    if (unresolved) co_return unresolved;
+    if (unresolved) co_return Entry{unresolved, {}};
     auto& tcp = beast::get_lowest_layer(stream);
     tcp.expires_after(kConnectMax);
     const auto [refused, endpoint] = co_await tcp.async_connect(addresses, kUse);
-    if (refused) co_return refused;
+    if (refused) co_return Entry{refused, {}};
     const auto host = fmt::format("{}:{}", server.host, server.port);
     const auto target = fmt::format("/api/v1/sessions/{}/live", session);
-    const auto [failed] = co_await stream.async_handshake(host, target, kUse);
+    beast::websocket::response_type answer;
+    const auto [failed] = co_await stream.async_handshake(answer, host, target, kUse);
     tcp.expires_never(); // while nothing changes there are no events
-    co_return failed;
+    if (failed != beast::websocket::error::upgrade_declined) co_return Entry{failed, {}};
+    co_return Entry{failed, refusal({answer.result_int(), {}, answer.body()}, target).message};
 }
 
 asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceFigures& figures) {
@@ -52,22 +60,51 @@ asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceF
     }
 }
 
+/// How a viewer counts. Who has ever been let in counts as such.
+class Standing {
+public:
+    explicit Standing(AudienceFigures& figures) : figures_(figures) {}
+
+    void let_in() {
+        if (is_in_) return;
+        is_in_ = true;
+        ++figures_.viewers_let_in;
+        if (is_refused_) --figures_.viewers_refused;
+    }
+    void refused() {
+        if (is_in_ || is_refused_) return;
+        is_refused_ = true;
+        ++figures_.viewers_refused;
+    }
+
+private:
+    AudienceFigures& figures_;
+    bool is_in_ = false;
+    bool is_refused_ = false;
+};
+
 } // namespace
 
 asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
     const auto executor = co_await asio::this_coro::executor;
     asio::steady_timer pause(executor);
+    AudienceFigures& figures = shared.figures;
+    Standing standing(figures);
     while (!shared.stopped) {
         Stream stream(executor);
-        boost::system::error_code failed = co_await connect(stream, shared.http, session);
-        if (!failed) {
-            ++shared.figures.watching;
-            failed = co_await take_events(stream, shared.figures);
-            --shared.figures.watching;
+        Entry entry = co_await enter(stream, shared.http, session);
+        const bool watches = !entry.failed;
+        if (watches) {
+            standing.let_in();
+            ++figures.watching;
+            entry.failed = co_await take_events(stream, figures);
+            --figures.watching;
         }
         if (shared.stopped) co_return;
-        ++shared.figures.viewer_ends;
-        shared.figures.trouble = fmt::format("a viewer of session {}: {}", session, failed.message());
+        if (watches) ++figures.viewer_ends;
+        if (!entry.refusal.empty()) standing.refused();
+        figures.trouble = fmt::format("a viewer of session {}: {}", session,
+                                      entry.refusal.empty() ? entry.failed.message() : entry.refusal);
         pause.expires_after(kPause);
         co_await pause.async_wait(kUse);
     }

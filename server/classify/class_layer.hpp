@@ -74,6 +74,10 @@ private:
     std::int32_t danger_cells_;
     grid::ChunkTree<PlanesChunk> planes_;
     grid::ChunkTree<ClassChunk> tree_;
+
+public:
+    /// What is kept of a chunk beside its OccTypes.
+    static constexpr std::size_t kChunkBytes = sizeof(PlanesChunk) + sizeof(ClassChunk);
 };
 
 } // namespace scanloom::classify

@@ -1,7 +1,7 @@
 #include "server/http/geojson.hpp"
 
+#include "common/json/json_text.hpp"
 #include "server/grid/outline.hpp"
-#include "server/http/json_text.hpp"
 #include "server/http/number.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "server/http/response.hpp"
 
-#include "server/http/json_text.hpp"
+#include "common/json/json_text.hpp"
 
 #include <fmt/format.h>
 

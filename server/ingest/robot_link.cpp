@@ -199,8 +199,8 @@ Result<> RobotLink::handle(wire::Message message) {
         message = std::move(*batch);
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
-        services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         if (auto ok = charge_batch(); !ok) return ok.error();
+        services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         unacknowledged_.add(batch->scans.back().seq, batch->scans.size(), read_);
         session_->submit(self, std::move(batch->scans), frame_bytes_);
         return {};

@@ -17,7 +17,8 @@ prometheus::Gauge& gauge(prometheus::Registry& registry, const char* name, const
 
 IngestCounters::IngestCounters(prometheus::Registry& registry)
     : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
-      scans_received(counter(registry, "scanloom_scans_received_total", "Well-formed scans that robots sent.")),
+      scans_received(counter(registry, "scanloom_scans_received_total",
+                             "Well-formed scans that robots sent, within their credit.")),
       scans_in_flight(
           gauge(registry, "scanloom_scans_in_flight", "Scans that were read and are not acknowledged yet.")),
       ack_seconds("scanloom_ack_seconds",

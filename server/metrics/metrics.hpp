@@ -20,7 +20,7 @@ public:
     explicit IngestCounters(prometheus::Registry& registry);
 
     prometheus::Gauge& links_open;
-    prometheus::Counter& scans_received; ///< well-formed scans that arrived
+    prometheus::Counter& scans_received; ///< well-formed scans that arrived, within the credit
     prometheus::Gauge& scans_in_flight;  ///< read and not acknowledged yet
     DurationHistogram ack_seconds;       ///< of each scan: from being read to its ack being handed to the socket
 

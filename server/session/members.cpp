@@ -19,6 +19,7 @@ void Members::restore(const mapping::ProjectionState& state) {
 }
 
 void Members::restore(Member& member, const mapping::ProjectionState::Robot& state) {
+    if (member.received_seq > state.last_seq) counters_.scans_dropped += member.received_seq - state.last_seq;
     member.name = state.name;
     member.source = state.source;
     member.body_radius = state.body_radius;
@@ -159,9 +160,13 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
                                      std::size_t bytes) {
     std::vector<Submitted> entries;
     Member* member = member_of(from);
-    if (member == nullptr) return entries;
+    if (member == nullptr) { // the link was cut or replaced while they came: the robot will send them again
+        counters_.scans_dropped += scans.size();
+        return entries;
+    }
     std::optional<Error> fault;
-    for (std::size_t n = 0; n < scans.size() && !fault; ++n) {
+    std::size_t n = 0;
+    for (; n < scans.size() && !fault; ++n) {
         Scan& scan = scans[n];
         if (scan.seq <= member->received_seq) { // sent again after a reconnect: the log has it
             ++counters_.scans_duplicates;
@@ -180,6 +185,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
     }
+    if (fault) counters_.scans_dropped += scans.size() - (n - 1); // the faulty one, and those behind it
     if (entries.empty()) entries.push_back(submitted(*member, std::nullopt, 0));
     entries.back().bytes = bytes;     // given back when the whole frame is in the maps
     if (fault) fail(*member, *fault); // the scans before it have been received and count as such

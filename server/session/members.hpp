@@ -82,7 +82,7 @@ private:
     [[nodiscard]] Submitted submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
     [[nodiscard]] Result<> check_source(const Member& member, const std::string& source) const;
     [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan) const;
-    static void restore(Member& member, const mapping::ProjectionState::Robot& state);
+    void restore(Member& member, const mapping::ProjectionState::Robot& state);
     void admit(Member& member);
     void fail(Member& member, const Error& error);
     void set_connected(const Member& member, bool connected);

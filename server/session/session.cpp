@@ -96,7 +96,8 @@ void Session::submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::si
 
 void Session::submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes) {
     on_strand([from = std::move(from), scans = std::move(scans), bytes](Session& self) mutable {
-        if (!self.refusing_) self.enqueue(self.members_.take(from, std::move(scans), bytes));
+        if (!self.refusing_) return self.enqueue(self.members_.take(from, std::move(scans), bytes));
+        self.counters_->scans_dropped += scans.size();
     });
 }
 

@@ -24,13 +24,14 @@ struct SessionInfo {
 
 /// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
 struct SessionLimits {
-    std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 1 GiB of them, 1.3 square kilometres at 5 cm
+    std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
 };
 
-/// What all sessions count together. Thread: any.
+/// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.
 struct SessionCounters {
     std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
+    std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or come when their link had ended; not acknowledged
 };
 
 } // namespace scanloom::session

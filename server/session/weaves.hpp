@@ -19,8 +19,8 @@ namespace scanloom::session {
 struct WeavesLimits {
     std::size_t waiting_max = 16;          ///< weaves that have not ended
     std::size_t kept_max = 32;             ///< ended ones
-    std::size_t chunks_max = 131'072;      ///< of all that are under way: 2.8 GiB
-    std::size_t chunks_kept_max = 131'072; ///< of all that are done: 2.8 GiB; as much as one of them can have
+    std::size_t chunks_max = 131'072;      ///< of all that are under way: 2.5 GiB
+    std::size_t chunks_kept_max = 131'072; ///< of all that are done: 2.5 GiB; as much as one of them can have
 };
 
 /// The weaves of all sessions: those that wait, those under way, and the newest of those that ended.

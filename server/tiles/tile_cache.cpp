@@ -1,6 +1,7 @@
 #include "server/tiles/tile_cache.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace scanloom::tiles {
@@ -62,9 +63,10 @@ SharedBytes TileCache::get(const TilePlace& place, Revision revision, const std:
     }
     lock.lock();
     auto bytes = made.bytes;
+    const bool is_forgotten = flight->is_forgotten;
     flight->promise.set_value(bytes);
-    if (!flight->is_forgotten) keep_locked(place, std::move(made));
     flights_.erase(flight);
+    if (!is_forgotten) keep_locked(place, std::move(made));
     return bytes;
 }
 
@@ -116,9 +118,15 @@ void TileCache::keep_locked(const TilePlace& place, KeptTile tile) {
     const std::size_t size = size_of(place, tile);
     if (size > bytes_max_) return;
     while (stats_.bytes + size > bytes_max_) drop(std::prev(used_.end()));
-    const auto [entry, inserted] = entries_.try_emplace(place, used_.end());
-    entry->second = used_.insert(used_.begin(), Entry{&entry->first, std::move(tile)});
-    stats_.bytes += size_of(entry->first, entry->second->tile);
+    try {
+        std::list<Entry> added;
+        added.push_back({nullptr, std::move(tile)});
+        const auto [entry, inserted] = entries_.try_emplace(place, added.begin());
+        added.front().place = &entry->first;
+        used_.splice(used_.begin(), added); // from here on nothing throws
+        stats_.bytes += size_of(entry->first, entry->second->tile);
+    } catch (const std::bad_alloc&) { // both lists are as they were; whoever asked for the tile has it all the same
+    }
 }
 
 void TileCache::drop(std::list<Entry>::iterator entry) {

@@ -63,7 +63,7 @@ public:
     /// The tile in whatever revision is there, to be used for another; this counts as no request.
     [[nodiscard]] KeptTile newest(const TilePlace& place);
 
-    /// Keeps a tile unless a newer revision is there.
+    /// Keeps a tile unless a newer revision is there, or memory is short.
     void keep(const TilePlace& place, KeptTile tile);
 
     /// Drops the tiles of these maps, and of those whose tags are theirs with "-" and more. One that is being made is

@@ -31,8 +31,8 @@ SharedBytes TileMaker::find(const TilePlace& place, Revision revision) {
     return place.format == TileFormat::kPng ? tile_png(codes, place.layer) : codes;
 }
 
-bool TileMaker::is_quick(const TilePlace& place) {
-    return place.key.zoom >= kPartZoomMin || cache_.newest(codes_of(place)).bytes;
+bool TileMaker::is_quick(const std::shared_ptr<const void>& origin, const TilePlace& place, Revision revision) {
+    return place.key.zoom >= kPartZoomMin || earlier_drawing(origin, codes_of(place), revision).bytes;
 }
 
 SharedBytes TileMaker::make(const TileSource& maps, const TilePlace& place, Revision revision) {
@@ -47,13 +47,20 @@ SharedBytes TileMaker::make(const TileSource& maps, const TilePlace& place, Revi
     });
 }
 
-/// From an earlier drawing, where there is one. It has to be of the same origin: a weave that is made once more has
-/// taken its snapshots at other times, and so tells the times of changes otherwise where they were taken back.
+/// Without bytes where there is none that can be gone on from. It has to be of the same origin: a weave that is made
+/// once more has taken its snapshots at other times, and so tells the times of changes otherwise where they were taken
+/// back.
+KeptTile TileMaker::earlier_drawing(const std::shared_ptr<const void>& origin, const TilePlace& codes,
+                                    Revision revision) {
+    auto earlier = cache_.newest(codes);
+    const bool is_usable = earlier.revision <= revision && is_same(earlier.origin, origin);
+    return is_usable ? earlier : KeptTile{};
+}
+
 KeptTile TileMaker::draw(const TileSource& maps, const TilePlace& codes, Revision revision) {
-    const auto earlier = cache_.newest(codes);
-    const bool is_usable = earlier.bytes && earlier.revision <= revision && is_same(earlier.origin, maps.origin);
-    auto drawn = is_usable ? tile_codes(maps.snapshot, codes.layer, codes.key, {earlier.bytes, earlier.revision})
-                           : tile_codes(maps.snapshot, codes.layer, codes.key);
+    const auto earlier = earlier_drawing(maps.origin, codes, revision);
+    auto drawn = earlier.bytes ? tile_codes(maps.snapshot, codes.layer, codes.key, {earlier.bytes, earlier.revision})
+                               : tile_codes(maps.snapshot, codes.layer, codes.key);
     return {std::move(drawn), revision, maps.origin};
 }
 

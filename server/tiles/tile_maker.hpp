@@ -33,8 +33,8 @@ public:
     [[nodiscard]] SharedBytes find(const TilePlace& place, Revision revision);
 
     /// Whether making it takes no look at a whole map: it shows no more than a part of one, or an earlier drawing is
-    /// there.
-    [[nodiscard]] bool is_quick(const TilePlace& place);
+    /// there to go on from. `origin` as in TileSource; a later revision than the tile's does for it.
+    [[nodiscard]] bool is_quick(const std::shared_ptr<const void>& origin, const TilePlace& place, Revision revision);
 
     /// The tile, made if it is not there; who asks for one that is being made waits for it.
     /// Pre  the maps are those that place.maps names.
@@ -46,6 +46,8 @@ public:
     [[nodiscard]] TileCache::Stats stats() const { return cache_.stats(); }
 
 private:
+    [[nodiscard]] KeptTile earlier_drawing(const std::shared_ptr<const void>& origin, const TilePlace& codes,
+                                           Revision revision);
     [[nodiscard]] KeptTile draw(const TileSource& maps, const TilePlace& codes, Revision revision);
 
     TileCache cache_;

@@ -45,6 +45,9 @@ function measureLink() {
   return { read: of('ReadFrames'), parse: of('ReadAndParseFrames') };
 }
 
+/** From the intended times; without any (rate 0) from sending. */
+const ackOf = (run) => run.ack_from_intended ?? run.ack_from_sending;
+
 function tell() {
   const row = (name, run) => [
     name,
@@ -52,9 +55,9 @@ function tell() {
     threeDigits(run.server.cpu_us_per_scan),
     threeDigits(run.server.cores),
     threeDigits(run.generator.cores),
-    threeDigits(run.ack_from_intended.p50_ms),
-    threeDigits(run.ack_from_intended.p99_ms),
-    threeDigits(run.own_delay.p99_ms),
+    threeDigits(ackOf(run).p50_ms),
+    threeDigits(ackOf(run).p99_ms),
+    run.own_delay ? threeDigits(run.own_delay.p99_ms) : '',
     (run.server.resident_bytes / 2 ** 20).toFixed(0),
   ];
   console.log(inWords(on), '\n');

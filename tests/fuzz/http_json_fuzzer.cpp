@@ -1,5 +1,5 @@
+#include "common/json/json_text.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/json_text.hpp"
 #include "tests/fuzz/check.hpp"
 
 #include <cmath>
@@ -16,6 +16,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static_cast<void>(http::read_text(*object, "name"));
     const auto number = http::read_number(*object, "cell_size");
     if (number && *number) fuzz::check(std::isfinite(**number), "numbers are finite");
-    fuzz::check(http::parse_json_object(http::json_text(*object)).has_value(), "what is written can be read");
+    fuzz::check(http::parse_json_object(json_text(*object)).has_value(), "what is written can be read");
     return 0;
 }

@@ -152,6 +152,25 @@ TEST_F(IngestTest, ARobotWhoseLinkBrokeUnnoticedReplacesIt) {
     stream(*second, 1, 11, 20);
 }
 
+TEST_F(IngestTest, WhatWasReceivedAddsUpThoughLinksAreReplacedAndScansAreFaulty) {
+    auto& ingest = start();
+    const auto first = welcomed(port(), hello("r"));
+    first->send(small_laser());
+    stream(*first, 1, 1, 10);
+    const auto second = welcomed(port(), hello("r"));
+    stream(*second, 1, 6, 20); // the first five again
+    auto faulty = random_scans(1, 21, 10);
+    faulty[3].sensor = 77;
+    second->send(wire::ScanBatch{std::move(faulty)});
+    EXPECT_EQ(farewell_to(*second).error.code, Errc::kInvalidField);
+    const auto third = welcomed(port(), hello("r")); // once what came before is woven
+    const auto& counted = ingest.sessions().counters();
+    EXPECT_EQ(counted.scans_applied, 23U);
+    EXPECT_EQ(counted.scans_duplicates, 5U);
+    EXPECT_EQ(counted.scans_dropped, 7U);
+    EXPECT_EQ(ingest.counters().scans_received.Value(), 35.0);
+}
+
 TEST_F(IngestTest, TwoRobotsWeaveOneMapAndEachHasItsOwnSeqs) {
     auto& ingest = start();
     std::vector<std::thread> robots;

@@ -50,6 +50,9 @@ Families session_families(const session::SessionRegistry& sessions) {
                     static_cast<double>(sessions.counters().scans_applied)),
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
                     static_cast<double>(sessions.counters().scans_duplicates)),
+        counter_now("scanloom_scans_dropped_total",
+                    "Scans that were refused, or that came when their link had been replaced; never acknowledged.",
+                    static_cast<double>(sessions.counters().scans_dropped)),
     };
 }
 

@@ -1,10 +1,10 @@
 #include "server/http/handlers/sessions.hpp"
 
+#include "common/json/json_text.hpp"
 #include "common/scan/limits.hpp"
 #include "server/http/handlers/session_json.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
-#include "server/http/json_text.hpp"
 #include "server/http/number.hpp"
 
 #include <boost/json/array.hpp>

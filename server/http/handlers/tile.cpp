@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 
 namespace scanloom::http {
 namespace {
+
+constexpr Revision kNewest = std::numeric_limits<Revision>::max();
 
 /// Which version of a tile is asked for.
 struct Version {
@@ -81,6 +84,8 @@ bool is_known(const Wanted& wanted, const Call& call) {
     return if_none_match_has(call.request.if_none_match, wanted.etag);
 }
 
+tiles::TileSource source_of(const Maps& maps) { return {*maps.snapshot, maps.origin}; }
+
 Response answer_of(const Wanted& wanted, tiles::SharedBytes bytes) {
     const bool is_png = wanted.place.format == tiles::TileFormat::kPng;
     return ok(is_png ? "image/png" : "application/octet-stream", Body(std::move(bytes)))
@@ -97,7 +102,7 @@ Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const
     if (!found) return found.error();
     const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
     if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
-    return answer_of(wanted, maker.make({*wanted.maps.snapshot, wanted.maps.origin}, wanted.place, wanted.revision));
+    return answer_of(wanted, maker.make(source_of(wanted.maps), wanted.place, wanted.revision));
 }
 
 Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
@@ -106,14 +111,14 @@ Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, co
     if (!asked) return asked.error();
     auto found = maps.find_at_once(call, {"v", "id"});
     if (!found) return found.error();
-    const auto lane_of = [&](const tiles::TilePlace& place) {
-        return maker.is_quick(place) ? Lane::kServing : Lane::kSurvey;
+    const auto lane_of = [&](const Maps& tile_of, const tiles::TilePlace& place, Revision revision) {
+        return maker.is_quick(tile_of.origin, place, revision) ? Lane::kServing : Lane::kSurvey;
     };
-    if (!found->snapshot) return lane_of(place_of(*asked, *found, format));
+    if (!found->snapshot) return lane_of(*found, place_of(*asked, *found, format), kNewest);
     const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
     if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
     if (auto bytes = maker.find(wanted.place, wanted.revision)) return answer_of(wanted, std::move(bytes));
-    return lane_of(wanted.place);
+    return lane_of(wanted.maps, wanted.place, wanted.revision);
 }
 
 } // namespace scanloom::http

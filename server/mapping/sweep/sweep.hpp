@@ -26,7 +26,8 @@ namespace scanloom::mapping {
 ///
 /// Two bands may be asked for at once, of the same scan: evidence and counts have an alpha and an aperture each.
 /// Cost    sectors, crossings of rows, chunks of the area that the scan sees; never the map's size.
-/// Memory  kept by each thread from scan to scan: some bytes a sector, and 256 KiB a contour, or what one row of chunks needs.
+/// Memory  kept by each thread from scan to scan: 256 bytes a sector and contour, of four at most, for the pieces that
+///         cross rows; tens of bytes a sector for the rest; and 256 KiB a contour, or what one row of chunks needs.
 /// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. (A printed variant compares r with z_max in the
 ///         occupied test: a misprint.)
 class Sweep {

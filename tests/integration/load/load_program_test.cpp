@@ -1,3 +1,4 @@
+#include "tests/integration/load/hanging_up.hpp"
 #include "tests/integration/load/lying_front.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -111,6 +112,9 @@ TEST_F(LoadProgram, AServerThatIsKilledMeanwhileLosesNothing) {
     EXPECT_EQ(outcome.count("scans", "acknowledged"), kSmallLoadScans);
     EXPECT_EQ(outcome.count("links", "reconnects"), 20U);
     EXPECT_EQ(outcome.count("verdict", "digests_equal"), 20U);
+    const auto& server = outcome.report.at("server").as_object();
+    EXPECT_TRUE(server.contains("resident_bytes"));
+    EXPECT_FALSE(server.contains("cpu_seconds")) << "of the second server alone";
 }
 
 TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
@@ -126,6 +130,8 @@ TEST_F(LoadProgram, SeveralRobotsShareASessionWhileOthersLookOn) {
     EXPECT_EQ(outcome.count("scans", "acknowledged"), 240U);
     EXPECT_EQ(outcome.count("scans", "frames"), 84U); // 13 of three scans and a last one of each robot
     EXPECT_GT(outcome.count("audience", "events"), 3U);
+    EXPECT_EQ(outcome.count("audience", "viewers_let_in"), 3U);
+    EXPECT_EQ(outcome.count("audience", "viewers_refused"), 0U);
     EXPECT_GT(outcome.count("audience", "tile_requests"), 10U);
     EXPECT_EQ(outcome.count("audience", "tiles_failed"), 0U);
     EXPECT_GT(outcome.report.at("server").at("cpu_seconds").to_number<double>(), 0.0);
@@ -203,6 +209,27 @@ TEST_F(LoadProgram, WithoutAServerItSaysSoAndExits1) {
     EXPECT_EQ(outcome.code, 1);
     ASSERT_TRUE(outcome.report.is_object());
     EXPECT_THAT(outcome.verdict(), HasSubstr("no connection: Connection refused"));
+}
+
+TEST_F(LoadProgram, AServerThatHangsUpWithoutAWordMayWantTls) {
+    const HangingUp server;
+    ChildProcess load(program("scanloom-load"),
+                      kShort + Words{"--server", "127.0.0.1:" + std::to_string(server.port()), "--give-up-after", "0.5",
+                                     "--verify", "none", "--json", "-"},
+                      errors());
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 1);
+    ASSERT_TRUE(outcome.report.is_object());
+    EXPECT_THAT(outcome.verdict(), HasSubstr("before the server said a word; it may want TLS (--tls)"));
+}
+
+TEST_F(LoadProgram, AReportThatCannotBeWrittenIsToldBeforeAnythingIsDone) {
+    ChildProcess load(program("scanloom-load"),
+                      kShort + Words{"--server", "127.0.0.1:1", "--http", "127.0.0.1:1", "--json", "/proc/nowhere/x"},
+                      errors());
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.errors, StartsWith("scanloom-load: --json: /proc/nowhere/x.part cannot be written: "));
 }
 
 TEST_F(LoadProgram, InterruptedItVerifiesWhatItSent) {

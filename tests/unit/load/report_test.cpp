@@ -29,9 +29,10 @@ TEST(Words, FiguresAsPeopleReadThem) {
     EXPECT_EQ(as_milliseconds(99'960), "100");
     EXPECT_EQ(as_milliseconds(4'567'000), "4,567");
     EXPECT_EQ(as_bytes(512), "512 B");
-    EXPECT_EQ(as_bytes(1'500), "1.5 kB");
-    EXPECT_EQ(as_bytes(831.2e6), "831 MB");
-    EXPECT_EQ(as_bytes(2.5e15), "2,500 TB");
+    EXPECT_EQ(as_bytes(1'023), "1023 B");
+    EXPECT_EQ(as_bytes(1'536), "1.5 KiB");
+    EXPECT_EQ(as_bytes(831.2 * (1 << 20)), "831 MiB");
+    EXPECT_EQ(as_bytes(2.5e3 * (1ULL << 40)), "2,500 TiB");
 }
 
 std::unique_ptr<RunReport> report() {
@@ -52,8 +53,8 @@ std::unique_ptr<RunReport> report() {
     made->fleet.from_intended.record(4'200, 6000);
     made->fleet.from_sending.record(4'000, 6000);
     made->fleet.own_delay.record(300, 6000);
-    made->own = {3.0, 20e6};
-    made->server = ProcessUse{6.0, 120e6};
+    made->own = {3.0, 20.0 * (1 << 20)};
+    made->server = ServerUsed{6.0, 120.0 * (1 << 20)};
     made->verdict = {true, "nothing lost"};
     return made;
 }
@@ -64,7 +65,7 @@ TEST(Report, TellsWhatEachPartyNeededAndEndsWithTheVerdict) {
     EXPECT_THAT(text, HasSubstr("6,000 sent, 6,000 acknowledged: 200/s of 200/s intended"));
     EXPECT_THAT(text, HasSubstr("generator  0.10 cores"));
     EXPECT_THAT(text, HasSubstr("it kept them"));
-    EXPECT_THAT(text, HasSubstr("server     0.20 cores, 1000 us of CPU per acknowledged scan, memory 120 MB"));
+    EXPECT_THAT(text, HasSubstr("server     0.20 cores, 1000 us of CPU per acknowledged scan, memory 120 MiB"));
     EXPECT_THAT(text, Not(HasSubstr("viewers")));
     EXPECT_THAT(text, Not(HasSubstr("faults")));
     EXPECT_THAT(text, testing::EndsWith("\nnothing lost\n"));
@@ -83,6 +84,7 @@ TEST(Report, FaultsViewersAndTilesAreToldWhereThereAreSome) {
     auto made = report();
     made->settings.viewers = 3;
     made->settings.tile_readers = 1;
+    made->audience.viewers_let_in = 3;
     made->audience.events = 900;
     made->audience.tile_requests = 600;
     made->audience.tiles_unchanged = 150;
@@ -93,6 +95,56 @@ TEST(Report, FaultsViewersAndTilesAreToldWhereThereAreSome) {
     EXPECT_THAT(text, HasSubstr("3 watched: 900 events, 10.0/s each"));
     EXPECT_THAT(text, HasSubstr("1 reader asked: 600 tiles, 20/s, 25 % of them unchanged (304)"));
     EXPECT_THAT(text, HasSubstr("faults on demand: 5 cut, 2 stall; 6 reconnects, 17 scans sent again"));
+}
+
+TEST(Report, ViewersThatWereNotLetInAreNotAveragedIn) {
+    auto made = report();
+    made->settings.viewers = 600;
+    made->audience.viewers_let_in = 512;
+    made->audience.viewers_refused = 86;
+    made->audience.events = 512 * 300;
+    made->audience.trouble = "a viewer of session load-1-0: there are 512 viewers";
+    const auto text = to_text(*made);
+    EXPECT_THAT(text, HasSubstr("512 of 600 watched: 153,600 events, 10.0/s each"));
+    EXPECT_THAT(text, HasSubstr("; 86 REFUSED; 2 HAD NO CONNECTION"));
+    EXPECT_THAT(text, HasSubstr("trouble    a viewer of session load-1-0: there are 512 viewers\n"));
+    const auto json = boost::json::parse(to_json(*made));
+    EXPECT_EQ(json.at("audience").at("viewers_let_in").to_number<int>(), 512);
+    EXPECT_EQ(json.at("audience").at("viewers_refused").to_number<int>(), 86);
+    made->audience = {};
+    EXPECT_THAT(to_text(*made), HasSubstr("0 of 600 watched: 0 events, 0.0/s each"));
+}
+
+TEST(Report, OfAServerThatWasStartedAnewTheCpuIsLeftOut) {
+    auto made = report();
+    made->server->cpu_seconds.reset();
+    EXPECT_THAT(to_text(*made),
+                HasSubstr("server     was started anew meanwhile, its CPU is not known; memory 120 MiB"));
+    const auto server = boost::json::parse(to_json(*made)).at("server").as_object();
+    EXPECT_EQ(server.size(), 1U);
+    EXPECT_TRUE(server.contains("resident_bytes"));
+}
+
+TEST(Report, WithoutIntendedTimesThereAreNoLatenciesFromThem) {
+    auto made = report();
+    EXPECT_TRUE(boost::json::parse(to_json(*made)).as_object().contains("own_delay"));
+    made->settings.rate = 0.0;
+    const auto json = boost::json::parse(to_json(*made)).as_object();
+    for (const auto* name : {"ack_from_intended", "sending_from_intended", "own_delay"}) {
+        EXPECT_FALSE(json.contains(name)) << name;
+    }
+    EXPECT_TRUE(json.contains("ack_from_sending"));
+    EXPECT_THAT(to_text(*made), Not(HasSubstr("intended")));
+}
+
+TEST(Report, JsonHasNumbersAsPeopleWriteThem) {
+    auto made = report();
+    made->own.cpu_seconds = 0.0015; // 0.00005 cores
+    const auto json = to_json(*made);
+    EXPECT_THAT(json, HasSubstr("\"rate\":10,"));
+    EXPECT_THAT(json, HasSubstr("\"resident_bytes\":20971520}"));
+    EXPECT_THAT(json, HasSubstr("\"cores\":0.00005,"));
+    EXPECT_THAT(json, HasSubstr("\"p50_ms\":4.2,"));
 }
 
 TEST(Report, JsonHasTheSameFigures) {
@@ -129,18 +181,22 @@ TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
     now->fleet.scans_acknowledged = 1'050;
     now->fleet.from_intended.record(2 * kMillisecond, 160);
     now->own.cpu_seconds = 0.25;
-    before->server = ProcessUse{1.0, 1e6};
-    now->server = ProcessUse{1.5, 2e6};
+    before->server = ServerUse{{1.0, 1e6}, 1234.5};
+    now->server = ServerUse{{1.5, 2.0 * (1 << 20)}, 1234.5};
     const auto asked = report()->settings;
     const auto line = live_line(asked, kSecond, *before, *now);
     EXPECT_THAT(line, HasSubstr("10 of 30 s: 200/s sent, 160/s acknowledged, 50 under way; ack p50 2.00  p99 2.00"));
-    EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MB; 2 of 20 robots have no link"));
+    EXPECT_THAT(line, HasSubstr("generator 0.25 cores, server 0.50 cores, 2.0 MiB; 2 of 20 robots have no link"));
     now->at = 45 * kSecond;
     EXPECT_THAT(live_line(asked, kSecond, *before, *now), testing::StartsWith("14 s after the last scan: "));
     const auto rows = live_table(asked, kSecond, *before, *now);
     EXPECT_EQ(rows.size(), 8U);
     EXPECT_THAT(rows, Each(testing::SizeIs(testing::Lt(80U))));
     EXPECT_THAT(rows, testing::Contains(HasSubstr("ack           p50 2.00")));
+    now->server = ServerUse{{1.5, 2.0 * (1 << 20)}, 1244.5};
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server started anew, 2.0 MiB"));
+    before->server.reset();
+    EXPECT_THAT(live_line(asked, kSecond, *before, *now), HasSubstr("server does not say"));
 }
 
 } // namespace

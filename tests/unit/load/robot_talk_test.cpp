@@ -283,7 +283,8 @@ TEST_F(RobotTalkTest, WithoutAScheduleItSendsAsLongAsItMayAndEndsWithWhatItSent)
     EXPECT_THAT(sent_seqs(100), IsEmpty());
     acknowledge(2 * first, 200, 1000);
     EXPECT_TRUE(talk_->is_done());
-    EXPECT_EQ(figures_->from_intended.max(), 100);
+    EXPECT_EQ(figures_->from_sending.max(), 100);
+    EXPECT_EQ(figures_->from_intended.count(), 0U) << "no scan was meant to be sent at any time";
 }
 
 } // namespace

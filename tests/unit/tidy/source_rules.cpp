@@ -22,6 +22,7 @@ const std::vector<Folder> kFolders = {
     {.path = "common/error", .may_include = {}, .pure = true},
     {.path = "common/geometry", .may_include = {}, .pure = true},
     {.path = "common/hash", .may_include = {}, .pure = true},
+    {.path = "common/json", .may_include = {}, .pure = true},
     {.path = "common/scan", .may_include = {"common/error", "common/geometry"}, .pure = true},
     {.path = "common/ros_map", .may_include = {"common/error", "common/scan"}, .pure = true},
     {.path = "common/app", .may_include = {"common/error"}},
@@ -85,7 +86,8 @@ const std::vector<Folder> kFolders = {
 
     // Load on a server from outside: nothing of the server, and nothing includes it.
     {.path = "load/core",
-     .may_include = {"common/error", "common/geometry", "common/scan", "common/wire", "robot_client/uplink"},
+     .may_include = {"common/error", "common/geometry", "common/json", "common/scan", "common/wire",
+                     "robot_client/uplink"},
      .pure = true},
     {.path = "load/net", .may_include = {"common", "load/core", "robot_client/uplink"}},
     {.path = "load/app",

@@ -56,6 +56,12 @@ TEST(PackedRanges, WhatNobodyPackedIsRefused) {
     EXPECT_FALSE(unpack_ranges(std::string("\1\0\3\0\0\0", 6))) << "there is no such width";
     EXPECT_FALSE(unpack_ranges(std::string("\1\x10\0", 3) + std::string(257, '\0'))) << "more beams than a scan has";
     EXPECT_EQ(unpack_ranges(std::string("\0\x10", 2) + std::string(256, '\0')), Ranges(kBeamsMax));
+    EXPECT_FALSE(unpack_ranges(std::string("\2\0\1\x0a\3\0", 6))) << "a byte behind the last beam";
+}
+
+TEST(PackedRanges, BlocksThatAreWiderThanTheyNeedBeAreRead) {
+    EXPECT_EQ(unpack_ranges(std::string("\2\0\2\x0a\0\3\0", 7)), (Ranges{5, 3}));
+    EXPECT_EQ(unpack_ranges(std::string("\1\0\4\0\0\0\0", 7)), Ranges{0});
 }
 
 } // namespace

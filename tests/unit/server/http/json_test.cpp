@@ -1,5 +1,5 @@
+#include "common/json/json_text.hpp"
 #include "server/http/json_read.hpp"
-#include "server/http/json_text.hpp"
 #include "server/http/number.hpp"
 
 #include <boost/json/array.hpp>
@@ -103,23 +103,6 @@ TEST(JsonNumber, WhatOverflowsIsRefused) {
         const auto object = parse_json_object("{\"cell_size\":" + std::string(value) + "}");
         EXPECT_FALSE(object && read_number(*object, "cell_size")) << value;
     }
-}
-
-TEST(JsonWriter, NumbersReadAsPeopleWriteThem) {
-    EXPECT_EQ(json_text(boost::json::array{0.05, 1.0, -20.1, 1e-9, std::uint64_t{7}, -3}), "[0.05,1,-20.1,1e-09,7,-3]");
-}
-
-TEST(JsonWriter, WhatIsNotFiniteIsNull) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(json_text(boost::json::array{kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}),
-              "[null,null,null]");
-}
-
-TEST(JsonWriter, WhatItWritesIsReadAgainUnchanged) {
-    const boost::json::value value = {{"a \"quoted\"\n\x01", {1, -2, 0.1, 1e300, 5e-324, true, nullptr, "\xC3\xA9"}},
-                                      {"empty", boost::json::array{}},
-                                      {"nested", {{"x", {{"y", boost::json::object{}}}}}}};
-    EXPECT_EQ(boost::json::parse(json_text(value)), value);
 }
 
 TEST(Number, IntegersAreDigitsAndFit) {

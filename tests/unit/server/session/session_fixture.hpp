@@ -50,8 +50,7 @@ protected:
     void start_session() {
         auto recovered = recover(log_, id_, config_, false).value();
         session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
-                                             recovered.checkpointed, log_, compute_.get_executor(),
-                                             std::make_shared<SessionCounters>(), limits_);
+                                             recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_);
     }
 
     void run() {
@@ -108,6 +107,7 @@ protected:
     store::SessionId id_ = 0;
     mapping::MapConfig config_;
     SessionLimits limits_;
+    std::shared_ptr<SessionCounters> counters_ = std::make_shared<SessionCounters>();
     std::shared_ptr<Session> session_;
 };
 

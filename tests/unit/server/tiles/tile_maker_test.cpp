@@ -103,14 +103,28 @@ TEST(TileMaker, WhatNothingHasTouchedNeedsNoMaking) {
     EXPECT_EQ(maker.stats().tiles, 0U);
 }
 
+bool is_quick(TileMaker& maker, const mapping::Snapshot& snapshot, const TilePlace& place,
+              const std::shared_ptr<const void>& origin = kOrigin) {
+    return maker.is_quick(origin, place, tile_revision(snapshot, place.layer, place.key));
+}
+
 TEST(TileMaker, AWholeMapIsLookedAtOnce) {
     TileMaker maker;
-    EXPECT_FALSE(maker.is_quick(kWhole));
-    EXPECT_TRUE(maker.is_quick({"maps", Layer::kOccupancy, {5, 16, 15}, TileFormat::kPng}));
-    static_cast<void>(made(maker, uniform(3000, 1), kWhole));
-    EXPECT_TRUE(maker.is_quick(kWhole));
+    const auto map = uniform(3000, 1);
+    EXPECT_FALSE(is_quick(maker, map, kWhole));
+    EXPECT_TRUE(is_quick(maker, map, {"maps", Layer::kOccupancy, {5, 16, 15}, TileFormat::kPng}));
+    static_cast<void>(made(maker, map, kWhole));
+    EXPECT_TRUE(is_quick(maker, uniform(-3000, 2), kWhole));
     maker.forget("maps");
-    EXPECT_FALSE(maker.is_quick(kWhole));
+    EXPECT_FALSE(is_quick(maker, uniform(-3000, 2), kWhole));
+}
+
+TEST(TileMaker, AWholeMapIsLookedAtAgainWhereTheEarlierDrawingCannotBeGoneOnFrom) {
+    TileMaker maker;
+    static_cast<void>(made(maker, uniform(3000, 5), kWhole));
+    EXPECT_TRUE(is_quick(maker, uniform(-3000, 6), kWhole));
+    EXPECT_FALSE(is_quick(maker, uniform(-3000, 4), kWhole)) << "it is of a later map";
+    EXPECT_FALSE(is_quick(maker, uniform(-3000, 6), kWhole, std::make_shared<const int>(0))) << "it is of other maps";
 }
 
 } // namespace

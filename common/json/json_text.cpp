@@ -1,17 +1,26 @@
-#include "server/http/json_text.hpp"
+#include "common/json/json_text.hpp"
 
+#include <array>
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
 #include <boost/json/serialize.hpp>
-#include <fmt/format.h>
-
+#include <charconv>
 #include <cmath>
-#include <iterator>
 
-namespace scanloom::http {
+namespace scanloom {
 namespace {
 
 void append(std::string& text, const boost::json::value& value);
+
+/// Pre  it is finite.
+void append(std::string& text, double number) {
+    const double size = std::abs(number);
+    const bool is_plain = size == 0.0 || (1e-6 <= size && size < 1e21);
+    std::array<char, 40> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number,
+                                   is_plain ? std::chars_format::fixed : std::chars_format::scientific);
+    text.append(digits.data(), end.ptr);
+}
 
 void append(std::string& text, const boost::json::object& object) {
     text += '{';
@@ -43,7 +52,7 @@ void append(std::string& text, const boost::json::value& value) {
     if (!value.is_double()) {
         text += boost::json::serialize(value);
     } else if (std::isfinite(value.get_double())) {
-        fmt::format_to(std::back_inserter(text), "{}", value.get_double());
+        append(text, value.get_double());
     } else {
         text += "null";
     }
@@ -57,4 +66,4 @@ std::string json_text(const boost::json::value& value) {
     return text;
 }
 
-} // namespace scanloom::http
+} // namespace scanloom

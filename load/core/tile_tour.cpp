@@ -1,0 +1,33 @@
+#include "load/core/tile_tour.hpp"
+
+#include <array>
+#include <utility>
+
+namespace scanloom::load {
+namespace {
+
+constexpr std::array<const char*, 2> kLayers{"occupancy", "classification"}; ///< what the viewer shows first
+
+} // namespace
+
+TileTour::TileTour(double rate, Micros first)
+    : period_(static_cast<Micros>(static_cast<double>(kSecond) / rate)), turn_(first) {}
+
+TileTour::Step TileTour::next() {
+    const std::string layer = kLayers[round_ % kLayers.size()];
+    if (asked_for_ == tiles_.size()) return {layer, true, {}, turn_};
+    turn_ += period_;
+    Step step{layer, false, tiles_[asked_for_++], turn_};
+    if (asked_for_ == tiles_.size()) ++round_;
+    return step;
+}
+
+void TileTour::listed(std::vector<TilePlace> tiles) {
+    tiles_ = std::move(tiles);
+    asked_for_ = 0;
+    if (!tiles_.empty()) return;
+    turn_ += period_;
+    ++round_;
+}
+
+} // namespace scanloom::load

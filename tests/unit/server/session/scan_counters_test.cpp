@@ -1,0 +1,107 @@
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace scanloom::session {
+namespace {
+
+/// What is submitted adds up: woven, known already, or dropped.
+class ScanCounters : public SessionTest {
+protected:
+    void submit(const std::shared_ptr<RecordedLink>& link, std::vector<Scan> scans) {
+        submitted_ += scans.size();
+        session_->submit(link, std::move(scans), 10);
+    }
+
+    void expect(std::uint64_t applied, std::uint64_t duplicates, std::uint64_t dropped) const {
+        EXPECT_EQ(counters_->scans_applied, applied);
+        EXPECT_EQ(counters_->scans_duplicates, duplicates);
+        EXPECT_EQ(counters_->scans_dropped, dropped);
+        EXPECT_EQ(submitted_, applied + duplicates + dropped);
+    }
+
+    std::uint64_t submitted_ = 0;
+};
+
+TEST_F(ScanCounters, WhatComesFromALinkThatWasReplacedIsDroppedAndWovenWhenItComesAgain) {
+    const auto cut = join("r");
+    submit(cut, random_scans(1, 1, 10));
+    run();
+    const auto link = join("r");
+    submit(cut, random_scans(1, 11, 5)); // was still to be read when the robot came anew
+    run();
+    expect(10, 0, 5);
+    submit(link, random_scans(1, 11, 5));
+    run();
+    expect(15, 0, 5);
+}
+
+TEST_F(ScanCounters, WhatIsSentAgainThoughItIsDurableIsADuplicate) {
+    const auto link = join("r");
+    submit(link, random_scans(1, 1, 10));
+    run();
+    submit(link, random_scans(1, 8, 5));
+    run();
+    expect(12, 3, 0);
+}
+
+TEST_F(ScanCounters, BehindAFaultyScanAllOfItsBatchIsDropped) {
+    auto scans = random_scans(1, 1, 6);
+    scans[2].sensor = 77;
+    submit(join("r"), std::move(scans));
+    run();
+    expect(2, 0, 4);
+}
+
+TEST_F(ScanCounters, WhatASessionThatEndsDoesNotTakeIsDropped) {
+    const auto link = join("r");
+    submit(link, random_scans(1, 1, 3));
+    session_->close({Errc::kShuttingDown, "bye"}, [] {});
+    submit(link, random_scans(1, 4, 4));
+    run();
+    expect(3, 0, 4);
+}
+
+TEST_F(ScanCounters, WhatTheDiskDidNotTakeIsDropped) {
+    const auto link = join("r");
+    log_.hold_completions();
+    submit(link, random_scans(1, 1, 3));
+    run();
+    submit(link, random_scans(1, 4, 4)); // waits for the disk
+    run();
+    log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
+    log_.release_completions();
+    run();
+    EXPECT_EQ(link->failures.size(), 1U);
+    const std::uint64_t applied = counters_->scans_applied;
+    expect(applied, 0, 7 - applied);
+    EXPECT_GE(counters_->scans_dropped, 4U);
+}
+
+TEST_F(ScanCounters, WhatAFullMapRefusesIsDropped) {
+    limits_.chunks_max = 40; // a scan of small_laser() may need 16
+    start_session();
+    const auto link = join("r");
+    std::vector<Scan> far_apart = random_scans(1, 1, 20);
+    for (auto& scan : far_apart) scan.pose = {10.0 * static_cast<double>(scan.seq), 0.0, 0.0};
+    submit(link, std::move(far_apart));
+    run();
+    ASSERT_EQ(link->failures.size(), 1U);
+    EXPECT_EQ(link->failures[0].code, Errc::kFull);
+    const std::uint64_t applied = counters_->scans_applied;
+    EXPECT_GT(applied, 0U);
+    EXPECT_LT(applied, 20U);
+    expect(applied, 0, 20 - applied);
+}
+
+TEST_F(ScanCounters, ARestartForgetsNothingThatIsCounted) {
+    submit(join("r"), random_scans(1, 1, 10));
+    run();
+    session_.reset();
+    start_session();
+    expect(10, 0, 0);
+}
+
+} // namespace
+} // namespace scanloom::session

@@ -1,0 +1,25 @@
+#include "server/session/session_info.hpp"
+
+#include "server/classify/class_layer.hpp"
+#include "server/mapping/laser_chunk.hpp"
+#include "server/mapping/sonar_layer.hpp"
+#include "server/session/weaves.hpp"
+
+#include <gtest/gtest.h>
+
+namespace scanloom::session {
+namespace {
+
+constexpr std::size_t kBytesOfAChunk = sizeof(mapping::LaserChunk) + classify::ClassLayer::kChunkBytes;
+static_assert(sizeof(mapping::SonarChunk) <= kBytesOfAChunk);
+
+TEST(SessionLimits, TakeTheMemoryThatIsStated) {
+    for (const std::size_t chunks :
+         {SessionLimits{}.chunks_max, WeavesLimits{}.chunks_max, WeavesLimits{}.chunks_kept_max}) {
+        const double gibibytes = static_cast<double>(chunks * kBytesOfAChunk) / (1 << 30);
+        EXPECT_NEAR(gibibytes, 2.5, 0.05) << "as the headers of both and ARCHITECTURE.md say";
+    }
+}
+
+} // namespace
+} // namespace scanloom::session

@@ -1,0 +1,67 @@
+#include "server/tiles/tile_cache.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <optional>
+
+namespace {
+
+/// Of this thread: how many allocations succeed before one fails; none: all do.
+thread_local std::optional<int> allocations_left;
+
+} // namespace
+
+void* operator new(std::size_t size) {
+    if (allocations_left && (*allocations_left)-- == 0) {
+        allocations_left.reset();
+        throw std::bad_alloc();
+    }
+    if (void* memory = std::malloc(size)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace scanloom::tiles {
+namespace {
+
+const TilePlace kPlace{"the-tag-of-maps-that-is-too-long-for-no-memory", mapping::Layer::kOccupancy, {9, 1, 0}};
+
+KeptTile tile(Revision revision) { return {std::make_shared<const Bytes>(10, std::uint8_t{7}), revision}; }
+
+/// The tile as `get` gives it, with only so many allocations after it was made. @return whether these sufficed
+bool get_with(TileCache& cache, Revision revision, int allocations) {
+    const auto got = cache.get(kPlace, revision, [&] {
+        auto made = tile(revision);
+        allocations_left = allocations;
+        return made;
+    });
+    EXPECT_NE(got, nullptr);
+    const bool sufficed = allocations_left.has_value();
+    allocations_left.reset();
+    return sufficed;
+}
+
+TEST(TileCacheMemory, ATileThatCannotBeKeptIsHandedOverAndMadeAnew) {
+    int allocations = 0;
+    for (bool is_kept = false; !is_kept; ++allocations) {
+        TileCache cache(1'000'000);
+        cache.keep(kPlace, tile(1));
+        is_kept = get_with(cache, 2, allocations);
+        ASSERT_EQ(cache.find(kPlace, 2) != nullptr, is_kept) << allocations;
+        ASSERT_EQ(cache.stats().tiles, is_kept ? 1U : 0U) << allocations;
+        ASSERT_EQ(cache.stats().bytes > 0, is_kept) << allocations;
+        bool is_made_anew = false;
+        ASSERT_NE(cache.get(kPlace, 2, [&] { return is_made_anew = true, tile(2); }), nullptr);
+        ASSERT_EQ(is_made_anew, !is_kept) << allocations;
+        cache.forget(kPlace.maps);
+        ASSERT_EQ(cache.stats().bytes, 0U) << allocations;
+    }
+    EXPECT_GT(allocations, 3) << "the entry, its place, and the name in it";
+}
+
+} // namespace
+} // namespace scanloom::tiles
