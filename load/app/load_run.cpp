@@ -110,7 +110,7 @@ asio::awaitable<Result<RunReport>> LoadRun::conduct() {
     evidence.scans_lost = last->figures.scans_lost;
     evidence.failures = last->troubles.failures;
     if (evidence.scans_sent == 0) {
-        evidence.failures.push_back(interrupted_ ? "interrupted before the first scan" : last->troubles.newest);
+        evidence.failures.push_back(why_nothing_was_sent(last->troubles.newest));
     }
     if (evidence.scans_acknowledged < evidence.scans_sent && !last->troubles.newest.empty()) {
         evidence.failures.push_back(last->troubles.newest);
@@ -120,6 +120,13 @@ asio::awaitable<Result<RunReport>> LoadRun::conduct() {
     report_.verdict = verdict_on(evidence);
     display_.clear();
     co_return report_;
+}
+
+std::string LoadRun::why_nothing_was_sent(const std::string& trouble) const {
+    if (interrupted_) return "interrupted before the first scan";
+    if (!trouble.empty()) return trouble;
+    return fmt::format("within {:g} s the server let no robot in, or gave none credit to send anything",
+                       options_.give_up_after);
 }
 
 // Before --------------------------------------------------------------------------------------------------------------
@@ -178,6 +185,7 @@ asio::awaitable<void> LoadRun::stream() {
     co_await wait_for_the_last_ack();
     const Moment after = co_await moment();
     report_.seconds = std::max(in_seconds(after.fleet.last_ack - begun_), 1e-3);
+    report_.watched_seconds = in_seconds(after.at - before.at);
     report_.own = {after.own.cpu_seconds - before.own.cpu_seconds, after.own.resident_bytes};
     report_.server = used_between(before.server, after.server);
 }

@@ -41,6 +41,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> wait_for_the_last_ack();
     [[nodiscard]] boost::asio::awaitable<void> verify();
     [[nodiscard]] boost::asio::awaitable<void> clean_up();
+    [[nodiscard]] std::string why_nothing_was_sent(const std::string& trouble) const;
     [[nodiscard]] boost::asio::awaitable<Moment> moment();
     [[nodiscard]] boost::asio::awaitable<void> pause(Micros time);
     void show(const Moment& before, const Moment& now);

@@ -15,8 +15,11 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <optional>
+#include <system_error>
 
 namespace scanloom::load {
 
@@ -84,8 +87,16 @@ bool goes_to_a_file(const std::string& json_file) { return !json_file.empty() &&
 
 /// @param file  that of --json; none where there is none, or it is standard output.
 Result<> write_report(const RunReport& report, const std::string& json_file, std::optional<ReportFile>& file) {
-    fmt::print("{}", json_file == "-" ? to_json(report) : to_text(report));
-    return file ? file->write(to_json(report)) : Result<>();
+    const std::string shown = json_file == "-" ? to_json(report) : to_text(report);
+    const bool is_shown =
+        std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size() && std::fflush(stdout) == 0;
+    const int why = errno;
+    if (file) {
+        if (auto written = file->write(to_json(report)); !written) return written;
+    }
+    if (is_shown) return {};
+    return Error{Errc::kInternal, fmt::format("the report cannot be written to standard output: {}",
+                                              std::generic_category().message(why))};
 }
 
 } // namespace

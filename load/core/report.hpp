@@ -37,7 +37,8 @@ struct RunReport {
     double seconds = 0.0; ///< from when the first scan was meant to be sent until the last ack
     FleetFigures fleet;
     AudienceFigures audience;
-    ProcessUse own;                   ///< between the first scan and the last ack, as that of the server
+    double watched_seconds = 0.0;     ///< for which the use of processors was watched: some more
+    ProcessUse own;                   ///< within that time, as that of the server
     std::optional<ServerUsed> server; ///< absent: it did not say
     Evidence evidence;
     Verdict verdict;

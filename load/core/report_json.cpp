@@ -91,7 +91,7 @@ json::object server_json(const RunReport& report) {
     if (!report.server) return {};
     const auto& cpu_seconds = report.server->cpu_seconds;
     if (!cpu_seconds) return {{"resident_bytes", report.server->resident_bytes}};
-    auto server = use_json({*cpu_seconds, report.server->resident_bytes}, report.seconds);
+    auto server = use_json({*cpu_seconds, report.server->resident_bytes}, report.watched_seconds);
     const auto scans = static_cast<double>(std::max<std::uint64_t>(report.fleet.scans_acknowledged, 1));
     server["cpu_us_per_scan"] = rounded(*cpu_seconds / scans * 1e6);
     return server;
@@ -117,7 +117,7 @@ std::string to_json(const RunReport& report) {
                      {"bytes_out", report.fleet.bytes_out},
                      {"bytes_in", report.fleet.bytes_in},
                      {"ack_from_sending", latency_json(report.fleet.from_sending)},
-                     {"generator", use_json(report.own, report.seconds)},
+                     {"generator", use_json(report.own, report.watched_seconds)},
                      {"server", server_json(report)},
                      {"audience", audience_json(report.audience)},
                      {"links", links_json(report.fleet)},

@@ -63,7 +63,7 @@ std::string latencies(const RunReport& report) {
 }
 
 std::string generator(const RunReport& report) {
-    auto text = fmt::format("{:.2f} cores, memory {}", load::per_second(report.own.cpu_seconds, report.seconds),
+    auto text = fmt::format("{:.2f} cores, memory {}", load::per_second(report.own.cpu_seconds, report.watched_seconds),
                             as_bytes(report.own.resident_bytes));
     if (report.settings.rate > 0.0) {
         const LatencyHistogram& delay = report.fleet.own_delay;
@@ -88,7 +88,7 @@ std::string server(const RunReport& report) {
     }
     const double each = *cpu_seconds / std::fmax(1.0, static_cast<double>(report.fleet.scans_acknowledged));
     return line("server", fmt::format("{:.2f} cores, {:.0f} us of CPU per acknowledged scan, memory {}",
-                                      load::per_second(*cpu_seconds, report.seconds), each * 1e6, memory));
+                                      load::per_second(*cpu_seconds, report.watched_seconds), each * 1e6, memory));
 }
 
 std::string viewers(const RunReport& report) {

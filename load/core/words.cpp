@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace scanloom::load {
@@ -33,6 +34,12 @@ std::string as_bytes(double bytes) {
         if (bytes < kStep) return fmt::format("{:.{}f} {}", bytes, bytes < 100.0 ? 1 : 0, unit);
     }
     return fmt::format("{} TiB", whole(bytes / kStep));
+}
+
+std::string harmless(std::string text) {
+    std::ranges::replace_if(
+        text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+    return text;
 }
 
 } // namespace scanloom::load

@@ -1,5 +1,7 @@
 #include "load/net/http_connection.hpp"
 
+#include "load/core/words.hpp"
+
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -86,7 +88,8 @@ void HttpConnection::close() {
 }
 
 Error refusal(const HttpAnswer& answer, const std::string& target) {
-    return {Errc::kInternal, fmt::format("{} was answered {}: {}", target, answer.status, answer.body.substr(0, 300))};
+    return {Errc::kInternal,
+            harmless(fmt::format("{} was answered {}: {}", target, answer.status, answer.body.substr(0, 300)))};
 }
 
 } // namespace scanloom::load

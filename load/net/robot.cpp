@@ -1,5 +1,7 @@
 #include "load/net/robot.hpp"
 
+#include "load/core/words.hpp"
+
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/connect.hpp>
@@ -67,8 +69,8 @@ asio::awaitable<void> Robot::run() {
 }
 
 void Robot::note(const wire::LinkError& failure) {
-    const auto text =
-        fmt::format("robot {} of session {}: {}", talk_.plan().name, talk_.plan().session, failure.error.message);
+    const auto text = harmless(
+        fmt::format("robot {} of session {}: {}", talk_.plan().name, talk_.plan().session, failure.error.message));
     Troubles& troubles = shared_.troubles;
     if (failure.retryable) {
         troubles.newest = text;

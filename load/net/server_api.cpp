@@ -77,6 +77,11 @@ asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& ht
             names.push_back(name);
         }
         if (page->size() < kPageMax) co_return names;
+        if (page->back() <= after) {
+            co_return Error{Errc::kMalformed, fmt::format("{} was answered with sessions that do not come after that "
+                                                          "one; is this a Scanloom server?",
+                                                          target)};
+        }
         after = page->back();
     }
 }

@@ -1,5 +1,7 @@
 /** Runs of scanloom-load against a server of their own. */
-import { Server, start } from '../e2e/programs.mjs';
+import { Server, endWithThisProgram, start } from '../e2e/programs.mjs';
+
+endWithThisProgram();
 
 /** A server that says nothing but what goes wrong, so that figures are not buried. */
 export function startServer() {

@@ -1,5 +1,6 @@
 /** The real server and robot, as processes of the test. */
 import { spawn } from 'node:child_process';
+import { rmSync } from 'node:fs';
 import { mkdtemp, rm } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -10,10 +11,25 @@ const kBinDirectory = required('SCANLOOM_BIN_DIR');
 /** The viewer's files, where the test looks at them. */
 const kWeb = process.env.SCANLOOM_WEB_DIR ? ['--web', process.env.SCANLOOM_WEB_DIR] : [];
 
+const running = new Set();
+const stores = new Set();
+
+/** What is running ends with this program when it is interrupted, and leaves nothing behind. */
+export function endWithThisProgram() {
+  for (const signal of ['SIGINT', 'SIGTERM']) {
+    process.once(signal, () => {
+      for (const child of running) child.kill('SIGKILL');
+      for (const store of stores) rmSync(store, { recursive: true, force: true, maxRetries: 5 });
+      process.exit(130);
+    });
+  }
+}
+
 /** A server on free ports with an empty store of its own. */
 export class Server {
   static async start(options = []) {
     const store = await mkdtemp(join(tmpdir(), 'scanloom-e2e-'));
+    stores.add(store);
     const child = start('scanloom-server', [
       ...['--listen', '127.0.0.1:0', '--http', '127.0.0.1:0', '--store', store, ...kWeb, ...options],
     ]);
@@ -32,6 +48,7 @@ export class Server {
   async stop() {
     await stop(this.child);
     await rm(this.store, { recursive: true, force: true });
+    stores.delete(this.store);
   }
 }
 
@@ -56,6 +73,8 @@ export async function stop(child) {
 
 export function start(program, args, { stderr = 'inherit' } = {}) {
   const child = spawn(join(kBinDirectory, program), args, { stdio: ['ignore', 'pipe', stderr] });
+  running.add(child);
+  child.once('exit', () => running.delete(child));
   child.on('error', (error) => console.error(`${program} cannot be started: ${error.message}`));
   return child;
 }

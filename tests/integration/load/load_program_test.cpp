@@ -249,5 +249,19 @@ TEST_F(LoadProgram, InterruptedItVerifiesWhatItSent) {
     EXPECT_EQ(sessions(), 0U);
 }
 
+TEST_F(LoadProgram, InterruptedBeforeEachRobotHasSentAScanItAccusesNobody) {
+    const Words slow{"--robots", "8", "--rate", "0.01", "--duration", "100000", "--cell-size", "0.2", "--course", "10"};
+    ChildProcess load(program("scanloom-load"), arguments(slow, server_->http_port()), errors());
+    while (server_->get("/api/v1/sessions/load-1-0").status != 200 ||
+           server_->get_json("/api/v1/sessions/load-1-0").at("scans").to_number<int>() < 1) {
+    }
+    load.signal(SIGINT);
+    const auto outcome = finish(load);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
+    EXPECT_THAT(outcome.verdict(), StartsWith("nothing lost: "));
+    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 1U);
+}
+
 } // namespace
 } // namespace scanloom::test

@@ -46,7 +46,7 @@ std::unique_ptr<RunReport> report() {
                       .noise = "none",
                       .beams = 684,
                       .seed = 1};
-    made->seconds = 30.0;
+    made->seconds = made->watched_seconds = 30.0;
     made->fleet.scans_due = made->fleet.scans_sent = made->fleet.scans_acknowledged = 6000;
     made->fleet.greeted = 20;
     made->fleet.links = 20;
@@ -159,11 +159,25 @@ TEST(Report, JsonHasTheSameFigures) {
     EXPECT_TRUE(json.at("verdict").at("nothing_lost").as_bool());
     EXPECT_EQ(json.at("verdict").at("against").at(0).as_string(), "a \"quoted\" one");
     EXPECT_TRUE(json.at("settings").at("cell_size").is_null());
-    made->seconds = 0.0; // nothing was streamed
+    made->seconds = made->watched_seconds = 0.0; // nothing was streamed
     EXPECT_EQ(boost::json::parse(to_json(*made)).at("generator").at("cores").to_number<double>(), 0.0);
     EXPECT_THAT(to_text(*made), Not(HasSubstr("inf")));
     made->server.reset();
     EXPECT_TRUE(boost::json::parse(to_json(*made)).at("server").as_object().empty());
+}
+
+TEST(Report, TellsProcessorsOverTheTimeForWhichTheyWereWatched) {
+    auto made = report();
+    made->seconds = 0.5; // the last ack came early, and then none for long
+    const auto json = boost::json::parse(to_json(*made));
+    EXPECT_EQ(json.at("generator").at("cores").to_number<double>(), 0.1);
+    EXPECT_EQ(json.at("server").at("cores").to_number<double>(), 0.2);
+    EXPECT_THAT(to_text(*made), HasSubstr("0.10 cores"));
+    EXPECT_THAT(to_text(*made), HasSubstr("0.20 cores"));
+}
+
+TEST(Words, OfOthersDoNothingToATerminal) {
+    EXPECT_EQ(harmless("a\x1b[31mred\r\nline\x7f, caf\u00e9"), "a?[31mred??line?, caf\u00e9");
 }
 
 TEST(LiveView, ShowsTheLastSecondNotTheWholeRun) {
