@@ -19,6 +19,12 @@ constexpr Revision kCheckpointEvery = 4096;   // entries folded between two chec
 constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again
 constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
 
+/// For most up to half as many more than kCheckpointEvery: sessions that began together would write all at once, for
+/// ever.
+constexpr Revision checkpoint_every(store::SessionId session) {
+    return kCheckpointEvery + (session - 1) * 0x9E37'79B9 % (kCheckpointEvery / 2); // Fibonacci hashing
+}
+
 Error full(std::size_t chunks, std::size_t chunks_max) {
     return {Errc::kFull, fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, "
                                      "the most there may be; use larger cells or another session",
@@ -236,7 +242,7 @@ Result<> Session::publish() {
 }
 
 bool Session::is_checkpoint_due() const {
-    return projection_.revision() - checkpointed_.value_or(0) >= kCheckpointEvery ||
+    return projection_.revision() - checkpointed_.value_or(0) >= checkpoint_every(info_.id) ||
            work_since_checkpoint_ >= kCheckpointEveryWork || described_since_checkpoint_ >= kCheckpointEveryDescribed;
 }
 

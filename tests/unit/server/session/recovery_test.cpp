@@ -4,6 +4,8 @@
 #include "tests/support/digests.hpp"
 #include "tests/unit/server/session/session_fixture.hpp"
 
+#include <set>
+
 /// Sessions woven again, from their checkpoints where these can be used.
 namespace scanloom::session {
 namespace {
@@ -138,6 +140,27 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     auto recovered = recover(log_, id_, config_, false).value();
     EXPECT_EQ(recovered.checkpointed, 8514U);
     EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digest());
+}
+
+TEST_F(SessionTest, SessionsThatBeganTogetherWriteTheirCheckpointsOneAfterAnother) {
+    std::set<Revision> written_at;
+    for (int n = 0; n < 8; ++n) {
+        SetUp();
+        const auto link = join("r");
+        std::uint64_t seq = 0;
+        while (store::checkpoint_of(log_, id_).value().empty()) {
+            std::vector<Scan> scans(256, random_scan(1, 1));
+            for (auto& next : scans) {
+                next.seq = ++seq;
+                next.ranges = {1000};
+            }
+            session_->submit(link, std::move(scans), 0);
+            run();
+            ASSERT_LE(seq, 6400U);
+        }
+        written_at.insert(session_->snapshot()->revision);
+    }
+    EXPECT_GE(written_at.size(), 5U);
 }
 
 TEST_F(SessionTest, ClosingWithNothingNewWritesNoCheckpoint) {
