@@ -6,7 +6,6 @@
 
 #include <boost/asio/thread_pool.hpp>
 
-#include <fstream>
 #include <future>
 #include <thread>
 
@@ -343,86 +342,6 @@ TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
     for (auto& thread : threads) thread.join();
     EXPECT_EQ(static_cast<std::size_t>(created - removed), registry_->list().size());
     EXPECT_EQ(registry_->list().size(), log_.sessions()->size());
-}
-
-TEST(ImportedMap, IsThereAgainAfterARestart) {
-    store::MemoryScanLog log;
-    boost::asio::thread_pool pool(2);
-    const MapPatch bottom{0.1, -1.0, 2.0, 3, {MapCell::kFree, MapCell::kFree, MapCell::kUnknown}};
-    const MapPatch top{0.1, -1.0, 2.1, 3, {MapCell::kOccupied, MapCell::kFree, MapCell::kFree}};
-    std::string digests;
-    {
-        SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
-        const auto session = registry.import_map("depot", {.cell_size = 0.1}, {bottom, top});
-        ASSERT_TRUE(session) << session.error().message;
-        EXPECT_EQ((*session)->snapshot()->revision, 2U);
-        digests = testing_support::digests_of(*(*session)->snapshot());
-        registry.drain();
-    }
-    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
-    ASSERT_TRUE(registry.recover());
-    EXPECT_EQ(testing_support::digests_of(*registry.find("depot")->snapshot()), digests);
-    registry.drain();
-}
-
-std::size_t resident_bytes() {
-    std::size_t all = 0;
-    std::size_t resident = 0;
-    std::ifstream("/proc/self/statm") >> all >> resident;
-    return resident * 4096;
-}
-
-TEST(ImportedMap, ThatIsRemovedGivesItsMemoryBack) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers have an allocator of their own";
-#endif
-    store::MemoryScanLog log;
-    boost::asio::thread_pool pool(1);
-    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
-    constexpr std::uint32_t kSide = 4096; // 64 chunks of 20 kB
-    const auto map = [&](double y) {
-        return MapPatch{0.1, 0.0, y, kSide, std::vector<MapCell>(std::size_t{kSide} * 512, MapCell::kFree)};
-    };
-    std::vector<MapPatch> patches;
-    for (int n = 0; n < 8; ++n) patches.push_back(map(51.2 * n));
-    ASSERT_TRUE(registry.import_map("large", {.cell_size = 0.1}, patches));
-    // Behind the large map, so that it is not at the heap's end.
-    ASSERT_TRUE(registry.import_map("small", {.cell_size = 0.1}, {{0.1, 0.0, 0.0, 1, {MapCell::kFree}}}));
-    const std::size_t with_it = resident_bytes();
-    ASSERT_TRUE(registry.remove("large"));
-    EXPECT_LT(resident_bytes() + 50'000'000, with_it);
-    registry.drain();
-}
-
-TEST(ImportedMap, ThatACrashCutShortIsGoneAfterTheRestart) {
-    store::MemoryScanLog log;
-    boost::asio::thread_pool pool(2);
-    const auto id = log.create_session(wire::encode_session({"depot", 1.0, {}, 2})).value();
-    std::promise<void> appended;
-    log.append(id, 1, {wire::encode_entry(MapPatch{0.1, 0.0, 0.0, 1, {MapCell::kFree}})},
-               [&](const Result<>&) { appended.set_value(); });
-    appended.get_future().wait();
-    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
-    ASSERT_TRUE(registry.recover());
-    EXPECT_EQ(registry.find("depot"), nullptr);
-    EXPECT_TRUE(registry.damaged().empty());
-    EXPECT_TRUE(log.sessions()->empty());
-    EXPECT_TRUE(registry.import_map("depot", {}, {MapPatch{0.1, 0.0, 0.0, 1, {MapCell::kFree}}}));
-    registry.drain();
-}
-
-TEST(ImportedMap, ThatFitsIntoNoSessionIsRefusedAndMakesNone) {
-    store::MemoryScanLog log;
-    boost::asio::thread_pool pool(2);
-    SessionRegistry registry(log, pool.get_executor(), [] { return 1.0; });
-    EXPECT_EQ(registry.import_map("depot", {}, {}).error().code, Errc::kInvalidField);
-    const MapPatch coarse{100.0, 0.0, 0.0, 100, std::vector<MapCell>(10'000, MapCell::kFree)};
-    EXPECT_EQ(registry.import_map("depot", {.cell_size = 0.01}, {coarse}).error().code, Errc::kInvalidField);
-    const MapPatch here{0.1, 0.0, 0.0, 1, {MapCell::kFree}};
-    const MapPatch far{0.1, 100'000.0, 100'000.0, 1, {MapCell::kFree}};
-    EXPECT_EQ(registry.import_map("depot", {}, {here, far}).error().code, Errc::kFull);
-    EXPECT_TRUE(log.sessions()->empty());
-    registry.drain();
 }
 
 } // namespace
