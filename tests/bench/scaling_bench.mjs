@@ -94,7 +94,10 @@ async function besideIdle(sessions) {
   return { sessions, us: us.sort((a, b) => a - b)[Math.floor(kIdleRuns / 2)], bytes_per_session: sessions > 0 ? bytes / sessions : 0 };
 }
 
-/** Until the server has nothing to do any more, checkpoints of sessions that have just become idle among it. */
+/**
+ * Until the server has nothing to do any more, checkpoints of sessions that have just become idle among it: no event tells
+ * that, the processor's time of a second does.
+ */
 async function untilQuiet(server) {
   for (let seconds = 0; seconds < kQuietSecondsMax; ++seconds) {
     const before = processorSeconds(server.child.pid);

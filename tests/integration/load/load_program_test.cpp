@@ -260,7 +260,8 @@ TEST_F(LoadProgram, InterruptedBeforeEachRobotHasSentAScanItAccusesNobody) {
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     ASSERT_TRUE(outcome.report.is_object()) << outcome.errors;
     EXPECT_THAT(outcome.verdict(), StartsWith("nothing lost: "));
-    EXPECT_EQ(outcome.count("verdict", "digests_equal"), 1U);
+    EXPECT_GE(outcome.count("verdict", "digests_equal"), 1U);
+    EXPECT_LT(outcome.count("verdict", "digests_equal"), 8U) << "or each had sent a scan, and this shows nothing";
 }
 
 } // namespace
