@@ -14,8 +14,9 @@ constexpr std::uint64_t kGroupBytesMax = std::uint64_t{8} << 20;
 
 } // namespace
 
-Committer::Committer(rocksdb::DB& database, std::string name)
-    : database_(database), name_(std::move(name)), thread_([this] { run(); }) {}
+Committer::Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes)
+    : database_(database), name_(std::move(name)), disk_reserve_bytes_(disk_reserve_bytes), thread_([this] { run(); }) {
+}
 
 Committer::~Committer() {
     {
@@ -46,8 +47,23 @@ Result<> Committer::submit_and_wait(Change change) {
 }
 
 StoreStats Committer::stats() const {
-    const std::lock_guard lock(mutex_);
-    return stats_;
+    std::unique_lock lock(mutex_);
+    StoreStats stats = stats_;
+    lock.unlock();
+    if (!stats.no_room) return stats;
+    const auto no_room = want_of_room(); // as it is by now
+    stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
+    return stats;
+}
+
+/// Cost  a microsecond.
+std::optional<Error> Committer::want_of_room() const {
+    std::uint64_t free = 0;
+    if (!database_.GetEnv()->GetFreeSpace(name_, &free).ok() || free >= disk_reserve_bytes_) return std::nullopt;
+    return Error{Errc::kOverloaded,
+                 fmt::format("the disk of the store {} has {} MiB left, and {} are kept free: nothing more is stored "
+                             "until there is more; free some, or delete sessions",
+                             name_, free >> 20, disk_reserve_bytes_ >> 20)};
 }
 
 void Committer::run() {
@@ -75,7 +91,20 @@ void Committer::commit(Group group) {
     rocksdb::WriteBatch batch(static_cast<std::size_t>(bytes)); // so that it need not grow
     std::vector<Result<>> results;
     results.reserve(group.size());
-    for (const Change& change : group) results.push_back(failed_ ? Result<>(*failed_) : change.add_to(batch));
+    const auto no_room = want_of_room();
+    {
+        const std::lock_guard lock(mutex_);
+        stats_.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
+    }
+    for (const Change& change : group) {
+        if (failed_) {
+            results.emplace_back(*failed_);
+        } else if (no_room && !change.frees_disk) {
+            results.emplace_back(*no_room);
+        } else {
+            results.push_back(change.add_to(batch));
+        }
+    }
     if (batch.Count() > 0) {
         const auto written = write(batch);
         for (auto& result : results) {
@@ -97,9 +126,11 @@ Result<> Committer::write(rocksdb::WriteBatch& batch) {
         ++stats_.synced_writes;
         return {};
     }
-    failed_ = Error{Errc::kStoreFailed,
-                    fmt::format("the store {} could not write ({}); it takes no changes until the server is restarted",
-                                name_, status.ToString())};
+    failed_ =
+        Error{Errc::kStoreFailed,
+              fmt::format("the store {} could not write ({}); it takes no changes until it has been opened again, "
+                          "which the server does as soon as its disk can be written",
+                          name_, status.ToString())};
     stats_.last_error = failed_->message;
     return *failed_;
 }

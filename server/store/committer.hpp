@@ -20,6 +20,7 @@ struct Change {
     std::uint64_t bytes = 0;   ///< about what it adds to the write
     std::uint64_t appends = 0; ///< what to count when it is durable
     std::uint64_t entries = 0;
+    bool frees_disk = false; ///< made also where the disk is as good as full
 
     /// Adds the change to the write, or refuses it and adds nothing. Called on the committer's thread, in order.
     std::function<Result<>(rocksdb::WriteBatch&)> add_to;
@@ -37,7 +38,8 @@ struct Change {
 /// Thread  any.
 class Committer {
 public:
-    Committer(rocksdb::DB& database, std::string name);
+    /// Changes that do not free disk are refused while it has less than `disk_reserve_bytes` free.
+    Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes);
 
     /// Writes what waits, then stops.
     ~Committer();
@@ -60,10 +62,12 @@ private:
     [[nodiscard]] Group next_group();
     void commit(Group group);
     [[nodiscard]] Result<> write(rocksdb::WriteBatch& batch);
+    [[nodiscard]] std::optional<Error> want_of_room() const;
     void count(const Change& change);
 
     rocksdb::DB& database_;
-    const std::string name_;      // for messages
+    const std::string name_; // for messages, and where the disk is
+    const std::uint64_t disk_reserve_bytes_;
     std::optional<Error> failed_; // committer's thread only; stats_.last_error is its public copy
     mutable std::mutex mutex_;    // guards what follows
     std::condition_variable waiting_;

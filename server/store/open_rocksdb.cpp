@@ -1,5 +1,6 @@
 #include "server/store/compaction_watch.hpp"
 #include "server/store/crash_recovery.hpp"
+#include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
@@ -72,23 +73,6 @@ Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
                              directory.native(), **version, kFormatVersion)};
 }
 
-/// The last entry's revision, found by its key alone; 0 for an empty log.
-Result<Revision> end_of_log(rocksdb::DB& database, const fs::path& directory, SessionId session) {
-    const auto damaged = [&](std::string_view what) {
-        return Error{Errc::kStoreFailed, fmt::format("the store {} is damaged: the end of the log of session {} ({}); "
-                                                     "restore it from a backup or remove the session",
-                                                     directory.native(), session, what)};
-    };
-    const KeyRange range = entries_of(session);
-    const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
-    iterator->SeekForPrev(range.end);
-    if (!iterator->status().ok()) return damaged(iterator->status().ToString());
-    if (!iterator->Valid() || iterator->key().compare(range.begin) < 0) return Revision{0};
-    const auto revision = revision_of(iterator->key().ToStringView());
-    if (!revision) return damaged("the key of the last entry");
-    return *revision;
-}
-
 Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
     LogEnds ends;
     const auto next = read_number(database, directory, kNextSessionKey);
@@ -100,7 +84,7 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
         const auto session = session_of(sessions->key().ToStringView());
         if (!session) break;
         if (*session >= ends.next_session) return failure(directory, "its count of sessions is damaged");
-        const auto end = end_of_log(database, directory, *session); // damage of one holds up no other
+        const auto end = end_of_log(database, directory.native(), *session); // damage of one holds up no other
         ends.revisions.emplace(*session, end ? *end : 0);
         if (!end) ends.damaged.emplace(*session, end.error());
     }
@@ -126,7 +110,7 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
     return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped, watch,
-                                            options.on_damage);
+                                            options);
 }
 
 } // namespace scanloom::store

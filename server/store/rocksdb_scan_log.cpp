@@ -1,5 +1,6 @@
 #include "server/store/rocksdb_scan_log.hpp"
 
+#include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
 
 #include <fmt/format.h>
@@ -80,10 +81,10 @@ struct Scan {
 
 RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
                                std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                               std::function<void(const Error&)> on_damage)
+                               const StoreOptions& options)
     : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
-      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)), on_damage_(std::move(on_damage)),
-      committer_(*database_, name()) {
+      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)), on_damage_(options.on_damage),
+      committer_(*database_, name(), options.disk_reserve_bytes) {
     watch_->set_tell([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
 }
 
@@ -100,7 +101,8 @@ void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
         const std::lock_guard lock(damage_mutex_);
         damage_ = std::move(damage);
     }
-    Change change; // in its turn, as it must not meet a write that is held back
+    Change change;            // in its turn, as it must not meet a write that is held back
+    change.frees_disk = true; // or at least needs none
     change.add_to = [this](rocksdb::WriteBatch&) -> Result<> {
         database_->SetOptions({{"disable_auto_compactions", "true"}}).PermitUncheckedError(); // then it is slower
         return {};
@@ -147,9 +149,15 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
     return found;
 }
 
+Result<Revision> RocksdbScanLog::end_of(SessionId session) {
+    if (auto exists = check_session(session); !exists) return exists.error();
+    return end_of_log(*database_, name(), session);
+}
+
 Result<> RocksdbScanLog::remove_session(SessionId session) {
     Change change;
     change.bytes = kChangeBytes;
+    change.frees_disk = true;
     change.add_to = [this, session](rocksdb::WriteBatch& batch) -> Result<> {
         if (ends_.revisions.erase(session) == 0) return no_such_session(session);
         auto status = batch.Delete(session_key(session));

@@ -27,11 +27,12 @@ class RocksdbScanLog final : public ScanLog {
 public:
     RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
                    std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                   std::function<void(const Error&)> on_damage);
+                   const StoreOptions& options);
     ~RocksdbScanLog() override;
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
     [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
+    [[nodiscard]] Result<Revision> end_of(SessionId session) override;
     [[nodiscard]] Result<> remove_session(SessionId session) override;
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
     [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;

@@ -44,6 +44,7 @@ struct StoreStats {
     std::uint64_t queued_bytes = 0;        ///< waiting for the committer
     std::uint64_t torn_bytes_dropped = 0;  ///< of a write the last crash cut short, never acknowledged
     std::optional<std::string> last_error; ///< why nothing is written any more
+    std::optional<std::string> no_room;    ///< why nothing more is stored until the disk has room again
     std::optional<std::string> damage;     ///< found in the files while running; writing goes on
 };
 
@@ -78,6 +79,10 @@ public:
     /// All sessions, by rising id; damage of one holds up no other.
     [[nodiscard]] virtual Result<std::vector<StoredSession>> sessions() = 0;
 
+    /// The revision of the session's last entry, 0 for an empty log.
+    /// Errors  kNotFound; kStoreFailed: damaged.
+    [[nodiscard]] virtual Result<Revision> end_of(SessionId session) = 0;
+
     /// Durable when it returns: record, entries and checkpoint are gone. The disk is freed in time.
     [[nodiscard]] virtual Result<> remove_session(SessionId session) = 0;
 
@@ -87,6 +92,8 @@ public:
     /// Post    `done` is called exactly once, from the committer's thread, when the entries survive
     ///         kill -9 and power loss, or have failed. It should be quick and must not throw.
     ///         Everything that waits, of all sessions, becomes durable with one synced write.
+    /// Errors  kOverloaded: the disk has no room; nothing was stored, and later there may be. kStoreFailed: it is not
+    ///         known what is stored until the log is opened again.
     /// Queue   "commit queue". append() never waits and never refuses: the capacity is the sum of
     ///         the robots' credits, as credit is given back only when `done` was called.
     ///         Its size is stats().queued_bytes.
@@ -118,6 +125,10 @@ struct StoreOptions {
     /// Bound of write buffers and block cache together. The default suits 1 GB of memory and 24 GB:
     /// the log is read in order, so more cache would hardly be used, and the system caches files.
     std::size_t memory_bytes = std::size_t{128} << 20;
+
+    /// What is left free on the disk: with less, nothing is stored that adds to it, so that sessions can still be
+    /// removed and tables merged. Changes are refused then, with kOverloaded, and nothing of them is stored.
+    std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
 
     /// Called once, from a thread of the store, when a file turns out to be damaged while running. New entries are
     /// stored as before; what the file held is told when it is read.

@@ -103,6 +103,19 @@ IOStatus FaultyFileSystem::NewWritableFile(const std::string& name, const rocksd
     return status;
 }
 
+void FaultyFileSystem::set_free_bytes(std::optional<std::uint64_t> bytes) {
+    const std::lock_guard lock(mutex_);
+    free_bytes_ = bytes;
+}
+
+rocksdb::IOStatus FaultyFileSystem::GetFreeSpace(const std::string& path, const rocksdb::IOOptions& options,
+                                                 std::uint64_t* bytes, rocksdb::IODebugContext* debug) {
+    const std::lock_guard lock(mutex_);
+    if (!free_bytes_) return FileSystemWrapper::GetFreeSpace(path, options, bytes, debug);
+    *bytes = *free_bytes_;
+    return rocksdb::IOStatus::OK();
+}
+
 IOStatus FaultyFileSystem::RenameFile(const std::string& from, const std::string& to, const IOOptions& options,
                                       IODebugContext* debug) {
     const std::lock_guard lock(mutex_);

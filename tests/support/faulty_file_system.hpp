@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -25,6 +26,9 @@ public:
     /// Writing fails as on a full disk, from now on or no more.
     void set_disk_full(bool full);
 
+    /// What the disk is said to have free. Nothing: what it has.
+    void set_free_bytes(std::optional<std::uint64_t> bytes);
+
     /// Copies a directory as it would be found after a power cut now: of each file what was synced,
     /// then a part of what was written since, in which some pages may read as zeros.
     /// Names of files count as durable at once.
@@ -35,6 +39,8 @@ public:
     rocksdb::IOStatus NewWritableFile(const std::string& name, const rocksdb::FileOptions& file_options,
                                       std::unique_ptr<rocksdb::FSWritableFile>* result,
                                       rocksdb::IODebugContext* debug) override;
+    rocksdb::IOStatus GetFreeSpace(const std::string& path, const rocksdb::IOOptions& options, std::uint64_t* bytes,
+                                   rocksdb::IODebugContext* debug) override;
     rocksdb::IOStatus RenameFile(const std::string& from, const std::string& to, const rocksdb::IOOptions& options,
                                  rocksdb::IODebugContext* debug) override;
     rocksdb::IOStatus DeleteFile(const std::string& name, const rocksdb::IOOptions& options,
@@ -47,6 +53,7 @@ private:
     std::map<std::string, std::uint64_t> synced_bytes_; // by path, of files written since the start
     bool sync_fails_ = false;
     bool disk_full_ = false;
+    std::optional<std::uint64_t> free_bytes_;
 };
 
 /// The file layer as a store takes it.

@@ -21,6 +21,12 @@ void MemoryScanLog::fail_from_next_change(Error error) {
     failed_ = std::move(error);
 }
 
+void MemoryScanLog::refuse_appends(std::size_t count, std::size_t stored) {
+    const std::lock_guard lock(mutex_);
+    refused_ = count;
+    stored_before_refusing_ = stored;
+}
+
 void MemoryScanLog::reopen() {
     const std::lock_guard lock(mutex_);
     failed_.reset();
@@ -62,6 +68,13 @@ Result<std::vector<StoredSession>> MemoryScanLog::sessions() {
     return found;
 }
 
+Result<Revision> MemoryScanLog::end_of(SessionId session) {
+    const std::lock_guard lock(mutex_);
+    const auto found = sessions_.find(session);
+    if (found == sessions_.end()) return no_such_session(session);
+    return found->second.entries.size();
+}
+
 Result<> MemoryScanLog::remove_session(SessionId session) {
     const std::lock_guard lock(mutex_);
     if (failed_) return *failed_;
@@ -90,6 +103,12 @@ void MemoryScanLog::complete(std::vector<Append> appends) {
 Result<> MemoryScanLog::store(Append& append) {
     const std::lock_guard lock(mutex_);
     if (failed_) return *failed_;
+    if (stored_before_refusing_ > 0) {
+        --stored_before_refusing_;
+    } else if (refused_ > 0) {
+        --refused_;
+        return Error{Errc::kOverloaded, "the disk has no room"};
+    }
     const auto session = sessions_.find(append.session);
     if (session == sessions_.end()) return no_such_session(append.session);
     auto& entries = session->second.entries;

@@ -21,6 +21,9 @@ public:
     /// The next change and, as with a real disk, all that follow fail with this error.
     void fail_from_next_change(Error error);
 
+    /// The next appends but `stored` of them are refused, as by a disk without room: `count` of them.
+    void refuse_appends(std::size_t count, std::size_t stored = 0);
+
     /// As opening the store again does: changes succeed again.
     void reopen();
 
@@ -31,6 +34,7 @@ public:
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
     [[nodiscard]] Result<std::vector<StoredSession>> sessions() override;
+    [[nodiscard]] Result<Revision> end_of(SessionId session) override;
     [[nodiscard]] Result<> remove_session(SessionId session) override;
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override;
     [[nodiscard]] Result<> read(SessionId session, Revision after, const VisitEntry& visit) override;
@@ -67,6 +71,8 @@ private:
     std::map<SessionId, Session> sessions_;
     SessionId next_session_ = 1;
     std::optional<Error> failed_;
+    std::size_t stored_before_refusing_ = 0;
+    std::size_t refused_ = 0; // appends that are still to be
     bool holding_ = false;
     std::vector<Append> held_;
     StoreStats stats_;

@@ -1,4 +1,4 @@
-#include "server/store/scan_log.hpp"
+#include "server/store/reopening_log.hpp"
 
 #include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
@@ -38,7 +38,7 @@ TEST_F(FaultyDisk, AfterAFailedSyncNothingIsAcknowledgedUntilReopened) {
         const auto appended = append_and_wait(*log, session, 2, {"lost"});
         ASSERT_FALSE(appended) << "only the first sync fails, but no later one can be trusted";
         EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
-        EXPECT_THAT(appended.error().message, HasSubstr("until the server is restarted"));
+        EXPECT_THAT(appended.error().message, HasSubstr("until it has been opened again"));
     }
     EXPECT_FALSE(log->create_session("b"));
     EXPECT_FALSE(log->write_checkpoint(session, {{"k", "v"}}));
@@ -68,6 +68,73 @@ TEST_F(FaultyDisk, AFullDiskFailsAppendsAndLosesNothing) {
     disk_.files->set_disk_full(false);
     log = open_rocksdb(directory_, options_).value();
     EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable"));
+    EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
+}
+
+TEST_F(FaultyDisk, WithoutRoomNothingIsStoredButSessionsCanBeRemovedAndItGoesOnByItself) {
+    options_.disk_reserve_bytes = 1000;
+    disk_.files->set_free_bytes(1000);
+    auto log = open_rocksdb(directory_, options_).value();
+    const auto session = log->create_session("a").value();
+    const auto other = log->create_session("b").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
+    disk_.files->set_free_bytes(999);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        const auto appended = append_and_wait(*log, session, 2, {"later"});
+        ASSERT_FALSE(appended);
+        EXPECT_EQ(appended.error().code, Errc::kOverloaded);
+        EXPECT_THAT(appended.error().message, HasSubstr("kept free"));
+    }
+    EXPECT_EQ(log->create_session("c").error().code, Errc::kOverloaded);
+    EXPECT_EQ(log->write_checkpoint(session, {{"k", "v"}}).error().code, Errc::kOverloaded);
+    EXPECT_TRUE(log->stats().no_room);
+    EXPECT_FALSE(log->stats().last_error);
+    EXPECT_TRUE(log->remove_session(other));
+    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable"));
+
+    disk_.files->set_free_bytes(1000);
+    EXPECT_FALSE(log->stats().no_room) << "also before anything is stored again";
+    EXPECT_TRUE(append_and_wait(*log, session, 2, {"later"}));
+}
+
+TEST_F(FaultyDisk, ALogThatFailedIsOpenedAgainOnceTheDiskIsWell) {
+    bool is_well = false;
+    const auto log = ReopeningLog::open([this] { return open_rocksdb(directory_, options_); },
+                                        [&]() -> Result<> {
+                                            if (is_well) return {};
+                                            return Error{Errc::kStoreFailed, "not well"};
+                                        })
+                         .value();
+    const auto session = log->create_session("a").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
+    EXPECT_FALSE(log->try_again()) << "it has not failed";
+    const auto before = log->stats();
+    disk_.files->fail_next_log_sync();
+    ASSERT_FALSE(append_and_wait(*log, session, 2, {"perhaps"}));
+    EXPECT_FALSE(log->try_again()) << "the disk is not well";
+    EXPECT_TRUE(log->stats().last_error);
+    is_well = true;
+    ASSERT_TRUE(log->try_again());
+    EXPECT_FALSE(log->stats().last_error);
+    EXPECT_EQ(log->stats().entries, before.entries) << "of all times";
+    const Revision end = log->end_of(session).value();
+    EXPECT_EQ(entries_after(*log, session, 0).value()[0], "durable");
+    EXPECT_TRUE(append_and_wait(*log, session, end + 1, {"goes on"}));
+    EXPECT_EQ(log->stats().entries, before.entries + 1);
+}
+
+TEST_F(FaultyDisk, ALogThatCannotBeOpenedAgainYetFailsAndIsTriedAgain) {
+    const auto log = ReopeningLog::open([this] { return open_rocksdb(directory_, options_); }).value();
+    const auto session = log->create_session("a").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
+    disk_.files->set_disk_full(true);
+    ASSERT_FALSE(append_and_wait(*log, session, 2, {"lost"}));
+    EXPECT_FALSE(log->try_again());
+    EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("the disk is full"));
+    EXPECT_EQ(append_and_wait(*log, session, 2, {"lost"}).error().code, Errc::kStoreFailed);
+    EXPECT_THAT(log->end_of(session).error().message, HasSubstr("being opened again"));
+    disk_.files->set_disk_full(false);
+    ASSERT_TRUE(log->try_again());
     EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
 }
 

@@ -1,0 +1,28 @@
+#include "server/store/log_end.hpp"
+
+#include "server/store/record.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string_view>
+
+namespace scanloom::store {
+
+Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session) {
+    const auto damaged = [&](std::string_view what) {
+        return Error{Errc::kStoreFailed, fmt::format("the store {} is damaged: the end of the log of session {} ({}); "
+                                                     "restore it from a backup or remove the session",
+                                                     store, session, what)};
+    };
+    const KeyRange range = entries_of(session);
+    const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
+    iterator->SeekForPrev(range.end);
+    if (!iterator->status().ok()) return damaged(iterator->status().ToString());
+    if (!iterator->Valid() || iterator->key().compare(range.begin) < 0) return Revision{0};
+    const auto revision = revision_of(iterator->key().ToStringView());
+    if (!revision) return damaged("the key of the last entry");
+    return *revision;
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,137 @@
+#include "server/store/reopening_log.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace scanloom::store {
+namespace {
+
+void add(StoreStats& to, const StoreStats& from) {
+    to.appends += from.appends;
+    to.entries += from.entries;
+    to.synced_writes += from.synced_writes;
+    to.torn_bytes_dropped += from.torn_bytes_dropped;
+}
+
+} // namespace
+
+Result<std::unique_ptr<ReopeningLog>> ReopeningLog::open(Open open, Check disk_is_well) {
+    auto log = open();
+    if (!log) return log.error();
+    return std::unique_ptr<ReopeningLog>(new ReopeningLog(std::move(*log), std::move(open), std::move(disk_is_well)));
+}
+
+bool ReopeningLog::try_again() {
+    if (!stats().last_error) return false;
+    if (disk_is_well_ && !disk_is_well_()) return false;
+    const std::unique_lock lock(mutex_);
+    if (log_) {
+        const auto last = log_->stats();
+        add(before_, last);
+        before_.last_error = last.last_error;
+        log_.reset(); // before it is opened again: it has the directory to itself
+    }
+    auto opened = open_();
+    if (!opened) {
+        before_.last_error = opened.error().message;
+        return false;
+    }
+    log_ = std::move(*opened);
+    before_.last_error.reset();
+    return true;
+}
+
+Error ReopeningLog::closed() const {
+    return {Errc::kStoreFailed, fmt::format("the store is being opened again after it had failed: {}",
+                                            before_.last_error.value_or("try again later"))};
+}
+
+template <class Use>
+auto ReopeningLog::use(const Use& what) -> decltype(what(std::declval<ScanLog&>())) {
+    const std::shared_lock lock(mutex_);
+    if (!log_) return closed();
+    return what(*log_);
+}
+
+Result<SessionId> ReopeningLog::create_session(std::string_view record) {
+    return use([&](ScanLog& log) { return log.create_session(record); });
+}
+
+Result<std::vector<StoredSession>> ReopeningLog::sessions() {
+    return use([&](ScanLog& log) { return log.sessions(); });
+}
+
+Result<Revision> ReopeningLog::end_of(SessionId session) {
+    return use([&](ScanLog& log) { return log.end_of(session); });
+}
+
+Result<> ReopeningLog::remove_session(SessionId session) {
+    return use([&](ScanLog& log) { return log.remove_session(session); });
+}
+
+void ReopeningLog::append(SessionId session, Revision first, std::vector<std::string> entries, Done done) {
+    const std::shared_lock lock(mutex_, std::try_to_lock);
+    if (lock && log_) return log_->append(session, first, std::move(entries), std::move(done));
+    done(Error{Errc::kStoreFailed, "the store is being opened again after it had failed; try again later"});
+}
+
+Result<> ReopeningLog::read(SessionId session, Revision after, const VisitEntry& visit) {
+    return use([&](ScanLog& log) { return log.read(session, after, visit); });
+}
+
+Result<> ReopeningLog::clear_checkpoint(SessionId session) {
+    return use([&](ScanLog& log) { return log.clear_checkpoint(session); });
+}
+
+Result<> ReopeningLog::write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) {
+    return use([&](ScanLog& log) { return log.write_checkpoint(session, std::move(parts)); });
+}
+
+Result<> ReopeningLog::read_checkpoint(SessionId session, const VisitPart& visit) {
+    return use([&](ScanLog& log) { return log.read_checkpoint(session, visit); });
+}
+
+StoreStats ReopeningLog::stats() const {
+    const std::shared_lock lock(mutex_);
+    StoreStats stats = log_ ? log_->stats() : StoreStats{};
+    add(stats, before_);
+    if (before_.last_error) stats.last_error = before_.last_error;
+    return stats;
+}
+
+std::uint64_t ReopeningLog::bytes_on_disk() const {
+    const std::shared_lock lock(mutex_);
+    return log_ ? log_->bytes_on_disk() : 0;
+}
+
+Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free) {
+    const auto why_not = [&](std::string_view reason) {
+        return Error{Errc::kStoreFailed, fmt::format("the disk of the store {} cannot be written: {}",
+                                                     directory.native(), reason)};
+    };
+    std::error_code failed;
+    const auto space = std::filesystem::space(directory, failed);
+    if (failed) return why_not(failed.message());
+    if (space.available < bytes_free) return why_not(fmt::format("{} MiB are free", space.available >> 20));
+
+    const auto path = directory / "probe.dbtmp"; // an ending of which the directory knows that it means nothing
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file < 0) return why_not(std::system_category().message(errno));
+    const std::string page(4096, 'p');
+    const bool written = ::write(file, page.data(), page.size()) == static_cast<ssize_t>(page.size());
+    const bool synced = written && ::fsync(file) == 0;
+    const int problem = errno;
+    ::close(file);
+    ::unlink(path.c_str());
+    if (!synced) return why_not(std::system_category().message(problem));
+    return {};
+}
+
+} // namespace scanloom::store
