@@ -1,6 +1,7 @@
 #include "server/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
+#include "common/app/machine.hpp"
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
 
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <chrono>
+#include <cmath>
 #include <thread>
 
 namespace scanloom::app {
@@ -23,6 +26,10 @@ constexpr const char* kFooter =
 
 constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
 
+constexpr double kMapMemoryMibMin = 64.0;
+constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0;
+constexpr double kIdleAfterMax = 365.0 * 24 * 3600;
+
 /// As the parser fills it, before it is settled.
 struct Raw {
     std::string listen = "127.0.0.1:7447";
@@ -30,6 +37,9 @@ struct Raw {
     std::string store;
     std::string web; ///< empty: not given
     double tile_cache_mib = 64.0;
+    double map_memory_mib = 0.0;
+    double disk_reserve_mib = 256.0;
+    double idle_after = 600.0;
 };
 
 /// Beside the build's programs, or where a package puts it.
@@ -64,6 +74,20 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--tile-cache", raw.tile_cache_mib,
                    "MiB of tiles that are kept, drawn and encoded, for whoever asks next; 0 keeps none")
         ->check(check_within(0.0, kTileCacheMibMax))
+        ->capture_default_str();
+    app.add_option("--disk-reserve", raw.disk_reserve_mib,
+                   "MiB that are left free on the store's disk: with less, nothing more is stored until there is more")
+        ->check(check_within(0.0, kTileCacheMibMax))
+        ->capture_default_str();
+    app.add_option(
+           "--map-memory", raw.map_memory_mib,
+           "MiB that the maps of all sessions may take together: sessions that nobody uses leave memory when it "
+           "is used up. Default: half of the memory there is")
+        ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
+        ->capture_default_str();
+    app.add_option("--idle-after", raw.idle_after,
+                   "Seconds after which a session that nobody uses leaves memory; it comes back when it is asked for")
+        ->check(check_within(1.0, kIdleAfterMax))
         ->capture_default_str();
     app.add_option("--log-level", options.log_level, "How much is told on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
@@ -106,6 +130,9 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
                      fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
     }
     options.store = raw.store;
+    options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
+    options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
+    options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));
     options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
     if (auto found = settle_web(raw.web, options); !found) return found.error();
     if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
@@ -118,6 +145,7 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     Raw raw;
+    raw.map_memory_mib = std::max(kMapMemoryMibMin, std::floor(static_cast<double>(memory_limit() >> 20) / 2));
 
     CLI::App app(kAbout, "scanloom-server");
     app.footer(kFooter);

@@ -5,7 +5,9 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <variant>
@@ -24,6 +26,9 @@ struct ServerOptions {
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
+    std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
+    std::size_t map_memory_bytes = std::size_t{1} << 30; ///< of the maps of all sessions that are in memory
+    std::chrono::milliseconds idle_after{600'000};       ///< without use, a session leaves memory
     std::string log_level = "info";
     bool insecure = false; ///< listen beyond loopback without a guard
 };

@@ -4,6 +4,7 @@
 #include "server/sockets/run_to_the_end.hpp"
 
 #include <boost/asio/post.hpp>
+#include <boost/asio/strand.hpp>
 #include <boost/json/object.hpp>
 #include <boost/json/serialize.hpp>
 #include <fmt/format.h>
@@ -28,6 +29,9 @@ constexpr auto kPatience = std::chrono::seconds(9);
 /// or with the robots.
 constexpr auto kWeavingPatience = std::chrono::seconds(5);
 
+/// Sessions leave memory so much later than they might, at most.
+constexpr auto kTidyEvery = std::chrono::seconds(1);
+
 double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -41,14 +45,19 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 } // namespace
 
-Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
+Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
                http::WebFiles web)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
       serving_(std::max<std::size_t>(2, options.threads)),
-      sessions_(*log_, weaving_.get_executor(), seconds_since_epoch, checkpointing_.get_executor()),
+      sessions_(*log_, {.compute = weaving_.get_executor(),
+                        .now = seconds_since_epoch,
+                        .may_wait = checkpointing_.get_executor(),
+                        .reading = reading_.get_executor(),
+                        .pages_max = options.map_memory_bytes / mapping::kPageBytes,
+                        .idle_after = options.idle_after}),
       weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
       api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web), options.tile_cache_bytes), patience_(io_),
-      weaving_patience_(io_) {}
+      weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -64,6 +73,7 @@ void Server::join_pools() {
     planning_.join();
     reweaving_.join();
     changing_.join();
+    reading_.join();
     checkpointing_.join();
     survey_.join();
     serving_.join();
@@ -73,7 +83,10 @@ void Server::join_pools() {
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits) {
     store::StoreOptions store;
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
-    auto log = store::open_rocksdb(options.store, store);
+    store.disk_reserve_bytes = options.disk_reserve_bytes;
+    auto log = store::ReopeningLog::open(
+        [store, directory = options.store] { return store::open_rocksdb(directory, store); },
+        [store, directory = options.store] { return store::can_be_written(directory, store.disk_reserve_bytes); });
     if (!log) return log.error();
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
@@ -110,14 +123,15 @@ Result<> Server::listen() {
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
     config.connections_max = limits_.http;
-    auto http = http::Server::listen(io_,
-                                     {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(),
-                                      awaiting_.get_executor(), planning_.get_executor(), changing_.get_executor(),
-                                      showing_.get_executor()},
-                                     config,
-                                     {[this](const http::Request& request) { return api_.answer(request); },
-                                      [this](const http::Request& request) { return api_.look(request); }},
-                                     metrics_.http());
+    auto http = http::Server::listen(
+        io_,
+        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
+         planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
+        config,
+        {[this](const http::Request& request) { return api_.answer(request); },
+         [this](const http::Request& request) { return api_.look(request); },
+         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); }},
+        metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
     return {};
@@ -136,6 +150,7 @@ Result<> Server::run() {
     if (!sessions_.is_draining()) {
         api_.set_recovered();
         ingest_->start();
+        asio::post(tidying_.get_executor(), [this] { tidy_up(); });
         announce();
     }
     threads.clear(); // joins: until drain() has let everything come to its end
@@ -163,12 +178,29 @@ void Server::wait_for_signal() {
     });
 }
 
+/// From time to time, as long as the server runs.
+void Server::tidy_up() {
+    if (sessions_.is_draining()) return;
+    asio::post(changing_, [this] {
+        if (log_->try_again()) {
+            spdlog::info("the store {} has been opened again", options_.store.string());
+            sessions_.go_on_after_failure();
+        }
+        sessions_.tidy();
+    });
+    tidying_.expires_after(kTidyEvery);
+    tidying_.async_wait([this](const boost::system::error_code& error) {
+        if (!error) tidy_up();
+    });
+}
+
 /// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then
 /// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
     ingest_->stop();
     weaves_.stop();
+    asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });
     patience_.expires_after(kPatience);
     patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) io_.stop();

@@ -9,7 +9,7 @@
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
-#include "server/store/scan_log.hpp"
+#include "server/store/reopening_log.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -32,6 +32,7 @@ namespace scanloom::app {
 ///   planning       ways through maps, for robots and people: one search at a time
 ///   changing       creating and deleting sessions: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
+///   reading        sessions that come back to memory: reads them from the store
 ///   telling        metrics
 ///   showing        what viewers are told live: one event at a time, as snapshots are read for it
 ///
@@ -49,18 +50,19 @@ public:
     [[nodiscard]] Result<> run();
 
 private:
-    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ScanLog> log,
+    Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
            http::WebFiles web);
 
     [[nodiscard]] Result<> listen();
     void announce() const;
     void wait_for_signal();
+    void tidy_up();
     void drain();
     void join_pools();
 
     ServerOptions options_;
     ConnectionLimits limits_;
-    std::unique_ptr<store::ScanLog> log_;
+    std::unique_ptr<store::ReopeningLog> log_;
     metrics::Metrics metrics_;
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
     boost::asio::thread_pool weaving_;
@@ -71,6 +73,7 @@ private:
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
+    boost::asio::thread_pool reading_{2};
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool showing_{1};
     boost::asio::io_context io_;
@@ -84,6 +87,7 @@ private:
     std::optional<boost::asio::signal_set> signals_;
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
+    boost::asio::steady_timer tidying_;
 };
 
 } // namespace scanloom::app

@@ -49,6 +49,18 @@ bool needs_sessions(Operation operation) {
     }
 }
 
+/// Whether the session that the path names has to be in memory.
+bool needs_maps(Operation operation) {
+    switch (operation) {
+    case Operation::kListSessions:
+    case Operation::kCreateSession:
+    case Operation::kImportMap:
+    case Operation::kGetSession:
+    case Operation::kDeleteSession: return false;
+    default: return needs_sessions(operation);
+    }
+}
+
 std::optional<tiles::TileFormat> tile_format_of(Operation operation) {
     if (operation == Operation::kTilePng) return tiles::TileFormat::kPng;
     if (operation == Operation::kTileBin) return tiles::TileFormat::kCodes;
@@ -97,10 +109,19 @@ Outlook Api::look(const Request& request) {
     const auto routing = find_route(request.method, target->segments);
     const auto* match = std::get_if<Match>(&routing);
     if (match == nullptr) return Lane::kAtOnce;
+    if (recovered_ && needs_maps(match->operation)) {
+        const auto& session = match->arguments["session"];
+        if (sessions_.is_asleep(session)) return Asleep{session};
+    }
     const auto format = tile_format_of(match->operation);
     if (!format || !recovered_) return lane_of(*match, target->query);
     auto outlook = look_at_tile(maps_, tiles_, {request, match->arguments, target->query}, *format);
     return outlook ? std::move(*outlook) : problem(outlook.error(), instance_of(request.target));
+}
+
+void Api::wake(const Asleep& asleep, std::function<void()> told) {
+    sessions_.wake(asleep.session,
+                   [told = std::move(told)](const Result<std::shared_ptr<session::Session>>&) { told(); });
 }
 
 Result<Response> Api::call(const Match& match, const Target& target, const Request& request) {

@@ -16,6 +16,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 namespace scanloom::http {
@@ -43,6 +44,10 @@ public:
 
     /// For I/O threads, before answer(): the answer if it is there, else the lane on which to call answer().
     [[nodiscard]] Outlook look(const Request& request);
+
+    /// Has the session read, where look() says so. `told` is called once, when it is there or cannot be had: look()
+    /// again, and where it says the same, answer() knows why.
+    void wake(const Asleep& asleep, std::function<void()> told);
 
 private:
     [[nodiscard]] Result<Response> call(const Match& match, const Target& target, const Request& request);

@@ -160,6 +160,11 @@ net::awaitable<bool> Connection::serve_request() {
     const auto begin = std::chrono::steady_clock::now();
     Request request = request_of(message);
     Outlook outlook = guarded(service_->answering.look, request);
+    if (const auto* asleep = std::get_if<Asleep>(&outlook)) {
+        co_await wake(*asleep);
+        outlook = guarded(service_->answering.look, request);
+    }
+    if (std::holds_alternative<Asleep>(outlook)) outlook = lane_of(request); // it cannot be had: the answer says why
     if (const auto* lane = std::get_if<Lane>(&outlook)) {
         outlook = co_await compute(*lane, std::move(request), std::move(*slot));
     }
@@ -256,6 +261,18 @@ net::awaitable<void> Connection::show(const live::Invitation& invitation, const 
         live::Viewer::Services{service_->config.live, service_->executors.showing, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);
+}
+
+/// Returns when the session has been read, or cannot be.
+net::awaitable<void> Connection::wake(Asleep asleep) {
+    const auto executor = socket_.get_executor();
+    co_await net::async_initiate<const net::use_awaitable_t<>&, void()>(
+        [&](auto handler) {
+            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+            service_->answering.wake(asleep,
+                                     [shared, executor] { net::post(executor, [shared] { std::move (*shared)(); }); });
+        },
+        net::use_awaitable);
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.

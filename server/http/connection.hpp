@@ -49,6 +49,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
+    [[nodiscard]] boost::asio::awaitable<void> wake(Asleep asleep);
     [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request,
                                                            std::shared_ptr<const void> slot);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);

@@ -3,6 +3,7 @@
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 
+#include <string>
 #include <variant>
 
 namespace scanloom::http {
@@ -28,8 +29,13 @@ enum class Lane {
 /// The same once it is routed.
 [[nodiscard]] Lane lane_of(const Match& match, const Query& query);
 
-/// What is known of a request on the I/O thread: its answer, where that took microseconds and no waiting, or the lane
-/// on which the answer is to be made.
-using Outlook = std::variant<Lane, Response>;
+/// The session that a request is about has to be read from the store first.
+struct Asleep {
+    std::string session;
+};
+
+/// What is known of a request on the I/O thread: its answer, where that took microseconds and no waiting; the lane on
+/// which the answer is to be made; or that its session has to be woken before that can be told.
+using Outlook = std::variant<Lane, Response, Asleep>;
 
 } // namespace scanloom::http

@@ -24,7 +24,8 @@ struct Answering {
     Answer answer; ///< on the lane's threads
     std::function<Outlook(const Request&)> look = [](const Request& r) {
         return lane_of(r);
-    }; ///< on I/O threads, first
+    };                                                                   ///< on I/O threads, first
+    std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; tells when, on any
 };
 
 /// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:

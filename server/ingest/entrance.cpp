@@ -26,11 +26,25 @@ asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry
     co_return created;
 }
 
+/// SessionRegistry::wake() for a coroutine, which goes on where it was.
+asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& sessions) {
+    const auto executor = co_await asio::this_coro::executor;
+    co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Found)>(
+        [&](auto handler) {
+            auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+            sessions.wake(name, [shared, executor](Found session) {
+                asio::post(executor, [shared, session] { std::move (*shared)(session); });
+            });
+        },
+        asio::use_awaitable);
+}
+
 /// Why there is no such session to be served.
-Error absence_of(const std::string& name, const session::SessionRegistry& sessions) {
+Error absence_of(const std::string& name, const session::SessionRegistry& sessions, const Error& why) {
     const auto damaged = sessions.damaged();
     const auto damage = damaged.find(name);
     if (damage == damaged.end()) {
+        if (why.code != Errc::kNotFound) return why;
         return {
             Errc::kNotFound,
             fmt::format("hello.session is '{}', which does not exist; create it first, or send hello.create", name)};
@@ -45,15 +59,15 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
 
 asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionRegistry& sessions,
                                    asio::any_io_executor may_wait) {
-    auto session = sessions.find(hello.session);
-    if (!session && hello.create) {
+    auto session = co_await woken(hello.session, sessions);
+    if (!session && session.error().code == Errc::kNotFound && hello.create) {
         auto created = co_await create(hello, sessions, std::move(may_wait));
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
-        session = sessions.find(hello.session); // another robot was quicker
+        session = co_await woken(hello.session, sessions); // another robot was quicker
     }
-    if (!session) co_return absence_of(hello.session, sessions);
+    if (!session) co_return absence_of(hello.session, sessions, session.error());
     if (hello.create) {
-        if (auto agrees = mapping::check_agreement(session->info().config, *hello.create); !agrees) {
+        if (auto agrees = mapping::check_agreement((*session)->info().config, *hello.create); !agrees) {
             co_return prefixed("hello.create: ", agrees.error());
         }
     }

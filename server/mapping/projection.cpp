@@ -133,6 +133,12 @@ const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& senso
     return known;
 }
 
+std::size_t Projection::page_count() const noexcept {
+    std::size_t blocks = 0;
+    for (const auto& robot : robots_) blocks += (robot.trajectory.size() + kTrajectoryBlock - 1) / kTrajectoryBlock;
+    return chunk_count() + blocks;
+}
+
 Snapshot Projection::snapshot() {
     Snapshot snapshot{.revision = revision_,
                       .config = config_,
@@ -177,10 +183,17 @@ Projection Projection::branch() {
 Projection::Robot Projection::Robot::branch() const { return {state, source, trajectory.branch(), sensors, {}}; }
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, {}};
+    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, page_count(), {}};
     for (const auto& robot : robots_) {
-        auto& out = state.robots.emplace_back(ProjectionState::Robot{
-            robot.state.name, robot.source, robot.state.body_radius, robot.state.last_seq, robot.state.scan_count, {}});
+        auto& out = state.robots.emplace_back(ProjectionState::Robot{robot.state.name,
+                                                                     robot.source,
+                                                                     robot.state.body_radius,
+                                                                     robot.state.last_seq,
+                                                                     robot.state.scan_count,
+                                                                     {},
+                                                                     {}});
+        const auto points = robot.trajectory.snapshot();
+        if (points.size() > 0) out.newest = points[points.size() - 1];
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
     }
     return state;

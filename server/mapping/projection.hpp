@@ -31,13 +31,19 @@ struct ProjectionState {
         std::optional<double> body_radius; ///< RobotJoined::body_radius
         std::uint64_t last_seq = 0;
         std::uint64_t scan_count = 0;
-        std::vector<KnownSensor> sensors; ///< by rising id
+        std::optional<TrajectoryPoint> newest; ///< of its scans
+        std::vector<KnownSensor> sensors;      ///< by rising id
     };
 
     Revision revision = 0;
     LayerBounds bounds;
+    std::size_t pages = 0; ///< Projection::page_count()
     std::vector<Robot> robots;
 };
+
+/// What a page of a projection takes in memory, about: a chunk with its classes and its share of the trees, or a block
+/// of a trajectory.
+inline constexpr std::size_t kPageBytes = 20 << 10;
 
 /// The maps of one session: a deterministic fold of its log.
 ///
@@ -53,6 +59,9 @@ public:
 
     /// Of lasers and sonars.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
+
+    /// What it takes of memory, in pages: each chunk and each block of a trajectory is one.
+    [[nodiscard]] std::size_t page_count() const noexcept;
 
     /// Of the chunks of the last snapshot, those that have been copied since, to be written: as long as that snapshot
     /// is held, there are so many more than chunk_count().

@@ -83,6 +83,8 @@ public:
         ++size_;
     }
 
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
     [[nodiscard]] TrajectoryView snapshot() const { return {blocks_, size_}; }
 
     /// A second one that goes on from here. Each has a writer of its own.

@@ -1,5 +1,6 @@
 #include "server/session/backlog.hpp"
 
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -24,6 +25,11 @@ Group Backlog::next_group(std::int64_t room) {
         waiting_.pop_front();
     }
     return group;
+}
+
+void Backlog::put_back(Group group) {
+    waiting_.insert(waiting_.begin(), std::make_move_iterator(group.entries.begin()),
+                    std::make_move_iterator(group.entries.end()));
 }
 
 void Backlog::drop(RobotIndex robot) {

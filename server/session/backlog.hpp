@@ -43,6 +43,9 @@ public:
     /// first entry could need more.
     [[nodiscard]] Group next_group(std::int64_t room);
 
+    /// Pre: it was the last group taken.
+    void put_back(Group group);
+
     void drop(RobotIndex robot);
     void clear() { waiting_.clear(); }
 

@@ -16,7 +16,10 @@ namespace {
 constexpr std::string_view kLaserChunk = "weave/laser/";
 constexpr std::string_view kSonarChunk = "weave/sonar/";
 
-constexpr std::uint32_t kPartsVersion = 2; // 1 had no number of its own, and chunks as they are in memory
+// 1 had no number of its own, and chunks as they are in memory; 2 did not say how many pages a map has and where its
+// robots are, so that it has to be read to be listed.
+constexpr std::uint32_t kPartsVersion = 3;
+constexpr std::uint32_t kOldestPartsVersion = 2;
 constexpr std::size_t kChunkBytesMax = sizeof(mapping::LaserChunk) + sizeof(mapping::SonarChunk);
 
 Error damaged(std::string_view key) { return {Errc::kMalformed, fmt::format("checkpoint part '{}' is damaged", key)}; }
@@ -48,6 +51,7 @@ std::string head_part(const mapping::ProjectionState& state) {
     put(value, state.bounds.laser.occupancy);
     put(value, state.bounds.laser.himm);
     put(value, state.bounds.sonar);
+    put(value, std::uint64_t{state.pages});
     return value;
 }
 
@@ -55,6 +59,7 @@ std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     std::string value;
     put(value, robot.last_seq);
     put(value, robot.scan_count);
+    if (robot.newest) put(value, *robot.newest); // there is one just when it took scans
     value += robot.name + '\0' + robot.source;
     if (robot.body_radius) put(value += '\0', *robot.body_radius); // earlier versions knew of none
     return value;
@@ -220,7 +225,8 @@ Result<> CheckpointReader::add_format(std::string_view value) {
                      fmt::format("the checkpoint was woven by version {}, this program weaves version {}", version,
                                  mapping::kWeavingVersion)};
     }
-    if (parts_version != kPartsVersion) {
+    parts_version_ = parts_version;
+    if (parts_version < kOldestPartsVersion || parts_version > kPartsVersion) {
         return Error{Errc::kUnsupportedVersion, fmt::format("the checkpoint's parts are of version {}, this program's "
                                                             "of version {}",
                                                             parts_version, kPartsVersion)};
@@ -234,6 +240,7 @@ Result<> CheckpointReader::add_head(std::string_view value) {
     state_.bounds.laser.occupancy = part.take<grid::CellBox>();
     state_.bounds.laser.himm = part.take<grid::CellBox>();
     state_.bounds.sonar = part.take<grid::CellBox>();
+    if (parts_version_ > 2) state_.pages = part.take<std::uint64_t>();
     if (!part.complete()) return damaged("head");
     return {};
 }
@@ -244,6 +251,7 @@ bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value)
     auto& robot = state_.robots.emplace_back();
     robot.last_seq = part.take<std::uint64_t>();
     robot.scan_count = part.take<std::uint64_t>();
+    if (parts_version_ > 2 && robot.scan_count > 0) robot.newest = part.take<mapping::TrajectoryPoint>();
     const auto name_end = std::min(part.rest().find('\0'), part.rest().size());
     robot.name = part.rest().substr(0, name_end);
     part.skip(name_end + 1);
@@ -312,6 +320,11 @@ bool CheckpointReader::add_sonar_chunk(const Numbers& numbers, std::string_view 
 void CheckpointReader::begin_weaving() {
     if (!weaving_) projection_.restore(state_);
     weaving_ = true;
+}
+
+std::optional<mapping::ProjectionState> CheckpointReader::state() && {
+    if (has_format_ && parts_version_ < kPartsVersion) return std::nullopt;
+    return std::move(state_);
 }
 
 Result<mapping::Projection> CheckpointReader::finish() && {

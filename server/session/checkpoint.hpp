@@ -15,8 +15,9 @@
 ///
 /// Parts, in the order in which the store visits them, integers little-endian:
 ///   format                   weaving version, version of the parts
-///   head                     revision, bounds
-///   robot/<index>            last seq, scan count, name, a zero byte, source
+///   head                     revision, bounds, pages
+///   robot/<index>            last seq, scan count, newest point of its trajectory where it took scans, name, a zero
+///                            byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
 ///   track/<index>/<block>    512 points of a trajectory
 ///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer, compressed
@@ -50,6 +51,13 @@ public:
     /// Errors  kMalformed: parts are missing.
     [[nodiscard]] Result<mapping::Projection> finish() &&;
 
+    /// All parts with this key and behind it are sensors, tracks and cells.
+    static constexpr std::string_view kAfterState = "sensor/";
+
+    /// The checkpoint's state, without sensors, when the parts before kAfterState are in; a blank one when there was no
+    /// part. Nothing where it does not tell all of it: it was written by an earlier version.
+    [[nodiscard]] std::optional<mapping::ProjectionState> state() &&;
+
 private:
     using Numbers = std::vector<std::uint32_t>; // those in a key
 
@@ -73,6 +81,7 @@ private:
     PartDecompressor decompressor_;
     mapping::Projection projection_;
     mapping::ProjectionState state_;
+    std::uint32_t parts_version_ = 0;
     bool has_format_ = false;
     bool weaving_ = false; // the state is complete and in the projection
 };

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace scanloom::session {
 namespace {
@@ -31,6 +33,12 @@ Error full(std::size_t chunks, std::size_t chunks_max) {
                                      chunks, chunks_max)};
 }
 
+Error short_of_memory() {
+    return {Errc::kOverloaded,
+            "the maps that are in use take all the memory that the server may use for maps; try again "
+            "later, or have it given more (--map-memory)"};
+}
+
 Error no_memory() {
     return {Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
 }
@@ -48,7 +56,9 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
                  const SessionLimits& limits, std::optional<boost::asio::any_io_executor> may_wait)
     : info_(std::move(info)), log_(log), counters_(std::move(counters)), limits_(limits),
       may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), members_(info_, *counters_),
-      projection_(std::move(projection)), appended_(projection_.revision()), checkpointed_(checkpointed) {
+      projection_(std::move(projection)), appended_(projection_.revision()), share_(limits.shared),
+      pages_(projection_.page_count()), checkpointed_(checkpointed) {
+    share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is there: it must be shown
     members_.restore(projection_.state());
     static_cast<void>(no_maps()); // made while there is memory
     if (!publish()) throw std::bad_alloc();
@@ -117,11 +127,16 @@ void Session::enqueue(std::vector<Submitted> entries) {
 void Session::append_next() {
     while (!appending_ && durable_.size() < kGroupsDurableMax && !waiting_.empty()) {
         const auto taken = static_cast<std::int64_t>(projection_.chunk_count()) + chunks_under_way_;
-        auto group = waiting_.next_group(static_cast<std::int64_t>(limits_.chunks_max) - taken);
+        const auto left = static_cast<std::int64_t>(limits_.chunks_max) - taken;
+        auto group = waiting_.next_group(std::min(left, share_.free()));
+        if (!group.entries.empty() && !share_.take(group.chunks)) { // another session was quicker
+            waiting_.put_back(std::exchange(group, {}));
+        }
         if (!group.entries.empty()) {
             append(std::move(group));
         } else if (durable_.empty()) {
-            refuse_first(full(projection_.chunk_count(), limits_.chunks_max));
+            refuse_first(share_.free() < left ? short_of_memory()
+                                              : full(projection_.chunk_count(), limits_.chunks_max));
         } else {
             return; // until it is known how many chunks are new
         }
@@ -148,6 +163,9 @@ void Session::append(Group group) {
 
 /// Pre: nothing is under way.
 void Session::refuse_first(const Error& error) {
+    if (error.code == Errc::kOverloaded && limits_.on_short) {
+        limits_.on_short(static_cast<std::size_t>(mapping::chunk_count_of(waiting_.front().reach.cells)));
+    }
     const RobotIndex robot = waiting_.front().robot;
     waiting_.drop(robot);
     members_.refuse(robot, error, projection_.state());
@@ -157,6 +175,7 @@ void Session::refuse_first(const Error& error) {
 
 void Session::on_appended(Group group, const Result<>& appended) {
     appending_ = false;
+    if (!appended && appended.error().code == Errc::kOverloaded) return set_back(appended.error());
     if (!appended) return stop_writing(appended.error());
     if (broken_) return finish_closing();
     durable_.push_back(std::move(group));
@@ -181,6 +200,7 @@ void Session::fold_slice() {
     if (!folded) return stop_writing(folded.error());
     if (finished) finish_group();
     if (!durable_.empty()) return on_strand([](Session& self) { self.fold_slice(); });
+    finish_setting_back();
     finish_closing();
 }
 
@@ -220,6 +240,8 @@ void Session::finish_group() {
     durable_.pop_front();
     folded_ = 0;
     chunks_under_way_ -= group.chunks;
+    const auto grown = projection_.page_count() - std::exchange(pages_, projection_.page_count());
+    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // a track's next block was not foreseen
     const auto published = publish();
     members_.release(group);
     if (!published) return stop_writing(published.error());
@@ -284,10 +306,30 @@ void Session::stop_writing(const Error& error) {
     finish_closing();
 }
 
+/// The log had no room: nothing of the last group is stored, nor of what waits. Robots that come again find the session
+/// as if it had not been sent.
+void Session::set_back(const Error& error) {
+    refusing_ = error; // until what is durable is in the maps
+    setting_back_ = true;
+    members_.fail_all(error);
+    waiting_.clear();
+    finish_setting_back();
+    finish_closing();
+}
+
+void Session::finish_setting_back() {
+    if (!setting_back_ || !durable_.empty() || broken_) return;
+    setting_back_ = false;
+    drop_what_is_under_way();
+    appended_ = projection_.revision();
+    refusing_ = closing();
+}
+
 void Session::drop_what_is_under_way() {
     waiting_.clear();
     durable_.clear();
     folded_ = 0;
+    share_.give_back(std::exchange(chunks_under_way_, 0));
     members_.restore(projection_.state());
 }
 
@@ -328,6 +370,7 @@ void Session::finish_closing() {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }
+    share_.give_back_all(); // the maps go with the last who holds them
     const auto closed = std::move(closed_);
     closed_ = nullptr;
     closed();

@@ -5,6 +5,7 @@
 #include "server/mapping/projection.hpp"
 #include "server/session/backlog.hpp"
 #include "server/session/members.hpp"
+#include "server/session/page_share.hpp"
 #include "server/session/published.hpp"
 #include "server/session/robot_listener.hpp"
 #include "server/session/session_info.hpp"
@@ -55,8 +56,8 @@ public:
     /// Entries that wait to be handed to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
-    /// Why the session takes no scans until the server is started again, its maps being served all the same: the log
-    /// could not be written, or the memory ran out, of which scan a part may show. Nothing while all is well.
+    /// Why the session takes no scans until it is read from the store again, its maps being served all the same: the
+    /// log could not be written, or the memory ran out, of which scan a part may show. Nothing while all is well.
     [[nodiscard]] std::optional<Error> failure() const;
 
     /// Why the session takes nothing more, since it is being closed: kGone, it is deleted, or kShuttingDown. Nothing
@@ -122,6 +123,8 @@ private:
     [[nodiscard]] Result<> publish();
     void tell_watchers();
     void stop_writing(const Error& error);
+    void set_back(const Error& error);
+    void finish_setting_back();
     void drop_what_is_under_way();
     [[nodiscard]] bool is_checkpoint_due() const;
     void begin_checkpoint();
@@ -144,12 +147,15 @@ private:
     Revision appended_ = 0;                                                // newest entry handed to the log
     bool appending_ = false;
     std::int64_t chunks_under_way_ = 0; // that the groups being appended and folded may add
+    PageShare share_;                   // of the limits' budgets: what the maps take, and what is under way
+    std::size_t pages_ = 0;             // that the maps take
     std::optional<Revision> checkpointed_;
     double work_since_checkpoint_ = 0.0;
     std::size_t described_since_checkpoint_ = 0; // bytes of sensor descriptions
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
     std::optional<Error> refusing_; // why nothing more is taken
+    bool setting_back_ = false;     // to what is durable, as the log had no room for more
     bool broken_ = false;           // the log or the memory failed: nothing more is appended, folded or written
     std::function<void()> closed_;  // to be called when closing is done
 

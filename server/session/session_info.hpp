@@ -1,12 +1,16 @@
 #pragma once
 
 #include "server/mapping/map_config.hpp"
+#include "server/session/page_budget.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace scanloom::session {
 
@@ -25,6 +29,12 @@ struct SessionInfo {
 /// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
 struct SessionLimits {
     std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
+
+    std::vector<std::shared_ptr<PageBudget>> shared = {}; ///< with other sessions
+
+    /// Called with the pages that the next scan may need when a budget has no room for it, and it is refused; on the
+    /// session's strand: hand over, do not block. May be empty.
+    std::function<void(std::size_t)> on_short = {};
 };
 
 /// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.

@@ -61,94 +61,14 @@ Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revi
 
 } // namespace
 
-SessionRegistry::SessionRegistry(store::ScanLog& log, boost::asio::any_io_executor compute, std::function<double()> now,
-                                 std::optional<boost::asio::any_io_executor> may_wait)
-    : log_(log), compute_(compute), may_wait_(may_wait.value_or(compute)), now_(std::move(now)) {}
-
-Result<> SessionRegistry::recover() {
-    const auto stored = log_.sessions();
-    if (!stored) return stored.error();
-    const std::lock_guard changing(changing_); // drain() waits
-    const auto done = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(stored->size()));
-    for (const auto& session : *stored) {
-        boost::asio::post(compute_, [this, &session, done] {
-            recover_one(session);
-            done->count_down();
-        });
-    }
-    done->wait();
-    return {};
-}
-
-void SessionRegistry::recover_one(const store::StoredSession& stored) {
-    if (draining_) return; // told to stop meanwhile: what is not woven now will be at the next start
-    std::string name = fmt::format("#{}", stored.id); // until its record has told
-    auto session = weave(stored, name);
-    if (!session && session.error().code == Errc::kGone) { // nobody was told that it exists
-        spdlog::warn("session '{}' is removed: {}", name, session.error().message);
-        if (log_.remove_session(stored.id)) return;
-    }
-    const std::unique_lock lock(mutex_);
-    if (session && *session) {
-        keep_recovered(std::move(*session));
-    } else if (!session) {
-        spdlog::error("session '{}' cannot be recovered: {}", name, session.error().message);
-        damaged_[name] = {stored.id, session.error()};
-    }
-}
-
-/// Of two with one name, which only a fault can have stored, the older is served and the other kept aside.
-/// Pre  mutex_ is held.
-void SessionRegistry::keep_recovered(std::shared_ptr<Session> session) {
-    const std::string name = session->info().name;
-    auto& served = sessions_[name];
-    if (!served || session->info().id < served->info().id) std::swap(served, session);
-    if (!session) return;
-    const auto id = session->info().id;
-    const Error why{Errc::kConflict,
-                    fmt::format("the store holds a second session '{}'; delete this one, or delete the other and "
-                                "restart the server to be served this one",
-                                name)};
-    damaged_[fmt::format("{}#{}", name, id)] = {id, why};
-    spdlog::error("session '{}#{}' is not served: {}", name, id, why.message);
-}
-
-/// @return nothing when told to stop before its end.
-Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSession& stored, std::string& name) {
-    if (!stored.record) return stored.record.error();
-    const auto record = wire::decode_session(*stored.record);
-    if (!record) return record.error();
-    name = record->name;
-    if (stored.damage) return *stored.damage;
-    const auto config = mapping::resolve(record->options);
-    if (!config) return config.error();
-    auto recovered = session::recover(log_, stored.id, *config, draining_);
-    if (!recovered) return recovered.error();
-    if (recovered->checkpoint_rejected) {
-        spdlog::warn("session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", name,
-                     recovered->checkpoint_rejected->message);
-    }
-    if (recovered->complete && recovered->projection.revision() < record->map_patches) {
-        return Error{Errc::kGone, fmt::format("its import came to {} of {} parts before a crash",
-                                              recovered->projection.revision(), record->map_patches)};
-    }
-    if (!recovered->complete) {
-        keep_progress(stored.id, name, *recovered);
-        return std::shared_ptr<Session>();
-    }
-    return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
-                                     std::move(recovered->projection), recovered->checkpointed, log_, compute_,
-                                     counters_, SessionLimits{}, may_wait_);
-}
-
-/// A long recovery that is stopped again and again should come to its end all the same.
-void SessionRegistry::keep_progress(store::SessionId id, const std::string& name, Recovered& recovered) {
-    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // there is none
-    const auto snapshot = recovered.projection.snapshot();
-    const auto written =
-        write_checkpoint(log_, id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried_);
-    spdlog::info("session '{}': recovery stopped after entry {}{}", name, snapshot.revision,
-                 written ? "; the next start continues there" : "");
+SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
+    : log_(log), config_(std::move(config)), may_wait_(config_.may_wait.value_or(config_.compute)),
+      reading_(config_.reading.value_or(config_.compute)),
+      pages_(std::make_shared<PageBudget>(config_.pages_max)), maker_{log_, config_.compute, may_wait_} {
+    maker_.limits.shared = {pages_};
+    maker_.limits.on_short = [this](std::size_t pages) {
+        boost::asio::post(may_wait_, [this, pages] { make_room(pages + spare_pages()); });
+    };
 }
 
 Error no_such_session(std::string_view name) {
@@ -157,36 +77,37 @@ Error no_such_session(std::string_view name) {
 }
 
 std::shared_ptr<Session> SessionRegistry::find(std::string_view name) const {
-    const std::shared_lock lock(mutex_);
-    const auto found = sessions_.find(name);
-    return found == sessions_.end() ? nullptr : found->second;
-}
-
-std::vector<std::shared_ptr<Session>> SessionRegistry::list() const {
-    const std::shared_lock lock(mutex_);
-    std::vector<std::shared_ptr<Session>> sessions;
-    sessions.reserve(sessions_.size());
-    for (const auto& [name, session] : sessions_) sessions.push_back(session);
-    return sessions;
+    return roster_.find(name, config_.clock());
 }
 
 std::map<std::string, Error> SessionRegistry::damaged() const {
-    const std::shared_lock lock(mutex_);
+    const std::shared_lock lock(damaged_mutex_);
     std::map<std::string, Error> reasons;
     for (const auto& [name, damaged] : damaged_) reasons.emplace(name, damaged.error);
     return reasons;
+}
+
+std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
+    const std::shared_lock lock(damaged_mutex_);
+    const auto found = damaged_.find(name);
+    return found == damaged_.end() ? std::nullopt : std::optional(found->second.error);
+}
+
+void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
+    spdlog::error("session '{}' cannot be recovered: {}", name, why.message);
+    const std::unique_lock lock(damaged_mutex_);
+    damaged_[std::move(name)] = {id, std::move(why)};
 }
 
 Result<> SessionRegistry::check_new(std::string_view name) const {
     if (draining_)
         return Error{Errc::kShuttingDown,
                      "the server is shutting down and makes no new sessions; try again when it is back"};
-    const std::shared_lock lock(mutex_);
-    if (sessions_.contains(name)) {
+    if (roster_.contains(name)) {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists already; choose another name or delete it first", name)};
     }
-    if (damaged_.contains(name)) {
+    if (damage_of(name)) {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
     }
@@ -194,10 +115,8 @@ Result<> SessionRegistry::check_new(std::string_view name) const {
 }
 
 std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
-    auto session = std::make_shared<Session>(std::move(info), std::move(projection), 0, log_, compute_, counters_,
-                                             SessionLimits{}, may_wait_);
-    const std::unique_lock lock(mutex_);
-    sessions_.emplace(session->info().name, session);
+    auto session = maker_.make(std::move(info), std::move(projection), 0);
+    roster_.add(session, config_.clock());
     return session;
 }
 
@@ -208,7 +127,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, 
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = now_();
+    const double created = config_.now();
     const auto id =
         log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
     if (!id) return id.error();
@@ -224,10 +143,18 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
     auto projection = woven(*config, patches);
     if (!projection) return projection.error();
+    const auto pages = static_cast<std::int64_t>(projection->page_count());
+    if (pages_->free() < pages) {
+        make_room(static_cast<std::size_t>(pages));
+        return Error{Errc::kOverloaded,
+                     fmt::format("there is no room for this map's {} MiB in the memory for maps now; try again soon, "
+                                 "or use larger cells",
+                                 pages * static_cast<std::int64_t>(mapping::kPageBytes) >> 20)};
+    }
 
     const std::lock_guard changing(changing_);
     if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = now_();
+    const double created = config_.now();
     const auto id = log_.create_session(wire::encode_session(
         {std::string(name), created, mapping::options_of(*config), static_cast<std::uint32_t>(patches.size())}));
     if (!id) return id.error();
@@ -242,54 +169,53 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
 
 Result<> SessionRegistry::remove(std::string_view name) {
     const std::lock_guard changing(changing_);
-    store::SessionId id = 0;
-    if (const auto session = find(name)) {
-        id = session->info().id;
-        const auto closed = std::make_shared<std::promise<void>>();
-        auto is_closed = closed->get_future();
-        session->discard({Errc::kGone, fmt::format("session '{}' was deleted", name)},
-                         [closed] { closed->set_value(); });
-        is_closed.wait();
-    } else {
-        const std::shared_lock lock(mutex_);
+    auto left = roster_.leave(name);
+    if (!left) {
+        const std::unique_lock lock(damaged_mutex_);
         const auto damaged = damaged_.find(name);
         if (damaged == damaged_.end()) return no_such_session(name);
-        id = damaged->second.id;
+        if (auto removed = log_.remove_session(damaged->second.id); !removed) return removed.error();
+        damaged_.erase(damaged);
+        return {};
     }
-    if (auto removed = log_.remove_session(id); !removed) return removed.error();
-    if (auto session = forget(name)) {
-        freed_chunks_ += session->snapshot()->chunk_count;
-        session.reset();
-        give_back_memory();
+    const Error gone{Errc::kGone, fmt::format("session '{}' was deleted", name)};
+    if (left->session) {
+        const auto closed = std::make_shared<std::promise<void>>();
+        auto is_closed = closed->get_future();
+        left->session->discard(gone, [closed] { closed->set_value(); });
+        is_closed.wait();
     }
+    const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
+    if (auto removed = log_.remove_session(left->info.id); !removed) { // it is still there, closed
+        if (const auto wanted = roster_.arrived(left->info.name, summary)) start_reading(*wanted);
+        return removed.error();
+    }
+    roster_.remove(name, gone);
+    left.reset(); // the maps go here, or when the strand is done with the session
+    boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
     return {};
 }
 
 /// To the system, from time to time: the allocator keeps what lies between other things, and of each thread the most it
 /// ever had.
-void SessionRegistry::give_back_memory() {
-    constexpr std::size_t kWorthwhile = 4096; // chunks: 84 MB
-    if (freed_chunks_ < kWorthwhile) return;
-    freed_chunks_ = 0;
+void SessionRegistry::give_back_memory(std::size_t pages) {
+    constexpr std::size_t kWorthwhile = 4096; // 80 MiB
+    {
+        const std::lock_guard lock(room_mutex_);
+        freed_pages_ += pages;
+        if (freed_pages_ < kWorthwhile) return;
+        freed_pages_ = 0;
+    }
 #ifdef __GLIBC__
     malloc_trim(0);
 #endif
 }
 
-/// @return the session, which goes with the last who holds it.
-std::shared_ptr<Session> SessionRegistry::forget(std::string_view name) {
-    const std::unique_lock lock(mutex_);
-    if (const auto damaged = damaged_.find(name); damaged != damaged_.end()) damaged_.erase(damaged);
-    const auto known = sessions_.find(name);
-    if (known == sessions_.end()) return nullptr;
-    auto session = std::move(known->second);
-    sessions_.erase(known);
-    return session;
-}
-
 void SessionRegistry::drain() {
-    draining_ = true; // recover() gives up
+    draining_ = true; // recover() and whatever is to be read give up
     const std::lock_guard changing(changing_);
+    start_reading_again();
+    roster_.settle();
     const auto sessions = list();
     const auto closed = std::make_shared<std::latch>(static_cast<std::ptrdiff_t>(sessions.size()));
     for (const auto& session : sessions) {
@@ -301,7 +227,9 @@ void SessionRegistry::drain() {
 
 void SessionRegistry::hurry() {
     hurried_ = true;
-    for (const auto& session : list()) session->hurry();
+    for (const auto& listed : roster_.all()) {
+        if (listed.session) listed.session->hurry();
+    }
 }
 
 } // namespace scanloom::session

@@ -71,7 +71,7 @@ bool Weave::join(Revision target) {
     return true;
 }
 
-bool Weave::resume(Revision target, ChunkBudget& budget) {
+bool Weave::resume(Revision target, PageBudget& budget) {
     const std::lock_guard lock(mutex_);
     const auto chunks = static_cast<std::int64_t>(maps_->chunk_count);
     if (!budget.take(chunks)) return false;
@@ -136,7 +136,7 @@ void Weave::cancel(Error reason) {
 
 // Weaving
 
-bool Weave::run(store::ScanLog& log, ChunkBudget& budget, double turn_work) {
+bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
     const auto target = begin();
     if (!target) {
         give_up(kCancelled, budget);
@@ -173,7 +173,7 @@ bool Weave::wait_for_another_turn(Revision target) {
 }
 
 /// @return whether nothing more can follow.
-Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget) {
+Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
     if (auto claimed = claim(budget); !claimed) return claimed.error(); // what it begins with
     const auto read =
@@ -194,7 +194,7 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, ChunkBudge
     return is_complete;
 }
 
-Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget) {
+Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {
     for (bool in = false; !in;) {
         if (cancelled_) return kCancelled;
         double work = kSliceWork;
@@ -212,7 +212,7 @@ Result<> Weave::fold(const LogEntry& entry, ChunkBudget& budget) {
 }
 
 /// Takes the chunks that there are by now from the budget.
-Result<> Weave::claim(ChunkBudget& budget) {
+Result<> Weave::claim(PageBudget& budget) {
     const std::size_t chunks = projection_->chunk_count();
     const std::size_t copied = maps_ ? projection_->copied_count() : 0; // maps_ is set by this thread alone
     if (claim(chunks + copied, budget)) return {};
@@ -220,7 +220,7 @@ Result<> Weave::claim(ChunkBudget& budget) {
     return claim(chunks, budget) ? Result<>{} : no_room();
 }
 
-bool Weave::claim(std::size_t chunks, ChunkBudget& budget) {
+bool Weave::claim(std::size_t chunks, PageBudget& budget) {
     const std::int64_t more = static_cast<std::int64_t>(chunks) - claimed_;
     if (more > 0 && !budget.take(more)) return false;
     if (more < 0) budget.give_back(-more);
@@ -235,7 +235,7 @@ void Weave::forget_maps() {
 }
 
 /// Shows what has been woven up to `target`. @return whether more has been asked for meanwhile.
-bool Weave::publish(Revision target, bool is_complete, ChunkBudget& budget) {
+bool Weave::publish(Revision target, bool is_complete, PageBudget& budget) {
     auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
     const std::lock_guard lock(mutex_);
     maps_.swap(maps);
@@ -250,7 +250,7 @@ bool Weave::publish(Revision target, bool is_complete, ChunkBudget& budget) {
     return true;
 }
 
-void Weave::give_up(const Error& error, ChunkBudget& budget) {
+void Weave::give_up(const Error& error, PageBudget& budget) {
     projection_.reset();
     const std::lock_guard lock(mutex_);
     if (!cancelled_) error_ = error;
@@ -258,7 +258,7 @@ void Weave::give_up(const Error& error, ChunkBudget& budget) {
 }
 
 /// From here on it may be resumed. Pre: mutex_ is held.
-void Weave::end(State state, ChunkBudget& budget) {
+void Weave::end(State state, PageBudget& budget) {
     budget.give_back(std::exchange(claimed_, 0));
     state_ = cancelled_ ? State::kCancelled : state;
     changed_.notify_all();

@@ -2,7 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/mapping/projection.hpp"
-#include "server/session/chunk_budget.hpp"
+#include "server/session/page_budget.hpp"
 #include "server/session/session_info.hpp"
 #include "server/session/weave_request.hpp"
 #include "server/store/scan_log.hpp"
@@ -70,7 +70,7 @@ public:
 
     /// The same when it is done: gets ready for another run().
     /// Pre  join() said no, the state is kDone, and nobody else does this. @return false: the budget has no room now.
-    [[nodiscard]] bool resume(Revision target, ChunkBudget& budget);
+    [[nodiscard]] bool resume(Revision target, PageBudget& budget);
 
     /// Where another weave may begin that wants these maps up to `target`: nothing when their settings or sessions are
     /// not the same, or this one is beyond what the other wants, has given up or has not begun, or is being run.
@@ -91,7 +91,7 @@ public:
     /// as a turn goes. Ends early when it is cancelled, when the budget is used up, or when what the log holds cannot
     /// be woven with these settings; what was woven is then given up.
     /// Pre  never at the same time as itself. @return whether there is more to weave: to be run again.
-    [[nodiscard]] bool run(store::ScanLog& log, ChunkBudget& budget, double turn_work = kTurnWork);
+    [[nodiscard]] bool run(store::ScanLog& log, PageBudget& budget, double turn_work = kTurnWork);
 
     /// Told to whoever runs it.
     [[nodiscard]] bool has_begun() const noexcept { return projection_.has_value(); }
@@ -100,15 +100,15 @@ private:
     [[nodiscard]] bool is_same_map(const Weave& other) const noexcept;
     [[nodiscard]] std::optional<Revision> revision_before(const WeaveEnd& end, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
-    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, ChunkBudget& budget);
+    [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);
-    [[nodiscard]] Result<> fold(const LogEntry& entry, ChunkBudget& budget);
-    [[nodiscard]] Result<> claim(ChunkBudget& budget);
-    [[nodiscard]] bool claim(std::size_t chunks, ChunkBudget& budget);
+    [[nodiscard]] Result<> fold(const LogEntry& entry, PageBudget& budget);
+    [[nodiscard]] Result<> claim(PageBudget& budget);
+    [[nodiscard]] bool claim(std::size_t chunks, PageBudget& budget);
     void forget_maps();
-    [[nodiscard]] bool publish(Revision target, bool is_complete, ChunkBudget& budget);
-    void give_up(const Error& error, ChunkBudget& budget);
-    void end(State state, ChunkBudget& budget);
+    [[nodiscard]] bool publish(Revision target, bool is_complete, PageBudget& budget);
+    void give_up(const Error& error, PageBudget& budget);
+    void end(State state, PageBudget& budget);
 
     const std::string id_;
     const SessionInfo session_;

@@ -81,7 +81,7 @@ private:
     store::ScanLog& log_;
     boost::asio::any_io_executor executor_;
     const WeavesLimits limits_;
-    ChunkBudget budget_;
+    PageBudget budget_;
 
     mutable std::mutex mutex_;
     bool stopped_ = false;

@@ -46,7 +46,7 @@ std::string feature_of(const std::string& robot, const guide::Goal& goal) {
 
 } // namespace
 
-Result<Response> get_goals(const session::SessionRegistry& sessions, guide::WayBook& ways, const AnswerSlots& slots,
+Result<Response> get_goals(session::SessionRegistry& sessions, guide::WayBook& ways, const AnswerSlots& slots,
                            const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);

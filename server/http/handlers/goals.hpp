@@ -10,7 +10,7 @@ namespace scanloom::http {
 
 /// GET .../goals.geojson: for each robot the way it planned last and the goal it was given, as far as it has them. Its
 /// revision is the book's, as LiveEvent::goals_revision. Gives nobody anything.
-[[nodiscard]] Result<Response> get_goals(const session::SessionRegistry& sessions, guide::WayBook& ways,
+[[nodiscard]] Result<Response> get_goals(session::SessionRegistry& sessions, guide::WayBook& ways,
                                          const AnswerSlots& slots, const Call& call);
 
 } // namespace scanloom::http

@@ -38,7 +38,9 @@ Result<Response> get_readyz(const session::SessionRegistry& sessions, const stor
     boost::json::array reasons;
     if (!recovered) reasons.emplace_back("the sessions are still being recovered from the store");
     if (sessions.is_draining()) reasons.emplace_back("the server is shutting down");
-    if (const auto error = log.stats().last_error) reasons.emplace_back("the store failed: " + *error);
+    const auto store = log.stats();
+    if (store.last_error) reasons.emplace_back("the store failed: " + *store.last_error);
+    if (store.no_room) reasons.emplace_back(*store.no_room);
     if (reasons.empty()) return ok(readiness(sessions, robots));
     return problem(Status::service_unavailable, "the server is not ready", "/readyz", {{"reasons", reasons}});
 }

@@ -25,7 +25,7 @@ Response upgrade_required(const Call& call) {
 
 } // namespace
 
-Result<Response> get_live(const session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call) {
+Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();

@@ -11,7 +11,6 @@ namespace scanloom::http {
 /// Lets a WebSocket in that watches the session: 101, with an invitation. 426 when no WebSocket of version 13 is asked
 /// for, 403 when a page of another host asks for it: browsers let any page open one and show what comes.
 /// Errors  kInvalidField: an unknown parameter; those of find_session().
-[[nodiscard]] Result<Response> get_live(const session::SessionRegistry& sessions, guide::WayBook& ways,
-                                        const Call& call);
+[[nodiscard]] Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call);
 
 } // namespace scanloom::http

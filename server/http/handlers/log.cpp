@@ -107,7 +107,7 @@ private:
 
 } // namespace
 
-Result<Response> get_log(const session::SessionRegistry& sessions, store::ScanLog& log, const Call& call) {
+Result<Response> get_log(session::SessionRegistry& sessions, store::ScanLog& log, const Call& call) {
     if (auto known = call.query.check_only({"format"}); !known) return known.error();
     const auto format = call.query.find("format").value_or("protobuf");
     const bool is_carmen = format == "clf";

@@ -88,6 +88,10 @@ Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<s
 
 /// Those of the weave that the parameter names, or the session's own.
 Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter, Waiting waiting) const {
+    if (waiting == Waiting::kNotAllowed) {
+        const auto info = sessions_.info(call.arguments["session"]);
+        if (info && !sessions_.find(info->name)) return Maps{nullptr, nullptr, nullptr, session_tag(*info)};
+    }
     auto session = find_session(sessions_, call);
     if (!session) return session.error();
     const auto id = call.query.find(parameter);

@@ -36,7 +36,7 @@ public:
     /// Whoever asks for settings waits for so long at most until they are woven.
     static constexpr std::chrono::milliseconds kPatience{20'000};
 
-    MapsLookup(const session::SessionRegistry& sessions, session::Weaves& weaves,
+    MapsLookup(session::SessionRegistry& sessions, session::Weaves& weaves,
                std::chrono::milliseconds patience = kPatience)
         : sessions_(sessions), weaves_(weaves), patience_(patience) {}
 
@@ -46,7 +46,8 @@ public:
     ///         has none yet; its own, where it failed.
     [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// The same for threads that may not wait: without a snapshot where the session's own maps are being written.
+    /// The same for threads that may not wait: without a snapshot where the session's own maps are being written, and
+    /// without a session where that is not in memory.
     [[nodiscard]] Result<Maps> find_at_once(const Call& call, std::initializer_list<std::string_view> known) const;
 
     /// The same as find(), and weaves them if settings are given; waits until what the session shows now is in.
@@ -58,7 +59,7 @@ public:
     /// Errors  as find(); kInvalidField: neither is given.
     [[nodiscard]] Result<TwoMaps> find_two(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    [[nodiscard]] const session::SessionRegistry& sessions() const noexcept { return sessions_; }
+    [[nodiscard]] session::SessionRegistry& sessions() const noexcept { return sessions_; }
     [[nodiscard]] session::Weaves& weaves() const noexcept { return weaves_; }
 
 private:
@@ -69,7 +70,7 @@ private:
                                       Waiting waiting = Waiting::kAllowed) const;
     [[nodiscard]] Result<Maps> woven(const Call& call) const;
 
-    const session::SessionRegistry& sessions_;
+    session::SessionRegistry& sessions_;
     session::Weaves& weaves_;
     std::chrono::milliseconds patience_;
 };

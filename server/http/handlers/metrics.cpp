@@ -21,6 +21,7 @@ Families store_families(const store::ScanLog& log) {
         gauge_now("scanloom_store_bytes", "Bytes of the store on disk.", number(log.bytes_on_disk())),
         gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
         gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
+        gauge_now("scanloom_store_full", "1 when the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
         gauge_now("scanloom_store_damaged", "1 when a file of the store was found damaged while running.",
                   stats.damage ? 1.0 : 0.0),
         counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
@@ -32,6 +33,8 @@ Families store_families(const store::ScanLog& log) {
     };
 }
 
+double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
+
 Families session_families(const session::SessionRegistry& sessions) {
     const auto served = sessions.list();
     std::size_t backlog = 0;
@@ -39,8 +42,12 @@ Families session_families(const session::SessionRegistry& sessions) {
     const auto failed =
         std::ranges::count_if(served, [](const auto& session) { return session->failure().has_value(); });
     return {
-        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(served.size())),
-        gauge_now("scanloom_sessions_failed", "Sessions that take no scans until the server is started again.",
+        gauge_now("scanloom_sessions", "Sessions that are served.", static_cast<double>(sessions.all().size())),
+        gauge_now("scanloom_sessions_loaded", "Sessions whose maps are in memory.", static_cast<double>(served.size())),
+        gauge_now("scanloom_map_memory_bytes", "Memory of these maps, about.", bytes_of(sessions.pages().used())),
+        gauge_now("scanloom_map_memory_limit_bytes", "What they may take together.",
+                  bytes_of(sessions.pages().pages_max())),
+        gauge_now("scanloom_sessions_failed", "Sessions that take no scans until they are read from the store again.",
                   static_cast<double>(failed)),
         gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
                   static_cast<double>(sessions.damaged().size())),

@@ -48,37 +48,47 @@ boost::json::value radius_json(const std::optional<double>& radius) {
     return *radius;
 }
 
-} // namespace
-
-boost::json::object to_json(const session::Session& session) {
-    const auto snapshot = session.snapshot();
+/// @param session  null: it is not in memory
+boost::json::object session_json(const session::SessionInfo& info, const mapping::Snapshot& snapshot,
+                                 const session::Session* session) {
     boost::json::array robots;
     std::uint64_t scans = 0;
-    for (RobotIndex index = 0; index < snapshot->robots.size(); ++index) {
-        const auto& robot = snapshot->robots[index];
+    for (RobotIndex index = 0; index < snapshot.robots.size(); ++index) {
+        const auto& robot = snapshot.robots[index];
         scans += robot.scan_count;
         robots.push_back(boost::json::object{{"name", robot.name},
-                                             {"connected", session.is_connected(index)},
+                                             {"connected", session != nullptr && session->is_connected(index)},
                                              {"scans", robot.scan_count},
                                              {"last_seq", robot.last_seq},
                                              {"stamp", robot.stamp},
                                              {"pose", pose_json(robot.pose)},
                                              {"body_radius", radius_json(robot.body_radius)}});
     }
-    const auto& info = session.info();
-    const auto failure = session.failure();
+    const auto failure = session == nullptr ? std::nullopt : session->failure();
     boost::json::object json{{"name", info.name},
                              {"state", failure ? "failed" : "ok"},
+                             {"loaded", session != nullptr},
                              {"id", session_tag(info)},
                              {"created", rfc3339(info.created)},
-                             {"revision", snapshot->revision},
+                             {"revision", snapshot.revision},
                              {"scans", scans},
                              {"config", to_json(info.config)},
                              {"layers", layer_names()},
-                             {"bounds", bounds_json(*snapshot)},
+                             {"bounds", bounds_json(snapshot)},
                              {"robots", std::move(robots)}};
     if (failure) json["reason"] = failure->message;
     return json;
+}
+
+} // namespace
+
+boost::json::object to_json(const session::Session& session) {
+    return session_json(session.info(), *session.snapshot(), &session);
+}
+
+boost::json::object to_json(const session::Listed& listed) {
+    if (listed.session) return to_json(*listed.session);
+    return session_json(listed.info, *listed.summary.facts, nullptr);
 }
 
 boost::json::object failed_json(std::string_view name, const Error& reason) {

@@ -11,9 +11,15 @@
 
 namespace scanloom::http {
 
-Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions, const Call& call) {
+Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry& sessions, const Call& call) {
     const auto& name = call.arguments["session"];
-    if (auto session = sessions.find(name)) return session;
+    auto session = sessions.wake(name);
+    if (session) return session;
+    if (auto damage = damage_of(sessions, name)) return *damage;
+    return session.error();
+}
+
+std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
         if (found->second.code == Errc::kOverloaded) { // nothing is wrong with it
@@ -25,7 +31,7 @@ Result<std::shared_ptr<session::Session>> find_session(const session::SessionReg
                                  "it",
                                  name, found->second.message)};
     }
-    return session::no_such_session(name);
+    return std::nullopt;
 }
 
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {

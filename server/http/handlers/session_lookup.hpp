@@ -8,15 +8,19 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace scanloom::http {
 
-/// The session of the call's path.
-/// Errors  kNotFound; kInternal: its log is damaged, and so it could not be recovered;
-///         kOverloaded: it could not be loaded for want of memory.
-[[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(const session::SessionRegistry& sessions,
+/// The session of the call's path, read from the store if need be.
+/// Errors  those of damage_of() and of SessionRegistry::wake().
+[[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry& sessions,
                                                                      const Call& call);
+
+/// Why a session that is stored cannot be served: kInternal: its log is damaged; kOverloaded: it could not be read for
+/// want of memory. Nothing where there is no such damage.
+[[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
 
 /// How this program makes maps from logs, and bytes from maps.
 struct MakingVersions {

@@ -52,17 +52,17 @@ Result<Page> parse_page(const Query& query) {
 }
 
 /// A session that is served, or why it is not.
-using Listed = Result<std::shared_ptr<session::Session>>;
+using Listed = Result<session::Listed>;
 
 std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions) {
     std::map<std::string, Listed, std::less<>> listed;
-    for (auto& session : sessions.list()) listed.emplace(session->info().name, session);
+    for (auto& session : sessions.all()) listed.emplace(session.info.name, session);
     for (const auto& [name, reason] : sessions.damaged()) listed.emplace(name, reason);
     return listed;
 }
 
 boost::json::object to_json(const Listed& listed, std::string_view name) {
-    return listed ? http::to_json(**listed) : damaged_json(name, listed.error());
+    return listed ? http::to_json(*listed) : damaged_json(name, listed.error());
 }
 
 } // namespace
@@ -94,20 +94,21 @@ Result<Response> create_session(session::SessionRegistry& sessions, const Call& 
 
 Result<Response> get_session(const session::SessionRegistry& sessions, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
-    return ok(to_json(**session));
+    const auto& name = call.arguments["session"];
+    if (const auto listed = sessions.listed(name)) return ok(to_json(*listed));
+    const auto damage = damage_of(sessions, name);
+    return damage ? *damage : session::no_such_session(name);
 }
 
 Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves, tiles::TileMaker& tiles,
                                 const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto& name = call.arguments["session"];
-    const auto session = sessions.find(name);
+    const auto info = sessions.info(name);
     if (auto removed = sessions.remove(name); !removed) return removed.error();
-    if (session) {
-        weaves.remove_all(session->info().id);
-        tiles.forget(session_tag(session->info()));
+    if (info) {
+        weaves.remove_all(info->id);
+        tiles.forget(session_tag(*info));
     }
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }

@@ -79,7 +79,7 @@ std::size_t bytes_about(const mapping::Snapshot& snapshot, const Asked& asked) {
 
 } // namespace
 
-Result<Response> get_trajectory(const session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+Result<Response> get_trajectory(session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
     if (auto known = call.query.check_only({"since", "times"}); !known) return known.error();
     const auto since = since_parameter(call.query);
     if (!since) return since.error();

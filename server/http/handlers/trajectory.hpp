@@ -11,7 +11,7 @@ namespace scanloom::http {
 /// frame (RFC 7946 knows only degrees; the foreign members say so). With times=true its properties tell of each
 /// position also the revision, the stamp (seconds, the robot's clock) and the yaw (radians). A long path takes a slot,
 /// as a large map image does.
-[[nodiscard]] Result<Response> get_trajectory(const session::SessionRegistry& sessions, const AnswerSlots& slots,
+[[nodiscard]] Result<Response> get_trajectory(session::SessionRegistry& sessions, const AnswerSlots& slots,
                                               const Call& call);
 
 } // namespace scanloom::http

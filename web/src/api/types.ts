@@ -38,7 +38,7 @@ export interface Session {
   /** Null while nothing has been seen. */
   bounds: Bounds | null;
   robots: Robot[];
-  /** Why it takes no scans until the server is started again; null while it does. */
+  /** Why it takes no scans until it is read from the store again; null while it does. */
   failure: string | null;
 }
 

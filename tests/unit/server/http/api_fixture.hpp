@@ -13,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <numbers>
 
@@ -143,7 +145,11 @@ protected:
 
     boost::asio::thread_pool pool_{2};
     store::MemoryScanLog log_;
-    session::SessionRegistry registry_{log_, pool_.get_executor(), [] { return 1795251600.5; }};
+    std::atomic<session::Roster::Clock::time_point> clock_{}; ///< stands, unless a test sets it
+    session::SessionRegistry registry_{log_,
+                                       {.compute = pool_.get_executor(),
+                                        .now = [] { return 1795251600.5; },
+                                        .clock = [this] { return clock_.load(); }}};
     metrics::Metrics metrics_{"1.2.3"};
     session::Weaves weaves_{log_, pool_.get_executor()};
     guide::GoalBook goals_;

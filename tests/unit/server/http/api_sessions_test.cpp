@@ -176,7 +176,7 @@ TEST_F(ApiTest, EveryAddressOfASessionKnowsWhenThereIsNone) {
 
 TEST_F(ApiTest, ADamagedSessionSaysSo) {
     ASSERT_TRUE(log_.create_session("no record of a session"));
-    session::SessionRegistry registry(log_, pool_.get_executor(), [] { return 0.0; });
+    session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
     const auto name = registry.damaged().begin()->first; // "#" and its id
@@ -195,7 +195,7 @@ TEST_F(ApiTest, ADamagedSessionSaysSo) {
 TEST_F(ApiTest, DamagedSessionsAreListedAndDoNotHinderTheOthers) {
     create("a");
     ASSERT_TRUE(log_.create_session("no record of a session"));
-    session::SessionRegistry registry(log_, pool_.get_executor(), [] { return 0.0; });
+    session::SessionRegistry registry(log_, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     Api api(registry, weaves_, goals_, log_, metrics_, {});
     api.set_recovered();

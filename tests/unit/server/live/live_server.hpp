@@ -127,7 +127,7 @@ private:
     store::MemoryScanLog log_;
     metrics::Metrics metrics_{"test"};
     boost::asio::io_context io_;
-    session::SessionRegistry sessions_{log_, compute_.get_executor(), [] { return 1'000.0; }};
+    session::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
     session::Weaves weaves_{log_, compute_.get_executor()};
     guide::GoalBook goals_;
     http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {}};

@@ -51,6 +51,48 @@ TEST_F(SessionTest, WhatIsAcknowledgedIsInTheMapAlready) {
     EXPECT_EQ(link->seqs_in_map, link->durable_seqs);
 }
 
+TEST_F(SessionTest, WhatTheDiskHasNoRoomForIsTakenLaterAsIfItHadNotBeenSent) {
+    const auto link = join("r");
+    session_->submit(link, random_scans(1, 1, 5), 10);
+    run();
+    log_.refuse_appends(1);
+    session_->submit(link, random_scans(1, 6, 5), 10);
+    session_->submit(link, random_scans(1, 11, 5), 10);
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    EXPECT_EQ(link->failures[0].code, Errc::kOverloaded);
+    EXPECT_FALSE(session_->failure()) << "nothing is unknown";
+    EXPECT_EQ(link->durable_seq(), 5U);
+    EXPECT_TRUE(begin_join("new").answer->value()) << "of its joining nothing is stored either";
+    run();
+
+    const auto again = begin_join("r");
+    EXPECT_EQ(again.answer->value()->last_durable_seq, 5U);
+    session_->submit(again.link, random_scans(1, 6, 10), 10);
+    run();
+    EXPECT_EQ(again.link->durable_seq(), 15U);
+    EXPECT_THAT(again.link->failures, IsEmpty());
+    EXPECT_EQ(digest(), digest_of_log());
+    EXPECT_EQ(session_->snapshot()->robots.size(), 2U);
+}
+
+TEST_F(SessionTest, WhatIsDurableWhenTheDiskHasNoMoreRoomIsWovenAndAcknowledgedAllTheSame) {
+    const auto link = join("r");
+    for (std::uint64_t seq = 1; seq <= 600; ++seq) session_->submit(link, {random_scan(1, seq)}, 10);
+    log_.refuse_appends(1, 1); // the second of three
+    run();
+    ASSERT_THAT(link->failures, SizeIs(1));
+    const auto again = begin_join("r");
+    const auto durable = again.answer->value()->last_durable_seq;
+    EXPECT_GT(durable, 0U);
+    EXPECT_LT(durable, 600U);
+    EXPECT_EQ(session_->snapshot()->robots[0].last_seq, durable);
+    session_->submit(again.link, random_scans(1, durable + 1, 600 - durable), 10);
+    run();
+    EXPECT_EQ(again.link->durable_seq(), 600U);
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
 TEST_F(SessionTest, WhatIsSubmittedWhileTheDiskWorksIsAppendedTogether) {
     const auto link = join("r");
     const auto appends = log_.stats().appends;

@@ -1,12 +1,7 @@
-#include "server/session/session_registry.hpp"
-
 #include "common/wire/log_codec.hpp"
 #include "tests/support/digests.hpp"
-#include "tests/unit/server/session/session_fixture.hpp"
+#include "tests/unit/server/session/registry_fixture.hpp"
 
-#include <boost/asio/thread_pool.hpp>
-
-#include <future>
 #include <thread>
 
 namespace scanloom::session {
@@ -18,69 +13,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-/// A link that other threads talk to: tests wait for what it is told.
-struct AwaitedLink : RobotListener {
-    void on_durable(std::uint64_t seq, std::size_t) override {
-        const std::lock_guard lock(mutex);
-        durable_seq = seq;
-        told.notify_all();
-    }
-    void on_failed(const Error& error) override {
-        const std::lock_guard lock(mutex);
-        failure = error;
-        told.notify_all();
-    }
-    void wait_for_seq(std::uint64_t seq) {
-        std::unique_lock lock(mutex);
-        told.wait(lock, [&] { return durable_seq >= seq; });
-    }
-    Error wait_for_failure() {
-        std::unique_lock lock(mutex);
-        told.wait(lock, [&] { return failure.has_value(); });
-        return *failure;
-    }
-
-    std::mutex mutex;
-    std::condition_variable told;
-    std::uint64_t durable_seq = 0;
-    std::optional<Error> failure;
-};
-
-Result<Joined> join_and_wait(Session& session, const std::string& robot, std::shared_ptr<RobotListener> link) {
-    const auto promise = std::make_shared<std::promise<Result<Joined>>>();
-    auto joined = promise->get_future();
-    session.join({robot}, std::move(link), [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
-    return joined.get();
-}
-
-/// A registry with a pool of threads, as in the server; calls that wait come from the test's thread.
-class SessionRegistryTest : public testing::Test {
-protected:
-    ~SessionRegistryTest() override { compute_.join(); }
-
-    void restart() {
-        registry_ = std::make_unique<SessionRegistry>(log_, compute_.get_executor(), [] { return 1000.5; });
-        ASSERT_TRUE(registry_->recover());
-    }
-
-    std::shared_ptr<AwaitedLink> stream(Session& session, const std::string& robot, std::size_t scans) {
-        auto link = std::make_shared<AwaitedLink>();
-        EXPECT_TRUE(join_and_wait(session, robot, link));
-        session.submit(link, small_laser(), 0);
-        for (std::uint64_t seq = 1; seq <= scans; ++seq) session.submit(link, {random_scan(7, seq)}, 0);
-        link->wait_for_seq(scans);
-        return link;
-    }
-
-    store::MemoryScanLog log_;
-    boost::asio::thread_pool compute_{2};
-    std::unique_ptr<SessionRegistry> registry_ =
-        std::make_unique<SessionRegistry>(log_, compute_.get_executor(), [] { return 1000.5; });
-};
-
-std::vector<std::string> names_of(const std::vector<std::shared_ptr<Session>>& sessions) {
+std::vector<std::string> names_of(const std::vector<Listed>& sessions) {
     std::vector<std::string> names;
-    for (const auto& session : sessions) names.push_back(session->info().name);
+    for (const auto& listed : sessions) names.push_back(listed.info.name);
     return names;
 }
 
@@ -90,7 +25,7 @@ TEST_F(SessionRegistryTest, ACreatedSessionIsFoundAndListedByName) {
     ASSERT_TRUE(registry_->create("a", {}));
     EXPECT_EQ(registry_->find("b"), *b);
     EXPECT_EQ(registry_->find("c"), nullptr);
-    EXPECT_THAT(names_of(registry_->list()), ElementsAre("a", "b"));
+    EXPECT_THAT(names_of(registry_->all()), ElementsAre("a", "b"));
     EXPECT_EQ((*b)->info().config.cell_size, 0.1);
     EXPECT_EQ((*b)->info().created, 1000.5);
 }
@@ -116,7 +51,7 @@ TEST_F(SessionRegistryTest, BadNamesAndSettingsAreRefusedByFieldAndMakeNothing) 
         EXPECT_EQ(refused.error().code, Errc::kInvalidField);
         EXPECT_THAT(refused.error().message, StartsWith("cell_size is "));
     }
-    EXPECT_THAT(registry_->list(), IsEmpty());
+    EXPECT_THAT(registry_->all(), IsEmpty());
     EXPECT_THAT(log_.sessions().value(), IsEmpty());
 }
 
@@ -138,9 +73,10 @@ TEST_F(SessionRegistryTest, EverySessionComesBackAfterARestart) {
     }
     registry_->drain();
     restart();
-    ASSERT_THAT(registry_->list(), SizeIs(12));
-    for (const auto& session : registry_->list()) {
-        EXPECT_EQ(testing_support::digests_of(*session->snapshot()), digests.at(session->info().name));
+    ASSERT_THAT(registry_->all(), SizeIs(12));
+    for (const auto& [name, digest] : digests) {
+        const auto session = registry_->wake(name).value();
+        EXPECT_EQ(testing_support::digests_of(*session->snapshot()), digest);
         EXPECT_EQ(session->info().created, 1000.5);
     }
     EXPECT_DOUBLE_EQ(registry_->find("s3")->info().config.cell_size, 0.05 + 0.01 * 3);
@@ -156,7 +92,7 @@ TEST_F(SessionRegistryTest, ADamagedSessionIsReportedAndTheOthersAreServed) {
     ASSERT_TRUE(store::append_and_wait(log_, bad->info().id, 1, {"no entry"}));
     ASSERT_TRUE(log_.create_session("no record"));
     restart();
-    EXPECT_THAT(names_of(registry_->list()), ElementsAre("after", "before"));
+    EXPECT_THAT(names_of(registry_->all()), ElementsAre("after", "before"));
     const auto damaged = registry_->damaged();
     ASSERT_THAT(damaged, SizeIs(2));
     EXPECT_THAT(damaged.at("bad").message, HasSubstr("log entry 1: "));
@@ -177,8 +113,8 @@ TEST_F(SessionRegistryTest, OfTwoStoredSessionsOfOneNameTheOlderIsServedAndTheOt
     registry_->drain();
     ASSERT_TRUE(log_.create_session(wire::encode_session({"twin", 2000.0, {}})));
     restart();
-    EXPECT_THAT(names_of(registry_->list()), ElementsAre("twin"));
-    EXPECT_EQ(registry_->find("twin")->info().id, first->info().id);
+    EXPECT_THAT(names_of(registry_->all()), ElementsAre("twin"));
+    EXPECT_EQ(registry_->info("twin")->id, first->info().id);
     ASSERT_THAT(registry_->damaged(), SizeIs(1));
     EXPECT_THAT(registry_->damaged().at("twin#2").message, HasSubstr("a second session 'twin'"));
     ASSERT_TRUE(registry_->remove("twin#2"));
@@ -220,7 +156,7 @@ TEST_F(SessionRegistryTest, OneThreadForTheMapsIsEnoughToRecoverRemoveAndDrain) 
     stream(*registry_->create("a", {}).value(), "r", 10);
     stream(*registry_->create("b", {}).value(), "r", 10);
     boost::asio::thread_pool one_thread(1);
-    SessionRegistry registry(log_, one_thread.get_executor(), [] { return 0.0; });
+    SessionRegistry registry(log_, {one_thread.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     const auto link = std::make_shared<AwaitedLink>();
     ASSERT_TRUE(join_and_wait(*registry.find("a"), "r", link));
@@ -272,7 +208,7 @@ public:
 class StoppedRecoveryTest : public SessionRegistryTest {
 protected:
     void SetUp() override {
-        SessionRegistry first(gated_, compute_.get_executor(), [] { return 0.0; });
+        SessionRegistry first(gated_, {compute_.get_executor(), [] { return 0.0; }});
         const auto session = first.create("lab", {}).value();
         stream(*session, "r", 60);
         id_ = session->info().id;
@@ -281,7 +217,7 @@ protected:
 
     void stop_in_the_middle(bool in_a_hurry) {
         gated_.gate = 32;
-        SessionRegistry registry(gated_, compute_.get_executor(), [] { return 0.0; });
+        SessionRegistry registry(gated_, {compute_.get_executor(), [] { return 0.0; }});
         std::atomic<bool> recovered = false;
         std::thread recovering([&] {
             EXPECT_TRUE(registry.recover());
@@ -303,7 +239,7 @@ protected:
     }
 
     void expect_that_the_next_start_has_everything() {
-        SessionRegistry next(gated_, compute_.get_executor(), [] { return 0.0; });
+        SessionRegistry next(gated_, {compute_.get_executor(), [] { return 0.0; }});
         ASSERT_TRUE(next.recover());
         ASSERT_TRUE(next.find("lab"));
         EXPECT_EQ(testing_support::digests_of(*next.find("lab")->snapshot()), digest_);
@@ -340,8 +276,8 @@ TEST_F(SessionRegistryTest, ManyThreadsMayCreateAndRemoveTheSameNames) {
         });
     }
     for (auto& thread : threads) thread.join();
-    EXPECT_EQ(static_cast<std::size_t>(created - removed), registry_->list().size());
-    EXPECT_EQ(registry_->list().size(), log_.sessions()->size());
+    EXPECT_EQ(static_cast<std::size_t>(created - removed), registry_->all().size());
+    EXPECT_EQ(registry_->all().size(), log_.sessions()->size());
 }
 
 } // namespace

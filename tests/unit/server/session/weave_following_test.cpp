@@ -178,7 +178,7 @@ TEST_F(FollowingWeaveTest, CancelledWhileItGoesOnItEnds) {
 class FollowingBudgetTest : public FollowingWeaveTest {
 protected:
     /// A weave of 20 entries, and 22 more to come.
-    Weave& first_round(ChunkBudget& budget) {
+    Weave& first_round(PageBudget& budget) {
         append_up_to(20);
         EXPECT_FALSE(weave_.run(log_, budget));
         append_all();
@@ -196,7 +196,7 @@ protected:
 
 TEST_F(FollowingBudgetTest, ItTakesWhatItHasAndWhatItCopiesAndGivesAllOfItBack) {
     constexpr std::int64_t kAll = 1000;
-    ChunkBudget budget(kAll);
+    PageBudget budget(kAll);
     Weave& weave = first_round(budget);
     EXPECT_TRUE(budget.take(kAll)) << "nothing is under way";
     budget.give_back(kAll);
@@ -218,7 +218,7 @@ TEST_F(FollowingBudgetTest, ItTakesWhatItHasAndWhatItCopiesAndGivesAllOfItBack) 
 
 TEST_F(FollowingBudgetTest, WithoutRoomForCopiesTheEarlierMapsAreShownNoLonger) {
     const auto all = chunks_of(42);
-    ChunkBudget budget(static_cast<std::size_t>(all));
+    PageBudget budget(static_cast<std::size_t>(all));
     Weave& weave = first_round(budget);
     ASSERT_TRUE(weave.resume(42, budget));
     const auto pause = log_.pause_at(42);
@@ -234,7 +234,7 @@ TEST_F(FollowingBudgetTest, WithoutRoomForCopiesTheEarlierMapsAreShownNoLonger) 
 
 TEST_F(FollowingBudgetTest, WithoutRoomForItselfItFailsAndGivesAllBack) {
     const auto all = chunks_of(42) - 1;
-    ChunkBudget budget(static_cast<std::size_t>(all));
+    PageBudget budget(static_cast<std::size_t>(all));
     Weave& weave = first_round(budget);
     ASSERT_TRUE(weave.resume(42, budget));
     EXPECT_FALSE(weave.run(log_, budget));
@@ -243,7 +243,7 @@ TEST_F(FollowingBudgetTest, WithoutRoomForItselfItFailsAndGivesAllBack) {
 }
 
 TEST_F(FollowingBudgetTest, WhenOthersHaveAllRoomItWaitsAndKeepsItsMaps) {
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave& weave = first_round(budget);
     ASSERT_TRUE(budget.take(1000));
     EXPECT_FALSE(weave.resume(42, budget));
@@ -277,8 +277,8 @@ TEST_F(FollowingWeaveTest, WhoAsksWhileOthersHaveAllRoomIsToldToTryAgain) {
     pool_.join();
 }
 
-TEST(ChunkBudget, WhatDoesNotFitIsNotTaken) {
-    ChunkBudget budget(3);
+TEST(PageBudget, WhatDoesNotFitIsNotTaken) {
+    PageBudget budget(3);
     EXPECT_FALSE(budget.take(4));
     EXPECT_TRUE(budget.take(3));
     EXPECT_TRUE(budget.take(0));

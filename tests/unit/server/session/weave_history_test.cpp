@@ -217,7 +217,7 @@ TEST_F(WeaveHistoryTest, OneThatWaitsForAnotherIsCancelledAtOnce) {
 }
 
 TEST_F(WeaveHistoryTest, BetweenTwoTurnsOneIsABaseToo) {
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave far(session_, until(last()), last());
     ASSERT_TRUE(far.run(log_, budget, 1.0)); // an entry
     ASSERT_TRUE(far.run(log_, budget, 1.0));
@@ -236,12 +236,12 @@ TEST_F(WeaveHistoryTest, BetweenTwoTurnsOneIsABaseToo) {
 }
 
 TEST_F(WeaveHistoryTest, WhatItBeginsWithCountsAtOnce) {
-    ChunkBudget plenty(1000);
+    PageBudget plenty(1000);
     Weave base(session_, until(20), 20);
     ASSERT_FALSE(base.run(log_, plenty));
     Weave again(session_, until(21), 21);
     ASSERT_TRUE(again.begin_from(base));
-    ChunkBudget tight(base.maps()->chunk_count - 1);
+    PageBudget tight(base.maps()->chunk_count - 1);
     EXPECT_FALSE(again.run(log_, tight));
     EXPECT_EQ(again.progress().error->code, Errc::kFull);
     EXPECT_EQ(again.progress().woven, 20U) << "not an entry was folded";

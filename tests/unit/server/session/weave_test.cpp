@@ -106,7 +106,7 @@ TEST_F(WeaveTest, AnImportedMapOfTooManyCellsFails) {
     SessionInfo session;
     session.id = log.create_session("s").value();
     log.append(session.id, 1, {wire::encode_entry(patch)}, [](const Result<>&) {});
-    ChunkBudget budget(1'000'000);
+    PageBudget budget(1'000'000);
     Weave weave(session, request({.cell_size = 0.01}), 1);
     EXPECT_FALSE(weave.run(log, budget));
     EXPECT_EQ(weave.progress().error->message,
@@ -124,7 +124,7 @@ TEST_F(WeaveTest, OneOfASessionThatIsGoneSaysSo) {
 }
 
 TEST_F(WeaveTest, ALongOneIsWovenTurnByTurn) {
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave weave(session_, request({}), newest());
     int turns = 1;
     while (weave.run(log_, budget, 5e4)) { // a few entries
@@ -140,7 +140,7 @@ TEST_F(WeaveTest, ALongOneIsWovenTurnByTurn) {
 }
 
 TEST_F(WeaveTest, OneCancelledBetweenTwoTurnsGivesBackItsChunks) {
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave weave(session_, request({}), newest());
     ASSERT_TRUE(weave.run(log_, budget, 5e4));
     weave.cancel(kEnough);
@@ -150,7 +150,7 @@ TEST_F(WeaveTest, OneCancelledBetweenTwoTurnsGivesBackItsChunks) {
 }
 
 TEST_F(WeaveTest, OneCancelledBeforeItsTurnIsNeverWoven) {
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave weave(session_, request({}), newest());
     weave.cancel(kEnough);
     EXPECT_EQ(weave.wait(newest(), std::chrono::milliseconds(0)), nullptr);
@@ -163,7 +163,7 @@ TEST_F(WeaveTest, OneCancelledBeforeItsTurnIsNeverWoven) {
 
 TEST_F(WeaveTest, OneCancelledOnTheWayEndsThereAndGivesBackItsChunks) {
     const auto pause = log_.pause_at(10);
-    ChunkBudget budget(1000);
+    PageBudget budget(1000);
     Weave weave(session_, request({}), newest());
     std::thread weaving([&] { EXPECT_FALSE(weave.run(log_, budget)); });
     pause->wait();
@@ -200,7 +200,7 @@ TEST_F(WeaveTest, WhoeverEndsItSaysWhy) {
 }
 
 TEST_F(WeaveTest, MapsBeyondTheBudgetFailAndHoldNothing) {
-    ChunkBudget budget(3);
+    PageBudget budget(3);
     Weave weave(session_, request({.cell_size = 0.01}), newest());
     EXPECT_FALSE(weave.run(log_, budget));
     EXPECT_EQ(weave.progress().state, State::kFailed);

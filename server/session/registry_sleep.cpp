@@ -1,0 +1,133 @@
+#include "server/session/session_registry.hpp"
+
+#include <boost/asio/post.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <future>
+#include <limits>
+#include <utility>
+
+/// How sessions leave memory, and come back.
+namespace scanloom::session {
+namespace {
+
+/// For those who want a session for which there is no room: whoever uses the others may be done soon.
+constexpr std::chrono::seconds kPatience{5};
+
+Error leaves_memory() { return {Errc::kShuttingDown, "the session leaves memory; connect again"}; }
+
+Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
+
+Error no_room(const Resting& resting) {
+    return {Errc::kOverloaded,
+            fmt::format("session '{}' needs {} MiB for its maps, and those that are in use leave less of the memory for "
+                        "maps; try again later, or have the server given more (--map-memory)",
+                        resting.info.name, resting.pages * mapping::kPageBytes >> 20)};
+}
+
+} // namespace
+
+// Waking
+
+void SessionRegistry::wake(std::string_view name, Roster::Woken woken) {
+    auto told = [this, name = std::string(name), woken = std::move(woken)](Result<std::shared_ptr<Session>> session) {
+        if (!session || *session) return woken(std::move(session));
+        const auto damage = damage_of(name);
+        woken(damage ? *damage : no_such_session(name));
+    };
+    if (const auto resting = roster_.want(name, config_.clock(), std::move(told))) start_reading(*resting);
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::wake(std::string_view name) {
+    const auto promise = std::make_shared<std::promise<Result<std::shared_ptr<Session>>>>();
+    auto woken = promise->get_future();
+    wake(name, [promise](Result<std::shared_ptr<Session>> session) { promise->set_value(std::move(session)); });
+    return woken.get();
+}
+
+void SessionRegistry::start_reading(const Resting& resting) {
+    boost::asio::post(reading_, [this, wanted = Wanted{resting, config_.clock() + kPatience}] { read(wanted); });
+}
+
+void SessionRegistry::start_reading_again() {
+    std::vector<Wanted> again;
+    {
+        const std::lock_guard lock(room_mutex_);
+        again.swap(waiting_for_room_);
+    }
+    for (auto& wanted : again) boost::asio::post(reading_, [this, wanted = std::move(wanted)] { read(wanted); });
+}
+
+void SessionRegistry::read(const Wanted& wanted) {
+    const auto& [info, pages] = wanted.resting;
+    if (draining_) return roster_.failed(info.name, shutting_down());
+    if (!take_room(wanted)) return;
+    auto session = maker_.read(info, draining_, hurried_);
+    pages_->give_back(static_cast<std::int64_t>(pages)); // the session has its own share
+    if (session && *session) return roster_.arrived(std::move(*session), config_.clock());
+    if (session) return roster_.failed(info.name, shutting_down());
+    const bool may_pass = session.error().code == Errc::kOverloaded || log_.stats().last_error;
+    if (may_pass) return roster_.failed(info.name, session.error());
+    keep_damaged(info.name, info.id, session.error());
+    roster_.remove(info.name, session.error());
+}
+
+/// @return false when it will be tried again, or is refused.
+bool SessionRegistry::take_room(const Wanted& wanted) {
+    const auto& [info, pages] = wanted.resting;
+    if (pages_->take(static_cast<std::int64_t>(pages))) return true;
+    if (config_.clock() >= wanted.until) {
+        roster_.failed(info.name, no_room(wanted.resting));
+        return false;
+    }
+    {
+        const std::lock_guard lock(room_mutex_);
+        waiting_for_room_.push_back(wanted);
+    }
+    make_room(pages);                      // whoever leaves for it has it tried again
+    if (draining_) start_reading_again(); // or nobody might any more
+    return false;
+}
+
+// Going to sleep
+
+void SessionRegistry::tidy() {
+    lay_down(roster_.send_to_sleep(config_.clock() - config_.idle_after, std::numeric_limits<std::size_t>::max()),
+             leaves_memory());
+    make_room(spare_pages()); // before scans have to be refused
+    start_reading_again();
+}
+
+/// What is kept free for maps that grow, as long as anybody can be sent away for it.
+std::size_t SessionRegistry::spare_pages() const noexcept { return static_cast<std::size_t>(pages_->pages_max()) / 16; }
+
+/// Sends sessions to sleep that nobody holds, until so many pages are free.
+void SessionRegistry::make_room(std::size_t pages) {
+    const auto missing = static_cast<std::int64_t>(pages) - pages_->free();
+    if (missing <= 0) return;
+    lay_down(roster_.send_to_sleep(Roster::Clock::time_point::max(), static_cast<std::size_t>(missing)),
+             leaves_memory());
+}
+
+void SessionRegistry::lay_down(std::vector<std::shared_ptr<Session>> sessions, const Error& why) {
+    for (const auto& session : sessions) session->close(why, [this, session] { is_asleep_now(*session); });
+}
+
+void SessionRegistry::is_asleep_now(const Session& session) {
+    auto summary = summary_of(*session.snapshot());
+    boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
+    const auto wanted = roster_.arrived(session.info().name, std::move(summary));
+    if (wanted) start_reading(*wanted);
+    start_reading_again();
+}
+
+void SessionRegistry::go_on_after_failure() {
+    auto failed = roster_.send_failed_to_sleep();
+    std::vector<std::string> names;
+    for (const auto& session : failed) names.push_back(session->info().name);
+    lay_down(std::move(failed), {Errc::kShuttingDown, "the session is read from the store again; connect again"});
+    for (const auto& name : names) wake(name, [](const Result<std::shared_ptr<Session>>&) {});
+}
+
+} // namespace scanloom::session

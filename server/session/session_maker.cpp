@@ -1,0 +1,47 @@
+#include "server/session/session_maker.hpp"
+
+#include "server/session/checkpoint.hpp"
+#include "server/session/recovery.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+/// A long recovery that is stopped again and again should come to its end all the same.
+void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& recovered,
+                   const std::atomic<bool>& hurried) {
+    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // there is none
+    const auto snapshot = recovered.projection.snapshot();
+    const auto written =
+        write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried);
+    spdlog::info("session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
+                 written ? "; the next start continues there" : "");
+}
+
+} // namespace
+
+std::shared_ptr<Session> SessionMaker::make(SessionInfo info, mapping::Projection projection,
+                                            std::optional<Revision> checkpointed) const {
+    return std::make_shared<Session>(std::move(info), std::move(projection), checkpointed, log, compute, counters,
+                                     limits, may_wait);
+}
+
+Result<std::shared_ptr<Session>> SessionMaker::read(const SessionInfo& info, const std::atomic<bool>& stop,
+                                                    const std::atomic<bool>& hurried) const {
+    auto recovered = recover(log, info.id, info.config, stop);
+    if (!recovered) return recovered.error();
+    if (recovered->checkpoint_rejected) {
+        spdlog::warn("session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", info.name,
+                     recovered->checkpoint_rejected->message);
+    }
+    if (!recovered->complete) {
+        keep_progress(log, info, *recovered, hurried);
+        return std::shared_ptr<Session>();
+    }
+    return make(info, std::move(recovered->projection), recovered->checkpointed);
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,82 @@
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include <future>
+#include <thread>
+
+/// Sessions that are not in memory, over HTTP.
+namespace scanloom::http {
+namespace {
+
+class ApiSleepingTest : public ApiTest {
+protected:
+    /// A session of some scans that has left memory.
+    void SetUp() override {
+        create("a");
+        stream("a", 5);
+        shown_ = get_json("/api/v1/sessions/a").as_object();
+        tile_ = get(kTile);
+        registry_.find("a")->leave(links_.back());
+        while (!registry_.is_asleep("a") || registry_.listed("a")->session) {
+            clock_ = clock_.load() + std::chrono::hours(1);
+            registry_.tidy();
+            std::this_thread::yield();
+        }
+    }
+
+    static Request request_for(const std::string& target) {
+        Request request;
+        request.method = "GET";
+        request.target = target;
+        return request;
+    }
+
+    static constexpr const char* kTile = "/api/v1/sessions/a/tiles/occupancy/9/256/255.png";
+    boost::json::object shown_;
+    Response tile_;
+};
+
+TEST_F(ApiSleepingTest, AreShownAndListedAsTheyWereWithoutBeingRead) {
+    auto expected = shown_;
+    expected["loaded"] = false;
+    expected["robots"].at(0).as_object()["connected"] = false;
+    EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
+    EXPECT_EQ(get_json("/api/v1/sessions").at("sessions").at(0), expected);
+    EXPECT_TRUE(registry_.is_asleep("a"));
+    EXPECT_TRUE(std::holds_alternative<Lane>(api_.look(request_for("/api/v1/sessions/a"))));
+    const auto metrics = std::string(get("/metrics").body.bytes());
+    EXPECT_THAT(metrics, HasSubstr("scanloom_sessions 1\n"));
+    EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_loaded 0\n"));
+    EXPECT_THAT(metrics, HasSubstr("scanloom_map_memory_bytes 0\n"));
+}
+
+TEST_F(ApiSleepingTest, HoldUpNoIoThreadAndAnswerAsBeforeOnceTheyAreThere) {
+    for (const char* target : {kTile, "/api/v1/sessions/a/digest", "/api/v1/sessions/a/live"}) {
+        const auto outlook = api_.look(request_for(target));
+        ASSERT_TRUE(std::holds_alternative<Asleep>(outlook)) << target;
+        EXPECT_EQ(std::get<Asleep>(outlook).session, "a");
+    }
+    std::promise<void> woken;
+    api_.wake({"a"}, [&] { woken.set_value(); });
+    woken.get_future().wait();
+    EXPECT_FALSE(std::holds_alternative<Asleep>(api_.look(request_for(kTile))));
+    const auto again = get(kTile);
+    EXPECT_EQ(again.get("ETag"), tile_.get("ETag"));
+    EXPECT_EQ(again.body.bytes(), tile_.body.bytes());
+    auto expected = shown_;
+    expected["robots"].at(0).as_object()["connected"] = false;
+    EXPECT_EQ(get_json("/api/v1/sessions/a"), expected);
+}
+
+TEST_F(ApiSleepingTest, AreReadAlsoByWhoeverDoesNotLookFirst) {
+    EXPECT_EQ(get(kTile).body.bytes(), tile_.body.bytes());
+    EXPECT_FALSE(registry_.is_asleep("a"));
+}
+
+TEST_F(ApiSleepingTest, CanBeDeletedAsTheyAre) {
+    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
+    EXPECT_EQ(get("/api/v1/sessions/a").status, Status::not_found);
+    EXPECT_TRUE(log_.sessions()->empty());
+}
+
+} // namespace
+} // namespace scanloom::http

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "server/session/session_registry.hpp"
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <boost/asio/thread_pool.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace scanloom::session {
+
+/// A link that other threads talk to: tests wait for what it is told.
+struct AwaitedLink : RobotListener {
+    void on_durable(std::uint64_t seq, std::size_t) override {
+        const std::lock_guard lock(mutex);
+        durable_seq = seq;
+        told.notify_all();
+    }
+    void on_failed(const Error& error) override {
+        const std::lock_guard lock(mutex);
+        failure = error;
+        told.notify_all();
+    }
+    void wait_for_seq(std::uint64_t seq) {
+        std::unique_lock lock(mutex);
+        told.wait(lock, [&] { return durable_seq >= seq; });
+    }
+    /// @return whether the scan is durable; else the link has failed.
+    bool wait_for_seq_or_failure(std::uint64_t seq) {
+        std::unique_lock lock(mutex);
+        told.wait(lock, [&] { return durable_seq >= seq || failure; });
+        return durable_seq >= seq;
+    }
+    Error wait_for_failure() {
+        std::unique_lock lock(mutex);
+        told.wait(lock, [&] { return failure.has_value(); });
+        return *failure;
+    }
+
+    std::mutex mutex;
+    std::condition_variable told;
+    std::uint64_t durable_seq = 0;
+    std::optional<Error> failure;
+};
+
+inline Result<Joined> join_and_wait(Session& session, const std::string& robot, std::shared_ptr<RobotListener> link) {
+    const auto promise = std::make_shared<std::promise<Result<Joined>>>();
+    auto joined = promise->get_future();
+    session.join({robot}, std::move(link), [promise](Result<Joined> answer) { promise->set_value(std::move(answer)); });
+    return joined.get();
+}
+
+/// A registry with a pool of threads, as in the server; calls that wait come from the test's thread.
+class SessionRegistryTest : public testing::Test {
+protected:
+    ~SessionRegistryTest() override {
+        reading_.join();
+        compute_.join();
+    }
+
+    /// What is in the log is all that is known.
+    void restart(std::size_t pages_max = RegistryConfig{}.pages_max) {
+        registry_ = make(log_, pages_max);
+        ASSERT_TRUE(registry_->recover());
+    }
+
+    std::unique_ptr<SessionRegistry> make(store::ScanLog& log, std::size_t pages_max = RegistryConfig{}.pages_max) {
+        return std::make_unique<SessionRegistry>(log, RegistryConfig{.compute = compute_.get_executor(),
+                                                                     .now = [] { return 1000.5; },
+                                                                     .reading = reading_.get_executor(),
+                                                                     .clock = [this] { return clock_.load(); },
+                                                                     .pages_max = pages_max});
+    }
+
+    std::shared_ptr<AwaitedLink> stream(Session& session, const std::string& robot, std::size_t scans) {
+        auto link = std::make_shared<AwaitedLink>();
+        EXPECT_TRUE(join_and_wait(session, robot, link));
+        session.submit(link, small_laser(), 0);
+        for (std::uint64_t seq = 1; seq <= scans; ++seq) session.submit(link, {random_scan(7, seq)}, 0);
+        link->wait_for_seq(scans);
+        return link;
+    }
+
+    std::atomic<Roster::Clock::time_point> clock_ = Roster::Clock::time_point(std::chrono::hours(1));
+    store::MemoryScanLog log_;
+    boost::asio::thread_pool compute_{2};
+    boost::asio::thread_pool reading_{2};
+    std::unique_ptr<SessionRegistry> registry_ = make(log_);
+};
+
+} // namespace scanloom::session

@@ -1,0 +1,259 @@
+#include "server/mapping/reach.hpp"
+#include "tests/support/digests.hpp"
+#include "tests/unit/server/session/registry_fixture.hpp"
+
+#include <algorithm>
+#include <thread>
+
+/// Sessions that leave memory, and come back.
+namespace scanloom::session {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+using namespace std::chrono_literals;
+
+class SleepingSessions : public SessionRegistryTest {
+protected:
+    ~SleepingSessions() override { registry_->drain(); }
+
+    /// A session of some scans, which nobody uses any more. @return the digest of its maps.
+    std::string leave_behind(const std::string& name, std::size_t scans = 20) {
+        const auto session = registry_->create(name, {}).value();
+        const auto link = stream(*session, "r", scans);
+        session->leave(link);
+        return testing_support::digests_of(*session->snapshot());
+    }
+
+    /// Time passes; waits until nobody is awake but those who are held. `names` are those who should not be.
+    void let_sleep(const std::vector<std::string>& names) {
+        clock_ = clock_.load() + 1h;
+        for (const auto& name : names) {
+            while (is_awake(name)) {
+                registry_->tidy();
+                std::this_thread::yield();
+            }
+        }
+    }
+
+    /// Or on its way to sleep; asking does not use it.
+    bool is_awake(const std::string& name) {
+        return registry_->listed(name)->session != nullptr;
+    }
+
+    /// With `passing` from one look after those who wait for room to the next.
+    Result<std::shared_ptr<Session>> wake(const std::string& name, std::chrono::seconds passing) {
+        const auto promise = std::make_shared<std::promise<Result<std::shared_ptr<Session>>>>();
+        auto woken = promise->get_future();
+        registry_->wake(name, [promise](auto session) { promise->set_value(std::move(session)); });
+        while (woken.wait_for(0s) != std::future_status::ready) {
+            clock_ = clock_.load() + passing;
+            registry_->tidy();
+            std::this_thread::yield();
+        }
+        return woken.get();
+    }
+
+    std::string digest_when_woken(const std::string& name) {
+        const auto session = wake(name, 0s);
+        EXPECT_TRUE(session) << session.error().message;
+        return session ? testing_support::digests_of(*(*session)->snapshot()) : "";
+    }
+};
+
+TEST_F(SleepingSessions, AreTheSameWhenTheyComeBack) {
+    const auto digest = leave_behind("a");
+    let_sleep({"a"});
+    EXPECT_THAT(registry_->list(), IsEmpty());
+    EXPECT_EQ(registry_->pages().used(), 0);
+    EXPECT_EQ(digest_when_woken("a"), digest);
+    const auto session = registry_->find("a");
+    ASSERT_TRUE(session);
+    EXPECT_EQ(join_and_wait(*session, "r", std::make_shared<AwaitedLink>())->last_durable_seq, 20U);
+}
+
+TEST_F(SleepingSessions, AreListedAsTheyWere) {
+    leave_behind("a", 7);
+    const auto before = registry_->wake("a").value()->snapshot();
+    let_sleep({"a"});
+    const auto listed = registry_->all();
+    ASSERT_THAT(listed, SizeIs(1));
+    const auto& facts = *listed[0].summary.facts;
+    EXPECT_EQ(facts.revision, before->revision);
+    EXPECT_EQ(facts.bounds, before->bounds);
+    ASSERT_THAT(facts.robots, SizeIs(1));
+    EXPECT_EQ(facts.robots[0].name, "r");
+    EXPECT_EQ(facts.robots[0].scan_count, 7U);
+    EXPECT_EQ(facts.robots[0].last_seq, 7U);
+    EXPECT_EQ(facts.robots[0].pose, before->robots[0].pose);
+    EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
+}
+
+TEST_F(SleepingSessions, AreNotReadAtTheStartAndListedAllTheSame) {
+    const auto digest = leave_behind("a", 7);
+    const auto before = registry_->wake("a").value()->snapshot();
+    registry_->drain();
+    restart();
+    EXPECT_THAT(registry_->list(), IsEmpty());
+    const auto listed = registry_->all();
+    ASSERT_THAT(listed, SizeIs(1));
+    const auto& facts = *listed[0].summary.facts;
+    EXPECT_EQ(facts.revision, before->revision);
+    EXPECT_EQ(facts.bounds, before->bounds);
+    ASSERT_THAT(facts.robots, SizeIs(1));
+    EXPECT_EQ(facts.robots[0].scan_count, 7U);
+    EXPECT_EQ(facts.robots[0].pose, before->robots[0].pose);
+    EXPECT_EQ(facts.robots[0].stamp, before->robots[0].stamp);
+    EXPECT_GT(listed[0].summary.pages, 0U);
+    EXPECT_EQ(digest_when_woken("a"), digest);
+    EXPECT_EQ(registry_->pages().used(), static_cast<std::int64_t>(listed[0].summary.pages));
+}
+
+TEST_F(SleepingSessions, OfALogThatGoesOnBehindItsCheckpointAreWovenAtTheStart) {
+    const auto digest = leave_behind("a");
+    restart(); // without an end, as after a crash
+    EXPECT_THAT(registry_->list(), SizeIs(1));
+    EXPECT_EQ(testing_support::digests_of(*registry_->find("a")->snapshot()), digest);
+}
+
+TEST_F(SleepingSessions, AreNotThoseThatAreUsed) {
+    leave_behind("a");
+    const auto session = registry_->create("b", {}).value();
+    const auto link = stream(*session, "r", 3);
+    let_sleep({"a"});
+    EXPECT_EQ(registry_->find("b"), session);
+    session->submit(link, {random_scan(7, 4)}, 0);
+    link->wait_for_seq(4);
+}
+
+TEST_F(SleepingSessions, LeaveWhenOthersNeedTheirMemory) {
+    const auto digest = leave_behind("a");
+    const auto pages = registry_->pages().used();
+    std::int64_t of_a_scan = 0; // at most
+    for (std::uint64_t seq = 1; seq <= 20; ++seq) {
+        const auto reach = mapping::reach_of({}, small_laser(), random_scan(7, seq));
+        of_a_scan = std::max(of_a_scan, mapping::chunk_count_of(reach.cells));
+    }
+    registry_->drain();
+    restart(static_cast<std::size_t>(pages + of_a_scan + 1));
+    EXPECT_EQ(digest_when_woken("a"), digest);
+    const auto b = registry_->create("b", {}).value();
+    auto link = std::make_shared<AwaitedLink>();
+    for (std::uint64_t sent = 0; sent < 20;) { // refused where the memory is short, robots come again
+        const auto joined = join_and_wait(*b, "r", link);
+        ASSERT_TRUE(joined) << joined.error().message;
+        sent = joined->last_durable_seq;
+        b->submit(link, small_laser(), 0);
+        for (std::uint64_t seq = sent + 1; seq <= 20; ++seq) b->submit(link, {random_scan(7, seq)}, 0);
+        if (!link->wait_for_seq_or_failure(20)) link = std::make_shared<AwaitedLink>();
+        else sent = 20;
+    }
+    EXPECT_EQ(testing_support::digests_of(*b->snapshot()), digest) << "the same scans";
+    EXPECT_TRUE(registry_->is_asleep("a"));
+    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+}
+
+TEST_F(SleepingSessions, AreNotReadWhereThoseInUseTakeAllTheMemory) {
+    const auto digest_of_a = leave_behind("a");
+    const auto digest_of_b = leave_behind("b");
+    const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 2;
+    registry_->drain();
+    restart(pages + pages / 2);
+    auto held = registry_->wake("a");
+    ASSERT_TRUE(held);
+    const auto refused = wake("b", 1s);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kOverloaded);
+    EXPECT_THAT(refused.error().message, HasSubstr("--map-memory"));
+    EXPECT_THAT(registry_->damaged(), IsEmpty());
+    held = Error{Errc::kGone, "nobody holds it any more"};
+    EXPECT_EQ(digest_when_woken("b"), digest_of_b);
+    EXPECT_EQ(digest_when_woken("a"), digest_of_a);
+    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+}
+
+TEST_F(SleepingSessions, MoreThanFitIntoMemoryAreWovenOneAfterTheOtherAfterACrash) {
+    std::vector<std::string> digests;
+    for (int n = 0; n < 6; ++n) digests.push_back(leave_behind("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
+    const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 6;
+    restart(2 * pages);
+    EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
+    EXPECT_THAT(registry_->all(), SizeIs(6));
+    for (int n = 0; n < 6; ++n) EXPECT_EQ(digest_when_woken("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);
+}
+
+TEST_F(SleepingSessions, ThatTurnOutToBeDamagedAreReported) {
+    leave_behind("a");
+    let_sleep({"a"});
+    const auto id = registry_->info("a")->id;
+    ASSERT_TRUE(log_.write_checkpoint(id, {{"format", "damaged"}}));
+    ASSERT_TRUE(store::append_and_wait(log_, id, 23, {"no entry"}));
+    const auto refused = registry_->wake("a");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("log entry 23"));
+    ASSERT_THAT(registry_->damaged(), SizeIs(1));
+    EXPECT_THAT(registry_->all(), IsEmpty());
+    EXPECT_EQ(registry_->wake("a").error(), refused.error());
+    EXPECT_EQ(registry_->pages().used(), 0);
+    EXPECT_TRUE(registry_->remove("a"));
+    EXPECT_EQ(registry_->wake("a").error().code, Errc::kNotFound);
+}
+
+TEST_F(SleepingSessions, CanBeRemoved) {
+    leave_behind("a");
+    let_sleep({"a"});
+    ASSERT_TRUE(registry_->remove("a"));
+    EXPECT_THAT(registry_->all(), IsEmpty());
+    EXPECT_THAT(log_.sessions().value(), IsEmpty());
+}
+
+TEST_F(SleepingSessions, ComeBackWhenTheStoreDoesAfterAFailure) {
+    leave_behind("a");
+    const auto session = registry_->wake("a").value();
+    const auto link = std::make_shared<AwaitedLink>();
+    ASSERT_TRUE(join_and_wait(*session, "r", link));
+    log_.fail_from_next_change({Errc::kStoreFailed, "no space left"});
+    session->submit(link, {random_scan(7, 21)}, 0);
+    EXPECT_THAT(link->wait_for_failure().message, HasSubstr("no space left"));
+    log_.reopen();
+    registry_->go_on_after_failure();
+    const auto again = registry_->wake("a");
+    ASSERT_TRUE(again);
+    EXPECT_NE(*again, session);
+    EXPECT_FALSE((*again)->failure());
+    EXPECT_EQ(session->closing()->code, Errc::kShuttingDown) << "who still watches it is to come back";
+    const auto next = std::make_shared<AwaitedLink>();
+    EXPECT_EQ(join_and_wait(**again, "r", next)->last_durable_seq, 20U);
+    (*again)->submit(next, {random_scan(7, 21)}, 0);
+    next->wait_for_seq(21);
+}
+
+TEST_F(SleepingSessions, MayBeWokenByManyWhileTheyFallAsleep) {
+    const auto digest = leave_behind("a");
+    std::atomic<bool> stop = false;
+    std::thread tidying([&] {
+        while (!stop) {
+            clock_ = clock_.load() + 1h;
+            registry_->tidy();
+        }
+    });
+    std::vector<std::thread> using_it;
+    for (int n = 0; n < 4; ++n) {
+        using_it.emplace_back([&] {
+            for (int time = 0; time < 50; ++time) {
+                const auto session = registry_->wake("a");
+                ASSERT_TRUE(session) << session.error().message;
+                ASSERT_EQ((*session)->snapshot()->robots.at(0).last_seq, 20U);
+            }
+        });
+    }
+    for (auto& thread : using_it) thread.join();
+    stop = true;
+    tidying.join();
+    EXPECT_EQ(digest_when_woken("a"), digest);
+}
+
+} // namespace
+} // namespace scanloom::session
