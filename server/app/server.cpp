@@ -70,10 +70,11 @@ void Server::join_pools() {
     weaving_.join();
 }
 
-Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits) {
+Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits,
+                                             const OpenLog& open_log) {
     store::StoreOptions store;
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
-    auto log = store::open_rocksdb(options.store, store);
+    auto log = open_log(options.store, store);
     if (!log) return log.error();
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
