@@ -120,6 +120,25 @@ private:
     std::map<SessionId, std::uint64_t> ahead_; // entries that the session does not know of
 };
 
+class BlindLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
+        return PassingLog::read(session, after, [&](Revision revision, std::string_view bytes) -> Result<> {
+            auto entry = wire::decode_entry(bytes);
+            auto* taken = entry ? std::get_if<ScanTaken>(&*entry) : nullptr;
+            if (taken == nullptr || revision % kSpoilsEvery != 0) return visit(revision, bytes);
+            taken->scan.ranges.front() ^= 1;
+            return visit(revision, wire::encode_entry(*entry));
+        });
+    }
+    Result<> read_checkpoint(SessionId, const VisitPart&) override { return {}; } // all comes from the log
+
+private:
+    static constexpr Revision kSpoilsEvery = 50;
+};
+
 } // namespace
 
 std::unique_ptr<ScanLog> hasty_log(std::unique_ptr<ScanLog> log) { return std::make_unique<HastyLog>(std::move(log)); }
@@ -128,9 +147,12 @@ std::unique_ptr<ScanLog> forgetful_log(std::unique_ptr<ScanLog> log) {
     return std::make_unique<ForgetfulLog>(std::move(log));
 }
 
+std::unique_ptr<ScanLog> blind_log(std::unique_ptr<ScanLog> log) { return std::make_unique<BlindLog>(std::move(log)); }
+
 std::unique_ptr<ScanLog> broken_log(std::string_view kind, std::unique_ptr<ScanLog> log) {
     if (kind == "hasty") return hasty_log(std::move(log));
     if (kind == "forgetful") return forgetful_log(std::move(log));
+    if (kind == "blind") return blind_log(std::move(log));
     return nullptr;
 }
 

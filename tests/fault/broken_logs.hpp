@@ -14,7 +14,10 @@ namespace scanloom::fault {
 /// Appends some batches twice, as who forgets what it has done already.
 [[nodiscard]] std::unique_ptr<store::ScanLog> forgetful_log(std::unique_ptr<store::ScanLog> log);
 
-/// One of them by its name: "hasty" or "forgetful"; nothing for another name.
+/// Reads other scans than were written and does not notice, as a store without checksums may.
+[[nodiscard]] std::unique_ptr<store::ScanLog> blind_log(std::unique_ptr<store::ScanLog> log);
+
+/// One of them by its name: "hasty", "forgetful" or "blind"; nothing for another name.
 [[nodiscard]] std::unique_ptr<store::ScanLog> broken_log(std::string_view kind, std::unique_ptr<store::ScanLog> log);
 
 } // namespace scanloom::fault

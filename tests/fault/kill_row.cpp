@@ -51,11 +51,6 @@ public:
         }
         fleet_.release_all();
         const auto robots = fleet_.finish();
-        for (const auto& robot : robots) {
-            if (robot.outcome) continue;
-            outcome_.amiss.push_back(
-                fmt::format("robot '{}' gave up: {}", robot.plan.name, robot.outcome.error().message));
-        }
         outcome_.add(verify_server(server_.http_port(), robots));
         if (outcome_.passed()) stop_in_order(robots);
         return std::move(outcome_);

@@ -22,6 +22,12 @@ void run_short(std::string_view name) {
 }
 
 TEST(FaultRow, KillNine) { run_short("kill"); }
+TEST(FaultRow, SpoiledLinks) { run_short("link"); }
+TEST(FaultRow, DamagedStores) { run_short("corrupt"); }
+TEST(FaultRow, RestartsUnderManyRobots) { run_short("restart"); }
+TEST(FaultRow, JumpingClocks) { run_short("clock"); }
+TEST(FaultRow, PowerCuts) { run_short("power"); }
+TEST(FaultRow, OutagesAndKilledRobots) { run_short("spool"); }
 
 } // namespace
 } // namespace scanloom::fault

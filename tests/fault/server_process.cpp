@@ -6,21 +6,9 @@
 
 #include <csignal>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace scanloom::fault {
-namespace {
-
-std::string last_line_of(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    std::string last;
-    for (std::string line; std::getline(in, line);) last = line;
-    return last;
-}
-
-} // namespace
-
 ReservedPort::ReservedPort() {
     using boost::asio::ip::tcp;
     socket_.open(tcp::v4());
@@ -44,20 +32,27 @@ void ServerProcess::start() {
     process_.emplace(command_.program, words, place_ / "log");
 }
 
-void ServerProcess::wait_until_ready() {
-    if (process_->read_line()) return;
-    throw std::runtime_error(fmt::format("the server ended with {} before it was ready: {}", process_->wait(),
-                                         last_line_of(place_ / "log")));
+void ServerProcess::start_and_wait() {
+    start();
+    if (becomes_ready()) return;
+    throw std::runtime_error(fmt::format("the server ended with {} before it was ready: {}", wait(), last_words()));
 }
 
 void ServerProcess::kill_nine() {
     signal(SIGKILL);
-    (void)process_->wait();
+    (void)wait();
 }
 
 int ServerProcess::stop() {
     signal(SIGTERM);
-    return process_->wait();
+    return wait();
+}
+
+std::string ServerProcess::last_words() const {
+    std::ifstream in(place_ / "log");
+    std::string last;
+    for (std::string line; std::getline(in, line);) last = line;
+    return last;
 }
 
 } // namespace scanloom::fault

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace scanloom::fault {
 
@@ -38,12 +40,11 @@ public:
     /// Does not wait for anything. Pre: it does not run.
     void start();
 
-    /// Throws, with what it said last, when it ends instead.
-    void wait_until_ready();
-    void start_and_wait() {
-        start();
-        wait_until_ready();
-    }
+    /// Waits until it is ready. @return false when it has ended instead
+    [[nodiscard]] bool becomes_ready() { return process_->read_line().has_value(); }
+
+    /// Throws, with what it said last, when it ends instead of becoming ready.
+    void start_and_wait();
 
     /// Lets it be for a while, unless it becomes ready, or ends, before.
     void let_be(std::chrono::microseconds time) const { (void)process_->has_output_within(time); }
@@ -51,8 +52,14 @@ public:
     void signal(int number) const { process_->signal(number); }
     void kill_nine();
 
-    /// Asks it to stop and waits for it. @return its exit code
+    /// Waits for its end. @return its exit code, or minus the signal that ended it
+    [[nodiscard]] int wait() { return process_->wait(); }
+
+    /// Asks it to stop, and waits for it as above.
     [[nodiscard]] int stop();
+
+    /// The last line that it wrote on standard error.
+    [[nodiscard]] std::string last_words() const;
 
 private:
     ServerCommand command_;

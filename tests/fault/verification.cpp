@@ -150,8 +150,12 @@ Held ask_for(std::uint16_t http_port, const std::string& session) {
 
 Outcome verify_server(std::uint16_t http_port, std::span<const RobotStanding> robots) {
     std::map<std::string, std::vector<RobotStanding>> sessions;
-    for (const RobotStanding& robot : robots) sessions[robot.plan.session].push_back(robot);
     Outcome outcome;
+    for (const RobotStanding& robot : robots) {
+        sessions[robot.plan.session].push_back(robot);
+        if (robot.outcome) continue;
+        outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", robot.plan.name, robot.outcome.error().message));
+    }
     for (const auto& [session, members] : sessions) {
         const bool has_any = std::ranges::any_of(members, [](const auto& robot) { return robot.acknowledged > 0; });
         if (!has_any && test::http_request(http_port, "GET", "/api/v1/sessions/" + session).status == 404) continue;

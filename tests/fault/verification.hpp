@@ -34,8 +34,8 @@ struct Held {
 /// What a server answers over HTTP. Throws where it does not answer, or not with 200.
 [[nodiscard]] Held ask_for(std::uint16_t http_port, const std::string& session);
 
-/// verify() of every session of the robots, with what the server answers. A session to which nothing was acknowledged
-/// may be missing.
+/// verify() of every session of the robots, with what the server answers; and no robot has given up. A session to which
+/// nothing was acknowledged may be missing.
 [[nodiscard]] Outcome verify_server(std::uint16_t http_port, std::span<const RobotStanding> robots);
 
 } // namespace scanloom::fault
