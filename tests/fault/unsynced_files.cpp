@@ -13,7 +13,8 @@ using rocksdb::IOStatus;
 
 class UnsyncedFile final : public rocksdb::FSWritableFileOwnerWrapper {
 public:
-    explicit UnsyncedFile(std::unique_ptr<rocksdb::FSWritableFile> file) : FSWritableFileOwnerWrapper(std::move(file)) {}
+    explicit UnsyncedFile(std::unique_ptr<rocksdb::FSWritableFile> file)
+        : FSWritableFileOwnerWrapper(std::move(file)) {}
 
     IOStatus Sync(const IOOptions& options, IODebugContext* debug) override { return target()->Flush(options, debug); }
     IOStatus Fsync(const IOOptions& options, IODebugContext* debug) override { return target()->Flush(options, debug); }
@@ -35,6 +36,8 @@ public:
 
 } // namespace
 
-std::unique_ptr<rocksdb::Env> unsynced_files() { return rocksdb::NewCompositeEnv(std::make_shared<UnsyncedFileSystem>()); }
+std::unique_ptr<rocksdb::Env> unsynced_files() {
+    return rocksdb::NewCompositeEnv(std::make_shared<UnsyncedFileSystem>());
+}
 
 } // namespace scanloom::fault
