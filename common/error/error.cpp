@@ -5,6 +5,7 @@ namespace scanloom {
 std::string_view name_of(Errc code) noexcept {
     switch (code) {
     case Errc::kMalformed: return "malformed";
+    case Errc::kDamaged: return "damaged";
     case Errc::kTooLarge: return "too_large";
     case Errc::kUnsupportedVersion: return "unsupported_version";
     case Errc::kInvalidField: return "invalid_field";

@@ -13,6 +13,7 @@ namespace scanloom {
 /// from it in one table each; people read Error::message.
 enum class Errc {
     kMalformed,          ///< bytes that are not what they claim to be
+    kDamaged,            ///< bytes that were changed on the way; the same may pass when they are sent again
     kTooLarge,           ///< a size beyond a stated limit
     kUnsupportedVersion, ///< a protocol or format version this program does not speak
     kInvalidField,       ///< a value out of its range; the message names the field

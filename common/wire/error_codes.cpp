@@ -10,6 +10,7 @@ struct ErrorCodePair {
 
 constexpr ErrorCodePair kErrorCodes[] = {
     {Errc::kMalformed, v1::ERROR_CODE_MALFORMED_FRAME},
+    {Errc::kDamaged, v1::ERROR_CODE_DAMAGED_FRAME},
     {Errc::kTooLarge, v1::ERROR_CODE_FRAME_TOO_LARGE},
     {Errc::kUnsupportedVersion, v1::ERROR_CODE_UNSUPPORTED_VERSION},
     {Errc::kInvalidField, v1::ERROR_CODE_INVALID_FIELD},

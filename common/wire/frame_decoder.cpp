@@ -1,5 +1,7 @@
 #include "common/wire/frame_decoder.hpp"
 
+#include "common/wire/frame_checksum.hpp"
+
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
 
@@ -14,6 +16,12 @@ namespace {
 
 /// What HTTP begins with, requests and answers. As lengths of frames all of these are a gigabyte or more.
 constexpr std::string_view kHttp[] = {"GET ", "HEAD", "POST", "PUT ", "DELE", "OPTI", "PATC", "CONN", "TRAC", "HTTP"};
+
+void append_length(std::string& out, std::size_t bytes) {
+    unsigned char prefix[kLengthPrefixBytes];
+    boost::endian::store_big_u32(prefix, static_cast<std::uint32_t>(bytes));
+    out.append(reinterpret_cast<const char*>(prefix), kLengthPrefixBytes);
+}
 
 } // namespace
 
@@ -62,16 +70,37 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
     }
     if (available < kLengthPrefixBytes + length) return std::optional<std::string_view>{};
 
+    const std::string_view body(reinterpret_cast<const char*>(head + kLengthPrefixBytes), length);
+    if (auto intact = check(body); !intact) {
+        failed_ = intact.error();
+        return *failed_;
+    }
     begin_ += kLengthPrefixBytes + length;
-    return std::optional(std::string_view(reinterpret_cast<const char*>(head + kLengthPrefixBytes), length));
+    return std::optional(body);
+}
+
+/// Where frames have had checksums, damage to the field's own tag shows as one that is missing.
+Result<> FrameDecoder::check(std::string_view body) {
+    const Checksum checksum = checksum_of(body);
+    if (checksum == Checksum::kRight) has_checksums_ = true;
+    if (checksum == Checksum::kRight || (checksum == Checksum::kAbsent && !has_checksums_)) return {};
+    return Error{Errc::kDamaged,
+                 fmt::format("a frame of {} bytes was damaged on its way: its checksum is {}; connect again, and look "
+                             "at the network if it happens often",
+                             body.size(), checksum == Checksum::kWrong ? "wrong" : "missing")};
 }
 
 void append_frame(std::string& out, std::string_view body) {
     assert(body.size() <= kFrameBytesMax);
-    unsigned char prefix[kLengthPrefixBytes];
-    boost::endian::store_big_u32(prefix, static_cast<std::uint32_t>(body.size()));
-    out.append(reinterpret_cast<const char*>(prefix), kLengthPrefixBytes);
+    append_length(out, body.size());
     out.append(body);
+}
+
+void append_checked_frame(std::string& out, std::string_view body) {
+    assert(body.size() + kChecksumBytes <= kFrameBytesMax);
+    append_length(out, body.size() + kChecksumBytes);
+    const auto checksum = checksum_field(body);
+    out.append(body).append(checksum.data(), checksum.size());
 }
 
 } // namespace scanloom::wire

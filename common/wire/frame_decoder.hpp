@@ -20,7 +20,9 @@ inline constexpr std::size_t kFrameBytesMaxBeforeHello = std::size_t{16} << 10;
 /// A state machine without a socket: however the stream is split, the same bodies come out.
 ///
 /// Usage   read into prepare(), commit() what was read, then call next() until it is empty.
-/// Errors  kTooLarge as soon as a length prefix exceeds the limit, before anything is allocated for
+/// Checksums are optional, see frame_checksum.hpp; but a stream that has had one has them in every frame that follows.
+///
+/// Errors  kDamaged: a checksum is wrong, or was there before and is missing. kTooLarge as soon as a length prefix exceeds the limit, before anything is allocated for
 ///         it; kMalformed for an empty frame, or for HTTP in its place. After an error the stream has no
 ///         frame borders any more: every further next() repeats the error.
 /// Thread  one at a time.
@@ -45,15 +47,21 @@ public:
     [[nodiscard]] bool holds_http() const noexcept { return holds_http_; }
 
 private:
+    [[nodiscard]] Result<> check(std::string_view body);
+
     std::size_t frame_bytes_max_;
     std::vector<std::byte> buffer_;
     std::size_t begin_ = 0; // first byte not yet handed out
     std::size_t end_ = 0;   // one past the last byte received
     std::optional<Error> failed_;
     bool holds_http_ = false;
+    bool has_checksums_ = false; // of what came so far
 };
 
 /// A body with its length in front, ready to be sent. Pre: body.size() <= kFrameBytesMax.
 void append_frame(std::string& out, std::string_view body);
+
+/// The same with its checksum behind it. Pre: body.size() + kChecksumBytes <= kFrameBytesMax.
+void append_checked_frame(std::string& out, std::string_view body);
 
 } // namespace scanloom::wire

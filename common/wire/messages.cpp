@@ -232,7 +232,7 @@ void encode(const Message& message, std::string& out) {
     google::protobuf::Arena arena;
     auto* frame = google::protobuf::Arena::CreateMessage<v1::Frame>(&arena);
     std::visit(ToProto{*frame}, message);
-    append_frame(out, frame->SerializeAsString());
+    append_checked_frame(out, frame->SerializeAsString());
 }
 
 Result<> check_scan(const Scan& scan, const Sensor& sensor) {

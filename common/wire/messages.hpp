@@ -221,7 +221,7 @@ using Message =
 /// Thread  any.
 [[nodiscard]] Result<Message> decode(std::string_view body);
 
-/// Appends the message to `out` as a frame, length prefix included.
+/// Appends the message to `out` as a frame, length prefix and checksum included.
 void encode(const Message& message, std::string& out);
 
 /// Checks that a scan fits the sensor it names: explicit angles of the sensor need as many ranges,

@@ -1,5 +1,6 @@
 #include "common/wire/prepared_scan.hpp"
 
+#include "common/wire/frame_checksum.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/proto_convert.hpp"
 
@@ -8,8 +9,10 @@
 #include <boost/endian/conversion.hpp>
 #include <google/protobuf/io/coded_stream.h>
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
+#include <string_view>
 #include <utility>
 
 namespace scanloom::wire {
@@ -75,7 +78,7 @@ PreparedScan::PreparedScan(Scan scan) {
 
 void encode_batch(std::span<const NumberedScan> scans, std::string& out) {
     const std::size_t batch = batch_size(scans);
-    const std::size_t body = delimited_size(batch);
+    const std::size_t body = delimited_size(batch) + kChecksumBytes;
     assert(!scans.empty() && body <= kFrameBytesMax);
     const std::size_t begin = out.size();
     out.resize(begin + kLengthPrefixBytes + body);
@@ -83,10 +86,12 @@ void encode_batch(std::span<const NumberedScan> scans, std::string& out) {
     boost::endian::store_big_u32(at, static_cast<std::uint32_t>(body));
     at = write_head(kBatchTag, batch, at + kLengthPrefixBytes);
     for (const NumberedScan& numbered : scans) at = write_scan(numbered, at);
+    const auto content = std::string_view(out).substr(begin + kLengthPrefixBytes, body - kChecksumBytes);
+    std::ranges::copy(checksum_field(content), at);
 }
 
 std::size_t batch_frame_size(std::span<const NumberedScan> scans) {
-    return kLengthPrefixBytes + delimited_size(batch_size(scans));
+    return kLengthPrefixBytes + delimited_size(batch_size(scans)) + kChecksumBytes;
 }
 
 } // namespace scanloom::wire

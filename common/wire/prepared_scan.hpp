@@ -29,12 +29,13 @@ struct NumberedScan {
     double stamp = 0.0;    ///< seconds
 };
 
-/// Appends the scans to `out` as a ScanBatch frame, length prefix included: the same bytes as encode() gives.
+/// Appends the scans to `out` as a ScanBatch frame, length prefix and checksum included: the same bytes as encode()
+/// gives.
 /// Pre     at least one scan; batch_frame_size(scans) <= kLengthPrefixBytes + kFrameBytesMax
 /// Thread  any.
 void encode_batch(std::span<const NumberedScan> scans, std::string& out);
 
-/// Bytes of that frame, length prefix included.
+/// Bytes of that frame, length prefix and checksum included.
 [[nodiscard]] std::size_t batch_frame_size(std::span<const NumberedScan> scans);
 
 } // namespace scanloom::wire

@@ -6,23 +6,27 @@
 
 namespace scanloom::robot {
 
-/// How long to wait before the next attempt: doubling from 0.2 s to 10 s, each wait a random part between half and
-/// whole, so that many robots do not come back at one moment.
+struct BackoffWaits {
+    std::chrono::milliseconds first{200};
+    std::chrono::milliseconds longest{10'000};
+};
+
+/// How long to wait before the next attempt: doubling from the first wait to the longest, each a random part between
+/// half and whole, so that many robots do not come back at one moment.
 class Backoff {
 public:
-    explicit Backoff(std::uint32_t seed) : random_(seed) {}
+    explicit Backoff(std::uint32_t seed, const BackoffWaits& waits = {})
+        : random_(seed), waits_(waits), wait_(waits.first) {}
 
     [[nodiscard]] std::chrono::milliseconds next();
 
     /// It went well: the next wait is a short one.
-    void reset() noexcept { wait_ = kFirst; }
+    void reset() noexcept { wait_ = waits_.first; }
 
 private:
-    static constexpr std::chrono::milliseconds kFirst{200};
-    static constexpr std::chrono::milliseconds kLongest{10'000};
-
     std::minstd_rand random_;
-    std::chrono::milliseconds wait_ = kFirst;
+    BackoffWaits waits_;
+    std::chrono::milliseconds wait_;
 };
 
 } // namespace scanloom::robot

@@ -33,7 +33,7 @@ wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::mo
 
 Uplink::Uplink(asio::io_context& io, UplinkOptions options, Feed& feed)
     : io_(io), options_(std::move(options)), feed_(feed), conversation_(options_.conversation, Clock::now()),
-      backoff_(options_.backoff_seed), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
+      backoff_(options_.backoff_seed, options_.backoff), feed_wake_(io), write_wake_(io), progress_wake_(io) {}
 
 asio::awaitable<Result<>> Uplink::run() {
     co_await (keep_linked() || take_from_feed() || watch_progress());

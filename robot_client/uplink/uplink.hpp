@@ -28,6 +28,7 @@ struct UplinkOptions {
     std::chrono::milliseconds give_up_after_end{120'000}; ///< likewise, once the feed has ended
     std::chrono::milliseconds drain_max{10'000};          ///< how long stop() waits for acknowledgements
     std::uint32_t backoff_seed = 1;
+    BackoffWaits backoff; ///< before a link that failed is replaced
     /// Hears of every link that failed and is going to be replaced.
     std::function<void(const Error&)> on_trouble = [](const Error&) {};
 };

@@ -80,12 +80,13 @@ void Server::join_pools() {
     weaving_.join();
 }
 
-Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits) {
+Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits,
+                                             const OpenLog& open_log) {
     store::StoreOptions store;
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
     auto log = store::ReopeningLog::open(
-        [store, directory = options.store] { return store::open_rocksdb(directory, store); },
+        [open_log, store, directory = options.store] { return open_log(directory, store); },
         [store, directory = options.store] { return store::can_be_written(directory, store.disk_reserve_bytes); });
     if (!log) return log.error();
     auto web = http::load_web_files(options.web);

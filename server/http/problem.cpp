@@ -12,6 +12,7 @@ namespace {
 std::string_view title_of(Errc code) {
     switch (code) {
     case Errc::kMalformed: return "Not understood";
+    case Errc::kDamaged: return "Damaged on its way";
     case Errc::kTooLarge: return "Too large";
     case Errc::kUnsupportedVersion: return "Unsupported version";
     case Errc::kInvalidField: return "Invalid value";
@@ -54,6 +55,7 @@ Response problem_response(Status status, std::string_view type, std::string_view
 Status status_of(Errc code) noexcept {
     switch (code) {
     case Errc::kMalformed: return Status::bad_request;
+    case Errc::kDamaged: return Status::bad_request;
     case Errc::kTooLarge: return Status::payload_too_large;
     case Errc::kUnsupportedVersion: return Status::bad_request;
     case Errc::kInvalidField: return Status::bad_request;

@@ -47,7 +47,7 @@ std::string in_http(std::string_view sentence) {
 
 bool is_retryable(Errc code) noexcept {
     return code == Errc::kTimeout || code == Errc::kStoreFailed || code == Errc::kShuttingDown ||
-           code == Errc::kOutOfOrder || code == Errc::kOverloaded;
+           code == Errc::kOutOfOrder || code == Errc::kOverloaded || code == Errc::kDamaged;
 }
 
 RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config)

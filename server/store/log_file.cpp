@@ -1,6 +1,6 @@
 #include "server/store/log_file.hpp"
 
-#include "server/store/crc32c.hpp"
+#include "common/hash/crc32c.hpp"
 
 #include <boost/endian/conversion.hpp>
 
@@ -77,6 +77,7 @@ bool has_unwritten_sector(std::string_view bytes, std::size_t at) {
 bool is_cut_off(std::string_view bytes, std::size_t at) {
     const auto header = header_at(bytes, at);
     if (!header) return true;
+    if (header->type > kLast) return false; // what a crash leaves of a header is the header, or zeros
     const std::size_t present = bytes.size() - at - kHeaderBytes;
     if (header->length <= present || kHeaderBytes + header->length > left_in_block(at)) return false;
     return !matches(*header, bytes, at, present); // all of it is there: only its length is wrong

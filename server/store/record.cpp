@@ -1,6 +1,6 @@
 #include "server/store/record.hpp"
 
-#include "server/store/crc32c.hpp"
+#include "common/hash/crc32c.hpp"
 
 #include <boost/endian/conversion.hpp>
 

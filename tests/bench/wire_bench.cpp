@@ -1,3 +1,4 @@
+#include "common/wire/frame_checksum.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
 
@@ -29,6 +30,18 @@ void DecodeScanBatch(benchmark::State& state) {
     state.SetBytesProcessed(static_cast<std::int64_t>(frame.size()) * state.iterations());
 }
 BENCHMARK(DecodeScanBatch)->Arg(180)->Arg(1080)->Arg(4000);
+
+/// What the checksum adds to that, and to sending it.
+void CheckScanBatch(benchmark::State& state) {
+    constexpr std::size_t kScans = 64;
+    std::string frame;
+    encode(batch_of(kScans, static_cast<std::size_t>(state.range(0))), frame);
+    const auto body = std::string_view(frame).substr(kLengthPrefixBytes);
+    for (auto _ : state) benchmark::DoNotOptimize(checksum_of(body));
+    state.SetItemsProcessed(static_cast<std::int64_t>(kScans) * state.iterations());
+    state.SetBytesProcessed(static_cast<std::int64_t>(frame.size()) * state.iterations());
+}
+BENCHMARK(CheckScanBatch)->Arg(180)->Arg(684)->Arg(1080)->Arg(4000);
 
 } // namespace
 } // namespace scanloom::wire

@@ -1,11 +1,11 @@
 // Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record.
+#include "common/hash/crc32c.hpp"
 #include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/log_codec.hpp"
 #include "common/wire/messages.hpp"
 #include "server/mapping/projection.hpp"
 #include "server/session/checkpoint.hpp"
-#include "server/store/crc32c.hpp"
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
@@ -145,7 +145,7 @@ void write_log_entries(const std::filesystem::path& folder) {
 
 /// One record of RocksDB's log file format (server/store/log_file.hpp).
 std::string log_record(unsigned char type, std::string_view payload) {
-    const auto checksum = store::crc32c(std::string_view(reinterpret_cast<const char*>(&type), 1), payload);
+    const auto checksum = crc32c(std::string_view(reinterpret_cast<const char*>(&type), 1), payload);
     unsigned char header[7];
     boost::endian::store_little_u32(header, std::rotr(checksum, 15) + 0xa282ead8U);
     boost::endian::store_little_u16(header + 4, static_cast<std::uint16_t>(payload.size()));

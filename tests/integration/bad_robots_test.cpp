@@ -23,7 +23,15 @@ std::string length_prefix(std::uint32_t bytes) {
 }
 
 std::string frame_around(std::string_view body) {
-    return length_prefix(static_cast<std::uint32_t>(body.size())).append(body);
+    std::string frame;
+    wire::append_checked_frame(frame, body);
+    return frame;
+}
+
+/// As after a bit was flipped on the way.
+std::string damaged(std::string frame) {
+    frame[frame.size() / 2] = static_cast<char>(frame[frame.size() / 2] ^ 1);
+    return frame;
 }
 
 std::string batch_with(void (*spoil)(Scan&)) {
@@ -52,7 +60,7 @@ std::vector<Fault> faults_before_the_hello() {
          "a frame announces 16385 bytes, at most 16384 are allowed before the hello; send the hello first"},
         {length_prefix(0xFFFFFFFF), Errc::kTooLarge, "a frame announces 4294967295 bytes"},
         {length_prefix(0), Errc::kMalformed, "a frame of 0 bytes"},
-        {frame_around("garbage that is no protobuf"), Errc::kMalformed, "27 bytes that are not a scanloom.v1.Frame"},
+        {frame_around("garbage that is no protobuf"), Errc::kMalformed, "33 bytes that are not a scanloom.v1.Frame"},
         {frame_around("\xfa\x01\x02hi"), Errc::kMalformed, "a frame without a body"},
         {frame_of(wire::Ping{1}), Errc::kMalformed, "the first frame is a ping; a hello is expected"},
         {frame_of(small_laser()), Errc::kMalformed, "the first frame is a sensor_description; a hello"},
@@ -75,7 +83,8 @@ std::vector<Fault> faults_after_the_hello() {
     return {
         {length_prefix(wire::kFrameBytesMax + 1), Errc::kTooLarge,
          "a frame announces 1048577 bytes, at most 1048576 are allowed here; send fewer scans a batch"},
-        {frame_around("garbage that is no protobuf"), Errc::kMalformed, "27 bytes that are not a scanloom.v1.Frame"},
+        {frame_around("garbage that is no protobuf"), Errc::kMalformed, "33 bytes that are not a scanloom.v1.Frame"},
+        {damaged(frame_of(small_laser())), Errc::kDamaged, "a frame of 54 bytes was damaged on its way", true},
         {frame_of(hello("faulty")), Errc::kMalformed, "a hello frame is not for the server"},
         {frame_of(wire::Ack{}), Errc::kMalformed, "a ack frame is not for the server"},
         {laser + batch_with([](Scan& s) { s.pose.x = kNan; }), Errc::kInvalidField,

@@ -1,10 +1,12 @@
 #include "tests/support/child_process.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <system_error>
 
 namespace scanloom::test {
@@ -54,6 +56,15 @@ std::optional<std::string> ChildProcess::read_line() {
         if (count <= 0) return std::nullopt;
         buffered_.append(bytes, static_cast<std::size_t>(count));
     }
+}
+
+bool ChildProcess::has_output_within(std::chrono::microseconds patience) const {
+    if (!buffered_.empty()) return true;
+    constexpr std::int64_t kMicrosASecond = 1'000'000;
+    const timespec time{static_cast<time_t>(patience.count() / kMicrosASecond),
+                        patience.count() % kMicrosASecond * 1000};
+    pollfd output{stdout_, POLLIN, 0};
+    return ppoll(&output, 1, &time, nullptr) > 0;
 }
 
 void ChildProcess::signal(int number) const { kill(pid_, number); }

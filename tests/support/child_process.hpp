@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ public:
 
     /// Waits for the next line of its standard output; nothing at its end.
     [[nodiscard]] std::optional<std::string> read_line();
+
+    /// Whether something came on its standard output, or it ended, before so much time had passed.
+    [[nodiscard]] bool has_output_within(std::chrono::microseconds patience) const;
 
     [[nodiscard]] pid_t id() const noexcept { return pid_; }
 

@@ -27,7 +27,7 @@ const std::vector<Folder> kFolders = {
     {.path = "common/ros_map", .may_include = {"common/error", "common/scan"}, .pure = true},
     {.path = "common/app", .may_include = {"common/error"}},
     {.path = "common/net", .may_include = {"common/error"}},
-    {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/scan"}},
+    {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"}},
 
     {.path = "server/grid", .may_include = {"common/scan"}, .pure = true},
     {.path = "server/classify",

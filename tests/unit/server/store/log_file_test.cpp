@@ -1,6 +1,6 @@
 #include "server/store/log_file.hpp"
 
-#include "server/store/crc32c.hpp"
+#include "common/hash/crc32c.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <gtest/gtest.h>
@@ -130,6 +130,15 @@ TEST(LogFile, AMissingPieceIsDamage) {
     std::string file = kLarge.file;
     file.erase(0, kBlockBytes);
     EXPECT_TRUE(check_log_file(file).damage);
+}
+
+/// Not a write that a crash cut short, which would leave an empty store that looks sound.
+TEST(LogFile, AnotherFilesContentsAreDamage) {
+    const std::string identity = "1b4c2f6e-8d7a-4f0e-9c53-6a2f1d0b7e84\n";
+    EXPECT_EQ(check_log_file(identity).damage, 0U);
+    const std::string options = "# This is a RocksDB option file.\n#\n[Version]\n  rocksdb_version=7.8.3\n";
+    EXPECT_EQ(check_log_file(options).damage, 0U);
+    EXPECT_EQ(check_log_file(kSmall.file + options).damage, kSmall.file.size());
 }
 
 } // namespace

@@ -1,45 +1,12 @@
 #include "server/store/record.hpp"
 
-#include "server/store/crc32c.hpp"
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
-#include <random>
 #include <vector>
 
 namespace scanloom::store {
 namespace {
-
-TEST(Crc32c, MatchesThePublishedCheckValue) {
-    EXPECT_EQ(crc32c("123456789"), 0xE3069283U); // RFC 3720 calls for this polynomial; catalogue value
-    EXPECT_EQ(crc32c("1234", "56789"), 0xE3069283U);
-    EXPECT_EQ(crc32c(std::string(32, '\0')), 0x8A9136AAU); // RFC 3720, B.4
-    EXPECT_EQ(crc32c_by_tables("123456789"), 0xE3069283U);
-}
-
-/// Source  RFC 3720, B.4, bit by bit.
-std::uint32_t crc32c_bit_by_bit(std::string_view bytes) {
-    std::uint32_t crc = 0xFFFFFFFF;
-    for (const char byte : bytes) {
-        crc ^= static_cast<unsigned char>(byte);
-        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? crc >> 1 ^ 0x82F63B78U : crc >> 1;
-    }
-    return ~crc;
-}
-
-TEST(Crc32c, IsTheSameWhateverComputesItAndWhereverTheBytesAreDivided) {
-    std::mt19937 random(5);
-    std::string bytes(200, '\0');
-    for (char& byte : bytes) byte = static_cast<char>(random());
-    for (std::size_t size = 0; size <= bytes.size(); ++size) {
-        const auto part = std::string_view(bytes).substr(bytes.size() - size); // at every alignment
-        const auto expected = crc32c_bit_by_bit(part);
-        EXPECT_EQ(crc32c_by_tables(part), expected) << size;
-        EXPECT_EQ(crc32c(part.substr(0, size / 3), part.substr(size / 3)), expected) << size;
-    }
-}
 
 TEST(StoreRecord, KeysSortAsSessionsAndRevisionsDo) {
     const std::vector<std::uint64_t> numbers = {0, 1, 255, 256, 65536, 0xffffffff, 0x100000000};

@@ -1,4 +1,4 @@
-#include "server/store/crc32c.hpp"
+#include "common/hash/crc32c.hpp"
 
 #include <array>
 #include <bit>
@@ -9,7 +9,7 @@
 #include <nmmintrin.h>
 #endif
 
-namespace scanloom::store {
+namespace scanloom {
 namespace {
 
 constexpr std::uint32_t kPolynomial = 0x82F63B78; // Castagnoli's, lowest bit first
@@ -82,4 +82,4 @@ std::uint32_t crc32c(std::string_view head, std::string_view tail) {
 
 std::uint32_t crc32c_by_tables(std::string_view bytes) { return ~by_tables(~std::uint32_t{0}, bytes); }
 
-} // namespace scanloom::store
+} // namespace scanloom

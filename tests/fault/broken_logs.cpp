@@ -1,0 +1,160 @@
+#include "tests/fault/broken_logs.hpp"
+
+#include "common/wire/log_codec.hpp"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace scanloom::fault {
+namespace {
+
+using store::CheckpointPart;
+using store::ScanLog;
+using store::SessionId;
+
+/// Hands everything on.
+class PassingLog : public ScanLog {
+public:
+    explicit PassingLog(std::unique_ptr<ScanLog> log) : log_(std::move(log)) {}
+
+    Result<SessionId> create_session(std::string_view record) override { return log_->create_session(record); }
+    Result<std::vector<store::StoredSession>> sessions() override { return log_->sessions(); }
+    Result<Revision> end_of(SessionId session) override { return log_->end_of(session); }
+    Result<> remove_session(SessionId session) override { return log_->remove_session(session); }
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        log_->append(session, first, std::move(entries), std::move(done));
+    }
+    Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
+        return log_->read(session, after, visit);
+    }
+    Result<> clear_checkpoint(SessionId session) override { return log_->clear_checkpoint(session); }
+    Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override {
+        return log_->write_checkpoint(session, std::move(parts));
+    }
+    Result<> read_checkpoint(SessionId session, const VisitPart& visit) override {
+        return log_->read_checkpoint(session, visit);
+    }
+    [[nodiscard]] store::StoreStats stats() const override { return log_->stats(); }
+    [[nodiscard]] std::uint64_t bytes_on_disk() const override { return log_->bytes_on_disk(); }
+
+protected:
+    [[nodiscard]] ScanLog& under() { return *log_; }
+
+private:
+    std::unique_ptr<ScanLog> log_;
+};
+
+class HastyLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        {
+            const std::lock_guard lock(mutex_);
+            kept_back_.push_back({session, first, std::move(entries)});
+            if (kept_back_.size() == kKeptBackMax) write();
+        }
+        done({});
+    }
+    Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
+        write_all(); // it deceives those outside only
+        return PassingLog::read(session, after, visit);
+    }
+    Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override {
+        write_all();
+        return PassingLog::write_checkpoint(session, std::move(parts));
+    }
+
+private:
+    struct Append {
+        SessionId session;
+        Revision first;
+        std::vector<std::string> entries;
+    };
+    static constexpr std::size_t kKeptBackMax = 16;
+
+    void write() {
+        for (auto& append : std::exchange(kept_back_, {})) {
+            under().append(append.session, append.first, std::move(append.entries), [](const Result<>&) {});
+        }
+    }
+    void write_all() {
+        const std::lock_guard lock(mutex_);
+        write();
+    }
+
+    std::mutex mutex_;
+    std::vector<Append> kept_back_; // guarded by mutex_
+};
+
+class ForgetfulLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        const std::lock_guard lock(mutex_); // also over what follows: appends keep their order
+        std::uint64_t& ahead = ahead_[session];
+        if (++appends_ % kForgetsEvery != 0 || !are_scans(entries)) {
+            return under().append(session, first + ahead, std::move(entries), std::move(done));
+        }
+        const Revision again = first + ahead + entries.size();
+        under().append(session, first + ahead, entries, [](const Result<>&) {});
+        ahead += entries.size();
+        under().append(session, again, std::move(entries), std::move(done));
+    }
+
+private:
+    static constexpr std::uint64_t kForgetsEvery = 8;
+
+    static bool are_scans(const std::vector<std::string>& entries) {
+        return std::ranges::all_of(entries, [](const std::string& bytes) {
+            const auto entry = wire::decode_entry(bytes);
+            return entry && std::holds_alternative<ScanTaken>(*entry);
+        });
+    }
+
+    std::mutex mutex_; // guards what follows
+    std::uint64_t appends_ = 0;
+    std::map<SessionId, std::uint64_t> ahead_; // entries that the session does not know of
+};
+
+class BlindLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    Result<> read(SessionId session, Revision after, const VisitEntry& visit) override {
+        return PassingLog::read(session, after, [&](Revision revision, std::string_view bytes) -> Result<> {
+            auto entry = wire::decode_entry(bytes);
+            auto* taken = entry ? std::get_if<ScanTaken>(&*entry) : nullptr;
+            if (taken == nullptr || revision % kSpoilsEvery != 0) return visit(revision, bytes);
+            taken->scan.ranges.front() ^= 1;
+            return visit(revision, wire::encode_entry(*entry));
+        });
+    }
+    Result<> read_checkpoint(SessionId, const VisitPart&) override { return {}; } // all comes from the log
+
+private:
+    static constexpr Revision kSpoilsEvery = 50;
+};
+
+} // namespace
+
+std::unique_ptr<ScanLog> hasty_log(std::unique_ptr<ScanLog> log) { return std::make_unique<HastyLog>(std::move(log)); }
+
+std::unique_ptr<ScanLog> forgetful_log(std::unique_ptr<ScanLog> log) {
+    return std::make_unique<ForgetfulLog>(std::move(log));
+}
+
+std::unique_ptr<ScanLog> blind_log(std::unique_ptr<ScanLog> log) { return std::make_unique<BlindLog>(std::move(log)); }
+
+std::unique_ptr<ScanLog> broken_log(std::string_view kind, std::unique_ptr<ScanLog> log) {
+    if (kind == "hasty") return hasty_log(std::move(log));
+    if (kind == "forgetful") return forgetful_log(std::move(log));
+    if (kind == "blind") return blind_log(std::move(log));
+    return nullptr;
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,176 @@
+#include "tests/fault/clock_row.hpp"
+
+#include "tests/fault/cases.hpp"
+#include "tests/fault/server_process.hpp"
+#include "tests/support/robot_socket.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/json/parse.hpp>
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace scanloom::fault {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kScansPerJump = 400;
+constexpr std::uint64_t kJumpsPerStore = 10;
+constexpr std::uint64_t kMicrosUntilJump = 20'000;
+
+/// Debian's, for programs with several threads.
+std::optional<fs::path> faketime_library() {
+    for (const auto& folder : fs::directory_iterator("/usr/lib")) {
+        const auto library = folder.path() / "faketime" / "libfaketimeMT.so.1";
+        std::error_code ignored;
+        if (fs::exists(library, ignored)) return library;
+    }
+    return std::nullopt;
+}
+
+/// A wall clock that programs are started with, which jumps when it is told to; no other clock of theirs does.
+class JumpingClock {
+public:
+    JumpingClock(const fs::path& library, fs::path file) : file_(std::move(file)) {
+        words_ = {"LD_PRELOAD=" + library.string(), "FAKETIME_TIMESTAMP_FILE=" + file_.string(), "FAKETIME_NO_CACHE=1",
+                  "FAKETIME_DONT_FAKE_MONOTONIC=1", "DONT_FAKE_MONOTONIC=1"};
+        jump_to("+0d");
+    }
+
+    /// By so many days of the true time.
+    void jump_to(const std::string& days) const {
+        const fs::path beside = file_.string() + ".new";
+        std::ofstream(beside) << days << '\n';
+        fs::rename(beside, file_); // nobody reads half of it
+    }
+
+    /// `env` and what it needs, in front of a program.
+    [[nodiscard]] const std::vector<std::string>& words() const noexcept { return words_; }
+
+private:
+    fs::path file_;
+    std::vector<std::string> words_;
+};
+
+/// A robot's program, for the scans of a simulated way up to this number.
+std::vector<std::string> robot_words(std::uint16_t port, std::uint64_t seed, std::uint64_t scans) {
+    return {test::program("scanloom-robot").string(),
+            "--server",
+            fmt::format("127.0.0.1:{}", port),
+            "--session",
+            "s",
+            "--robot",
+            "r",
+            "--cell-size",
+            "0.1",
+            "simulate",
+            "--world",
+            "office",
+            "--drive",
+            "wall_follower",
+            "--seed",
+            std::to_string(seed),
+            "--speed",
+            "0",
+            "--scans",
+            std::to_string(scans)};
+}
+
+/// Starts a robot with some variables in front.
+test::ChildProcess start_robot(std::vector<std::string> variables, const std::vector<std::string>& robot,
+                               const fs::path& log) {
+    variables.insert(variables.end(), robot.begin(), robot.end());
+    return {"/usr/bin/env", variables, log};
+}
+
+/// Waits for a robot that should have sent scans up to this number.
+void finish(test::ChildProcess& robot, std::uint64_t scans, Outcome& outcome) {
+    const auto summary = robot.read_line();
+    const int code = robot.wait();
+    const auto acknowledged =
+        summary ? boost::json::parse(*summary).at("acknowledged").to_number<std::uint64_t>() : std::uint64_t{0};
+    if (code == 0 && acknowledged == scans) return;
+    outcome.amiss.push_back(
+        fmt::format("the robot ended with {} and {} of {} scans acknowledged", code, acknowledged, scans));
+}
+
+/// Of all layers. The revision is left out: visitors are in the log, too.
+std::string digest(const ServerProcess& server) {
+    const auto answer = test::http_request(server.http_port(), "GET", "/api/v1/sessions/s/digest");
+    return boost::json::serialize(boost::json::parse(answer.body).at("layers"));
+}
+
+std::string peaceful_digest(std::uint64_t seed, std::uint64_t scans) {
+    const TemporaryDirectory place;
+    ServerProcess server({}, place.path());
+    server.start_and_wait();
+    Outcome outcome;
+    auto robot = start_robot({}, robot_words(server.robot_port(), seed, scans), place.path() / "robot");
+    finish(robot, scans, outcome);
+    if (!outcome.passed()) throw std::runtime_error("without any jump, " + outcome.amiss.front());
+    return digest(server);
+}
+
+/// One who has connected, and says nothing while the clock jumps, is not too late.
+void say_hello_after(const JumpingClock& clock, const std::string& days, const ServerProcess& server,
+                     Outcome& outcome) {
+    testing_support::RobotSocket visitor(server.robot_port());
+    clock.jump_to(days);
+    visitor.send(wire::Hello{.robot = "visitor", .session = "s"});
+    try {
+        (void)visitor.receive_kind<wire::Welcome>();
+    } catch (const std::exception& failure) {
+        outcome.amiss.push_back(
+            fmt::format("who said hello after a jump by {} was not welcome: {}", days, failure.what()));
+    }
+}
+
+Outcome run_one(const Run& run, const fs::path& library, std::uint64_t seed, std::uint64_t jumps) {
+    const TemporaryDirectory place;
+    std::mt19937_64 random(seed);
+    const JumpingClock clock(library, place.path() / "clock");
+    ServerCommand command{"/usr/bin/env", clock.words()};
+    command.words.push_back(run.server.program.empty() ? test::program("scanloom-server").string()
+                                                       : run.server.program.string());
+    command.words.insert(command.words.end(), run.server.words.begin(), run.server.words.end());
+    ServerProcess server(command, place.path());
+    server.start_and_wait();
+    Outcome outcome;
+    for (std::uint64_t jump = 1; jump <= jumps && outcome.passed(); ++jump) {
+        const std::uint64_t scans = jump * kScansPerJump;
+        const std::string days = random() % 2 == 0 ? "+365d" : "-365d";
+        auto robot = start_robot(clock.words(), robot_words(server.robot_port(), seed, scans), place.path() / "robot");
+        server.let_be(std::chrono::microseconds(random() % kMicrosUntilJump));
+        clock.jump_to(days);
+        finish(robot, scans, outcome);
+        say_hello_after(clock, "+0d", server, outcome);
+        outcome.acknowledged = scans;
+    }
+    outcome.digest_equal = digest(server) == peaceful_digest(seed, outcome.acknowledged);
+    if (const int code = server.stop(); code != 0)
+        outcome.amiss.push_back(fmt::format("the server ends with {}", code));
+    return outcome;
+}
+
+} // namespace
+
+Outcome run_clock_row(const Run& run) {
+    const auto library = faketime_library();
+    if (!library) return {.skipped = "there is no faketime: apt-get install faketime"};
+    return run_cases(run,
+                     {.row = "clock", .of_count = kJumpsPerStore, .run = [&](std::uint64_t seed, std::uint64_t jumps) {
+                          return run_one(run, *library, seed, jumps);
+                      }});
+}
+
+} // namespace scanloom::fault

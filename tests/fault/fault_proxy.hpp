@@ -1,0 +1,42 @@
+#pragma once
+
+#include "tests/fault/link_harm.hpp"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <thread>
+
+namespace scanloom::fault {
+
+/// What becomes of one connection.
+struct LinkFate {
+    SpoiledStream there; ///< from who connects
+    SpoiledStream back;
+};
+
+/// A link that is spoiled: connections to its port go on to another port of this machine, each with a fate of its own.
+/// On a thread of its own.
+class FaultProxy {
+public:
+    /// `fate_of` is asked, on the proxy's thread, for that of the first connection, 0, of the next, 1, and so on.
+    FaultProxy(std::uint16_t to, std::function<LinkFate(std::uint64_t connection)> fate_of);
+    ~FaultProxy();
+
+    [[nodiscard]] std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+
+private:
+    boost::asio::awaitable<void> accept();
+    boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket near, LinkFate fate);
+
+    boost::asio::io_context io_{1};
+    boost::asio::ip::tcp::acceptor acceptor_;
+    boost::asio::ip::tcp::endpoint to_;
+    std::function<LinkFate(std::uint64_t)> fate_of_;
+    std::thread thread_;
+};
+
+} // namespace scanloom::fault

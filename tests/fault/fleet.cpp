@@ -1,0 +1,200 @@
+#include "tests/fault/fleet.hpp"
+
+#include "robot_client/uplink/uplink.hpp"
+#include "tests/support/random_scans.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <algorithm>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace scanloom::fault {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// Coarse, so that a scan costs little: what is tried here is not how well maps are drawn.
+constexpr double kCellSize = 0.2;
+
+/// Hands over a robot's scans as far as they are released.
+class ReleasedFeed final : public robot::Feed {
+public:
+    ReleasedFeed(const RobotPlan& plan, std::function<void(std::uint64_t)> on_acknowledged)
+        : plan_(plan), on_acknowledged_(std::move(on_acknowledged)) {}
+
+    void release(std::uint64_t seq) {
+        released_ = std::min(std::max(released_, seq), plan_.scans);
+        if (intake_ != nullptr) intake_->wake();
+    }
+
+    asio::awaitable<Result<>> run(robot::Intake& intake) override {
+        intake_ = &intake;
+        while (!intake.resumed_after()) co_await intake.news();
+        std::uint64_t handed_over = *intake.resumed_after();
+        while (handed_over < plan_.scans && !intake.is_stopped()) {
+            if (handed_over == released_ || !intake.has_room()) {
+                co_await intake.news();
+                continue;
+            }
+            intake.add({laser_, testing_support::random_scan(plan_.seed, ++handed_over)});
+        }
+        co_return Result<>{};
+    }
+
+    void acknowledged(std::uint64_t seq) override { on_acknowledged_(seq); }
+
+private:
+    const RobotPlan& plan_;
+    std::function<void(std::uint64_t)> on_acknowledged_;
+    std::shared_ptr<const Sensor> laser_ = std::make_shared<const Sensor>(testing_support::small_laser());
+    std::uint64_t released_ = 0;
+    robot::Intake* intake_ = nullptr;
+};
+
+robot::UplinkOptions options_of(const RobotPlan& plan, std::uint16_t port, const Patience& patience) {
+    robot::UplinkOptions options;
+    options.server = {"127.0.0.1", std::to_string(port)};
+    options.connect_timeout = patience.welcome;
+    options.give_up_after = options.give_up_after_end = patience.give_up_after;
+    options.backoff_seed = plan.seed;
+    options.backoff = {patience.backoff_first, patience.backoff_longest};
+    options.conversation.welcome_timeout = patience.welcome;
+    options.conversation.ping_after = patience.ping_after;
+    options.conversation.silence_max = patience.silence_max;
+    options.conversation.batch_bytes_max = 2048; // some ten scans: many frames, many acknowledgements
+    options.conversation.hello.session = plan.session;
+    options.conversation.hello.robot = plan.name;
+    options.conversation.hello.source = "robot of seed " + std::to_string(plan.seed);
+    options.conversation.hello.create = fleet_options();
+    return options;
+}
+
+} // namespace
+
+SessionOptions fleet_options() { return {.cell_size = kCellSize}; }
+
+class Fleet::Robots {
+public:
+    Robots(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience) {
+        for (auto& plan : plans) members_.push_back(std::make_unique<Member>(std::move(plan)));
+        for (auto& member : members_) start(*member, port, patience);
+        thread_ = std::thread([this] { io_.run(); });
+    }
+    ~Robots() {
+        io_.stop();
+        thread_.join();
+    }
+
+    void release(std::uint64_t seq) {
+        {
+            const std::lock_guard lock(mutex_);
+            to_acknowledge_ = 0;
+            for (const auto& member : members_) to_acknowledge_ += std::min(seq, member->standing.plan.scans);
+        }
+        asio::post(io_, [this, seq] {
+            for (auto& member : members_) member->feed->release(seq);
+        });
+    }
+
+    bool wait_for_acknowledged(std::uint64_t scans) {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return acknowledged_ >= scans || given_up_ || acknowledged_ >= to_acknowledge_; });
+        return acknowledged_ >= scans && !given_up_;
+    }
+
+    std::uint64_t acknowledged() const {
+        const std::lock_guard lock(mutex_);
+        return acknowledged_;
+    }
+    bool has_given_up() const {
+        const std::lock_guard lock(mutex_);
+        return given_up_;
+    }
+
+    std::vector<RobotStanding> finish() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return given_up_ || ended_ == members_.size(); });
+        if (given_up_) stop_all();
+        changed_.wait(lock, [&] { return ended_ == members_.size(); });
+        std::vector<RobotStanding> standings;
+        for (const auto& member : members_) standings.push_back(member->standing);
+        return standings;
+    }
+
+private:
+    struct Member {
+        explicit Member(RobotPlan plan) { standing.plan = std::move(plan); }
+
+        RobotStanding standing; // guarded by mutex_, but for the plan, which never changes
+        std::unique_ptr<ReleasedFeed> feed;
+        std::unique_ptr<robot::Uplink> uplink;
+    };
+
+    void start(Member& member, std::uint16_t port, const Patience& patience) {
+        member.feed = std::make_unique<ReleasedFeed>(
+            member.standing.plan, [this, &member](std::uint64_t seq) { on_acknowledged(member, seq); });
+        auto options = options_of(member.standing.plan, port, patience);
+        options.drain_max = std::chrono::milliseconds(0);
+        member.uplink = std::make_unique<robot::Uplink>(io_, std::move(options), *member.feed);
+        asio::co_spawn(io_, member.uplink->run(), [this, &member](std::exception_ptr failed, Result<> outcome) {
+            on_ended(member, failed ? Error{Errc::kInternal, "an uplink threw"} : std::move(outcome));
+        });
+    }
+
+    void on_acknowledged(Member& member, std::uint64_t seq) {
+        const std::lock_guard lock(mutex_);
+        acknowledged_ += seq - member.standing.acknowledged;
+        member.standing.acknowledged = seq;
+        changed_.notify_all();
+    }
+
+    void on_ended(Member& member, Result<> outcome) {
+        const std::lock_guard lock(mutex_);
+        const bool is_first = !given_up_;
+        given_up_ = given_up_ || !outcome;
+        if (outcome || is_first) member.standing.outcome = std::move(outcome); // the others were stopped for its sake
+        member.standing.reconnects = member.uplink->status().reconnects;
+        ++ended_;
+        changed_.notify_all();
+    }
+
+    void stop_all() {
+        asio::post(io_, [this] {
+            for (auto& member : members_) member->uplink->stop();
+        });
+    }
+
+    asio::io_context io_{1};
+    asio::executor_work_guard<asio::io_context::executor_type> work_{io_.get_executor()};
+    std::vector<std::unique_ptr<Member>> members_;
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable changed_;
+    std::uint64_t acknowledged_ = 0;
+    std::uint64_t to_acknowledge_ = 0; // of all that is released
+    std::size_t ended_ = 0;
+    bool given_up_ = false;
+    std::thread thread_;
+};
+
+Fleet::Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience)
+    : robots_(std::make_unique<Robots>(std::move(plans), port, patience)) {}
+Fleet::~Fleet() = default;
+
+void Fleet::release(std::uint64_t seq) { robots_->release(seq); }
+void Fleet::release_all() { robots_->release(std::numeric_limits<std::uint64_t>::max()); }
+bool Fleet::wait_for_acknowledged(std::uint64_t scans) { return robots_->wait_for_acknowledged(scans); }
+std::uint64_t Fleet::acknowledged() const { return robots_->acknowledged(); }
+bool Fleet::has_given_up() const { return robots_->has_given_up(); }
+std::vector<RobotStanding> Fleet::finish() { return robots_->finish(); }
+
+} // namespace scanloom::fault

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "common/error/error.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace scanloom::fault {
+
+/// A file system of its own, ext4 in a file, on a loop device: one that can lose its power, and can be full.
+class LoopDisk {
+public:
+    /// Makes it, and mounts it at `mount_point`, which is created.
+    /// Errors  kUnreachable: the user is not root, there are no loop devices, or a program is missing.
+    [[nodiscard]] static Result<std::unique_ptr<LoopDisk>>
+    make(const std::filesystem::path& image, const std::filesystem::path& mount_point, std::uint64_t bytes);
+    ~LoopDisk();
+    LoopDisk(const LoopDisk&) = delete;
+    LoopDisk& operator=(const LoopDisk&) = delete;
+
+    /// What was not synced is lost, and every further access fails, until it is mounted again. Throws.
+    void cut_power() const;
+
+    /// Takes it out and puts it in again: its journal is replayed. Pre: nobody has a file of it open. Throws.
+    void mount_again();
+
+private:
+    LoopDisk(std::string device, std::filesystem::path mount_point)
+        : device_(std::move(device)), mount_point_(std::move(mount_point)) {}
+
+    [[nodiscard]] Result<> mount();
+
+    std::string device_; // "/dev/loop0"
+    std::filesystem::path mount_point_;
+    bool is_mounted_ = false;
+};
+
+} // namespace scanloom::fault

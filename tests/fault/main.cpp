@@ -1,0 +1,88 @@
+// Does one kind of harm, many times, and says in one line of JSON what it came to.
+#include "tests/fault/row.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace scanloom::fault;
+
+struct Options {
+    std::string row; ///< empty: list them
+    std::uint64_t seed = 1;
+    std::uint64_t count = 0; ///< 0: the row's own
+    bool is_long = false;
+};
+
+void list_rows() {
+    for (const Row& row : rows()) {
+        std::cout << fmt::format("  {:<9}{:<78} {:>5} {}, long {}\n", row.name, row.about, row.count_short, row.counts,
+                                 row.count_long);
+    }
+}
+
+/// Now and then a line for whoever waits.
+std::function<void(std::uint64_t)> teller(const Row& row, std::uint64_t count) {
+    return [&row, count, told = std::uint64_t{0}](std::uint64_t done) mutable {
+        constexpr std::uint64_t kLines = 20;
+        if (count < kLines || done * kLines / count == told) return;
+        told = done * kLines / count;
+        std::cerr << fmt::format("{}: {} of {} {}\n", row.name, done, count, row.counts);
+    };
+}
+
+bool run_row(const Row& row, const Options& options) {
+    const auto count = options.count > 0 ? options.count : options.is_long ? row.count_long : row.count_short;
+    const auto begin = std::chrono::steady_clock::now();
+    const Outcome outcome = row.run({.seed = options.seed, .count = count, .on_progress = teller(row, count)});
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    for (const auto& sentence : outcome.amiss) std::cerr << row.name << ": " << sentence << '\n';
+    std::cout << json_line(row.name, options.seed, count, took.count(), outcome) << std::endl;
+    return outcome.passed();
+}
+
+int run(const Options& options) {
+    if (options.row.empty()) {
+        list_rows();
+        return 0;
+    }
+    bool all_passed = true;
+    for (const Row& row : rows()) {
+        if (options.row == "all" || options.row == row.name) all_passed = run_row(row, options) && all_passed;
+    }
+    return all_passed ? 0 : 1;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    std::signal(SIGPIPE, SIG_IGN); // links are cut here all the time
+    Options options;
+    CLI::App app{"Does one kind of harm to a server or its links, many times, and checks that nothing is lost.\n"
+                 "Without a row it lists them.",
+                 "scanloom-fault"};
+    app.add_option("row", options.row, "What to do, or 'all'")->check([](const std::string& row) {
+        return row == "all" || find_row(row) != nullptr ? "" : "there is no row '" + row + "'";
+    });
+    app.add_option("--seed", options.seed, "What all that is random comes from")->capture_default_str();
+    app.add_option("--count", options.count, "How often, in place of the row's own number")->check(CLI::PositiveNumber);
+    app.add_flag("--long", options.is_long, "The long form");
+    try {
+        app.parse(argc, argv);
+        return run(options);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    } catch (const std::exception& failure) {
+        std::cerr << "scanloom-fault: " << failure.what() << '\n';
+        return 1;
+    }
+}

@@ -1,0 +1,38 @@
+#include "tests/fault/clock_row.hpp"
+#include "tests/fault/corrupt_row.hpp"
+#include "tests/fault/kill_row.hpp"
+#include "tests/fault/link_row.hpp"
+#include "tests/fault/power_row.hpp"
+#include "tests/fault/restart_row.hpp"
+#include "tests/fault/row.hpp"
+#include "tests/fault/spool_row.hpp"
+
+#include <algorithm>
+
+namespace scanloom::fault {
+namespace {
+
+constexpr Row kRows[] = {
+    {"kill", "kills", 50, 1'000, "kill -9 of the server at random points while robots stream", run_kill_row},
+    {"link", "robots", 200, 10'000, "links that split, delay, stall, end, flip, double and reorder what they carry",
+     run_link_row},
+    {"corrupt", "stores", 300, 10'000, "stores with flipped bits, short, empty, missing and exchanged files",
+     run_corrupt_row},
+    {"restart", "restarts", 3, 100, "the server is stopped or killed, and started again, under 100 streaming robots",
+     run_restart_row},
+    {"clock", "jumps", 10, 1'000, "the wall clocks of server and robot jump by a year, either way", run_clock_row},
+    {"power", "cuts", 10, 200, "the disk loses its power: what was not written through is gone", run_power_row},
+    {"spool", "kills", 8, 800, "the network is away, and the robot is killed while it sends what waited",
+     run_spool_row},
+};
+
+} // namespace
+
+std::span<const Row> rows() { return kRows; }
+
+const Row* find_row(std::string_view name) {
+    const auto found = std::ranges::find(kRows, name, &Row::name);
+    return found == std::end(kRows) ? nullptr : found;
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,58 @@
+#include "tests/fault/server_process.hpp"
+
+#include "tests/support/running_server.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <fstream>
+#include <stdexcept>
+
+namespace scanloom::fault {
+ReservedPort::ReservedPort() {
+    using boost::asio::ip::tcp;
+    socket_.open(tcp::v4());
+    socket_.set_option(tcp::socket::reuse_address(true)); // as the server does: then both may bind it, and one listen
+    socket_.bind({boost::asio::ip::address_v4::loopback(), 0});
+}
+
+ServerProcess::ServerProcess(ServerCommand command, std::filesystem::path place, std::vector<std::string> options)
+    : command_(std::move(command)), place_(std::move(place)), options_(std::move(options)) {
+    if (command_.program.empty()) command_.program = test::program("scanloom-server");
+}
+
+void ServerProcess::start() {
+    std::vector<std::string> words = command_.words;
+    for (const auto& word :
+         {std::string("--store"), (place_ / "store").string(), std::string("--listen"),
+          fmt::format("127.0.0.1:{}", robot_port()), std::string("--http"), fmt::format("127.0.0.1:{}", http_port())}) {
+        words.push_back(word);
+    }
+    words.insert(words.end(), options_.begin(), options_.end());
+    process_.emplace(command_.program, words, place_ / "log");
+}
+
+void ServerProcess::start_and_wait() {
+    start();
+    if (becomes_ready()) return;
+    throw std::runtime_error(fmt::format("the server ended with {} before it was ready: {}", wait(), last_words()));
+}
+
+void ServerProcess::kill_nine() {
+    signal(SIGKILL);
+    (void)wait();
+}
+
+int ServerProcess::stop() {
+    signal(SIGTERM);
+    return wait();
+}
+
+std::string ServerProcess::last_words() const {
+    std::ifstream in(place_ / "log");
+    std::string last;
+    for (std::string line; std::getline(in, line);) last = line;
+    return last;
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <rocksdb/env.h>
+
+#include <memory>
+
+namespace scanloom::fault {
+
+/// RocksDB's file layer with syncs that say they are done, and do nothing.
+[[nodiscard]] std::unique_ptr<rocksdb::Env> unsynced_files();
+
+} // namespace scanloom::fault

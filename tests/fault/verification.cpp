@@ -1,0 +1,167 @@
+#include "tests/fault/verification.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/mapping/digest.hpp"
+#include "server/mapping/map_config.hpp"
+#include "server/mapping/projection.hpp"
+#include "tests/support/random_scans.hpp"
+#include "tests/support/running_server.hpp"
+
+#include <boost/endian/conversion.hpp>
+#include <boost/json/parse.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+namespace scanloom::fault {
+namespace {
+
+/// What the log says of the robots, by their index in it.
+struct Told {
+    std::vector<std::string> names;
+    std::map<std::string, std::map<std::uint64_t, std::uint64_t>> times_held; ///< of each seq, by robot
+};
+
+const RobotStanding* find(std::span<const RobotStanding> robots, const std::string& name) {
+    const auto found = std::ranges::find(robots, name, [](const RobotStanding& robot) { return robot.plan.name; });
+    return found == robots.end() ? nullptr : &*found;
+}
+
+/// What is wrong with a scan by itself.
+std::optional<std::string> complaint(const ScanTaken& taken, const Told& told, std::span<const RobotStanding> robots) {
+    if (taken.robot >= told.names.size()) return fmt::format("a scan is of robot {}, who never joined", taken.robot);
+    const std::string& name = told.names[taken.robot];
+    const RobotStanding* robot = find(robots, name);
+    if (robot == nullptr) return fmt::format("a scan is of robot '{}', which there is not", name);
+    if (taken.scan.seq == 0 || taken.scan.seq > robot->plan.scans) {
+        return fmt::format("robot '{}' has scan {}, which was never sent", name, taken.scan.seq);
+    }
+    if (taken.scan != testing_support::random_scan(robot->plan.seed, taken.scan.seq)) {
+        return fmt::format("scan {} of robot '{}' is not as it was sent", taken.scan.seq, name);
+    }
+    return std::nullopt;
+}
+
+void read_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots, Told& told, Outcome& outcome) {
+    for (const LogEntry& entry : log) {
+        if (const auto* joined = std::get_if<RobotJoined>(&entry)) {
+            told.names.resize(std::max<std::size_t>(told.names.size(), joined->robot + 1));
+            told.names[joined->robot] = joined->name;
+        }
+        const auto* taken = std::get_if<ScanTaken>(&entry);
+        if (taken == nullptr) continue;
+        if (auto wrong = complaint(*taken, told, robots)) {
+            outcome.amiss.push_back(std::move(*wrong));
+        } else {
+            ++told.times_held[told.names[taken->robot]][taken->scan.seq];
+        }
+    }
+}
+
+void count_scans(const RobotStanding& robot, const std::map<std::uint64_t, std::uint64_t>& times_held,
+                 Outcome& outcome) {
+    Outcome of_robot;
+    of_robot.acknowledged = robot.acknowledged;
+    for (std::uint64_t seq = 1; seq <= robot.acknowledged; ++seq) {
+        if (!times_held.contains(seq)) ++of_robot.lost;
+    }
+    for (const auto& [seq, times] : times_held) of_robot.twice += times - 1;
+    const auto& name = robot.plan.name;
+    if (of_robot.lost > 0) {
+        of_robot.amiss.push_back(fmt::format("{} of the {} acknowledged scans of robot '{}' are lost", of_robot.lost,
+                                             robot.acknowledged, name));
+    }
+    if (of_robot.twice > 0) {
+        of_robot.amiss.push_back(fmt::format("{} scans of robot '{}' are held twice", of_robot.twice, name));
+    }
+    outcome.add(std::move(of_robot));
+}
+
+void compare_maps(const Held& held, const SessionOptions& options, Outcome& outcome) {
+    if (held.revision != held.log.size()) {
+        outcome.amiss.push_back(
+            fmt::format("the maps are those of revision {}, the log has {} entries", held.revision, held.log.size()));
+    }
+    const auto right = undisturbed_digests(held.log, options);
+    outcome.digest_equal = right && *right == held.digests;
+    if (!right) outcome.amiss.push_back("no maps can be made of the log: " + right.error().message);
+    if (right && !outcome.digest_equal) outcome.amiss.emplace_back("the maps are not those of an undisturbed run");
+}
+
+test::HttpAnswer must_get(std::uint16_t port, const std::string& target) {
+    auto answer = test::http_request(port, "GET", target);
+    if (answer.status == 200) return answer;
+    throw std::runtime_error(fmt::format("{} is answered {}: {}", target, answer.status, answer.body));
+}
+
+/// Of what HTTP gives of a log: each entry with its length in front.
+std::vector<LogEntry> parse_log(std::string_view bytes) {
+    constexpr std::size_t kLengthBytes = 4;
+    std::vector<LogEntry> log;
+    while (!bytes.empty()) {
+        if (bytes.size() < kLengthBytes) throw std::runtime_error("the log ends within a length");
+        const auto length = boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(bytes.data()));
+        bytes.remove_prefix(kLengthBytes);
+        if (bytes.size() < length) throw std::runtime_error("the log ends within an entry");
+        log.push_back(wire::decode_entry(bytes.substr(0, length)).value());
+        bytes.remove_prefix(length);
+    }
+    return log;
+}
+
+} // namespace
+
+Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector<LogEntry>& log,
+                                                               const SessionOptions& options) {
+    const auto config = mapping::resolve(options);
+    if (!config) return config.error();
+    mapping::Projection projection(*config);
+    for (const LogEntry& entry : log) {
+        if (auto folded = projection.fold(entry); !folded) return folded.error();
+    }
+    const auto snapshot = projection.snapshot();
+    std::map<std::string, std::string> digests;
+    for (const auto layer : mapping::kLayers) {
+        digests.emplace(mapping::name_of(layer), mapping::digest_of(snapshot, layer));
+    }
+    return digests;
+}
+
+Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options) {
+    Outcome outcome;
+    Told told;
+    read_log(held.log, robots, told, outcome);
+    for (const RobotStanding& robot : robots) count_scans(robot, told.times_held[robot.plan.name], outcome);
+    compare_maps(held, options, outcome);
+    return outcome;
+}
+
+Held ask_for(std::uint16_t http_port, const std::string& session) {
+    const std::string where = "/api/v1/sessions/" + session;
+    Held held;
+    const auto digest = boost::json::parse(must_get(http_port, where + "/digest").body);
+    held.revision = digest.at("revision").to_number<Revision>();
+    for (const auto& [layer, hash] : digest.at("layers").as_object()) held.digests.emplace(layer, hash.as_string());
+    held.log = parse_log(must_get(http_port, where + "/log").body);
+    return held;
+}
+
+Outcome verify_server(std::uint16_t http_port, std::span<const RobotStanding> robots) {
+    std::map<std::string, std::vector<RobotStanding>> sessions;
+    Outcome outcome;
+    for (const RobotStanding& robot : robots) {
+        sessions[robot.plan.session].push_back(robot);
+        if (robot.outcome) continue;
+        outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", robot.plan.name, robot.outcome.error().message));
+    }
+    for (const auto& [session, members] : sessions) {
+        const bool has_any = std::ranges::any_of(members, [](const auto& robot) { return robot.acknowledged > 0; });
+        if (!has_any && test::http_request(http_port, "GET", "/api/v1/sessions/" + session).status == 404) continue;
+        outcome.add(verify(ask_for(http_port, session), members, fleet_options()));
+    }
+    return outcome;
+}
+
+} // namespace scanloom::fault

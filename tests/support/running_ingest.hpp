@@ -1,0 +1,75 @@
+#pragma once
+
+#include "server/ingest/ingest_server.hpp"
+#include "tests/support/digests.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace scanloom::ingest {
+
+/// The ingest half of the server in this process: real sockets on the loopback, real threads.
+class RunningIngest {
+public:
+    explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {},
+                           std::size_t requests_max = RequestDesk::kRequestsMax)
+        : sessions_(log, {pool(), now}), desk_(planning_.get_executor(), goals_, sessions_, requests_max) {
+        if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
+        server_ = std::make_unique<IngestServer>(
+            io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), desk_}, config);
+        server_->start();
+        for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
+    }
+
+    RunningIngest(const RunningIngest&) = delete;
+    RunningIngest& operator=(const RunningIngest&) = delete;
+
+    /// Returns when every link has ended and every scan is durable. Links that were never told to end
+    /// hang here: that is a fault.
+    ~RunningIngest() {
+        server_->stop();
+        sessions_.drain();
+        for (auto& thread : io_threads_) thread.join();
+        planning_.join();
+        may_wait_.join();
+        compute_.join();
+    }
+
+    void stop_accepting() { server_->stop(); }
+    [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
+    [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
+    [[nodiscard]] guide::GoalBook& goals() { return goals_; }
+    [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
+    [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
+    [[nodiscard]] std::uint16_t port() const { return server_->port(); }
+
+    [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot(const std::string& session) {
+        return sessions_.wake(session).value()->snapshot();
+    }
+    [[nodiscard]] std::string digest(const std::string& session) {
+        return testing_support::digests_of(*snapshot(session));
+    }
+
+private:
+    static double now() { return 1'000.0; }
+    boost::asio::any_io_executor pool() { return compute_.get_executor(); }
+
+    boost::asio::thread_pool compute_{2};
+    metrics::Metrics metrics_{"test"};
+    boost::asio::thread_pool may_wait_{2};
+    boost::asio::thread_pool planning_{1};
+    boost::asio::io_context io_;
+    session::SessionRegistry sessions_;
+    guide::GoalBook goals_;
+    RequestDesk desk_;
+    std::unique_ptr<IngestServer> server_;
+    std::vector<std::thread> io_threads_;
+};
+
+} // namespace scanloom::ingest
