@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace scanloom::http {
 
@@ -25,6 +26,9 @@ struct Answering {
     std::function<Outlook(const Request&)> look = [](const Request& r) {
         return lane_of(r);
     }; ///< on I/O threads, first
+    std::function<std::optional<Response>(const Request&)> refuse = [](const Request&) {
+        return std::nullopt;
+    }; ///< on I/O threads, before a body is read: the answer to who is not let in
 };
 
 /// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:

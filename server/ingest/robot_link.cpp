@@ -60,7 +60,8 @@ RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkCo
       deadline_timer_(stream_.get_executor()) {
     boost::system::error_code ignored;
     const auto endpoint = stream_.socket().remote_endpoint(ignored);
-    peer_ = fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+    address_ = endpoint.address().to_string();
+    peer_ = fmt::format("{}:{}", address_, endpoint.port());
     stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
 }
 
@@ -75,6 +76,7 @@ asio::awaitable<void> RobotLink::run() {
         served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
     if (session_) session_->leave(self);
+    pass_.reset();
     if (ended_by_) served = *ended_by_;
     if (!served) services_.counters.failed(served.error().code).Increment();
     if (served) co_await part();
@@ -140,8 +142,42 @@ asio::awaitable<Result<>> RobotLink::settle() {
     co_return Result<>();
 }
 
+/// Before the session is looked for: who is not let in is not told which there are.
+Result<> RobotLink::let_in(const wire::Hello& hello) {
+    auto pass = services_.gate.let_drive(hello.token, hello.session, hello.robot);
+    if (!pass) {
+        const auto& why = pass.error();
+        note_refusal(why.reason, why.token, hello.session);
+        return prefixed("hello.token: ", why.error);
+    }
+    pass_ = std::move(*pass);
+    look_at_pass();
+    pass_->when_changed([weak = weak_from_this()] {
+        const auto self = weak.lock();
+        if (self) asio::post(self->stream_.get_executor(), [self] { self->look_at_pass(); });
+    });
+    return {};
+}
+
+/// The tokens in force may be others by now.
+void RobotLink::look_at_pass() {
+    if (!pass_) return;
+    if (const auto token = pass_->token()) {
+        token_ = token->name;
+        return;
+    }
+    note_refusal(access::Reason::kRevoked, token_, pass_->session());
+    end({Errc::kUnauthorized,
+         fmt::format("the token '{}' does not allow this any more; ask whoever runs this server for another", token_)});
+}
+
+void RobotLink::note_refusal(access::Reason reason, const std::string& token, const std::string& session) {
+    services_.audit.note({access::Port::kRobot, reason, address_, token, session});
+}
+
 asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     robot_ = hello.robot;
+    if (auto in = let_in(hello); !in) co_return in.error();
     auto session = co_await session_for(hello, services_.sessions, services_.may_wait);
     if (!session) co_return session.error();
     const auto joined = co_await join(**session, hello, shared_from_this());

@@ -3,6 +3,8 @@
 #include "common/net/link_stream.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "server/guard/audit.hpp"
+#include "server/guard/gate.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
 #include "server/ingest/unacknowledged.hpp"
@@ -37,14 +39,16 @@ struct LinkServices {
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
     RequestDesk& desk;
+    guard::Gate& gate;
+    guard::Audit& audit;
 };
 
 /// One robot's connection, from the hello to the farewell.
 ///
-/// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
-/// go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which what is under
-/// way is still acknowledged; an error; or the end of the connection. A fault ends this link with an Error frame and
-/// disturbs no other.
+/// hello -> the gate lets the robot in -> the session is found or made and joined -> welcome -> sensor descriptions and
+/// scan batches go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which
+/// what is under way is still acknowledged; an error; or the end of the connection. A fault ends this link with an
+/// Error frame and disturbs no other.
 /// Thread  run() and everything private on the stream's strand; the listener's calls from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
@@ -72,6 +76,7 @@ private:
     boost::asio::awaitable<Result<>> serve();
     boost::asio::awaitable<bool> shake_hands();
     boost::asio::awaitable<Result<>> settle();
+    [[nodiscard]] Result<> let_in(const wire::Hello& hello);
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
     [[nodiscard]] Result<> handle(wire::Message message);
@@ -88,16 +93,21 @@ private:
     void start_watch();
     void hang_up();
     void end(const Error& error);
+    void look_at_pass();
+    void note_refusal(access::Reason reason, const std::string& token, const std::string& session);
     void expect_something_within(std::chrono::steady_clock::duration time);
 
     net::LinkStream stream_;
     LinkServices services_;
     LinkConfig config_;
-    std::string peer_;
+    std::string address_; // of the peer
+    std::string peer_;    // with its port
     std::function<void()> greeted_;
 
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
-    std::size_t frame_bytes_ = 0; // of the frame last received, with its length prefix
+    std::size_t frame_bytes_ = 0;       // of the frame last received, with its length prefix
+    std::shared_ptr<guard::Pass> pass_; // from the hello on
+    std::string token_;                 // its name
     std::shared_ptr<session::Session> session_;
     std::string robot_;
     RobotIndex index_ = 0;      // of the robot in the session

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/guard/pass.hpp"
 #include "server/guide/way_book.hpp"
 #include "server/session/session.hpp"
 
@@ -16,6 +17,7 @@ struct Invitation {
     std::string name; ///< of the session, as its end is told after it is gone
     std::string tag;  ///< LiveEvent::session
     guide::WayBook& ways;
+    std::shared_ptr<guard::Pass> pass = nullptr; ///< by whose leave; none: nobody takes it back
 };
 
 } // namespace scanloom::live

@@ -52,6 +52,19 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
     for (std::size_t i = 0; i < kClasses.size(); ++i) by_class_[i] = &family.Add({{"code", kClasses[i]}});
 }
 
+RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
+    auto& family = prometheus::BuildCounter()
+                       .Name("scanloom_refusals_total")
+                       .Help("Who was not let in or asked for what his token does not allow, by port and reason.")
+                       .Register(registry);
+    for (const auto port : access::kPorts) {
+        for (const auto reason : access::kReasons) {
+            counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)] =
+                &family.Add({{"port", std::string(name_of(port))}, {"reason", std::string(name_of(reason))}});
+        }
+    }
+}
+
 Metrics::Metrics(std::string_view version) {
     prometheus::BuildGauge()
         .Name("scanloom_build_info")

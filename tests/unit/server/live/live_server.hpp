@@ -130,7 +130,10 @@ private:
     session::SessionRegistry sessions_{log_, compute_.get_executor(), [] { return 1'000.0; }};
     session::Weaves weaves_{log_, compute_.get_executor()};
     guide::GoalBook goals_;
-    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {}};
+    guard::Gate gate_;
+    guard::Audit audit_{metrics_.refusals()};
+    guard::Logins logins_;
+    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;
