@@ -28,7 +28,9 @@ void LoginTable::make_room(const std::string& token_hash, double now) {
     auto oldest = logins_.end();
     auto oldest_of_token = logins_.end();
     for (auto login = logins_.begin(); login != logins_.end(); ++login) {
-        const auto is_older = [&](auto than) { return than == logins_.end() || login->second.used < than->second.used; };
+        const auto is_older = [&](auto than) {
+            return than == logins_.end() || login->second.used < than->second.used;
+        };
         if (is_older(oldest)) oldest = login;
         if (login->second.token_hash != token_hash) continue;
         ++of_token;

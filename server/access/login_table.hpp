@@ -8,8 +8,8 @@
 
 namespace scanloom::access {
 
-/// Browsers that are signed in: of each only a hash of what its cookie holds, and whose token it was signed in with. The
-/// token's secret is in neither.
+/// Browsers that are signed in: of each only a hash of what its cookie holds, and whose token it was signed in with.
+/// The token's secret is in neither.
 ///
 /// Bounds  kLoginsMax; of one token kLoginsOfTokenMax. One more, and the one that was used longest ago is forgotten.
 /// Times   seconds of a clock that is never put back.

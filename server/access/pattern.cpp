@@ -15,9 +15,9 @@ bool is_valid_pattern(std::string_view pattern) noexcept {
 
 bool matches(std::string_view pattern, std::string_view name) noexcept {
     constexpr auto kNone = std::string_view::npos;
-    std::size_t at = 0;     // in the pattern
+    std::size_t at = 0;       // in the pattern
     std::size_t star = kNone; // the last '*' passed
-    std::size_t tried = 0;  // where what follows it was tried to begin
+    std::size_t tried = 0;    // where what follows it was tried to begin
     for (std::size_t i = 0; i < name.size();) {
         if (at < pattern.size() && pattern[at] == '*') {
             star = at++;

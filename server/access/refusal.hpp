@@ -21,8 +21,9 @@ enum class Reason {
     kRevoked,      ///< its token is no longer in force, while it was in use
 };
 
-inline constexpr std::array kReasons = {Reason::kNoToken,     Reason::kUnknownToken, Reason::kWrongRole, Reason::kWrongSession,
-                                        Reason::kForeignPage, Reason::kLimit,        Reason::kRevoked};
+inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownToken, Reason::kWrongRole,
+                                        Reason::kWrongSession, Reason::kForeignPage,  Reason::kLimit,
+                                        Reason::kRevoked};
 
 [[nodiscard]] constexpr std::string_view name_of(Port port) noexcept { return port == Port::kRobot ? "robot" : "http"; }
 

@@ -40,7 +40,7 @@ private:
     using Key = std::tuple<std::string, Port, Reason>;
     struct Kept {
         Refusal newest;
-        double told = 0.0;         // when
+        double told = 0.0;        // when
         std::uint64_t untold = 0; // since then
     };
 

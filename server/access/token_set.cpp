@@ -13,8 +13,8 @@ TokenRef TokenSet::find_hash(std::string_view hash) const {
     std::size_t index = 0;
     for (std::size_t n = 0; n < tokens_.size(); ++n) {
         const Token& token = *tokens_[n];
-        const bool same = token.hash.size() == hash.size() &&
-                          CRYPTO_memcmp(token.hash.data(), hash.data(), hash.size()) == 0;
+        const bool same =
+            token.hash.size() == hash.size() && CRYPTO_memcmp(token.hash.data(), hash.data(), hash.size()) == 0;
         found = same ? &token : found;
         index = same ? n : index;
     }

@@ -90,13 +90,15 @@ Result<> read_role(const toml::table& table, Token& token) {
 Result<> read_sessions(const toml::table& table, Token& token) {
     const auto* node = table.get("sessions");
     if (node == nullptr) {
-        return fault(table.source(), "sessions is missing in this [[token]]; add sessions = [\"*\"], or which it is for");
+        return fault(table.source(),
+                     "sessions is missing in this [[token]]; add sessions = [\"*\"], or which it is for");
     }
     const auto* patterns = node->as_array();
     if (patterns == nullptr || patterns->empty() || patterns->size() > kPatternsMax) {
-        return fault(node->source(), fmt::format("sessions is no list of 1 to {} patterns; write sessions = [\"*\"], or "
-                                                 "which it is for",
-                                                 kPatternsMax));
+        return fault(node->source(),
+                     fmt::format("sessions is no list of 1 to {} patterns; write sessions = [\"*\"], or "
+                                 "which it is for",
+                                 kPatternsMax));
     }
     for (const auto& element : *patterns) {
         auto pattern = element.value_exact<std::string>();
@@ -114,7 +116,8 @@ Result<> read_limit(std::string_view key, const toml::node& node, Limits& limits
     if (key == kRate) {
         const auto rate = node.value<double>();
         if (!rate || !(*rate >= kBytesPerSecondMin && *rate <= kRateMax)) {
-            return fault(node.source(), fmt::format("{} is not a number from {} to {}", key, kBytesPerSecondMin, kRateMax));
+            return fault(node.source(),
+                         fmt::format("{} is not a number from {} to {}", key, kBytesPerSecondMin, kRateMax));
         }
         limits.bytes_per_second = *rate;
         return {};
@@ -175,7 +178,8 @@ Result<> check_different(const toml::table& table, const Token& token, const std
 
 Result<TokenSet> read_tokens(const toml::array& tables) {
     if (tables.size() > kTokensMax) {
-        return fault(tables.source(), fmt::format("there are {} tokens, at most {} are read", tables.size(), kTokensMax));
+        return fault(tables.source(),
+                     fmt::format("there are {} tokens, at most {} are read", tables.size(), kTokensMax));
     }
     std::vector<TokenRef> tokens;
     for (const auto& node : tables) {
@@ -211,8 +215,8 @@ Result<TokenSet> parse_tokens(std::string_view toml) {
 }
 
 std::string text_of(const Token& token) {
-    auto text = fmt::format("[[token]]\nname = \"{}\"\nsha256 = \"{}\"\nrole = \"{}\"\nsessions = [\"{}\"]\n", token.name,
-                            token.hash, name_of(token.role), fmt::join(token.sessions, "\", \""));
+    auto text = fmt::format("[[token]]\nname = \"{}\"\nsha256 = \"{}\"\nrole = \"{}\"\nsessions = [\"{}\"]\n",
+                            token.name, token.hash, name_of(token.role), fmt::join(token.sessions, "\", \""));
     const Limits usual;
     std::vector<std::string> limits;
     for (const auto& count : kCounts) {

@@ -20,7 +20,8 @@ Denied denied(Reason reason, const TokenRef& token, std::string message, Errc co
 
 Denied unknown(std::string_view secret) {
     if (secret.empty())
-        return denied(Reason::kNoToken, nullptr, "a token is needed and none was sent; ask whoever runs this server for one");
+        return denied(Reason::kNoToken, nullptr,
+                      "a token is needed and none was sent; ask whoever runs this server for one");
     return denied(Reason::kUnknownToken, nullptr,
                   "the token that was sent is not in force here; ask whoever runs this server for one");
 }

@@ -21,7 +21,8 @@ constexpr std::size_t kBytesMax = std::size_t{4} << 20;
 /// An open file; closed with it.
 class Opened {
 public:
-    explicit Opened(const std::filesystem::path& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+    explicit Opened(const std::filesystem::path& path)
+        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
     ~Opened() {
         if (descriptor_ >= 0) ::close(descriptor_);
     }
@@ -35,8 +36,8 @@ private:
 };
 
 Error unreadable(const std::filesystem::path& path, int why) {
-    return {Errc::kNotFound, fmt::format("{}: the tokens cannot be read: {}", path.string(),
-                                         std::generic_category().message(why))};
+    return {Errc::kNotFound,
+            fmt::format("{}: the tokens cannot be read: {}", path.string(), std::generic_category().message(why))};
 }
 
 /// Of the file that is open, not of the path: nobody can exchange it in between.
@@ -52,8 +53,8 @@ Result<> check_file(const std::filesystem::path& path, int descriptor) {
                                  path.string())};
     }
     if (static_cast<std::size_t>(facts.st_size) <= kBytesMax) return {};
-    return Error{Errc::kTooLarge, fmt::format("{}: it has {} bytes; tokens take {} at most", path.string(),
-                                              facts.st_size, kBytesMax)};
+    return Error{Errc::kTooLarge,
+                 fmt::format("{}: it has {} bytes; tokens take {} at most", path.string(), facts.st_size, kBytesMax)};
 }
 
 Result<std::string> content_of(const std::filesystem::path& path) {

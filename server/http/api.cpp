@@ -158,7 +158,7 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
     case Operation::kGetSession: return get_session(sessions_, call);
     case Operation::kDeleteSession: return delete_session(sessions_, weaves_, tiles_, call);
-    case Operation::kImportMap: return import_map(sessions_, call);
+    case Operation::kImportMap: return import_map(sessions_, doorman_, call);
     case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
     case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);
     case Operation::kTileJson: return get_tilejson(maps_, call);

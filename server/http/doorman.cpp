@@ -42,10 +42,11 @@ std::optional<Denied> objection_to(const Token& token, const Match& match) {
                                   token.name, name_of(token.role)));
     }
     if (need == Need::kAll && !is_for_all(token)) {
-        return denied(Reason::kWrongSession, token,
-                      fmt::format("this tells of all sessions, and the token '{}' is not for all; use one whose sessions "
-                                  "are *",
-                                  token.name));
+        return denied(
+            Reason::kWrongSession, token,
+            fmt::format("this tells of all sessions, and the token '{}' is not for all; use one whose sessions "
+                        "are *",
+                        token.name));
     }
     const bool is_about_one = need == Need::kLook || need == Need::kChange;
     return is_about_one ? Doorman::objection(token, match.arguments["session"]) : std::nullopt;
@@ -70,8 +71,9 @@ std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Ma
 
 std::optional<Denied> Doorman::objection(const Token& token, std::string_view session) {
     if (is_for(token, session)) return std::nullopt;
-    return denied(Reason::kWrongSession, token,
-                  fmt::format("the token '{}' is not for this session; use another token or another session", token.name));
+    return denied(
+        Reason::kWrongSession, token,
+        fmt::format("the token '{}' is not for this session; use another token or another session", token.name));
 }
 
 guard::Admitted<TokenRef> Doorman::identify(const Request& request) const {
@@ -84,8 +86,8 @@ guard::Admitted<TokenRef> Doorman::identify(const Request& request) const {
 guard::Admitted<TokenRef> Doorman::identify_browser(const Request& request, std::string_view cookie) const {
     auto token = logins_.find(cookie, gate_);
     if (!token) {
-        return Denied{Reason::kUnknownToken, "",
-                      {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
+        return Denied{
+            Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
     }
     if (!needs_own_page(request) || is_own_page(request.origin, request.host)) return token;
     return denied(Reason::kForeignPage, *token,
@@ -102,6 +104,11 @@ Response Doorman::refuse(const Request& request, const Denied& why, std::string_
     if (why.reason == Reason::kUnknownToken)
         return problem(why.error, path).set("WWW-Authenticate", R"(Bearer realm="scanloom", error="invalid_token")");
     return problem(Status::forbidden, why.error.message, path);
+}
+
+Error Doorman::noted(const Call& call, Error error, std::string_view session) const {
+    if (error.code == Errc::kFull) note(call.request, {Reason::kLimit, call.token->name, error}, session);
+    return error;
 }
 
 void Doorman::note(const Request& request, const Denied& why, std::string_view session) const {

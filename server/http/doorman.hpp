@@ -5,6 +5,7 @@
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
 #include "server/guard/logins.hpp"
+#include "server/http/handlers/call.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/router.hpp"
@@ -31,15 +32,17 @@ public:
     [[nodiscard]] static std::optional<guard::Denied> objection(const access::Token& token, std::string_view session);
 
     /// Tells the audit. @return 401 with WWW-Authenticate where no known token was shown, else 403.
-    [[nodiscard]] Response refuse(const Request& request, const guard::Denied& why, std::string_view session = {}) const;
+    [[nodiscard]] Response refuse(const Request& request, const guard::Denied& why,
+                                  std::string_view session = {}) const;
 
-    /// Tells the audit alone.
-    void note(const Request& request, const guard::Denied& why, std::string_view session = {}) const;
+    /// The same error; the audit is told where it says that a limit is reached.
+    [[nodiscard]] Error noted(const Call& call, Error error, std::string_view session) const;
 
     [[nodiscard]] guard::Gate& gate() const noexcept { return gate_; }
     [[nodiscard]] guard::Logins& logins() const noexcept { return logins_; }
 
 private:
+    void note(const Request& request, const guard::Denied& why, std::string_view session) const;
     [[nodiscard]] guard::Admitted<access::TokenRef> identify(const Request& request) const;
     [[nodiscard]] guard::Admitted<access::TokenRef> identify_browser(const Request& request,
                                                                      std::string_view cookie) const;

@@ -19,6 +19,8 @@ IngestCounters::IngestCounters(prometheus::Registry& registry)
     : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
       scans_received(counter(registry, "scanloom_scans_received_total",
                              "Well-formed scans that robots sent, within their credit.")),
+      held_back_seconds(counter(registry, "scanloom_links_held_back_seconds_total",
+                                "Seconds in which links were not read, as their tokens' limits have it.")),
       scans_in_flight(
           gauge(registry, "scanloom_scans_in_flight", "Scans that were read and are not acknowledged yet.")),
       ack_seconds("scanloom_ack_seconds",

@@ -21,9 +21,10 @@ public:
     explicit IngestCounters(prometheus::Registry& registry);
 
     prometheus::Gauge& links_open;
-    prometheus::Counter& scans_received; ///< well-formed scans that arrived, within the credit
-    prometheus::Gauge& scans_in_flight;  ///< read and not acknowledged yet
-    DurationHistogram ack_seconds;       ///< of each scan: from being read to its ack being handed to the socket
+    prometheus::Counter& scans_received;    ///< well-formed scans that arrived, within the credit
+    prometheus::Counter& held_back_seconds; ///< in which links were not read, by the limits of their tokens
+    prometheus::Gauge& scans_in_flight;     ///< read and not acknowledged yet
+    DurationHistogram ack_seconds;          ///< of each scan: from being read to its ack being handed to the socket
 
     /// Links that ended without a goodbye, by the reason. Pre: one of the enumerators of Errc.
     [[nodiscard]] prometheus::Counter& failed(Errc reason) const { return *failed_[static_cast<std::size_t>(reason)]; }

@@ -16,6 +16,7 @@ struct SessionInfo {
     std::string name;
     double created = 0.0; ///< seconds since the epoch
     mapping::MapConfig config;
+    std::string created_by; ///< name of the token it was made with; empty: there was none
 };
 
 /// Tells a session from every other, also from a deleted one of the same name and from one of another
@@ -24,7 +25,9 @@ struct SessionInfo {
 
 /// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
 struct SessionLimits {
-    std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
+    std::size_t chunks_max = kMost; ///< less where a token was to make only small ones
+
+    static constexpr std::size_t kMost = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
 };
 
 /// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.

@@ -25,7 +25,7 @@ Result<> check_name(std::string_view name) {
 }
 
 /// Whether a map fits into a session.
-Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches) {
+Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches, const Maker& maker) {
     if (patches.empty()) return Error{Errc::kInvalidField, "the map has no cells"};
     grid::CellBox cells;
     for (const auto& patch : patches) {
@@ -33,10 +33,26 @@ Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPa
         if (auto ok = mapping::check_work(reach); !ok) return ok;
         cells.include(reach.cells);
     }
-    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(SessionLimits{}.chunks_max)) return {};
-    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than a session can have; use "
-                                          "larger cells",
-                                          cells.width(), cells.height(), config.cell_size)};
+    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(maker.limits.chunks_max)) return {};
+    const auto whose = maker.limits.chunks_max == SessionLimits::kMost
+                           ? std::string("a session can have")
+                           : fmt::format("the limit `cells` of the token '{}' allows", maker.token);
+    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than {}; use larger cells",
+                                          cells.width(), cells.height(), config.cell_size, whose)};
+}
+
+/// What the store keeps of a new session.
+wire::SessionRecord record_of(std::string_view name, double created, const mapping::MapConfig& config,
+                              const Maker& maker) {
+    wire::SessionRecord record{std::string(name), created, mapping::options_of(config)};
+    record.created_by = maker.token;
+    record.chunks_max = maker.limits.chunks_max == SessionLimits::kMost ? 0 : maker.limits.chunks_max;
+    return record;
+}
+
+SessionLimits limits_in(const wire::SessionRecord& record) {
+    if (record.chunks_max == 0) return {};
+    return {std::min<std::size_t>(record.chunks_max, SessionLimits::kMost)};
 }
 
 /// Errors  kOverloaded: the memory ran out.
@@ -136,9 +152,9 @@ Result<std::shared_ptr<Session>> SessionRegistry::weave(const store::StoredSessi
         keep_progress(stored.id, name, *recovered);
         return std::shared_ptr<Session>();
     }
-    return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config},
+    return std::make_shared<Session>(SessionInfo{stored.id, name, record->created, *config, record->created_by},
                                      std::move(recovered->projection), recovered->checkpointed, log_, compute_,
-                                     counters_, SessionLimits{}, may_wait_);
+                                     counters_, limits_in(*record), may_wait_);
 }
 
 /// A long recovery that is stopped again and again should come to its end all the same.
@@ -177,7 +193,7 @@ std::map<std::string, Error> SessionRegistry::damaged() const {
     return reasons;
 }
 
-Result<> SessionRegistry::check_new(std::string_view name) const {
+Result<> SessionRegistry::check_new(std::string_view name, const Maker& maker) const {
     if (draining_)
         return Error{Errc::kShuttingDown,
                      "the server is shutting down and makes no new sessions; try again when it is back"};
@@ -190,46 +206,53 @@ Result<> SessionRegistry::check_new(std::string_view name) const {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
     }
-    return {};
+    if (maker.token.empty()) return {};
+    const auto made = static_cast<std::size_t>(std::ranges::count_if(
+        sessions_, [&](const auto& entry) { return entry.second->info().created_by == maker.token; }));
+    if (made < maker.sessions_max) return {};
+    return Error{Errc::kFull, fmt::format("there are {} sessions that were made with the token '{}', the most that its "
+                                          "limit `sessions` allows; delete one, or have the limit raised",
+                                          made, maker.token)};
 }
 
-std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
+std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection,
+                                              const SessionLimits& limits) {
     auto session = std::make_shared<Session>(std::move(info), std::move(projection), 0, log_, compute_, counters_,
-                                             SessionLimits{}, may_wait_);
+                                             limits, may_wait_);
     const std::unique_lock lock(mutex_);
     sessions_.emplace(session->info().name, session);
     return session;
 }
 
-Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options) {
+Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options,
+                                                         const Maker& maker) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
 
     const std::lock_guard changing(changing_);
-    if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = now_();
-    const auto id =
-        log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
+    if (auto is_new = check_new(name, maker); !is_new) return is_new.error();
+    const auto record = record_of(name, now_(), *config, maker);
+    const auto id = log_.create_session(wire::encode_session(record));
     if (!id) return id.error();
-    return add({*id, std::string(name), created, *config}, mapping::Projection(*config));
+    return add({*id, record.name, record.created, *config, maker.token}, mapping::Projection(*config), maker.limits);
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view name, const SessionOptions& options,
-                                                             const std::vector<MapPatch>& patches) {
+                                                             const std::vector<MapPatch>& patches, const Maker& maker) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    if (auto ok = check_patches(*config, patches); !ok) return ok.error();
+    if (auto ok = check_patches(*config, patches, maker); !ok) return ok.error();
     // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
     auto projection = woven(*config, patches);
     if (!projection) return projection.error();
 
     const std::lock_guard changing(changing_);
-    if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = now_();
-    const auto id = log_.create_session(wire::encode_session(
-        {std::string(name), created, mapping::options_of(*config), static_cast<std::uint32_t>(patches.size())}));
+    if (auto is_new = check_new(name, maker); !is_new) return is_new.error();
+    auto record = record_of(name, now_(), *config, maker);
+    record.map_patches = static_cast<std::uint32_t>(patches.size());
+    const auto id = log_.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
         const auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
@@ -237,7 +260,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
         static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
         return imported.error();
     }
-    return add({*id, std::string(name), created, *config}, std::move(*projection));
+    return add({*id, record.name, record.created, *config, maker.token}, std::move(*projection), maker.limits);
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/session/maker.hpp"
 #include "server/session/recovery.hpp"
 #include "server/session/session.hpp"
 #include "server/store/scan_log.hpp"
@@ -48,14 +49,17 @@ public:
     /// What could not be recovered: name and reason.
     [[nodiscard]] std::map<std::string, Error> damaged() const;
 
-    /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown.
-    [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options);
+    /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown; kFull: the maker has
+    ///         made as many as it may.
+    [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options,
+                                                          const Maker& maker = {});
 
     /// The same, beginning with a map that was made elsewhere: its patches are the log's first entries. Where a crash
     /// comes between, the next start removes what there is of it.
     /// Errors  also kInvalidField, kFull: the map at these cells.
     [[nodiscard]] Result<std::shared_ptr<Session>> import_map(std::string_view name, const SessionOptions& options,
-                                                              const std::vector<MapPatch>& patches);
+                                                              const std::vector<MapPatch>& patches,
+                                                              const Maker& maker = {});
 
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
     /// Pre  never called from a thread of the compute executor.
@@ -78,8 +82,9 @@ private:
         Error error;
     };
 
-    [[nodiscard]] Result<> check_new(std::string_view name) const;
-    [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
+    [[nodiscard]] Result<> check_new(std::string_view name, const Maker& maker) const;
+    [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection,
+                                               const SessionLimits& limits);
     [[nodiscard]] std::shared_ptr<Session> forget(std::string_view name);
     void give_back_memory();
     void recover_one(const store::StoredSession& stored);

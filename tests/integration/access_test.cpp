@@ -115,6 +115,103 @@ TEST_F(AccessTest, WhatWasAcknowledgedBeforeStays) {
     EXPECT_EQ(running_->snapshot("depot-1")->robots.at(0).last_seq, 20U);
 }
 
+class LimitsTest : public AccessTest {
+protected:
+    /// Robots with a token of that limit alone.
+    std::unique_ptr<RobotSocket> robot_with(const access::Limits& limits, const std::string& robot = "r1") {
+        running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, limits)}));
+        return welcomed(port(), hello_of("robot", "lab", robot));
+    }
+
+    static void expect_limit(RobotSocket& robot, const std::string& limit) {
+        const auto end = farewell_to(robot);
+        EXPECT_FALSE(end.retryable) << end.error.message;
+        EXPECT_THAT(end.error.message, AllOf(HasSubstr("`" + limit + "`"), HasSubstr("'robot'")));
+    }
+};
+
+TEST_F(LimitsTest, ConnectionsAreCountedByToken) {
+    const auto one = robot_with({.connections = 1});
+    const auto refused = refusal(hello_of("robot", "lab", "r2"));
+    EXPECT_EQ(refused.error.code, Errc::kOverloaded);
+    EXPECT_TRUE(refused.retryable) << "the other may leave";
+    EXPECT_THAT(refused.error.message, HasSubstr("`connections`"));
+    const auto again = welcomed(port(), hello_of("robot", "lab", "r1")); // in the place of its own earlier link
+    EXPECT_EQ(farewell_to(*one).error.code, Errc::kReplaced);
+    again->send(wire::Goodbye{""});
+    EXPECT_EQ(again->receive(), std::nullopt);
+    EXPECT_EQ(refusals(Reason::kLimit), 1.0);
+}
+
+TEST_F(LimitsTest, SensorsAreCountedOverAllLinksOfARobot) {
+    const auto first = robot_with({.sensors = 2});
+    auto sensor = small_laser();
+    for (const std::uint32_t id : {0U, 1U, 0U}) {
+        sensor.id = id;
+        first->send(sensor);
+    }
+    first->send(wire::Goodbye{""});
+    while (first->receive()) {
+    }
+    const auto second = welcomed(port(), hello_of("robot", "lab"));
+    sensor.id = 2;
+    second->send(sensor);
+    expect_limit(*second, "sensors");
+    EXPECT_EQ(refusals(Reason::kLimit), 1.0);
+}
+
+TEST_F(LimitsTest, BeamsAreCountedInEachScan) {
+    const auto beams = random_scan(1, 1).ranges.size();
+    const auto robot = robot_with({.beams = beams});
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 10);
+    running_->gate().replace(TokenSet({token("robot", Role::kRobot, {"*"}, {.beams = beams - 1})}));
+    // The new limit is in force once the link has heard of it: it was told before anything that comes from now on.
+    robot->send(wire::ScanBatch{{random_scan(1, 11)}});
+    expect_limit(*robot, "beams");
+    EXPECT_EQ(running_->snapshot("lab")->robots.at(0).last_seq, 10U);
+}
+
+TEST_F(LimitsTest, SessionsAreCountedByWhoMadeThem) {
+    const auto robot = robot_with({.sessions = 1});
+    EXPECT_EQ(running_->sessions().find("lab")->info().created_by, "robot");
+    const auto refused = refusal(hello_of("robot", "second"));
+    EXPECT_EQ(refused.error.code, Errc::kFull);
+    EXPECT_THAT(refused.error.message, HasSubstr("`sessions`"));
+    EXPECT_EQ(refusals(Reason::kLimit), 1.0);
+    robot->send(wire::Goodbye{""});
+    EXPECT_EQ(robot->receive(), std::nullopt);
+}
+
+TEST_F(LimitsTest, AMapHasAsManyCellsAsItsMakerMayHave) {
+    const auto robot = robot_with({.cells = 4096});
+    robot->send(small_laser());
+    robot->send(wire::ScanBatch{random_scans(1, 1, 10)});
+    const auto end = farewell_to(*robot);
+    EXPECT_EQ(end.error.code, Errc::kFull);
+    EXPECT_THAT(end.error.message, AllOf(HasSubstr("`cells`"), HasSubstr("'robot'")));
+}
+
+TEST_F(LimitsTest, WhatComesTooFastIsReadLaterAndNothingIsLost) {
+    const auto robot = robot_with({.bytes_per_second = 32'000}); // 400 scans are some 50 kB
+    robot->send(small_laser());
+    stream(*robot, 1, 1, 400);
+    EXPECT_GT(running_->counters().held_back_seconds.Value(), 0.0);
+    robot->send(wire::Goodbye{""});
+    while (robot->receive()) {
+    }
+    EXPECT_EQ(running_->snapshot("lab")->robots.at(0).last_seq, 400U);
+}
+
+TEST_F(LimitsTest, ALinkThatIsHeldBackEndsWithItsToken) {
+    const auto robot = robot_with({.bytes_per_second = access::kBytesPerSecondMin});
+    robot->send(small_laser());
+    robot->send(wire::ScanBatch{random_scans(1, 1, 400)});
+    while (running_->counters().held_back_seconds.Value() == 0.0) std::this_thread::yield();
+    running_->gate().replace(TokenSet({all_[2]}));
+    EXPECT_EQ(farewell_to(*robot).error.code, Errc::kUnauthorized);
+}
+
 TEST_F(AccessTest, WithoutTokensWhatIsSentAsOneIsIgnored) {
     running_.reset();
     start();

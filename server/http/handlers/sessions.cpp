@@ -89,8 +89,8 @@ Result<Response> create_session(session::SessionRegistry& sessions, const Doorma
     if (!wanted) return wanted.error();
     if (const auto why = Doorman::objection(*call.token, wanted->name))
         return doorman.refuse(call.request, *why, wanted->name);
-    const auto session = sessions.create(wanted->name, wanted->options);
-    if (!session) return session.error();
+    const auto session = sessions.create(wanted->name, wanted->options, session::maker_of(*call.token));
+    if (!session) return doorman.noted(call, session.error(), wanted->name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", wanted->name));
     response.status = Status::created;
     return response;

@@ -39,8 +39,9 @@ protected:
         viewer_ = make("viewer", "viewer", "depot-*");
         operator_ = make("chief", "operator", "*");
         write(robot_.lines + viewer_.lines + operator_.lines);
-        server_ = std::make_unique<RunningServer>(place_.path() / "store", log_, 0, 0,
-                                                  std::vector<std::string>{"--tokens", file_.string(), "--log-level", "debug"});
+        server_ = std::make_unique<RunningServer>(
+            place_.path() / "store", log_, 0, 0,
+            std::vector<std::string>{"--tokens", file_.string(), "--log-level", "debug"});
     }
 
     MadeToken make(const std::string& name, const std::string& role, const std::string& sessions) {

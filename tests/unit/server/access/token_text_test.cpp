@@ -40,11 +40,12 @@ std::string fault_with(const std::string& key, const std::string& line) {
 }
 
 TEST(TokenText, ATokenHasWhatItSays) {
-    const auto tokens = parse_tokens("# ours\n[[token]]\nname = \"depot\"\nsha256 = \"" + hash('a') +
-                                     "\"\nrole = \"viewer\"\nsessions = [\"depot-*\", # both\n  \"lab\"]\n"
-                                     "limits = { connections = 2, beams = 720, bytes_per_second = 2e4, cells = 4096 }\n" +
-                                     stanza("other", 'b'))
-                            .value();
+    const auto tokens =
+        parse_tokens("# ours\n[[token]]\nname = \"depot\"\nsha256 = \"" + hash('a') +
+                     "\"\nrole = \"viewer\"\nsessions = [\"depot-*\", # both\n  \"lab\"]\n"
+                     "limits = { connections = 2, beams = 720, bytes_per_second = 2e4, cells = 4096 }\n" +
+                     stanza("other", 'b'))
+            .value();
     ASSERT_EQ(tokens.tokens().size(), 2U);
     const Token& token = *tokens.tokens()[0];
     EXPECT_EQ(token.name, "depot");

@@ -67,8 +67,8 @@ TEST(Gate, ATokenHasAsManyRobotsAsItsLimitSays) {
 }
 
 TEST(Gate, PassesEndWithWhatAllowedThem) {
-    Gate gate(TokenSet({token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator),
-                        token("d", Role::kRobot)}));
+    Gate gate(TokenSet(
+        {token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator), token("d", Role::kRobot)}));
     std::map<std::string, int> told;
     std::map<std::string, std::shared_ptr<Pass>> passes;
     for (const std::string name : {"a", "b", "c", "d"}) {
@@ -78,7 +78,8 @@ TEST(Gate, PassesEndWithWhatAllowedThem) {
     passes["watch"] = gate.let_watch(gate.admit("secret of c").value(), "lab").value();
     EXPECT_TRUE(told.empty());
     // a as before, b is gone, c watches and drives no more, d is for other sessions.
-    gate.replace(TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
+    gate.replace(
+        TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
     EXPECT_EQ(passes["a"]->token()->limits.connections, 3U);
     for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(passes[gone]->token(), nullptr) << gone;
     EXPECT_NE(passes["watch"]->token(), nullptr);

@@ -30,8 +30,8 @@ protected:
         return tokens ? "taken" : tokens.error().message;
     }
 
-    const std::string good_ = "[[token]]\nname = \"a\"\nsha256 = \"" + std::string(64, 'a') +
-                              "\"\nrole = \"robot\"\nsessions = [\"*\"]\n";
+    const std::string good_ =
+        "[[token]]\nname = \"a\"\nsha256 = \"" + std::string(64, 'a') + "\"\nrole = \"robot\"\nsessions = [\"*\"]\n";
     TemporaryDirectory directory_;
 };
 

@@ -60,9 +60,12 @@ protected:
 
 std::string target_of(const Route& route, std::string_view session) {
     std::string target(route.pattern);
-    const std::map<std::string, std::string> values = {{"{session}", std::string(session)}, {"{layer}", "occupancy"},
-                                                       {"{z}", "9"},                        {"{x}", "256"},
-                                                       {"{y}", "255"},                      {"{weave}", "none"},
+    const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
+                                                       {"{layer}", "occupancy"},
+                                                       {"{z}", "9"},
+                                                       {"{x}", "256"},
+                                                       {"{y}", "255"},
+                                                       {"{weave}", "none"},
                                                        {"{file}", "none.js"}};
     for (const auto& [name, value] : values) {
         if (const auto at = target.find(name); at != std::string::npos) target.replace(at, name.size(), value);
@@ -76,12 +79,14 @@ bool is_let_in(const Response& response) {
 
 /// The table of docs/security.md, written down once more.
 TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
-    const std::set<std::string_view> open = {"/", "/assets/{file}", "/livez", "/readyz", "/openapi.json", "/api/v1/login"};
+    const std::set<std::string_view> open = {"/",       "/assets/{file}", "/livez",
+                                             "/readyz", "/openapi.json",  "/api/v1/login"};
     const std::set<std::string_view> change_nothing = {"plan", "coverage", "weave"};
     for (const auto& route : routes()) {
         if (open.contains(route.pattern)) continue; // AllThatAnybodyMay
         const std::string method(route.method);
-        const bool looks = method == "GET" || change_nothing.contains(route.pattern.substr(route.pattern.rfind('/') + 1));
+        const bool looks =
+            method == "GET" || change_nothing.contains(route.pattern.substr(route.pattern.rfind('/') + 1));
         const bool names_one = route.pattern.find("{session}") != std::string_view::npos;
         for (const auto* session : {"depot-1", "depot-none", "lab", "none"}) {
             const std::string_view name = session;
@@ -138,14 +143,16 @@ TEST_F(ApiAccessTest, AForbiddenSessionAndAnUnknownOneLookAlike) {
             const auto target = target_of(route, session);
             const auto response = ask_as("operator", std::string(route.method), target, "{}");
             std::string text(response.body.bytes());
-            for (auto at = text.find(session); at != std::string::npos; at = text.find(session)) text.erase(at, session.size());
+            for (auto at = text.find(session); at != std::string::npos; at = text.find(session))
+                text.erase(at, session.size());
             return std::pair(response.status, text);
         };
         EXPECT_EQ(answers("lab").first, Status::forbidden) << route.pattern;
         EXPECT_EQ(answers("lab"), answers("bal")) << route.pattern;
     }
     const auto made = [&](const std::string& name) {
-        return detail(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})"), Status::forbidden);
+        return detail(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})"),
+                      Status::forbidden);
     };
     EXPECT_EQ(made("lab"), made("bal"));
 }
@@ -168,6 +175,23 @@ TEST_F(ApiAccessTest, OperatorsMakeTheSessionsTheyAreFor) {
     EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"depot-2"})").status, Status::created);
     EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"attic"})").status, Status::forbidden);
     EXPECT_EQ(registry_.find("attic"), nullptr);
+}
+
+TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
+    auto two = *token("two", Role::kOperator, {"*"});
+    two.limits.sessions = 2;
+    gate_.replace(access::TokenSet({std::make_shared<const Token>(two)}));
+    const auto make = [&](const std::string& name) {
+        return ask_as("two", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})");
+    };
+    EXPECT_EQ(make("a").status, Status::created);
+    EXPECT_EQ(make("b").status, Status::created);
+    EXPECT_THAT(detail(make("c"), Status::insufficient_storage), AllOf(HasSubstr("'two'"), HasSubstr("`sessions`")));
+    EXPECT_EQ(refusals(access::Reason::kLimit), 1.0);
+    EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
+    EXPECT_EQ(make("c").status, Status::insufficient_storage) << "that was somebody else's";
+    EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/a").status, Status::no_content);
+    EXPECT_EQ(make("c").status, Status::created);
 }
 
 TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
@@ -303,7 +327,8 @@ TEST_F(ApiLoginTest, AllThatAnybodyMay) {
     const auto who = boost::json::parse(ask_as("", "GET", "/api/v1/login").body.bytes());
     EXPECT_EQ(who.at("needed"), true);
     EXPECT_TRUE(who.at("token").is_null());
-    for (const auto* open : {"/livez", "/readyz", "/openapi.json"}) EXPECT_EQ(ask_as("", "GET", open).status, Status::ok);
+    for (const auto* open : {"/livez", "/readyz", "/openapi.json"})
+        EXPECT_EQ(ask_as("", "GET", open).status, Status::ok);
     EXPECT_EQ(refusals(access::Reason::kNoToken), 0.0);
 }
 

@@ -17,7 +17,8 @@ TEST(Credentials, ACookieIsFoundAmongOthers) {
     EXPECT_EQ(cookie_of("a=1; scanloom_login=xyz; b=2", kLoginCookie), "xyz");
     EXPECT_EQ(cookie_of("scanloom_login=x=y", kLoginCookie), "x=y");
     EXPECT_EQ(cookie_of("scanloom_login=", kLoginCookie), "");
-    for (const auto* none : {"", ";;", "scanloom_login", "xscanloom_login=1", "scanloom_login2=1", "a=scanloom_login=1"}) {
+    for (const auto* none :
+         {"", ";;", "scanloom_login", "xscanloom_login=1", "scanloom_login2=1", "a=scanloom_login=1"}) {
         EXPECT_EQ(cookie_of(none, kLoginCookie), std::nullopt) << none;
     }
 }
