@@ -12,6 +12,7 @@
 
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 namespace scanloom::http {
@@ -34,6 +35,9 @@ public:
     /// Tells the audit. @return 401 with WWW-Authenticate where no known token was shown, else 403.
     [[nodiscard]] Response refuse(const Request& request, const guard::Denied& why,
                                   std::string_view session = {}) const;
+
+    /// Tells the audit alone.
+    void note(access::Refusal refusal) const { audit_.note(std::move(refusal)); }
 
     /// The same error; the audit is told where it says that a limit is reached.
     [[nodiscard]] Error noted(const Call& call, Error error, std::string_view session) const;

@@ -4,6 +4,7 @@
 #include "server/guide/way_book.hpp"
 #include "server/session/session.hpp"
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -18,6 +19,7 @@ struct Invitation {
     std::string tag;  ///< LiveEvent::session
     guide::WayBook& ways;
     std::shared_ptr<guard::Pass> pass = nullptr; ///< by whose leave; none: nobody takes it back
+    std::function<void()> taken_back = [] {};    ///< called when the pass is no longer good, as the viewer ends
 };
 
 } // namespace scanloom::live

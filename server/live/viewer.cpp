@@ -196,8 +196,10 @@ net::awaitable<void> Viewer::wait_for_turn() {
 /// On `showing`.
 Viewer::Narration Viewer::narrate() {
     told_ = false; // before looking: what changes from now on is told again
-    if (invitation_.pass && !invitation_.pass->token())
+    if (invitation_.pass && !invitation_.pass->token()) {
+        invitation_.taken_back();
         return {{}, close_with(kTokenGone, "your token does not allow this any more; sign in with another"), {}};
+    }
     const auto session = invitation_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
     if (!session || (closing && closing->code == Errc::kGone)) {

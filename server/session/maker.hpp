@@ -11,7 +11,7 @@ namespace scanloom::session {
 
 /// Who makes a session, and what it may have.
 struct Maker {
-    std::string token; ///< its name; empty: nobody in particular
+    std::string token;                                                  ///< its name; empty: nobody in particular
     std::size_t sessions_max = std::numeric_limits<std::size_t>::max(); ///< made with it that exist
     SessionLimits limits;                                               ///< of each
 };

@@ -47,7 +47,10 @@ Result<Response> get_live(const session::SessionRegistry& sessions, guide::WayBo
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), ways, std::move(*pass)});
+        live::Invitation{*session, info.id, info.name, session_tag(info), ways, std::move(*pass),
+                         [doorman, peer = call.request.peer, token = call.token->name, name = info.name] {
+                             doorman.note({access::Port::kHttp, access::Reason::kRevoked, peer, token, name});
+                         }});
     return response;
 }
 

@@ -117,6 +117,8 @@ public:
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
     [[nodiscard]] guide::WayBook& ways() { return goals_.ways(); }
+    [[nodiscard]] guard::Gate& gate() { return gate_; }
+    [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
