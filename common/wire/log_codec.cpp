@@ -127,6 +127,8 @@ std::string encode_session(const SessionRecord& record) {
     proto.set_created(record.created);
     to_proto(record.options, *proto.mutable_config());
     proto.set_map_patches(record.map_patches);
+    proto.set_created_by(record.created_by);
+    proto.set_chunks_max(record.chunks_max);
     return proto.SerializeAsString();
 }
 
@@ -135,7 +137,8 @@ Result<SessionRecord> decode_session(std::string_view bytes) {
     if (!proto.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a session");
     auto options = from_proto(proto.config());
     if (!options) return options.error();
-    return SessionRecord{proto.name(), proto.created(), *options, proto.map_patches()};
+    return SessionRecord{proto.name(),        proto.created(),    *options,
+                         proto.map_patches(), proto.created_by(), proto.chunks_max()};
 }
 
 } // namespace scanloom::wire

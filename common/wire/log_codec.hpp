@@ -17,6 +17,8 @@ struct SessionRecord {
     double created = 0.0;          ///< seconds since the epoch
     SessionOptions options;        ///< fully resolved when the session was created
     std::uint32_t map_patches = 0; ///< entries that an import begins its log with
+    std::string created_by;        ///< name of the token it was made with; empty: there was none
+    std::uint64_t chunks_max = 0;  ///< that its maps may have; 0: as many as any may
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };

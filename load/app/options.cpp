@@ -44,7 +44,8 @@ void add_link_options(CLI::App& app, LoadOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
     app.add_option("--http", raw.http, "HTTP port of the server, HOST:PORT: to watch, to verify, and for its CPU")
         ->capture_default_str();
-    app.add_option("--token-file", options.token_file, "File that holds the token of the robots")
+    app.add_option("--token-file", options.token_file,
+                   "File that holds a token: of the robots, and of whoever asks over HTTP; of the role operator")
         ->check(CLI::ExistingFile);
     app.add_flag("--tls", options.tls, "Encrypt the links, and check that the server is the one that --server names");
     app.add_option("--tls-ca", options.tls_ca_file,

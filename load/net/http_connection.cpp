@@ -28,8 +28,10 @@ constexpr std::uint64_t kBodyMax = std::uint64_t{64} << 20;
 
 } // namespace
 
-HttpConnection::HttpConnection(asio::any_io_executor executor, robot::ServerAddress server)
-    : server_(std::move(server)), stream_(std::move(executor)) {}
+std::string authorization_of(const std::string& token) { return token.empty() ? token : "Bearer " + token; }
+
+HttpConnection::HttpConnection(asio::any_io_executor executor, robot::ServerAddress server, const std::string& token)
+    : server_(std::move(server)), authorization_(authorization_of(token)), stream_(std::move(executor)) {}
 
 asio::awaitable<boost::system::error_code> HttpConnection::connect() {
     asio::ip::tcp::resolver resolver(stream_.get_executor());
@@ -48,6 +50,7 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
                                                         std::string if_none_match) {
     http::request<http::empty_body> request(method, target, 11);
     request.set(http::field::host, fmt::format("{}:{}", server_.host, server_.port));
+    if (!authorization_.empty()) request.set(http::field::authorization, authorization_);
     if (!if_none_match.empty()) request.set(http::field::if_none_match, if_none_match);
     boost::system::error_code failed;
     for (;;) {

@@ -27,7 +27,8 @@ struct HttpAnswer {
 /// Thread  one request at a time, on its executor.
 class HttpConnection {
 public:
-    HttpConnection(boost::asio::any_io_executor executor, robot::ServerAddress server);
+    /// `token` is shown with every request; empty: none.
+    HttpConnection(boost::asio::any_io_executor executor, robot::ServerAddress server, const std::string& token);
 
     /// Pre     the connection stays until this is done.
     /// Errors  kUnreachable: nobody answers; kTimeout.
@@ -48,12 +49,16 @@ private:
     [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect();
 
     robot::ServerAddress server_;
+    std::string authorization_; // empty: none
     boost::beast::tcp_stream stream_;
     boost::beast::flat_buffer buffer_;
     std::chrono::seconds patience_{30};
     std::uint64_t bytes_in_ = 0;
     bool is_open_ = false;
 };
+
+/// What an Authorization field holds; empty where there is no token.
+[[nodiscard]] std::string authorization_of(const std::string& token);
 
 /// What the server says of an answer that is not the one asked for, as a failure.
 [[nodiscard]] Error refusal(const HttpAnswer& answer, const std::string& target);

@@ -15,6 +15,7 @@ namespace scanloom::load {
 struct OnlookerShared {
     const RunClock& clock;
     robot::ServerAddress http;
+    std::string token; ///< empty: none
     AudienceFigures& figures;
     bool stopped = false; ///< whoever sees it ends
 };

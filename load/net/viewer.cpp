@@ -31,7 +31,8 @@ struct Entry {
     std::string refusal; ///< what the server said instead of letting it in; empty: nothing
 };
 
-asio::awaitable<Entry> enter(Stream& stream, const robot::ServerAddress& server, std::string session) {
+asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::string session) {
+    const auto& server = shared.http;
     asio::ip::tcp::resolver resolver(stream.get_executor());
     const auto [unresolved, addresses] = co_await resolver.async_resolve(server.host, server.port, kUse);
     if (unresolved) co_return Entry{unresolved, {}};
@@ -41,6 +42,10 @@ asio::awaitable<Entry> enter(Stream& stream, const robot::ServerAddress& server,
     if (refused) co_return Entry{refused, {}};
     const auto host = fmt::format("{}:{}", server.host, server.port);
     const auto target = fmt::format("/api/v1/sessions/{}/live", session);
+    if (const auto authorization = authorization_of(shared.token); !authorization.empty()) {
+        stream.set_option(beast::websocket::stream_base::decorator(
+            [authorization](auto& request) { request.set(beast::http::field::authorization, authorization); }));
+    }
     beast::websocket::response_type answer;
     const auto [failed] = co_await stream.async_handshake(answer, host, target, kUse);
     tcp.expires_never(); // while nothing changes there are no events
@@ -92,7 +97,7 @@ asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
     Standing standing(figures);
     while (!shared.stopped) {
         Stream stream(executor);
-        Entry entry = co_await enter(stream, shared.http, session);
+        Entry entry = co_await enter(stream, shared, session);
         const bool watches = !entry.failed;
         if (watches) {
             standing.let_in();

@@ -22,6 +22,7 @@ int run(const app::ServerOptions& options) {
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
+    for (const auto& warning : app::guard_warnings(options)) spdlog::warn("{}", warning);
     auto server = app::Server::open(options, app::limits_within(descriptors));
     auto ended = server ? (*server)->run() : Result<>(server.error());
     if (ended) return kExitDone;

@@ -4,11 +4,13 @@
 #include "common/app/machine.hpp"
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
+#include "server/app/token_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <chrono>
@@ -22,7 +24,8 @@ constexpr const char* kAbout = "Keeps the scans of robots in a durable log and s
                                "Prints one line of JSON with its ports when it is ready.";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML) or in the environment "
-    "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.";
+    "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.\n"
+    "`scanloom-server token --help` says how tokens are made.";
 
 constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
 
@@ -35,7 +38,8 @@ struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
-    std::string web; ///< empty: not given
+    std::string tokens; ///< empty: not given, as the next
+    std::string web;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;
     double disk_reserve_mib = 256.0;
@@ -67,6 +71,9 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     auto* key = app.add_option("--robot-tls-key", options.tls_key, "Its private key in PEM, without a password");
     certificate->needs(key);
     key->needs(certificate);
+    app.add_option("--tokens", raw.tokens,
+                   "File that says who may do what (TOML); without it, whoever reaches a port may do everything. "
+                   "SIGHUP has it read again");
     app.add_option("--web", raw.web, "Directory of the viewer's files; it holds index.html");
     app.add_option("--threads", options.threads, "Threads that weave maps, and as many that answer requests")
         ->check(CLI::Range(1, 256))
@@ -93,7 +100,7 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
         ->capture_default_str();
     app.add_flag("--insecure", options.insecure,
-                 "Listen beyond this machine, although anybody there may send and read");
+                 "Listen beyond this machine, although nothing guards a port: anybody there may send and read");
 }
 
 /// What was named has to be there; what was not may be missing.
@@ -133,6 +140,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
     options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));
+    options.tokens = raw.tokens;
     options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
     if (auto found = settle_web(raw.web, options); !found) return found.error();
     if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
@@ -142,6 +150,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
 } // namespace
 
 std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv) {
+    if (auto made = token_command(argc, argv)) return std::move(*made);
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     Raw raw;
@@ -177,17 +186,58 @@ Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text) {
     return boost::asio::ip::tcp::endpoint(address, port);
 }
 
+namespace {
+
+/// A port that others can reach, and what stands before it.
+struct Guard {
+    const char* flag;
+    const boost::asio::ip::tcp::endpoint& endpoint;
+    bool has_tokens;
+    bool has_tls;
+    const char* remedy; ///< what else would guard it
+
+    [[nodiscard]] bool is_reached() const { return !endpoint.address().is_loopback(); }
+};
+
+std::array<Guard, 2> guards_of(const ServerOptions& options) {
+    const bool has_tokens = !options.tokens.empty();
+    return {{{"--listen", options.listen, has_tokens, !options.tls_certificate.empty(),
+              "--tokens or --robot-tls-cert guard it"},
+             {"--http", options.http, has_tokens, false, "--tokens guards it"}}};
+}
+
+} // namespace
+
 Result<> check_guarded(const ServerOptions& options) {
     if (options.insecure) return {};
-    for (const auto& endpoint : {options.listen, options.http}) {
-        if (endpoint.address().is_loopback()) continue;
+    for (const auto& guard : guards_of(options)) {
+        if (!guard.is_reached() || guard.has_tokens || guard.has_tls) continue;
         return Error{
             Errc::kInvalidField,
-            fmt::format("{} can be reached from other machines and nothing guards it; listen on 127.0.0.1, or say "
-                        "--insecure if everybody there may send and read",
-                        endpoint.address().to_string())};
+            fmt::format(
+                "{} {} can be reached from other machines and nothing guards it; {}; or listen on 127.0.0.1, or "
+                "say --insecure if everybody there may send and read",
+                guard.flag, guard.endpoint.address().to_string(), guard.remedy)};
     }
     return {};
+}
+
+std::vector<std::string> guard_warnings(const ServerOptions& options) {
+    std::vector<std::string> warnings;
+    for (const auto& guard : guards_of(options)) {
+        if (!guard.is_reached()) continue;
+        if (!guard.has_tls && guard.has_tokens) {
+            warnings.push_back(
+                fmt::format("{}: tokens come in without TLS, and whoever is on the way there can read them "
+                            "and all else, and use them",
+                            guard.flag));
+        } else if (!guard.has_tokens) {
+            warnings.push_back(fmt::format("{}: no token is asked for, and whoever reaches it can send and read "
+                                           "everything{}",
+                                           guard.flag, guard.has_tls ? ", though nobody on the way can" : ""));
+        }
+    }
+    return warnings;
 }
 
 } // namespace scanloom::app

@@ -23,6 +23,7 @@ struct ServerOptions {
     std::filesystem::path web;             ///< the viewer's files
     std::filesystem::path tls_certificate; ///< of the robot port; empty: robots speak plainly
     std::filesystem::path tls_key;
+    std::filesystem::path tokens;        ///< who may do what; empty: everybody may do everything
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
@@ -38,7 +39,10 @@ struct ServerOptions {
 /// "127.0.0.1:8080", "[::1]:0". Errors: kInvalidField.
 [[nodiscard]] Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text);
 
-/// Errors  kInvalidField: an endpoint beyond loopback without --insecure.
+/// Errors  kInvalidField: an endpoint beyond loopback that nothing guards, without --insecure.
 [[nodiscard]] Result<> check_guarded(const ServerOptions& options);
+
+/// What others can do all the same, a sentence each: for whoever starts the server.
+[[nodiscard]] std::vector<std::string> guard_warnings(const ServerOptions& options);
 
 } // namespace scanloom::app

@@ -1,6 +1,7 @@
 #include "server/app/server.hpp"
 
 #include "common/app/program.hpp"
+#include "server/guard/token_file.hpp"
 #include "server/sockets/run_to_the_end.hpp"
 
 #include <boost/asio/post.hpp>
@@ -47,8 +48,8 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
 
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
                http::WebFiles web)
-    : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), weaving_(options.threads),
-      serving_(std::max<std::size_t>(2, options.threads)),
+    : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
+      weaving_(options.threads), serving_(std::max<std::size_t>(2, options.threads)),
       sessions_(*log_, {.compute = weaving_.get_executor(),
                         .now = seconds_since_epoch,
                         .may_wait = checkpointing_.get_executor(),
@@ -56,8 +57,9 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                         .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                         .idle_after = options.idle_after}),
       weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
-      api_(sessions_, weaves_, goals_, *log_, metrics_, std::move(web), options.tile_cache_bytes), patience_(io_),
-      weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
+      api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
+           options.tile_cache_bytes),
+      patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -96,7 +98,14 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
                      "else is served",
                      options.web.string());
     }
+    access::TokenSet tokens;
+    if (!options.tokens.empty()) { // before anything is made
+        auto read = guard::read_tokens(options.tokens);
+        if (!read) return prefixed("--tokens ", read.error());
+        tokens = std::move(*read);
+    }
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
+    if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
     if (auto listening = server->listen(); !listening) return listening.error();
     return server;
 }
@@ -112,8 +121,8 @@ Result<> Server::listen() {
     }
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
-            io_, options_.listen, ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest(), desk_},
-            robots);
+            io_, options_.listen,
+            ingest::LinkServices{sessions_, changing_.get_executor(), metrics_.ingest(), desk_, gate_, audit_}, robots);
     } catch (const boost::system::system_error& failure) {
         return Error{Errc::kUnreachable, fmt::format("cannot listen for robots on {}: {}; choose another --listen",
                                                      text_of(options_.listen), failure.code().message())};
@@ -131,6 +140,7 @@ Result<> Server::listen() {
         config,
         {[this](const http::Request& request) { return api_.answer(request); },
          [this](const http::Request& request) { return api_.look(request); },
+         [this](const http::Request& request) { return api_.refuse(request); },
          [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); }},
         metrics_.http());
     if (!http) return http.error();
@@ -140,6 +150,7 @@ Result<> Server::listen() {
 
 Result<> Server::run() {
     wait_for_signal();
+    if (!options_.tokens.empty()) wait_for_hangup();
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
@@ -195,6 +206,26 @@ void Server::tidy_up() {
     });
 }
 
+void Server::wait_for_hangup() {
+    if (!hangup_) hangup_.emplace(io_, SIGHUP);
+    hangup_->async_wait([this](const boost::system::error_code& error, int) {
+        if (error) return;
+        read_tokens_again();
+        wait_for_hangup();
+    });
+}
+
+/// Whoever wrote the file may have made a mistake: then those that are let in stay.
+void Server::read_tokens_again() {
+    auto tokens = guard::read_tokens(options_.tokens);
+    if (!tokens) {
+        spdlog::error("--tokens {}; the tokens read before stay in force", tokens.error().message);
+        return;
+    }
+    spdlog::info("{} tokens are in force, read again from {}", tokens->tokens().size(), options_.tokens.string());
+    gate_.replace(std::move(*tokens));
+}
+
 /// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then
 /// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
 void Server::drain() {
@@ -216,6 +247,7 @@ void Server::drain() {
         http_->stop([this] {
             patience_.cancel();
             signals_->cancel();
+            if (hangup_) hangup_->cancel();
         });
     });
 }

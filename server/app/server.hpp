@@ -3,6 +3,9 @@
 #include "common/error/error.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
+#include "server/guard/audit.hpp"
+#include "server/guard/gate.hpp"
+#include "server/guard/logins.hpp"
 #include "server/http/api.hpp"
 #include "server/http/server.hpp"
 #include "server/ingest/ingest_server.hpp"
@@ -52,7 +55,8 @@ public:
 
     ~Server();
 
-    /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains.
+    /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains. SIGHUP has it read the
+    /// tokens again.
     /// Errors  kStoreFailed: the sessions cannot be listed, or the store failed meanwhile.
     [[nodiscard]] Result<> run();
 
@@ -64,6 +68,8 @@ private:
     void announce() const;
     void wait_for_signal();
     void tidy_up();
+    void wait_for_hangup();
+    void read_tokens_again();
     void drain();
     void join_pools();
 
@@ -71,6 +77,9 @@ private:
     ConnectionLimits limits_;
     std::unique_ptr<store::ReopeningLog> log_;
     metrics::Metrics metrics_;
+    guard::Gate gate_;
+    guard::Audit audit_;
+    guard::Logins logins_;
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
@@ -92,6 +101,7 @@ private:
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;
+    std::optional<boost::asio::signal_set> hangup_;
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
     boost::asio::steady_timer tidying_;

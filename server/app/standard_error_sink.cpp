@@ -1,6 +1,7 @@
 #include "server/app/standard_error_sink.hpp"
 
 #include "common/app/standard_error.hpp"
+#include "server/access/secret.hpp"
 
 #include <spdlog/sinks/base_sink.h>
 
@@ -20,12 +21,12 @@ class StandardErrorSink final : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg& message) override {
         spdlog::memory_buf_t text;
         formatter_->format(message, text);
-        const std::string_view plain(text.data(), text.size());
+        const auto plain = access::without_secrets({text.data(), text.size()}); // whoever sent one where none belongs
         if (!standard_error().is_terminal()) {
             standard_error().write(plain);
             return;
         }
-        const auto begin = message.color_range_start;
+        const auto begin = message.color_range_start; // which is before the message, and so before any secret
         const auto end = message.color_range_end;
         standard_error().write(fmt::format("{}{}{}\x1b[0m{}", plain.substr(0, begin), colour_of(message.level),
                                            plain.substr(begin, end - begin), plain.substr(end)));

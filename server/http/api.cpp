@@ -11,6 +11,7 @@
 #include "server/http/handlers/import.hpp"
 #include "server/http/handlers/live.hpp"
 #include "server/http/handlers/log.hpp"
+#include "server/http/handlers/login.hpp"
 #include "server/http/handlers/map_files.hpp"
 #include "server/http/handlers/metrics.hpp"
 #include "server/http/handlers/openapi.hpp"
@@ -25,6 +26,7 @@
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
 #include "server/http/multipart.hpp"
+#include "server/http/permission.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
@@ -43,6 +45,9 @@ bool needs_sessions(Operation operation) {
     case Operation::kViewerAsset:
     case Operation::kLivez:
     case Operation::kReadyz:
+    case Operation::kGetLogin:
+    case Operation::kLogin:
+    case Operation::kLogout:
     case Operation::kMetrics:
     case Operation::kOpenapi: return false;
     default: return true;
@@ -95,12 +100,29 @@ Response Api::answer(const Request& request) {
                        path)
             .set("Allow", refused->allow);
     }
-    const auto& match = std::get<Match>(routing);
+    return answer_known(std::get<Match>(routing), *target, request);
+}
+
+Response Api::answer_known(const Match& match, const Target& target, const Request& request) {
+    auto who = doorman_.admit(request, match);
+    if (auto* refusal = std::get_if<Response>(&who)) return std::move(*refusal);
     if (auto accepted = check_content_type(match.operation, request); !accepted) {
-        return problem(Status::unsupported_media_type, accepted.error().message, path);
+        return problem(Status::unsupported_media_type, accepted.error().message, instance_of(request.target));
     }
-    auto response = call(match, *target, request);
-    return response ? std::move(*response) : problem(response.error(), path);
+    auto response = call(match, {request, match.arguments, target.query, std::get<access::TokenRef>(std::move(who))});
+    if (!response) return problem(response.error(), instance_of(request.target));
+    return for_who_asked(match.operation, std::move(*response));
+}
+
+std::optional<Response> Api::refuse(const Request& request) const {
+    const auto target = parse_target(request.target);
+    if (!target) return std::nullopt;
+    const auto routing = find_route(request.method, target->segments);
+    const auto* match = std::get_if<Match>(&routing);
+    if (match == nullptr) return std::nullopt;
+    auto who = doorman_.admit(request, *match);
+    auto* refusal = std::get_if<Response>(&who);
+    return refusal == nullptr ? std::nullopt : std::optional(std::move(*refusal));
 }
 
 Outlook Api::look(const Request& request) {
@@ -109,14 +131,19 @@ Outlook Api::look(const Request& request) {
     const auto routing = find_route(request.method, target->segments);
     const auto* match = std::get_if<Match>(&routing);
     if (match == nullptr) return Lane::kAtOnce;
+    auto who = doorman_.admit(request, *match);
+    if (auto* refusal = std::get_if<Response>(&who)) return std::move(*refusal);
     if (recovered_ && needs_maps(match->operation)) {
         const auto& session = match->arguments["session"];
         if (sessions_.is_asleep(session)) return Asleep{session};
     }
     const auto format = tile_format_of(match->operation);
     if (!format || !recovered_) return lane_of(*match, target->query);
-    auto outlook = look_at_tile(maps_, tiles_, {request, match->arguments, target->query}, *format);
-    return outlook ? std::move(*outlook) : problem(outlook.error(), instance_of(request.target));
+    const Call call{request, match->arguments, target->query, std::get<access::TokenRef>(std::move(who))};
+    auto outlook = look_at_tile(maps_, tiles_, call, *format);
+    if (!outlook) return problem(outlook.error(), instance_of(request.target));
+    if (auto* response = std::get_if<Response>(&*outlook)) return for_who_asked(match->operation, std::move(*response));
+    return std::move(*outlook);
 }
 
 void Api::wake(const Asleep& asleep, std::function<void()> told) {
@@ -124,11 +151,20 @@ void Api::wake(const Asleep& asleep, std::function<void()> told) {
                    [told = std::move(told)](const Result<std::shared_ptr<session::Session>>&) { told(); });
 }
 
-Result<Response> Api::call(const Match& match, const Target& target, const Request& request) {
+/// What only some may see, is kept by nobody who passes it on to others.
+Response Api::for_who_asked(Operation operation, Response response) const {
+    if (need_of(operation) == Need::kNothing || doorman_.gate().is_open()) return response;
+    for (auto& [field, value] : response.fields) {
+        constexpr std::string_view kPublic = "public";
+        if (field == "Cache-Control" && value.starts_with(kPublic)) value.replace(0, kPublic.size(), "private");
+    }
+    return response;
+}
+
+Result<Response> Api::call(const Match& match, const Call& call) {
     if (needs_sessions(match.operation) && !recovered_) {
         return Error{Errc::kOverloaded, "the sessions are still being recovered from the store; try again soon"};
     }
-    const Call call{request, match.arguments, target.query};
     switch (match.operation) {
     case Operation::kViewer: return get_viewer(web_, call);
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);
@@ -136,11 +172,14 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, robots_, call);
     case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, tiles_.stats(), call);
     case Operation::kOpenapi: return get_openapi(call);
+    case Operation::kGetLogin: return get_login(doorman_, call);
+    case Operation::kLogin: return post_login(doorman_, call);
+    case Operation::kLogout: return delete_login(doorman_, call);
     case Operation::kListSessions: return list_sessions(sessions_, call);
-    case Operation::kCreateSession: return create_session(sessions_, call);
+    case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
     case Operation::kGetSession: return get_session(sessions_, call);
     case Operation::kDeleteSession: return delete_session(sessions_, weaves_, tiles_, call);
-    case Operation::kImportMap: return import_map(sessions_, call);
+    case Operation::kImportMap: return import_map(sessions_, doorman_, call);
     case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
     case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);
     case Operation::kTileJson: return get_tilejson(maps_, call);
@@ -160,7 +199,7 @@ Result<Response> Api::call(const Match& match, const Target& target, const Reque
     case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);
     case Operation::kGoals: return get_goals(sessions_, goals_.ways(), slots_, call);
     case Operation::kLog: return get_log(sessions_, log_, call);
-    case Operation::kLive: return get_live(sessions_, goals_.ways(), call);
+    case Operation::kLive: return get_live(sessions_, goals_.ways(), doorman_, call);
     case Operation::kStartWeave: return start_weave(maps_, call);
     case Operation::kListWeaves: return list_weaves(maps_, call);
     case Operation::kGetWeave: return get_weave(maps_, call);

@@ -2,6 +2,7 @@
 
 #include "server/guide/goal_book.hpp"
 #include "server/http/answer_slots.hpp"
+#include "server/http/doorman.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/maps_lookup.hpp"
 #include "server/http/lane.hpp"
@@ -17,6 +18,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace scanloom::http {
@@ -29,9 +31,10 @@ struct Target;
 class Api {
 public:
     Api(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
-        const metrics::Metrics& metrics, WebFiles web, std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax)
+        const metrics::Metrics& metrics, const Doorman& doorman, WebFiles web,
+        std::size_t tile_bytes_max = tiles::TileMaker::kBytesMax)
         : sessions_(sessions), weaves_(weaves), goals_(goals), maps_(sessions, weaves), tiles_(tile_bytes_max),
-          log_(log), metrics_(metrics), web_(std::move(web)) {}
+          log_(log), metrics_(metrics), doorman_(doorman), web_(std::move(web)) {}
 
     /// From now on the sessions are served; before, whoever asks for them is told to wait.
     void set_recovered() noexcept { recovered_ = true; }
@@ -49,8 +52,13 @@ public:
     /// again, and where it says the same, answer() knows why.
     void wake(const Asleep& asleep, std::function<void()> told);
 
+    /// For I/O threads, before the request's body is read: the answer to who is not let in; nothing for all others.
+    [[nodiscard]] std::optional<Response> refuse(const Request& request) const;
+
 private:
-    [[nodiscard]] Result<Response> call(const Match& match, const Target& target, const Request& request);
+    [[nodiscard]] Response answer_known(const Match& match, const Target& target, const Request& request);
+    [[nodiscard]] Response for_who_asked(Operation operation, Response response) const;
+    [[nodiscard]] Result<Response> call(const Match& match, const Call& call);
 
     session::SessionRegistry& sessions_;
     session::Weaves& weaves_;
@@ -59,6 +67,7 @@ private:
     tiles::TileMaker tiles_;
     store::ScanLog& log_;
     const metrics::Metrics& metrics_;
+    const Doorman doorman_;
     const WebFiles web_;
     const AnswerSlots slots_;
     RobotPort robots_;

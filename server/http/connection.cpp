@@ -78,7 +78,10 @@ Result<std::string> next_guarded(BodyStream& stream) {
 
 Connection::Connection(net::ip::tcp::socket socket, std::shared_ptr<const Service> service)
     : socket_(std::move(socket)), deadline_(socket_.get_executor()),
-      buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {}
+      buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
+    beast::error_code ignored;
+    peer_ = socket_.remote_endpoint(ignored).address().to_string();
+}
 
 net::awaitable<void> Connection::run() {
     // g++ 12 loses `this` where a condition mixes && and co_await: one co_await a statement in this file.
@@ -141,16 +144,10 @@ net::awaitable<bool> Connection::serve_request() {
         co_await write(*refusal, {});
         co_return false;
     }
-    Result<std::shared_ptr<const void>> slot = std::shared_ptr<const void>();
+    std::shared_ptr<const void> slot;
     if (!parser.is_done()) {
-        const Lane lane = lane_of(head_of(parser.get()));
-        if (lane == Lane::kImporting) slot = take_slot(*service_, lane); // its body is large
-        if (!slot) {
-            co_await write(problem(slot.error(), instance_of(view(parser.get().target()))), {});
-            co_return false;
-        }
-        const bool is_whole = co_await read_body(parser);
-        if (!is_whole) co_return false;
+        const bool is_taken = co_await take_body(parser, slot);
+        if (!is_taken) co_return false;
     }
 
     Manner manner{.with_body = parser.get().method() != beast::http::verb::head,
@@ -159,6 +156,7 @@ net::awaitable<bool> Connection::serve_request() {
     Incoming message = parser.release();
     const auto begin = std::chrono::steady_clock::now();
     Request request = request_of(message);
+    request.peer = peer_;
     Outlook outlook = guarded(service_->answering.look, request);
     if (const auto* asleep = std::get_if<Asleep>(&outlook)) {
         co_await wake(*asleep);
@@ -166,7 +164,7 @@ net::awaitable<bool> Connection::serve_request() {
     }
     if (std::holds_alternative<Asleep>(outlook)) outlook = lane_of(request); // it cannot be had: the answer says why
     if (const auto* lane = std::get_if<Lane>(&outlook)) {
-        outlook = co_await compute(*lane, std::move(request), std::move(*slot));
+        outlook = co_await compute(*lane, std::move(request), std::move(slot));
     }
     const Response& response = std::get<Response>(outlook);
     service_->counters.request_seconds.observe(std::chrono::steady_clock::now() - begin);
@@ -176,6 +174,27 @@ net::awaitable<bool> Connection::serve_request() {
     }
     if (stopping_) manner.keep_alive = false;
     co_return co_await write(response, manner);
+}
+
+/// Nobody sends a body to be refused after it. `slot` is for what is kept while the request is under way.
+/// @return false when the connection cannot be used any more.
+net::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const void>& slot) {
+    Request head = head_of(parser.get());
+    head.peer = peer_;
+    if (const auto refusal = service_->answering.refuse(head)) {
+        co_await write(*refusal, {});
+        co_return false;
+    }
+    const Lane lane = lane_of(head);
+    if (lane == Lane::kImporting) { // its body is large
+        auto taken = take_slot(*service_, lane);
+        if (!taken) {
+            co_await write(problem(taken.error(), instance_of(head.target)), {});
+            co_return false;
+        }
+        slot = std::move(*taken);
+    }
+    co_return co_await read_body(parser);
 }
 
 /// Most often all of it has come with the first bytes, and nothing is waited for.

@@ -48,6 +48,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<boost::beast::error_code> read_header(Parser& parser);
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
     [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
+    [[nodiscard]] boost::asio::awaitable<bool> take_body(Parser& parser, std::shared_ptr<const void>& slot);
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> wake(Asleep asleep);
     [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request,
@@ -69,6 +70,7 @@ private:
     boost::asio::ip::tcp::socket socket_; // never blocks
     Deadline deadline_;                   // closes it
     boost::beast::flat_buffer buffer_;
+    std::string peer_; // the address
     std::shared_ptr<const Service> service_;
     std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
     bool idle_ = false;

@@ -24,16 +24,17 @@ Request head_of(const Incoming& message) {
     Request request;
     request.method = view(message.method_string());
     request.target = view(message.target());
+    request.host = view(message[beast::http::field::host]);
+    request.content_type = view(message[beast::http::field::content_type]);
+    request.authorization = view(message[beast::http::field::authorization]);
+    request.cookie = view(message[beast::http::field::cookie]);
+    request.origin = view(message[beast::http::field::origin]);
+    request.upgrade = upgrade_of(message);
     return request;
 }
 
 Request request_of(Incoming& message) {
-    Request request;
-    request.method = view(message.method_string());
-    request.target = view(message.target());
-    request.host = view(message[beast::http::field::host]);
-    request.upgrade = upgrade_of(message);
-    request.content_type = view(message[beast::http::field::content_type]);
+    Request request = head_of(message);
     const auto [begin, end] = message.equal_range(beast::http::field::if_none_match);
     for (auto field = begin; field != end; ++field) {
         if (!request.if_none_match.empty()) request.if_none_match += ", ";

@@ -14,7 +14,7 @@ using Incoming = boost::beast::http::request<boost::beast::http::string_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// What tells the lane.
+/// What tells the lane, and who asks: all but the body and what conditions it has.
 [[nodiscard]] Request head_of(const Incoming& message);
 
 /// Takes the body out of the message.

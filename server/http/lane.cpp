@@ -14,6 +14,9 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kViewerAsset:
     case Operation::kLivez:
     case Operation::kReadyz:
+    case Operation::kGetLogin:
+    case Operation::kLogin:
+    case Operation::kLogout:
     case Operation::kOpenapi: return Lane::kAtOnce;
     case Operation::kMetrics: return Lane::kTelling;
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;

@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace scanloom::http {
 
@@ -24,7 +25,10 @@ struct Answering {
     Answer answer; ///< on the lane's threads
     std::function<Outlook(const Request&)> look = [](const Request& r) {
         return lane_of(r);
-    };                                                                   ///< on I/O threads, first
+    }; ///< on I/O threads, first
+    std::function<std::optional<Response>(const Request&)> refuse = [](const Request&) {
+        return std::nullopt;
+    }; ///< on I/O threads, before a body is read: the answer to who is not let in
     std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; tells when, on any
 };
 

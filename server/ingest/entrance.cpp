@@ -17,10 +17,10 @@ namespace {
 
 using Found = Result<std::shared_ptr<session::Session>>;
 
-asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions,
+asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
                               asio::any_io_executor may_wait) {
     auto created = co_await asio::co_spawn(
-        may_wait, [&]() -> asio::awaitable<Found> { co_return sessions.create(hello.session, *hello.create); },
+        may_wait, [&]() -> asio::awaitable<Found> { co_return sessions.create(hello.session, *hello.create, maker); },
         asio::use_awaitable);
     if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
     co_return created;
@@ -58,10 +58,10 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
 } // namespace
 
 asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionRegistry& sessions,
-                                   asio::any_io_executor may_wait) {
+                                   const session::Maker& maker, asio::any_io_executor may_wait) {
     auto session = co_await woken(hello.session, sessions);
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
-        auto created = co_await create(hello, sessions, std::move(may_wait));
+        auto created = co_await create(hello, sessions, maker, std::move(may_wait));
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
         session = co_await woken(hello.session, sessions); // another robot was quicker
     }

@@ -14,11 +14,12 @@
 namespace scanloom::ingest {
 
 /// The session that the hello names, made when there is none and the hello says how.
-/// Making waits for the disk, on `may_wait`.
+/// Making waits for the disk, on `may_wait`; the session is then the maker's.
 /// Errors  kNotFound; kConflict: it has other settings than hello.create, or is damaged; kOverloaded: it is not loaded
 ///         for want of memory; those of SessionRegistry::create() but kAlreadyExists.
 [[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<session::Session>>>
-session_for(const wire::Hello& hello, session::SessionRegistry& sessions, boost::asio::any_io_executor may_wait);
+session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
+            boost::asio::any_io_executor may_wait);
 
 /// Session::join() for a coroutine, which goes on where it was.
 [[nodiscard]] boost::asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace scanloom::ingest {
@@ -51,16 +52,19 @@ bool is_retryable(Errc code) noexcept {
 }
 
 RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config)
-    : stream_(std::move(stream)), services_(services), config_(config), unacknowledged_(services.counters),
+    : stream_(std::move(stream)), services_(services), config_(config), token_(access::anybody()),
+      inflow_(token_->limits.bytes_per_second, guard::steady_seconds()), unacknowledged_(services.counters),
       outbox_(stream_,
               [this](std::uint64_t durable_seq) {
                   unacknowledged_.acknowledge(durable_seq, std::chrono::steady_clock::now());
               }),
+      held_back_(stream_.get_executor()),
       settled_(stream_.get_executor(), std::chrono::steady_clock::time_point::max()),
       deadline_timer_(stream_.get_executor()) {
     boost::system::error_code ignored;
     const auto endpoint = stream_.socket().remote_endpoint(ignored);
-    peer_ = fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+    address_ = endpoint.address().to_string();
+    peer_ = fmt::format("{}:{}", address_, endpoint.port());
     stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
 }
 
@@ -75,6 +79,7 @@ asio::awaitable<void> RobotLink::run() {
         served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
     if (session_) session_->leave(self);
+    pass_.reset();
     if (ended_by_) served = *ended_by_;
     if (!served) services_.counters.failed(served.error().code).Increment();
     if (served) co_await part();
@@ -140,14 +145,54 @@ asio::awaitable<Result<>> RobotLink::settle() {
     co_return Result<>();
 }
 
+/// Before the session is looked for: who is not let in is not told which there are.
+Result<> RobotLink::let_in(const wire::Hello& hello) {
+    auto pass = services_.gate.let_drive(hello.token, hello.session, hello.robot);
+    if (!pass) {
+        const auto& why = pass.error();
+        note_refusal(why.reason, why.token, hello.session);
+        return prefixed("hello.token: ", why.error);
+    }
+    pass_ = std::move(*pass);
+    look_at_pass();
+    pass_->when_changed([weak = weak_from_this()] {
+        const auto self = weak.lock();
+        if (self) asio::post(self->stream_.get_executor(), [self] { self->look_at_pass(); });
+    });
+    return {};
+}
+
+/// The tokens in force may be others by now.
+void RobotLink::look_at_pass() {
+    if (!pass_) return;
+    if (auto token = pass_->token()) {
+        token_ = std::move(token);
+        inflow_.set_rate(token_->limits.bytes_per_second, guard::steady_seconds());
+        return;
+    }
+    note_refusal(access::Reason::kRevoked, token_->name, pass_->session());
+    end({Errc::kUnauthorized,
+         fmt::format("the token '{}' does not allow this any more; ask whoever runs this server for another",
+                     token_->name)});
+}
+
+void RobotLink::note_refusal(access::Reason reason, const std::string& token, const std::string& session) const {
+    services_.audit.note({access::Port::kRobot, reason, address_, token, session});
+}
+
 asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     robot_ = hello.robot;
-    auto session = co_await session_for(hello, services_.sessions, services_.may_wait);
+    if (auto in = let_in(hello); !in) co_return in.error();
+    const auto maker = session::maker_of(*token_);
+    auto session = co_await session_for(hello, services_.sessions, maker, services_.may_wait);
+    if (!session && session.error().code == Errc::kFull)
+        note_refusal(access::Reason::kLimit, token_->name, hello.session);
     if (!session) co_return session.error();
     const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
     session_ = std::move(*session);
     index_ = joined->robot;
+    sensors_ = joined->sensors;
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
@@ -173,7 +218,9 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
             frame_bytes_ = wire::kLengthPrefixBytes + (*body)->size();
             co_return wire::decode(**body);
         }
-        const auto room = decoder_.prepare(kReadBytes);
+        const auto most =
+            std::min(inflow_.rate(), static_cast<double>(kReadBytes)); // so that a pause is a second at most
+        const auto room = decoder_.prepare(static_cast<std::size_t>(most));
         const auto [error, bytes] = co_await stream_.async_read_some(
             asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
         if (error) {
@@ -182,12 +229,27 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
         }
         decoder_.commit(bytes);
         read_ = std::chrono::steady_clock::now();
+        const double pause = inflow_.take(static_cast<double>(bytes), guard::steady_seconds());
+        if (pause > 0.0) co_await hold_back(pause);
     }
+}
+
+/// What is not read fills the buffers between here and the robot, which then has to wait. It is not to blame for that,
+/// so its deadline waits, too.
+asio::awaitable<void> RobotLink::hold_back(double seconds) {
+    if (ended_by_) co_return;
+    const auto pause =
+        std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+    services_.counters.held_back_seconds.Increment(seconds);
+    if (deadline_ != std::chrono::steady_clock::time_point::max()) deadline_ += pause;
+    held_back_.expires_after(pause);
+    co_await held_back_.async_wait(kAsTuple);
 }
 
 Result<> RobotLink::handle(wire::Message message) {
     const auto self = shared_from_this();
     if (auto* sensor = std::get_if<Sensor>(&message)) {
+        if (auto ok = check_limits(*sensor); !ok) return ok.error();
         if (auto ok = charge_description(); !ok) return ok.error();
         session_->submit(self, std::move(*sensor), frame_bytes_);
         return {};
@@ -199,6 +261,7 @@ Result<> RobotLink::handle(wire::Message message) {
         message = std::move(*batch);
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
+        if (auto ok = check_limits(*batch); !ok) return ok.error();
         if (auto ok = charge_batch(); !ok) return ok.error();
         services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         unacknowledged_.add(batch->scans.back().seq, batch->scans.size(), read_);
@@ -263,6 +326,33 @@ void RobotLink::answer(std::string frame, std::shared_ptr<const void> slot) {
     settled_.cancel();
 }
 
+Result<> RobotLink::check_limits(const Sensor& sensor) {
+    sensors_.insert(sensor.id);
+    const auto limit = token_->limits.sensors;
+    if (sensors_.size() <= limit) return {};
+    note_refusal(access::Reason::kLimit, token_->name, pass_->session());
+    return Error{
+        Errc::kTooLarge,
+        fmt::format("sensor_description.sensor is {}, of another sensor than the {} that the limit `sensors` of "
+                    "the token '{}' allows a robot; use these, or have the limit raised",
+                    sensor.id, limit, token_->name)};
+}
+
+Result<> RobotLink::check_limits(const wire::ScanBatch& batch) const {
+    const auto limit = token_->limits.beams;
+    for (std::size_t n = 0; n < batch.scans.size(); ++n) {
+        const auto beams = batch.scans[n].ranges.size();
+        if (beams <= limit) continue;
+        note_refusal(access::Reason::kLimit, token_->name, pass_->session());
+        return Error{
+            Errc::kTooLarge,
+            fmt::format("scan_batch.scans[{}].ranges has {} beams, the limit `beams` of the token '{}' allows {} "
+                        "a scan; send fewer, or have the limit raised",
+                        n, beams, token_->name, limit)};
+    }
+    return {};
+}
+
 Result<> RobotLink::charge_batch() {
     under_way_ += frame_bytes_;
     if (under_way_ <= config_.credit_bytes + described_) return {};
@@ -299,6 +389,7 @@ void RobotLink::end(const Error& error) {
     if (ended_by_) return;
     ended_by_ = error;
     settled_.cancel();
+    held_back_.cancel();
     stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
 }
 

@@ -3,6 +3,9 @@
 #include "common/net/link_stream.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "server/access/bucket.hpp"
+#include "server/guard/audit.hpp"
+#include "server/guard/gate.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
 #include "server/ingest/unacknowledged.hpp"
@@ -20,6 +23,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace scanloom::ingest {
@@ -37,14 +41,16 @@ struct LinkServices {
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
     metrics::IngestCounters& counters;
     RequestDesk& desk;
+    guard::Gate& gate;
+    guard::Audit& audit;
 };
 
 /// One robot's connection, from the hello to the farewell.
 ///
-/// hello -> the session is found or made and joined -> welcome -> sensor descriptions and scan batches
-/// go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which what is under
-/// way is still acknowledged; an error; or the end of the connection. A fault ends this link with an Error frame and
-/// disturbs no other.
+/// hello -> the gate lets the robot in -> the session is found or made and joined -> welcome -> sensor descriptions and
+/// scan batches go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which
+/// what is under way is still acknowledged; an error; or the end of the connection. A fault ends this link with an
+/// Error frame and disturbs no other.
 /// Thread  run() and everything private on the stream's strand; the listener's calls from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
@@ -72,13 +78,17 @@ private:
     boost::asio::awaitable<Result<>> serve();
     boost::asio::awaitable<bool> shake_hands();
     boost::asio::awaitable<Result<>> settle();
+    [[nodiscard]] Result<> let_in(const wire::Hello& hello);
     boost::asio::awaitable<Result<>> enter(wire::Hello hello);
     boost::asio::awaitable<Result<wire::Message>> receive();
+    boost::asio::awaitable<void> hold_back(double seconds);
     [[nodiscard]] Result<> handle(wire::Message message);
     [[nodiscard]] Result<> answer_ping(const wire::Ping& ping);
     [[nodiscard]] Result<> ask(Request request);
     [[nodiscard]] Result<> check_small_answers() const;
     void answer(std::string frame, std::shared_ptr<const void> slot);
+    [[nodiscard]] Result<> check_limits(const Sensor& sensor);
+    [[nodiscard]] Result<> check_limits(const wire::ScanBatch& batch) const;
     [[nodiscard]] Result<> charge_batch();
     [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
@@ -88,16 +98,23 @@ private:
     void start_watch();
     void hang_up();
     void end(const Error& error);
+    void look_at_pass();
+    void note_refusal(access::Reason reason, const std::string& token, const std::string& session) const;
     void expect_something_within(std::chrono::steady_clock::duration time);
 
     net::LinkStream stream_;
     LinkServices services_;
     LinkConfig config_;
-    std::string peer_;
+    std::string address_; // of the peer
+    std::string peer_;    // with its port
     std::function<void()> greeted_;
 
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
-    std::size_t frame_bytes_ = 0; // of the frame last received, with its length prefix
+    std::size_t frame_bytes_ = 0;       // of the frame last received, with its length prefix
+    std::shared_ptr<guard::Pass> pass_; // from the hello on
+    access::TokenRef token_;            // the newest that it had
+    access::Bucket inflow_;             // bytes that are read
+    std::set<std::uint32_t> sensors_;   // of the robot
     std::shared_ptr<session::Session> session_;
     std::string robot_;
     RobotIndex index_ = 0;      // of the robot in the session
@@ -111,7 +128,8 @@ private:
     Unacknowledged unacknowledged_;
 
     Outbox outbox_;
-    boost::asio::steady_timer settled_; // never runs out; cancelled when nothing is under way any more
+    boost::asio::steady_timer held_back_; // until more may be read
+    boost::asio::steady_timer settled_;   // never runs out; cancelled when nothing is under way any more
 
     std::optional<Error> ended_by_; // why the link ends, when not by the peer
     boost::asio::cancellation_signal stop_reading_;

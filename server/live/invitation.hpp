@@ -1,8 +1,10 @@
 #pragma once
 
+#include "server/guard/pass.hpp"
 #include "server/guide/way_book.hpp"
 #include "server/session/session.hpp"
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -16,6 +18,8 @@ struct Invitation {
     std::string name; ///< of the session, as its end is told after it is gone
     std::string tag;  ///< LiveEvent::session
     guide::WayBook& ways;
+    std::shared_ptr<guard::Pass> pass = nullptr; ///< by whose leave; none: nobody takes it back
+    std::function<void()> taken_back = [] {};    ///< called when the pass is no longer good, as the viewer ends
 };
 
 } // namespace scanloom::live

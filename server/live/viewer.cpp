@@ -23,7 +23,8 @@ namespace websocket = boost::beast::websocket;
 
 constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
 
-/// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 404.
+/// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 401 and 404.
+constexpr websocket::close_code kTokenGone{4401};
 constexpr websocket::close_code kSessionDeleted{4404};
 
 websocket::close_reason close_with(websocket::close_code code, std::string_view reason) {
@@ -109,6 +110,11 @@ net::awaitable<void> Viewer::run(const Upgrade& upgrade) {
     if (!accepted) co_return;
     const Counted counted(services_.counters.viewers);
     if (const auto session = invitation_.session.lock()) session->watch(weak_from_this());
+    if (invitation_.pass) {
+        invitation_.pass->when_changed([weak = weak_from_this()] {
+            if (const auto self = weak.lock()) self->on_changed();
+        });
+    }
     reading_ = true;
     net::co_spawn(stream_.get_executor(), read_requests(), [self = shared_from_this()](std::exception_ptr) {
         self->reading_ = false;
@@ -190,6 +196,10 @@ net::awaitable<void> Viewer::wait_for_turn() {
 /// On `showing`.
 Viewer::Narration Viewer::narrate() {
     told_ = false; // before looking: what changes from now on is told again
+    if (invitation_.pass && !invitation_.pass->token()) {
+        invitation_.taken_back();
+        return {{}, close_with(kTokenGone, "your token does not allow this any more; sign in with another"), {}};
+    }
     const auto session = invitation_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
     if (!session || (closing && closing->code == Errc::kGone)) {

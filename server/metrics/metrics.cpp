@@ -19,6 +19,8 @@ IngestCounters::IngestCounters(prometheus::Registry& registry)
     : links_open(gauge(registry, "scanloom_links_open", "Links of robots that are open.")),
       scans_received(counter(registry, "scanloom_scans_received_total",
                              "Well-formed scans that robots sent, within their credit.")),
+      held_back_seconds(counter(registry, "scanloom_links_held_back_seconds_total",
+                                "Seconds in which links were not read, as their tokens' limits have it.")),
       scans_in_flight(
           gauge(registry, "scanloom_scans_in_flight", "Scans that were read and are not acknowledged yet.")),
       ack_seconds("scanloom_ack_seconds",
@@ -50,6 +52,19 @@ HttpCounters::HttpCounters(prometheus::Registry& registry)
                        .Register(registry);
     constexpr std::array kClasses = {"1xx", "2xx", "3xx", "4xx", "5xx"};
     for (std::size_t i = 0; i < kClasses.size(); ++i) by_class_[i] = &family.Add({{"code", kClasses[i]}});
+}
+
+RefusalCounters::RefusalCounters(prometheus::Registry& registry) {
+    auto& family = prometheus::BuildCounter()
+                       .Name("scanloom_refusals_total")
+                       .Help("Who was not let in or asked for what his token does not allow, by port and reason.")
+                       .Register(registry);
+    for (const auto port : access::kPorts) {
+        for (const auto reason : access::kReasons) {
+            counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)] =
+                &family.Add({{"port", std::string(name_of(port))}, {"reason", std::string(name_of(reason))}});
+        }
+    }
 }
 
 Metrics::Metrics(std::string_view version) {

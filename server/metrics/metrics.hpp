@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/access/refusal.hpp"
 #include "server/metrics/duration_histogram.hpp"
 
 #include <prometheus/counter.h>
@@ -20,9 +21,10 @@ public:
     explicit IngestCounters(prometheus::Registry& registry);
 
     prometheus::Gauge& links_open;
-    prometheus::Counter& scans_received; ///< well-formed scans that arrived, within the credit
-    prometheus::Gauge& scans_in_flight;  ///< read and not acknowledged yet
-    DurationHistogram ack_seconds;       ///< of each scan: from being read to its ack being handed to the socket
+    prometheus::Counter& scans_received;    ///< well-formed scans that arrived, within the credit
+    prometheus::Counter& held_back_seconds; ///< in which links were not read, by the limits of their tokens
+    prometheus::Gauge& scans_in_flight;     ///< read and not acknowledged yet
+    DurationHistogram ack_seconds;          ///< of each scan: from being read to its ack being handed to the socket
 
     /// Links that ended without a goodbye, by the reason. Pre: one of the enumerators of Errc.
     [[nodiscard]] prometheus::Counter& failed(Errc reason) const { return *failed_[static_cast<std::size_t>(reason)]; }
@@ -59,6 +61,19 @@ private:
     std::array<prometheus::Counter*, 5> by_class_;
 };
 
+/// Who was not let in, on both ports. Thread: any.
+class RefusalCounters {
+public:
+    explicit RefusalCounters(prometheus::Registry& registry);
+
+    [[nodiscard]] prometheus::Counter& of(access::Port port, access::Reason reason) const {
+        return *counters_[static_cast<std::size_t>(port)][static_cast<std::size_t>(reason)];
+    }
+
+private:
+    std::array<std::array<prometheus::Counter*, access::kReasons.size()>, access::kPorts.size()> counters_{};
+};
+
 /// Owns every counter of the process. Labels are fixed lists, never names that users choose.
 class Metrics {
 public:
@@ -66,6 +81,7 @@ public:
 
     [[nodiscard]] IngestCounters& ingest() noexcept { return ingest_; }
     [[nodiscard]] HttpCounters& http() noexcept { return http_; }
+    [[nodiscard]] RefusalCounters& refusals() noexcept { return refusals_; }
 
     [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const;
 
@@ -73,6 +89,7 @@ private:
     prometheus::Registry registry_;
     IngestCounters ingest_{registry_};
     HttpCounters http_{registry_};
+    RefusalCounters refusals_{registry_};
 };
 
 } // namespace scanloom::metrics

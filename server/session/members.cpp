@@ -91,7 +91,9 @@ void Members::admit(Member& member) {
     const auto joining = *std::exchange(member.joining, std::nullopt);
     member.listener = joining.listener;
     set_connected(member, true);
-    joining.done(Joined{index_of(member), member.durable_seq});
+    Joined joined{index_of(member), member.durable_seq};
+    for (const auto& [id, sensor] : member.sensors) joined.sensors.insert(id);
+    joining.done(std::move(joined));
 }
 
 void Members::leave(const std::shared_ptr<RobotListener>& listener) {

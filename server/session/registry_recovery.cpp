@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <latch>
 #include <set>
 
@@ -28,7 +29,10 @@ Result<Recorded> recorded(const store::StoredSession& stored, std::string& name)
     if (stored.damage) return *stored.damage;
     const auto config = mapping::resolve(record->options);
     if (!config) return config.error();
-    return Recorded{{stored.id, name, record->created, *config}, record->map_patches};
+    const auto chunks_max = record->chunks_max == 0 ? SessionLimits::kMost : record->chunks_max;
+    return Recorded{{stored.id, name, record->created, *config, record->created_by,
+                     std::min<std::size_t>(chunks_max, SessionLimits::kMost)},
+                    record->map_patches};
 }
 
 /// Of two with one name, which only a fault can have stored, the older is served and the other kept aside.
@@ -71,7 +75,7 @@ Result<> SessionRegistry::recover() {
 void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_patches, std::function<void()> done) {
     if (draining_) return done(); // told to stop meanwhile: what is not woven now will be at the next start
     if (can_stay_asleep(info, map_patches)) return done();
-    auto session = maker_.read(info, draining_, hurried_);
+    auto session = factory_.read(info, draining_, hurried_);
     if (session && *session && (*session)->snapshot()->revision < map_patches) {
         spdlog::warn("session '{}' is removed: its import came to {} of {} parts before a crash", info.name,
                      (*session)->snapshot()->revision, map_patches); // nobody was told that it exists
@@ -97,11 +101,10 @@ void SessionRegistry::add_recovered(std::shared_ptr<Session> session, std::funct
         return done();
     }
     auto& recovered = *session; // with it there are more than fit into memory: it goes to sleep at once
-    recovered.close({Errc::kShuttingDown, "the session leaves memory"},
-                   [this, session, done = std::move(done)] {
-                       roster_.add(session->info(), summary_of(*session->snapshot()));
-                       done();
-                   });
+    recovered.close({Errc::kShuttingDown, "the session leaves memory"}, [this, session, done = std::move(done)] {
+        roster_.add(session->info(), summary_of(*session->snapshot()));
+        done();
+    });
 }
 
 } // namespace scanloom::session

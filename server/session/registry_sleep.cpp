@@ -20,10 +20,11 @@ Error leaves_memory() { return {Errc::kShuttingDown, "the session leaves memory;
 Error shutting_down() { return {Errc::kShuttingDown, "the server is shutting down; try again when it is back"}; }
 
 Error no_room(const Resting& resting) {
-    return {Errc::kOverloaded,
-            fmt::format("session '{}' needs {} MiB for its maps, and those that are in use leave less of the memory for "
-                        "maps; try again later, or have the server given more (--map-memory)",
-                        resting.info.name, resting.pages * mapping::kPageBytes >> 20)};
+    return {
+        Errc::kOverloaded,
+        fmt::format("session '{}' needs {} MiB for its maps, and those that are in use leave less of the memory for "
+                    "maps; try again later, or have the server given more (--map-memory)",
+                    resting.info.name, resting.pages * mapping::kPageBytes >> 20)};
 }
 
 } // namespace
@@ -63,7 +64,7 @@ void SessionRegistry::read(const Wanted& wanted) {
     const auto& [info, pages] = wanted.resting;
     if (draining_) return roster_.failed(info.name, shutting_down());
     if (!take_room(wanted)) return;
-    auto session = maker_.read(info, draining_, hurried_);
+    auto session = factory_.read(info, draining_, hurried_);
     pages_->give_back(static_cast<std::int64_t>(pages)); // the session has its own share
     if (session && *session) return roster_.arrived(std::move(*session), config_.clock());
     if (session) return roster_.failed(info.name, shutting_down());
@@ -85,7 +86,7 @@ bool SessionRegistry::take_room(const Wanted& wanted) {
         const std::lock_guard lock(room_mutex_);
         waiting_for_room_.push_back(wanted);
     }
-    make_room(pages);                      // whoever leaves for it has it tried again
+    make_room(pages);                     // whoever leaves for it has it tried again
     if (draining_) start_reading_again(); // or nobody might any more
     return false;
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace scanloom::session {
@@ -34,6 +35,7 @@ struct Newcomer {
 struct Joined {
     RobotIndex robot = 0;
     std::uint64_t last_durable_seq = 0;
+    std::set<std::uint32_t> sensors = {}; ///< that it has described, on whatever link
 };
 
 } // namespace scanloom::session

@@ -27,10 +27,16 @@ constexpr Revision checkpoint_every(store::SessionId session) {
     return kCheckpointEvery + (session - 1) * 0x9E37'79B9 % (kCheckpointEvery / 2); // Fibonacci hashing
 }
 
-Error full(std::size_t chunks, std::size_t chunks_max) {
-    return {Errc::kFull, fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, "
-                                     "the most there may be; use larger cells or another session",
-                                     chunks, chunks_max)};
+/// `created_by` is whose limit it is, where it is not everybody's.
+Error full(std::size_t chunks, std::size_t chunks_max, const std::string& created_by) {
+    const auto whose =
+        chunks_max == SessionLimits::kMost
+            ? std::string("the most there may be")
+            : fmt::format("as the limit `cells` of the token '{}' has it, which made the session", created_by);
+    return {Errc::kFull,
+            fmt::format("the map has {} chunks of 64 x 64 cells and a scan could take it beyond {}, {}; use "
+                        "larger cells or another session",
+                        chunks, chunks_max, whose)};
 }
 
 Error short_of_memory() {
@@ -136,7 +142,7 @@ void Session::append_next() {
             append(std::move(group));
         } else if (durable_.empty()) {
             refuse_first(share_.free() < left ? short_of_memory()
-                                              : full(projection_.chunk_count(), limits_.chunks_max));
+                                              : full(projection_.chunk_count(), limits_.chunks_max, info_.created_by));
         } else {
             return; // until it is known how many chunks are new
         }

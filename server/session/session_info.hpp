@@ -14,21 +14,11 @@
 
 namespace scanloom::session {
 
-/// What a session is, for as long as it exists.
-struct SessionInfo {
-    store::SessionId id = 0;
-    std::string name;
-    double created = 0.0; ///< seconds since the epoch
-    mapping::MapConfig config;
-};
-
-/// Tells a session from every other, also from a deleted one of the same name and from one of another
-/// store: 16 hexadecimal digits.
-[[nodiscard]] std::string tag_of(const SessionInfo& info);
-
 /// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
 struct SessionLimits {
-    std::size_t chunks_max = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
+    std::size_t chunks_max = kMost;
+
+    static constexpr std::size_t kMost = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
 
     std::vector<std::shared_ptr<PageBudget>> shared = {}; ///< with other sessions
 
@@ -36,6 +26,20 @@ struct SessionLimits {
     /// session's strand: hand over, do not block. May be empty.
     std::function<void(std::size_t)> on_short = {};
 };
+
+/// What a session is, for as long as it exists.
+struct SessionInfo {
+    store::SessionId id = 0;
+    std::string name;
+    double created = 0.0; ///< seconds since the epoch
+    mapping::MapConfig config;
+    std::string created_by;                        ///< name of the token it was made with; empty: there was none
+    std::size_t chunks_max = SessionLimits::kMost; ///< less where that token was to make only small ones
+};
+
+/// Tells a session from every other, also from a deleted one of the same name and from one of another
+/// store: 16 hexadecimal digits.
+[[nodiscard]] std::string tag_of(const SessionInfo& info);
 
 /// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.
 struct SessionCounters {

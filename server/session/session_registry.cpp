@@ -25,7 +25,7 @@ Result<> check_name(std::string_view name) {
 }
 
 /// Whether a map fits into a session.
-Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches) {
+Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches, const Maker& maker) {
     if (patches.empty()) return Error{Errc::kInvalidField, "the map has no cells"};
     grid::CellBox cells;
     for (const auto& patch : patches) {
@@ -33,10 +33,21 @@ Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPa
         if (auto ok = mapping::check_work(reach); !ok) return ok;
         cells.include(reach.cells);
     }
-    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(SessionLimits{}.chunks_max)) return {};
-    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than a session can have; use "
-                                          "larger cells",
-                                          cells.width(), cells.height(), config.cell_size)};
+    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(maker.chunks_max)) return {};
+    const auto whose = maker.chunks_max == SessionLimits::kMost
+                           ? std::string("a session can have")
+                           : fmt::format("the limit `cells` of the token '{}' allows", maker.token);
+    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than {}; use larger cells",
+                                          cells.width(), cells.height(), config.cell_size, whose)};
+}
+
+/// What the store keeps of a new session.
+wire::SessionRecord record_of(std::string_view name, double created, const mapping::MapConfig& config,
+                              const Maker& maker) {
+    wire::SessionRecord record{std::string(name), created, mapping::options_of(config)};
+    record.created_by = maker.token;
+    record.chunks_max = maker.chunks_max == SessionLimits::kMost ? 0 : maker.chunks_max;
+    return record;
 }
 
 /// Errors  kOverloaded: the memory ran out.
@@ -64,9 +75,9 @@ Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revi
 SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
     : log_(log), config_(std::move(config)), may_wait_(config_.may_wait.value_or(config_.compute)),
       reading_(config_.reading.value_or(config_.compute)),
-      pages_(std::make_shared<PageBudget>(config_.pages_max)), maker_{log_, config_.compute, may_wait_} {
-    maker_.limits.shared = {pages_};
-    maker_.limits.on_short = [this](std::size_t pages) {
+      pages_(std::make_shared<PageBudget>(config_.pages_max)), factory_{log_, config_.compute, may_wait_} {
+    factory_.limits.shared = {pages_};
+    factory_.limits.on_short = [this](std::size_t pages) {
         boost::asio::post(may_wait_, [this, pages] { make_room(pages + spare_pages()); });
     };
 }
@@ -99,7 +110,7 @@ void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error 
     damaged_[std::move(name)] = {id, std::move(why)};
 }
 
-Result<> SessionRegistry::check_new(std::string_view name) const {
+Result<> SessionRegistry::check_new(std::string_view name, const Maker& maker) const {
     if (draining_)
         return Error{Errc::kShuttingDown,
                      "the server is shutting down and makes no new sessions; try again when it is back"};
@@ -111,35 +122,42 @@ Result<> SessionRegistry::check_new(std::string_view name) const {
         return Error{Errc::kAlreadyExists,
                      fmt::format("session '{}' exists but is damaged; delete it first or choose another name", name)};
     }
-    return {};
+    if (maker.token.empty()) return {};
+    const auto made = static_cast<std::size_t>(std::ranges::count_if(
+        roster_.all(), [&](const Listed& listed) { return listed.info.created_by == maker.token; }));
+    if (made < maker.sessions_max) return {};
+    return Error{Errc::kFull, fmt::format("there are {} sessions that were made with the token '{}', the most that its "
+                                          "limit `sessions` allows; delete one, or have the limit raised",
+                                          made, maker.token)};
 }
 
 std::shared_ptr<Session> SessionRegistry::add(SessionInfo info, mapping::Projection projection) {
-    auto session = maker_.make(std::move(info), std::move(projection), 0);
+    auto session = factory_.make(std::move(info), std::move(projection), 0);
     roster_.add(session, config_.clock());
     return session;
 }
 
-Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options) {
+Result<std::shared_ptr<Session>> SessionRegistry::create(std::string_view name, const SessionOptions& options,
+                                                         const Maker& maker) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
 
     const std::lock_guard changing(changing_);
-    if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = config_.now();
-    const auto id =
-        log_.create_session(wire::encode_session({std::string(name), created, mapping::options_of(*config)}));
+    if (auto is_new = check_new(name, maker); !is_new) return is_new.error();
+    const auto record = record_of(name, config_.now(), *config, maker);
+    const auto id = log_.create_session(wire::encode_session(record));
     if (!id) return id.error();
-    return add({*id, std::string(name), created, *config}, mapping::Projection(*config));
+    return add({*id, record.name, record.created, *config, maker.token, maker.chunks_max},
+               mapping::Projection(*config));
 }
 
 Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view name, const SessionOptions& options,
-                                                             const std::vector<MapPatch>& patches) {
+                                                             const std::vector<MapPatch>& patches, const Maker& maker) {
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    if (auto ok = check_patches(*config, patches); !ok) return ok.error();
+    if (auto ok = check_patches(*config, patches, maker); !ok) return ok.error();
     // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
     auto projection = woven(*config, patches);
     if (!projection) return projection.error();
@@ -153,10 +171,10 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     }
 
     const std::lock_guard changing(changing_);
-    if (auto is_new = check_new(name); !is_new) return is_new.error();
-    const double created = config_.now();
-    const auto id = log_.create_session(wire::encode_session(
-        {std::string(name), created, mapping::options_of(*config), static_cast<std::uint32_t>(patches.size())}));
+    if (auto is_new = check_new(name, maker); !is_new) return is_new.error();
+    auto record = record_of(name, config_.now(), *config, maker);
+    record.map_patches = static_cast<std::uint32_t>(patches.size());
+    const auto id = log_.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
         const auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
@@ -164,7 +182,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
         static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
         return imported.error();
     }
-    return add({*id, std::string(name), created, *config}, std::move(*projection));
+    return add({*id, record.name, record.created, *config, maker.token, maker.chunks_max}, std::move(*projection));
 }
 
 Result<> SessionRegistry::remove(std::string_view name) {

@@ -2,8 +2,9 @@
 
 #include "common/error/error.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/session/maker.hpp"
 #include "server/session/roster.hpp"
-#include "server/session/session_maker.hpp"
+#include "server/session/session_factory.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
@@ -84,14 +85,17 @@ public:
     /// What could not be recovered: name and reason.
     [[nodiscard]] std::map<std::string, Error> damaged() const;
 
-    /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown.
-    [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options);
+    /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown; kFull: the maker has
+    ///         made as many as it may.
+    [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options,
+                                                          const Maker& maker = {});
 
     /// The same, beginning with a map that was made elsewhere: its patches are the log's first entries. Where a crash
     /// comes between, the next start removes what there is of it.
     /// Errors  also kInvalidField, kFull: the map at these cells; kOverloaded: there is no memory for it.
     [[nodiscard]] Result<std::shared_ptr<Session>> import_map(std::string_view name, const SessionOptions& options,
-                                                              const std::vector<MapPatch>& patches);
+                                                              const std::vector<MapPatch>& patches,
+                                                              const Maker& maker = {});
 
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
     [[nodiscard]] Result<> remove(std::string_view name);
@@ -110,7 +114,7 @@ public:
     /// Lets drain() end soon, as Session::hurry() says.
     void hurry();
 
-    [[nodiscard]] const SessionCounters& counters() const noexcept { return *maker_.counters; }
+    [[nodiscard]] const SessionCounters& counters() const noexcept { return *factory_.counters; }
 
     [[nodiscard]] bool is_draining() const noexcept { return draining_; }
 
@@ -123,7 +127,7 @@ private:
         Error error;
     };
 
-    [[nodiscard]] Result<> check_new(std::string_view name) const;
+    [[nodiscard]] Result<> check_new(std::string_view name, const Maker& maker) const;
     [[nodiscard]] std::shared_ptr<Session> add(SessionInfo info, mapping::Projection projection);
     void give_back_memory(std::size_t pages);
 
@@ -153,7 +157,7 @@ private:
     const boost::asio::any_io_executor may_wait_;
     const boost::asio::any_io_executor reading_;
     const std::shared_ptr<PageBudget> pages_;
-    SessionMaker maker_;
+    SessionFactory factory_;
     std::atomic<bool> draining_ = false;
     std::atomic<bool> hurried_ = false;
 

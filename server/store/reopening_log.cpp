@@ -113,8 +113,8 @@ std::uint64_t ReopeningLog::bytes_on_disk() const {
 
 Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free) {
     const auto why_not = [&](std::string_view reason) {
-        return Error{Errc::kStoreFailed, fmt::format("the disk of the store {} cannot be written: {}",
-                                                     directory.native(), reason)};
+        return Error{Errc::kStoreFailed,
+                     fmt::format("the disk of the store {} cannot be written: {}", directory.native(), reason)};
     };
     std::error_code failed;
     const auto space = std::filesystem::space(directory, failed);

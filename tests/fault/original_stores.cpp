@@ -75,7 +75,7 @@ void OriginalStores::append_scans(store::ScanLog& log, std::uint64_t count) {
 /// As a server does that stops.
 void OriginalStores::write_checkpoints(store::ScanLog& log) const {
     boost::asio::thread_pool compute(1);
-    session::SessionRegistry sessions(log, compute.get_executor(), [] { return double{kCreated}; });
+    session::SessionRegistry sessions(log, {compute.get_executor(), [] { return double{kCreated}; }});
     sessions.recover().value();
     sessions.drain();
     compute.join();

@@ -22,7 +22,7 @@ public:
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), desk_}, config);
+            LinkServices{sessions_, may_wait_.get_executor(), metrics_.ingest(), desk_, gate_, audit_}, config);
         server_->start();
         for (int n = 0; n < 2; ++n) io_threads_.emplace_back([this] { io_.run(); });
     }
@@ -44,6 +44,8 @@ public:
     void stop_accepting() { server_->stop(); }
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] metrics::IngestCounters& counters() { return metrics_.ingest(); }
+    [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
+    [[nodiscard]] guard::Gate& gate() { return gate_; }
     [[nodiscard]] guide::GoalBook& goals() { return goals_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
@@ -62,6 +64,8 @@ private:
 
     boost::asio::thread_pool compute_{2};
     metrics::Metrics metrics_{"test"};
+    guard::Gate gate_;
+    guard::Audit audit_{metrics_.refusals()};
     boost::asio::thread_pool may_wait_{2};
     boost::asio::thread_pool planning_{1};
     boost::asio::io_context io_;

@@ -36,12 +36,13 @@ HttpAnswer http_request(std::uint16_t port, const std::string& method, const std
 std::filesystem::path program(const std::string& name) { return std::filesystem::path(SCANLOOM_PROGRAMS) / name; }
 
 RunningServer::RunningServer(const std::filesystem::path& store, const std::filesystem::path& log,
-                             std::uint16_t robot_port, std::uint16_t http_port) {
-    process_ = std::make_unique<ChildProcess>(
-        program("scanloom-server"),
-        std::vector<std::string>{"--store", store.string(), "--listen", "127.0.0.1:" + std::to_string(robot_port),
-                                 "--http", "127.0.0.1:" + std::to_string(http_port)},
-        log);
+                             std::uint16_t robot_port, std::uint16_t http_port,
+                             const std::vector<std::string>& more_options) {
+    std::vector<std::string> options{"--store",  store.string(),
+                                     "--listen", "127.0.0.1:" + std::to_string(robot_port),
+                                     "--http",   "127.0.0.1:" + std::to_string(http_port)};
+    options.insert(options.end(), more_options.begin(), more_options.end());
+    process_ = std::make_unique<ChildProcess>(program("scanloom-server"), options, log);
     const auto line = process_->read_line();
     if (!line) throw std::runtime_error("scanloom-server ended before it was ready; see " + log.string());
     const auto ready = boost::json::parse(*line);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace scanloom::test {
 
@@ -26,7 +27,7 @@ class RunningServer {
 public:
     /// Ports 0 pick free ones.
     RunningServer(const std::filesystem::path& store, const std::filesystem::path& log, std::uint16_t robot_port = 0,
-                  std::uint16_t http_port = 0);
+                  std::uint16_t http_port = 0, const std::vector<std::string>& more_options = {});
 
     [[nodiscard]] std::uint16_t robot_port() const noexcept { return robot_port_; }
     [[nodiscard]] std::uint16_t http_port() const noexcept { return http_port_; }

@@ -21,6 +21,7 @@ import { TimeBar } from './panel/time_bar';
 import { Picture } from './picture';
 import { SessionPanel } from './sessions/session_panel';
 import { SettingsStore } from './settings';
+import { SignIn } from './sign_in';
 import { readTheme } from './theme';
 import { SessionHistory } from './time/history';
 import { addTools } from './tools/all_tools';
@@ -165,6 +166,7 @@ addTools(
 buildPanels();
 listen();
 notice.show({ kind: 'loading' });
+void new SignIn(byId('sign-in', HTMLElement)).run();
 open();
 chooser.run((error) => {
   status.settle('sessions', error);

@@ -8,6 +8,13 @@ export interface Pace {
 const kBackoffMaxMs = 5_000;
 const kRetryMs = 500;
 
+const impatience = new EventTarget();
+
+/** Ends all waits: what went wrong may go well now. */
+export function hurry(): void {
+  impatience.dispatchEvent(new Event('hurry'));
+}
+
 /**
  * Runs the task, waits, and runs it again until the signal aborts; never two runs at once.
  * Coming back to the page, or the network coming back, ends a wait early.
@@ -65,6 +72,7 @@ function pause(durationMs: number, signal: AbortSignal): Promise<void> {
     const timer = setTimeout(finish, durationMs);
     signal.addEventListener('abort', finish, { signal: done.signal });
     window.addEventListener('online', finish, { signal: done.signal });
+    impatience.addEventListener('hurry', finish, { signal: done.signal });
     document.addEventListener('visibilitychange', () => document.hidden || finish(), { signal: done.signal });
   });
 }

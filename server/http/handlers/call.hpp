@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/access/token.hpp"
 #include "server/http/request.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
@@ -11,6 +12,7 @@ struct Call {
     const Request& request;
     const Arguments& arguments;
     const Query& query;
+    access::TokenRef token = nullptr; ///< of who asks; null only where anybody may
 };
 
 } // namespace scanloom::http

@@ -10,11 +10,16 @@ namespace scanloom::http {
 namespace {
 
 /// Damaged and failed sessions keep nobody from using the others.
-boost::json::object readiness(const session::SessionRegistry& sessions, const RobotPort& robots) {
+boost::json::object readiness(const session::SessionRegistry& sessions, const RobotPort& robots,
+                              const access::TokenRef& seen_by) {
+    const auto is_seen = [&](std::string_view session) { return seen_by && is_for(*seen_by, session); };
     boost::json::array damaged;
-    for (const auto& [name, reason] : sessions.damaged()) damaged.push_back(damaged_json(name, reason));
+    for (const auto& [name, reason] : sessions.damaged()) {
+        if (is_seen(name)) damaged.push_back(damaged_json(name, reason));
+    }
     boost::json::array failed;
     for (const auto& session : sessions.list()) {
+        if (!is_seen(session->info().name)) continue;
         if (const auto reason = session->failure()) failed.push_back(failed_json(session->info().name, *reason));
     }
     boost::json::value host;
@@ -41,7 +46,7 @@ Result<Response> get_readyz(const session::SessionRegistry& sessions, const stor
     const auto store = log.stats();
     if (store.last_error) reasons.emplace_back("the store failed: " + *store.last_error);
     if (store.no_room) reasons.emplace_back(*store.no_room);
-    if (reasons.empty()) return ok(readiness(sessions, robots));
+    if (reasons.empty()) return ok(readiness(sessions, robots, call.token));
     return problem(Status::service_unavailable, "the server is not ready", "/readyz", {{"reasons", reasons}});
 }
 

@@ -20,7 +20,8 @@ struct RobotPort {
 [[nodiscard]] Result<Response> get_livez(const Call& call);
 
 /// GET /readyz: 200 with the sessions that are damaged or take no scans and where robots connect, or 503 with the
-/// reasons: sessions not recovered yet, draining, a failed store. It waits for nothing.
+/// reasons: sessions not recovered yet, draining, a failed store. It waits for nothing. Sessions are named to those
+/// alone whose token is for them.
 [[nodiscard]] Result<Response> get_readyz(const session::SessionRegistry& sessions, const store::ScanLog& log,
                                           bool recovered, const RobotPort& robots, const Call& call);
 

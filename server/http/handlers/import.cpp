@@ -51,7 +51,7 @@ Result<Form> read_form(const Request& request) {
 
 } // namespace
 
-Result<Response> import_map(session::SessionRegistry& sessions, const Call& call) {
+Result<Response> import_map(session::SessionRegistry& sessions, const Doorman& doorman, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     auto form = read_form(call.request);
     if (!form) return form.error();
@@ -72,8 +72,9 @@ Result<Response> import_map(session::SessionRegistry& sessions, const Call& call
         }
         form->options.cell_size = description->resolution;
     }
-    const auto session = sessions.import_map(call.arguments["session"], form->options, *patches);
-    if (!session) return session.error();
+    const auto& name = call.arguments["session"];
+    const auto session = sessions.import_map(name, form->options, *patches, session::maker_of(*call.token));
+    if (!session) return doorman.noted(call, session.error(), name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", (*session)->info().name));
     response.status = Status::created;
     return response;

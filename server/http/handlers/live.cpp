@@ -25,7 +25,8 @@ Response upgrade_required(const Call& call) {
 
 } // namespace
 
-Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call) {
+Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Doorman& doorman,
+                          const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
@@ -40,11 +41,16 @@ Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& wa
                                    in_quotes(upgrade->origin)),
                        instance_of(call.request.target));
     }
+    const auto& info = (*session)->info();
+    auto pass = doorman.gate().let_watch(call.token, info.name);
+    if (!pass) return doorman.refuse(call.request, pass.error(), info.name);
     Response response;
     response.status = Status::switching_protocols;
-    const auto& info = (*session)->info();
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), ways});
+        live::Invitation{*session, info.id, info.name, session_tag(info), ways, std::move(*pass),
+                         [doorman, peer = call.request.peer, token = call.token->name, name = info.name] {
+                             doorman.note({access::Port::kHttp, access::Reason::kRevoked, peer, token, name});
+                         }});
     return response;
 }
 

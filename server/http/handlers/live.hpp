@@ -2,6 +2,7 @@
 
 #include "common/error/error.hpp"
 #include "server/guide/way_book.hpp"
+#include "server/http/doorman.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/session_registry.hpp"
@@ -9,8 +10,10 @@
 namespace scanloom::http {
 
 /// Lets a WebSocket in that watches the session: 101, with an invitation. 426 when no WebSocket of version 13 is asked
-/// for, 403 when a page of another host asks for it: browsers let any page open one and show what comes.
+/// for, 403 when a page of another host asks for it: browsers let any page open one and show what comes. The viewer
+/// watches for as long as its token allows it.
 /// Errors  kInvalidField: an unknown parameter; those of find_session().
-[[nodiscard]] Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Call& call);
+[[nodiscard]] Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways,
+                                        const Doorman& doorman, const Call& call);
 
 } // namespace scanloom::http

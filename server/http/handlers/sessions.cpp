@@ -54,10 +54,12 @@ Result<Page> parse_page(const Query& query) {
 /// A session that is served, or why it is not.
 using Listed = Result<session::Listed>;
 
-std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions) {
+std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions,
+                                                            const access::Token& seen_by) {
     std::map<std::string, Listed, std::less<>> listed;
     for (auto& session : sessions.all()) listed.emplace(session.info.name, session);
     for (const auto& [name, reason] : sessions.damaged()) listed.emplace(name, reason);
+    std::erase_if(listed, [&](const auto& entry) { return !is_for(seen_by, entry.first); });
     return listed;
 }
 
@@ -70,7 +72,7 @@ boost::json::object to_json(const Listed& listed, std::string_view name) {
 Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call) {
     const auto page = parse_page(call.query);
     if (!page) return page.error();
-    const auto listed = sessions_by_name(sessions);
+    const auto listed = sessions_by_name(sessions, *call.token);
     boost::json::array shown;
     boost::json::value next = nullptr;
     auto entry = listed.upper_bound(page->after);
@@ -81,12 +83,14 @@ Result<Response> list_sessions(const session::SessionRegistry& sessions, const C
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
 }
 
-Result<Response> create_session(session::SessionRegistry& sessions, const Call& call) {
+Result<Response> create_session(session::SessionRegistry& sessions, const Doorman& doorman, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto wanted = parse_session_request(call.request.body);
     if (!wanted) return wanted.error();
-    const auto session = sessions.create(wanted->name, wanted->options);
-    if (!session) return session.error();
+    if (const auto why = Doorman::objection(*call.token, wanted->name))
+        return doorman.refuse(call.request, *why, wanted->name);
+    const auto session = sessions.create(wanted->name, wanted->options, session::maker_of(*call.token));
+    if (!session) return doorman.noted(call, session.error(), wanted->name);
     auto response = ok(to_json(**session)).set("Location", fmt::format("/api/v1/sessions/{}", wanted->name));
     response.status = Status::created;
     return response;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/http/doorman.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/session_registry.hpp"
@@ -9,11 +10,12 @@
 namespace scanloom::http {
 
 /// GET /api/v1/sessions: by rising name, at most `limit` (1..1000, default 100) names after `after`;
-/// those whose log is damaged, too, marked so.
+/// those whose log is damaged, too, marked so. Only those that the token is for.
 [[nodiscard]] Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call);
 
 /// POST /api/v1/sessions
-[[nodiscard]] Result<Response> create_session(session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> create_session(session::SessionRegistry& sessions, const Doorman& doorman,
+                                              const Call& call);
 
 /// GET /api/v1/sessions/{session}
 [[nodiscard]] Result<Response> get_session(const session::SessionRegistry& sessions, const Call& call);

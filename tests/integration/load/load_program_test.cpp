@@ -98,6 +98,28 @@ TEST_F(LoadProgram, EveryScanIsThereOnceThoughLinksFailAllTheTime) {
     EXPECT_EQ(sessions(), 0U); // they are deleted again
 }
 
+TEST_F(LoadProgram, OneTokenOpensBothPortsToIt) {
+    ChildProcess maker(program("scanloom-server"), {"token", "--name", "load", "--role", "operator"}, errors());
+    const auto secret = maker.read_line().value();
+    std::ofstream tokens(place_.path() / "tokens.toml");
+    while (const auto line = maker.read_line()) tokens << *line << "\n";
+    tokens.close();
+    std::ofstream(place_.path() / "secret") << secret << "\n";
+    std::filesystem::permissions(place_.path() / "tokens.toml", std::filesystem::perms::owner_read);
+    server_.reset();
+    server_ = std::make_unique<RunningServer>(place_.path() / "store", place_.path() / "log", 0, 0,
+                                              Words{"--tokens", (place_.path() / "tokens.toml").string()});
+    const Words onlookers{"--viewers", "2", "--tile-readers", "2"};
+    const auto let_in = run(kSmallLoad + onlookers + Words{"--token-file", (place_.path() / "secret").string()});
+    EXPECT_EQ(let_in.code, 0) << let_in.errors;
+    ASSERT_TRUE(let_in.report.is_object()) << let_in.errors;
+    EXPECT_EQ(let_in.count("verdict", "digests_equal"), 20U);
+    EXPECT_EQ(let_in.count("audience", "viewers_let_in"), 2U);
+    EXPECT_EQ(let_in.count("audience", "viewers_refused"), 0U);
+    EXPECT_EQ(http_request(server_->http_port(), "GET", "/api/v1/sessions").status, 401U);
+    EXPECT_EQ(run(kSmallLoad + onlookers).code, 1);
+}
+
 TEST_F(LoadProgram, AServerThatIsKilledMeanwhileLosesNothing) {
     ChildProcess load(program("scanloom-load"), arguments(kSmallLoad, server_->http_port()), errors());
     while (server_->get("/api/v1/sessions/load-1-7").status != 200 ||

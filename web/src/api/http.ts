@@ -1,6 +1,7 @@
 /** One request, with a deadline, and its failures as two kinds of error. */
 
 const kDeadlineMs = 10_000;
+const kUnauthorized = 401;
 
 /** The server could not be reached, or did not answer in time. */
 export class Unreachable extends Error {
@@ -17,6 +18,13 @@ export class Refused extends Error {
   ) {
     super(message);
   }
+}
+
+let unauthorized: () => void = () => {};
+
+/** @param told whenever the server answers that it does not know who asks */
+export function onUnauthorized(told: () => void): void {
+  unauthorized = told;
 }
 
 /**
@@ -94,6 +102,7 @@ async function ask(path: string, init: RequestInit, signal: AbortSignal, deadlin
     signal.throwIfAborted();
     throw new Unreachable('the server does not answer', { cause: error });
   }
+  if (response.status === kUnauthorized) unauthorized();
   if (!response.ok) throw new Refused(response.status, await reason(response));
   return response;
 }

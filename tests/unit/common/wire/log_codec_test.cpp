@@ -116,12 +116,18 @@ TEST(LogCodec, ValuesThatNoRobotCouldSendAreReportedByName) {
 }
 
 TEST(LogCodec, ASessionComesBackAsItWas) {
-    const SessionRecord record{"Intel_Lab", 1.75e9, {.cell_size = 0.1, .p_prior = 0.4}};
+    const SessionRecord record{"Intel_Lab", 1.75e9, {.cell_size = 0.1, .p_prior = 0.4}, 3, "depot", 17};
     const auto decoded = decode_session(encode_session(record));
     ASSERT_TRUE(decoded);
-    EXPECT_EQ(decoded->name, record.name);
-    EXPECT_EQ(decoded->created, record.created);
-    EXPECT_EQ(decoded->options, record.options);
+    EXPECT_EQ(*decoded, record);
+}
+
+TEST(LogCodec, ASessionFromBeforeThereWereTokensIsNobodysInParticular) {
+    const auto decoded = decode_session("\n\3lab"); // its name, field 1, alone
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->name, "lab");
+    EXPECT_EQ(decoded->created_by, "");
+    EXPECT_EQ(decoded->chunks_max, 0U);
 }
 
 TEST(LogCodec, ADamagedSessionIsReported) {

@@ -1,5 +1,6 @@
 #include "server/app/options.hpp"
 
+#include "server/access/token_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
@@ -102,6 +103,73 @@ TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     for (const auto* wrong : {"http://maps.lab", "maps.lab:80", "a b"}) {
         EXPECT_THAT(refusal({"--http-host", wrong}), HasSubstr(wrong));
     }
+}
+
+std::vector<std::string> warnings(std::vector<std::string> arguments) {
+    return guard_warnings(std::get<ServerOptions>(read(std::move(arguments))));
+}
+
+TEST_F(ServerOptionsTest, BeyondLoopbackEachPortNeedsAGuard) {
+    const std::vector<std::string> tls = {"--robot-tls-cert", "c", "--robot-tls-key", "k"};
+    const auto with = [](std::vector<std::string> a, const std::vector<std::string>& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+    };
+    const std::vector<std::string> robots = {"--listen", "0.0.0.0:7447"};
+    const std::vector<std::string> people = {"--http", "[::]:8080"};
+    EXPECT_THAT(refusal(robots),
+                AllOf(HasSubstr("--listen 0.0.0.0"), HasSubstr("--robot-tls-cert"), HasSubstr("--insecure")));
+    EXPECT_THAT(refusal(people), AllOf(HasSubstr("--http ::"), HasSubstr("--tokens"), HasSubstr("--insecure")));
+    EXPECT_THAT(refusal(with(people, tls)), HasSubstr("--http ::")) << "robots' TLS does not guard it";
+    for (const auto& port : {robots, people}) {
+        EXPECT_EQ(refusal(with(port, {"--tokens", "t"})), "taken");
+        EXPECT_EQ(refusal(with(port, {"--insecure"})), "taken");
+    }
+    EXPECT_EQ(refusal(with(robots, tls)), "taken");
+}
+
+TEST_F(ServerOptionsTest, WhatAGuardDoesNotKeepOutIsSaid) {
+    EXPECT_THAT(warnings({}), testing::IsEmpty());
+    EXPECT_THAT(warnings({"--tokens", "t"}), testing::IsEmpty()) << "nobody is on the way";
+    EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t"}),
+                ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("without TLS"))));
+    EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
+                ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("no token is asked for"))));
+    EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
+                testing::IsEmpty());
+    EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--insecure"}), ElementsAre(HasSubstr("--http: no token")));
+}
+
+std::variant<ServerOptions, Leave> token(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"scanloom-server", "token"});
+    std::vector<const char*> argv;
+    for (const auto& argument : arguments) argv.push_back(argument.c_str());
+    return read_options(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(TokenCommand, PrintsASecretAndTheLinesThatLetItIn) {
+    const auto leave = std::get<Leave>(token({"--name", "depot", "--role", "robot", "--session", "depot-*", "lab"}));
+    ASSERT_EQ(leave.code, kExitDone);
+    const auto secret = leave.text.substr(0, leave.text.find('\n'));
+    const auto tokens = access::parse_tokens(leave.text.substr(leave.text.find("[[token]]"))).value();
+    const auto made = tokens.find(secret);
+    ASSERT_NE(made, nullptr);
+    EXPECT_EQ(made->name, "depot");
+    EXPECT_EQ(made->role, access::Role::kRobot);
+    EXPECT_THAT(made->sessions, ElementsAre("depot-*", "lab"));
+    EXPECT_NE(leave.text, std::get<Leave>(token({"--name", "depot", "--role", "robot"})).text);
+}
+
+TEST(TokenCommand, SaysWhatIsWrong) {
+    const auto said = [](std::vector<std::string> arguments) {
+        const auto leave = std::get<Leave>(token(std::move(arguments)));
+        EXPECT_EQ(leave.code, kExitUsage);
+        return leave.text;
+    };
+    EXPECT_THAT(said({"--role", "robot"}), HasSubstr("--name"));
+    EXPECT_THAT(said({"--name", "a", "--role", "admin"}), HasSubstr("--role"));
+    EXPECT_THAT(said({"--name", "a b", "--role", "robot"}), HasSubstr("is no name"));
+    EXPECT_THAT(said({"--name", "a", "--role", "robot", "--session", "a/b"}), HasSubstr("is no pattern"));
 }
 
 } // namespace

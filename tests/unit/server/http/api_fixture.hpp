@@ -153,7 +153,10 @@ protected:
     metrics::Metrics metrics_{"1.2.3"};
     session::Weaves weaves_{log_, pool_.get_executor()};
     guide::GoalBook goals_;
-    Api api_{registry_, weaves_, goals_, log_, metrics_, {}};
+    guard::Gate gate_;
+    guard::Audit audit_{metrics_.refusals()};
+    guard::Logins logins_;
+    Api api_{registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
     std::vector<std::shared_ptr<Link>> links_;
 };
 

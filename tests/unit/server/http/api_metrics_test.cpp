@@ -18,7 +18,7 @@ public:
         static const std::regex help(R"(# HELP ([a-zA-Z_:][a-zA-Z0-9_:]*) \S.*)");
         static const std::regex type(R"(# TYPE ([a-zA-Z_:][a-zA-Z0-9_:]*) (counter|gauge|histogram))");
         static const std::regex sample(
-            R"re(([a-zA-Z_:][a-zA-Z0-9_:]*)(?:\{([a-z_]+)="([^"\\]*)"\})? (-?[0-9.]+(?:e[+-]?[0-9]+)?))re");
+            R"re(([a-zA-Z_:][a-zA-Z0-9_:]*)(?:\{(?:[a-z_]+="[^"\\]*",)*([a-z_]+)="([^"\\]*)"\})? (-?[0-9.]+(?:e[+-]?[0-9]+)?))re");
         std::smatch parts;
         if (std::regex_match(line, parts, help)) {
             finish();

@@ -7,7 +7,7 @@ namespace scanloom::http {
 namespace {
 
 TEST_F(ApiTest, ReadinessFollowsTheServersLife) {
-    Api starting(registry_, weaves_, goals_, log_, metrics_, {});
+    Api starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
     const auto ready = [&](Api& api) { return answer(api, {.target = "/readyz"}); };
     EXPECT_EQ(ready(starting).status, Status::service_unavailable);
     EXPECT_THAT(std::string(ready(starting).body.bytes()), HasSubstr("recovered"));
@@ -68,7 +68,7 @@ std::string address_of(const Route& route, std::string_view session) {
 TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     create("a");
     stream("a", 2);
-    Api starting(registry_, weaves_, goals_, log_, metrics_, {});
+    Api starting(registry_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {});
     for (const auto& route : routes()) {
         if (route.operation == Operation::kDeleteSession) continue; // at the end
         for (const std::string session : {"a", "nobody"}) {

@@ -219,7 +219,7 @@ protected:
     std::promise<void> go_on_;
     bool gone_on_ = false;
     session::Weaves held_{log_, one_.get_executor()};
-    Api held_api_{registry_, held_, goals_, log_, metrics_, {}};
+    Api held_api_{registry_, held_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
 };
 
 TEST_F(ApiHeldWeavesTest, WhoWaitsWhileTheSessionIsDeletedIsToldSo) {

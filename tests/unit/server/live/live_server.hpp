@@ -117,6 +117,8 @@ public:
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
     [[nodiscard]] guide::WayBook& ways() { return goals_.ways(); }
+    [[nodiscard]] guard::Gate& gate() { return gate_; }
+    [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] metrics::LiveCounters& counters() { return metrics_.http().live; }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
@@ -130,7 +132,10 @@ private:
     session::SessionRegistry sessions_{log_, {compute_.get_executor(), [] { return 1'000.0; }}};
     session::Weaves weaves_{log_, compute_.get_executor()};
     guide::GoalBook goals_;
-    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {}};
+    guard::Gate gate_;
+    guard::Audit audit_{metrics_.refusals()};
+    guard::Logins logins_;
+    http::Api api_{sessions_, weaves_, goals_, log_, metrics_, {gate_, audit_, logins_}, {}};
     std::shared_ptr<http::Server> server_;
     std::array<std::thread, 2> threads_;
     std::map<std::string, std::shared_ptr<StreamingRobot>> robots_;

@@ -52,6 +52,17 @@ std::string request(std::initializer_list<v1::Layer> layers, bool points) {
     return request.SerializeAsString();
 }
 
+TEST(LiveViewer, EndsWhenTokensNoLongerAllowIt) {
+    LiveServer server;
+    LiveClient client(server.port());
+    ASSERT_TRUE(client.read());
+    server.gate().replace(access::TokenSet()); // whoever came without a token goes
+    EXPECT_EQ(client.read_to_the_end(), 0U);
+    EXPECT_EQ(client.code(), 4401U);
+    EXPECT_THAT(client.reason(), HasSubstr("sign in"));
+    EXPECT_EQ(server.refusals().of(access::Port::kHttp, access::Reason::kRevoked).Value(), 1.0);
+}
+
 TEST(LiveViewer, TheFirstEventTellsAllAndTheNextWhatChanged) {
     LiveServer server;
     server.stream("r1", 1, 20);

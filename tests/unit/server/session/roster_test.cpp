@@ -20,8 +20,8 @@ Time at(int second) { return Time(std::chrono::seconds(second)); }
 class RosterTest : public SessionTest {
 protected:
     void add(const std::string& name, int second) {
-        roster_.add(std::make_shared<Session>(SessionInfo{++last_id_, name, 0.0, config_}, mapping::Projection(config_), 0,
-                                              log_, compute_.get_executor()),
+        roster_.add(std::make_shared<Session>(SessionInfo{++last_id_, name, 0.0, config_}, mapping::Projection(config_),
+                                              0, log_, compute_.get_executor()),
                     at(second));
     }
 
@@ -39,7 +39,9 @@ protected:
     Roster::Woken note(std::string who) {
         return [this, who = std::move(who)](const Result<std::shared_ptr<Session>>& session) {
             told_.push_back(who + ": " +
-                            (!session ? session.error().message : *session ? (*session)->info().name : "none"));
+                            (!session   ? session.error().message
+                             : *session ? (*session)->info().name
+                                        : "none"));
         };
     }
 
@@ -68,9 +70,9 @@ TEST_F(RosterTest, OneOfThoseWhoWantASleepingSessionReadsItForAll) {
     EXPECT_FALSE(roster_.want("a", at(1), note("second")));
     EXPECT_THAT(told_, IsEmpty());
     expect_awake("a", false);
-    roster_.arrived(std::make_shared<Session>(resting->info, mapping::Projection(config_), 0, log_,
-                                              compute_.get_executor()),
-                    at(2));
+    roster_.arrived(
+        std::make_shared<Session>(resting->info, mapping::Projection(config_), 0, log_, compute_.get_executor()),
+        at(2));
     EXPECT_THAT(told_, ElementsAre("first: a", "second: a"));
     expect_awake("a", true);
 }

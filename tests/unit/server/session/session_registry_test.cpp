@@ -38,6 +38,34 @@ TEST_F(SessionRegistryTest, ANameIsTakenOnlyOnce) {
     EXPECT_THAT(log_.sessions().value(), SizeIs(1));
 }
 
+TEST_F(SessionRegistryTest, AMakersLimitsHoldAfterARestart) {
+    const Maker maker{"depot", 2, {4}};
+    ASSERT_TRUE(registry_->create("a", {}, maker));
+    ASSERT_TRUE(registry_->create("b", {}, maker));
+    ASSERT_TRUE(registry_->create("c", {})); // nobody's in particular
+    ASSERT_TRUE(registry_->create("d", {}, {"other", 1, {}}));
+    registry_->drain();
+    restart();
+    EXPECT_EQ(registry_->find("a")->info().created_by, "depot");
+    EXPECT_EQ(registry_->find("c")->info().created_by, "");
+    const auto refused = registry_->create("e", {}, maker);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kFull);
+    EXPECT_THAT(refused.error().message, AllOf(HasSubstr("'depot'"), HasSubstr("`sessions`")));
+
+    const auto link = std::make_shared<AwaitedLink>();
+    auto& small = *registry_->find("a");
+    ASSERT_TRUE(join_and_wait(small, "r", link));
+    small.submit(link, small_laser(), 0);
+    small.submit(link, {random_scan(7, 1)}, 0);
+    const auto full = link->wait_for_failure();
+    EXPECT_EQ(full.code, Errc::kFull);
+    EXPECT_THAT(full.message, AllOf(HasSubstr("beyond 4"), HasSubstr("`cells`"), HasSubstr("'depot'")));
+
+    ASSERT_TRUE(registry_->remove("b"));
+    EXPECT_TRUE(registry_->create("e", {}, maker));
+}
+
 TEST_F(SessionRegistryTest, BadNamesAndSettingsAreRefusedByFieldAndMakeNothing) {
     for (const char* name : {"", "a/b", "../a", "caf\xc3\xa9"}) {
         const auto refused = registry_->create(name, {});

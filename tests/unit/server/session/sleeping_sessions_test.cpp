@@ -39,9 +39,7 @@ protected:
     }
 
     /// Or on its way to sleep; asking does not use it.
-    bool is_awake(const std::string& name) {
-        return registry_->listed(name)->session != nullptr;
-    }
+    bool is_awake(const std::string& name) { return registry_->listed(name)->session != nullptr; }
 
     /// With `passing` from one look after those who wait for room to the next.
     Result<std::shared_ptr<Session>> wake(const std::string& name, std::chrono::seconds passing) {
@@ -147,8 +145,10 @@ TEST_F(SleepingSessions, LeaveWhenOthersNeedTheirMemory) {
         sent = joined->last_durable_seq;
         b->submit(link, small_laser(), 0);
         for (std::uint64_t seq = sent + 1; seq <= 20; ++seq) b->submit(link, {random_scan(7, seq)}, 0);
-        if (!link->wait_for_seq_or_failure(20)) link = std::make_shared<AwaitedLink>();
-        else sent = 20;
+        if (!link->wait_for_seq_or_failure(20))
+            link = std::make_shared<AwaitedLink>();
+        else
+            sent = 20;
     }
     EXPECT_EQ(testing_support::digests_of(*b->snapshot()), digest) << "the same scans";
     EXPECT_TRUE(registry_->is_asleep("a"));
@@ -176,12 +176,14 @@ TEST_F(SleepingSessions, AreNotReadWhereThoseInUseTakeAllTheMemory) {
 
 TEST_F(SleepingSessions, MoreThanFitIntoMemoryAreWovenOneAfterTheOtherAfterACrash) {
     std::vector<std::string> digests;
-    for (int n = 0; n < 6; ++n) digests.push_back(leave_behind("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
+    for (int n = 0; n < 6; ++n)
+        digests.push_back(leave_behind("s" + std::to_string(n), 20 + 5 * static_cast<std::size_t>(n)));
     const auto pages = static_cast<std::size_t>(registry_->pages().used()) / 6;
     restart(2 * pages);
     EXPECT_LE(registry_->pages().used(), registry_->pages().pages_max());
     EXPECT_THAT(registry_->all(), SizeIs(6));
-    for (int n = 0; n < 6; ++n) EXPECT_EQ(digest_when_woken("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);
+    for (int n = 0; n < 6; ++n)
+        EXPECT_EQ(digest_when_woken("s" + std::to_string(n)), digests[static_cast<std::size_t>(n)]);
 }
 
 TEST_F(SleepingSessions, ThatTurnOutToBeDamagedAreReported) {

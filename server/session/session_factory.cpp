@@ -1,4 +1,4 @@
-#include "server/session/session_maker.hpp"
+#include "server/session/session_factory.hpp"
 
 #include "server/session/checkpoint.hpp"
 #include "server/session/recovery.hpp"
@@ -23,14 +23,16 @@ void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& reco
 
 } // namespace
 
-std::shared_ptr<Session> SessionMaker::make(SessionInfo info, mapping::Projection projection,
-                                            std::optional<Revision> checkpointed) const {
-    return std::make_shared<Session>(std::move(info), std::move(projection), checkpointed, log, compute, counters,
-                                     limits, may_wait);
+std::shared_ptr<Session> SessionFactory::make(SessionInfo info, mapping::Projection projection,
+                                              std::optional<Revision> checkpointed) const {
+    auto own = limits;
+    own.chunks_max = info.chunks_max;
+    return std::make_shared<Session>(std::move(info), std::move(projection), checkpointed, log, compute, counters, own,
+                                     may_wait);
 }
 
-Result<std::shared_ptr<Session>> SessionMaker::read(const SessionInfo& info, const std::atomic<bool>& stop,
-                                                    const std::atomic<bool>& hurried) const {
+Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, const std::atomic<bool>& stop,
+                                                      const std::atomic<bool>& hurried) const {
     auto recovered = recover(log, info.id, info.config, stop);
     if (!recovered) return recovered.error();
     if (recovered->checkpoint_rejected) {

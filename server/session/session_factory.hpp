@@ -13,7 +13,7 @@
 namespace scanloom::session {
 
 /// What all sessions of a server are made with.
-struct SessionMaker {
+struct SessionFactory {
     store::ScanLog& log;
     boost::asio::any_io_executor compute;  ///< where sessions weave
     boost::asio::any_io_executor may_wait; ///< where they write checkpoints

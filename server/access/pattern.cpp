@@ -1,0 +1,38 @@
+#include "server/access/pattern.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace scanloom::access {
+
+bool is_valid_pattern(std::string_view pattern) noexcept {
+    if (pattern.empty() || pattern.size() > kNameBytesMax) return false;
+    return std::ranges::all_of(
+        pattern, [](const char& c) { return c == '*' || c == '?' || is_valid_name(std::string_view(&c, 1)); });
+}
+
+bool matches(std::string_view pattern, std::string_view name) noexcept {
+    constexpr auto kNone = std::string_view::npos;
+    std::size_t at = 0;       // in the pattern
+    std::size_t star = kNone; // the last '*' passed
+    std::size_t tried = 0;    // where what follows it was tried to begin
+    for (std::size_t i = 0; i < name.size();) {
+        if (at < pattern.size() && pattern[at] == '*') {
+            star = at++;
+            tried = i;
+        } else if (at < pattern.size() && (pattern[at] == '?' || pattern[at] == name[i])) {
+            ++at;
+            ++i;
+        } else if (star != kNone) { // that '*' stands for one character more; an earlier one never has to
+            at = star + 1;
+            i = ++tried;
+        } else {
+            return false;
+        }
+    }
+    return pattern.find_first_not_of('*', at) == kNone;
+}
+
+} // namespace scanloom::access

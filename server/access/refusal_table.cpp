@@ -1,0 +1,52 @@
+#include "server/access/refusal_table.hpp"
+
+#include <utility>
+
+namespace scanloom::access {
+
+std::vector<RefusalTable::Line> RefusalTable::note(Refusal refusal, double now) {
+    std::vector<Line> lines;
+    sweep(now, lines);
+    Key key{refusal.who, refusal.port, refusal.reason};
+    if (!kept_.contains(key) && kept_.size() >= kAddressesMax) {
+        refusal.who = kOthers;
+        std::get<0>(key) = kOthers;
+    }
+    const auto [entry, is_new] = kept_.try_emplace(std::move(key));
+    Kept& kept = entry->second;
+    kept.newest = std::move(refusal);
+    ++kept.untold;
+    if (is_new) {
+        lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
+        kept.told = now;
+    }
+    return lines;
+}
+
+/// Once a second at most: tells what has waited long enough, and forgets who was not refused meanwhile.
+void RefusalTable::sweep(double now, std::vector<Line>& lines) {
+    if (now - swept_ < 1.0) return;
+    swept_ = now;
+    for (auto entry = kept_.begin(); entry != kept_.end();) {
+        Kept& kept = entry->second;
+        if (now - kept.told < kPauseSeconds) {
+            ++entry;
+        } else if (kept.untold == 0) {
+            entry = kept_.erase(entry);
+        } else {
+            lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
+            kept.told = now;
+            ++entry;
+        }
+    }
+}
+
+std::vector<RefusalTable::Line> RefusalTable::rest() {
+    std::vector<Line> lines;
+    for (auto& [key, kept] : kept_) {
+        if (kept.untold > 0) lines.push_back({kept.newest, std::exchange(kept.untold, 0)});
+    }
+    return lines;
+}
+
+} // namespace scanloom::access

@@ -1,0 +1,67 @@
+#include "server/app/token_command.hpp"
+
+#include "common/app/parse_failure.hpp"
+#include "common/scan/limits.hpp"
+#include "server/access/pattern.hpp"
+#include "server/access/secret.hpp"
+#include "server/access/token_text.hpp"
+#include "server/guard/random_secret.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
+namespace scanloom::app {
+namespace {
+
+constexpr const char* kAbout = "Makes a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
+                               "Whoever sends the secret is let in; the file holds its hash alone.";
+
+std::string check_name(const std::string& name) {
+    if (is_valid_name(name)) return {};
+    return fmt::format("'{}' is no name; use 1 to {} characters of A-Z a-z 0-9 _ -", name, kNameBytesMax);
+}
+
+std::string check_pattern(const std::string& pattern) {
+    if (access::is_valid_pattern(pattern)) return {};
+    return fmt::format("'{}' is no pattern of sessions; use 1 to {} characters of A-Z a-z 0-9 _ - * ?", pattern,
+                       kNameBytesMax);
+}
+
+std::string report(const access::Token& token, std::string_view secret) {
+    return fmt::format("{}\n\n"
+                       "# That is the secret: give it to whoever is to be let in, it is not shown again. A robot reads "
+                       "it from the file of --token-file.\n"
+                       "# These lines go into the file of --tokens; SIGHUP has the server read it again.\n{}",
+                       secret, text_of(token));
+}
+
+} // namespace
+
+std::optional<Leave> token_command(int argc, const char* const* argv) {
+    if (argc < 2 || std::string_view(argv[1]) != "token") return std::nullopt;
+    access::Token token;
+    std::string role;
+    CLI::App app(kAbout, "scanloom-server token");
+    app.add_option("--name", token.name, "What it is called in the file and in logs")->required()->check(check_name);
+    app.add_option("--role", role, "robot: sends scans; viewer: looks; operator: all, also creates and deletes")
+        ->required()
+        ->check(CLI::IsMember({"robot", "viewer", "operator"}));
+    app.add_option("--session", token.sessions,
+                   "Sessions it is for, by patterns: * stands for any text, ? for a character [*]")
+        ->check(check_pattern);
+    try {
+        app.parse(argc - 1, argv + 1);
+    } catch (const CLI::ParseError& reason) {
+        return leave_for(app, reason);
+    }
+    token.role = *access::role_of(role);
+    if (token.sessions.empty()) token.sessions = {"*"};
+    const auto secret = guard::random_secret();
+    token.hash = access::hash_of(secret);
+    return Leave{kExitDone, report(token, secret)};
+}
+
+} // namespace scanloom::app

@@ -1,0 +1,47 @@
+#include "server/guard/audit.hpp"
+
+#include "common/scan/limits.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+namespace scanloom::guard {
+namespace {
+
+/// What a stranger may have written is told only where it is a name, which holds neither spaces nor lines.
+std::string_view name_or(std::string_view text, std::string_view otherwise) {
+    if (text.empty()) return "-";
+    return is_valid_name(text) ? text : otherwise;
+}
+
+void tell(const access::RefusalTable::Line& line) {
+    const auto& [port, reason, who, token, session] = line.newest;
+    spdlog::warn("event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
+                 name_or(token, "?"), name_of(reason), name_or(session, "?"), line.count);
+}
+
+} // namespace
+
+double steady_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Audit::~Audit() {
+    for (const auto& line : table_.rest()) tell(line);
+}
+
+void Audit::note(access::Refusal refusal) {
+    counters_.of(refusal.port, refusal.reason).Increment();
+    std::vector<access::RefusalTable::Line> lines;
+    {
+        const std::lock_guard lock(mutex_);
+        lines = table_.note(std::move(refusal), now_());
+    }
+    for (const auto& line : lines) tell(line);
+}
+
+} // namespace scanloom::guard

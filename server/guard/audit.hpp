@@ -1,0 +1,37 @@
+#pragma once
+
+#include "server/access/refusal_table.hpp"
+#include "server/metrics/metrics.hpp"
+
+#include <functional>
+#include <mutex>
+
+namespace scanloom::guard {
+
+/// Seconds of a clock that is never put back.
+[[nodiscard]] double steady_seconds();
+
+/// Tells the log who was refused and counts it. Secrets are never given to it.
+///
+/// A line: event=refused port=robot who=10.0.0.7 token=depot reason=wrong_session session=lab count=1
+/// Thread  any.
+class Audit {
+public:
+    explicit Audit(metrics::RefusalCounters& counters, std::function<double()> now = steady_seconds)
+        : counters_(counters), now_(std::move(now)) {}
+
+    /// What was not told yet is told in the end.
+    ~Audit();
+    Audit(const Audit&) = delete;
+    Audit& operator=(const Audit&) = delete;
+
+    void note(access::Refusal refusal);
+
+private:
+    metrics::RefusalCounters& counters_;
+    std::function<double()> now_;
+    std::mutex mutex_; // guards the table
+    access::RefusalTable table_;
+};
+
+} // namespace scanloom::guard

@@ -1,0 +1,118 @@
+#include "server/http/doorman.hpp"
+
+#include "server/http/credentials.hpp"
+#include "server/http/host.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/permission.hpp"
+#include "server/http/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace scanloom::http {
+namespace {
+
+using access::Reason;
+using access::Token;
+using access::TokenRef;
+using guard::Denied;
+
+Denied denied(Reason reason, const Token& token, std::string why) {
+    return {reason, token.name, {Errc::kUnauthorized, std::move(why)}};
+}
+
+/// Browsers add the cookie to whatever they send here, on behalf of any page. What only reads, no other page gets to
+/// see; all else has to come from a page of ours.
+bool needs_own_page(const Request& request) {
+    return request.upgrade.has_value() || (request.method != "GET" && request.method != "HEAD");
+}
+
+bool has_role(const Token& token, Need need) {
+    if (need == Need::kCreate || need == Need::kChange) return may_change(token.role);
+    return need == Need::kAll || may_look(token.role);
+}
+
+std::optional<Denied> objection_to(const Token& token, const Match& match) {
+    const Need need = need_of(match.operation);
+    if (!has_role(token, need)) {
+        return denied(Reason::kWrongRole, token,
+                      fmt::format("the token '{}' has the role {}, which may not do this; use one of another role",
+                                  token.name, name_of(token.role)));
+    }
+    if (need == Need::kAll && !is_for_all(token)) {
+        return denied(
+            Reason::kWrongSession, token,
+            fmt::format("this tells of all sessions, and the token '{}' is not for all; use one whose sessions "
+                        "are *",
+                        token.name));
+    }
+    const bool is_about_one = need == Need::kLook || need == Need::kChange;
+    return is_about_one ? Doorman::objection(token, match.arguments["session"]) : std::nullopt;
+}
+
+std::string_view session_in(const Match& match) {
+    const Need need = need_of(match.operation);
+    return need == Need::kLook || need == Need::kChange ? std::string_view(match.arguments["session"])
+                                                        : std::string_view();
+}
+
+} // namespace
+
+std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Match& match) const {
+    if (gate_.is_open()) return access::anybody();
+    auto who = identify(request);
+    if (need_of(match.operation) == Need::kNothing) return who ? *who : nullptr;
+    if (!who) return refuse(request, who.error(), session_in(match));
+    if (const auto why = objection_to(**who, match)) return refuse(request, *why, session_in(match));
+    return *who;
+}
+
+std::optional<Denied> Doorman::objection(const Token& token, std::string_view session) {
+    if (is_for(token, session)) return std::nullopt;
+    return denied(
+        Reason::kWrongSession, token,
+        fmt::format("the token '{}' is not for this session; use another token or another session", token.name));
+}
+
+guard::Admitted<TokenRef> Doorman::identify(const Request& request) const {
+    if (request.authorization.empty()) {
+        if (const auto cookie = cookie_of(request.cookie, kLoginCookie)) return identify_browser(request, *cookie);
+    }
+    return gate_.admit(bearer_of(request.authorization).value_or(""));
+}
+
+guard::Admitted<TokenRef> Doorman::identify_browser(const Request& request, std::string_view cookie) const {
+    auto token = logins_.find(cookie, gate_);
+    if (!token) {
+        return Denied{
+            Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
+    }
+    if (!needs_own_page(request) || is_own_page(request.origin, request.host)) return token;
+    return denied(Reason::kForeignPage, *token,
+                  fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
+                              in_quotes(request.origin)));
+}
+
+/// Source  RFC 6750, section 3.
+Response Doorman::refuse(const Request& request, const Denied& why, std::string_view session) const {
+    note(request, why, session);
+    const auto path = instance_of(request.target);
+    if (why.reason == Reason::kNoToken)
+        return problem(why.error, path).set("WWW-Authenticate", R"(Bearer realm="scanloom")");
+    if (why.reason == Reason::kUnknownToken)
+        return problem(why.error, path).set("WWW-Authenticate", R"(Bearer realm="scanloom", error="invalid_token")");
+    return problem(Status::forbidden, why.error.message, path);
+}
+
+Error Doorman::noted(const Call& call, Error error, std::string_view session) const {
+    if (error.code == Errc::kFull) note(call.request, {Reason::kLimit, call.token->name, error}, session);
+    return error;
+}
+
+void Doorman::note(const Request& request, const Denied& why, std::string_view session) const {
+    audit_.note({access::Port::kHttp, why.reason, request.peer, why.token, std::string(session)});
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,35 @@
+#include "server/access/pattern.hpp"
+#include "server/access/secret.hpp"
+#include "server/access/token_text.hpp"
+#include "tests/fuzz/check.hpp"
+
+#include <cctype>
+#include <cstdint>
+#include <string>
+
+/// Input: the file of --tokens.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace scanloom;
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    static_cast<void>(access::without_secrets(text));
+    const auto tokens = access::parse_tokens(text);
+    if (!tokens) {
+        const auto& message = tokens.error().message;
+        fuzz::check(!message.empty() && std::isdigit(static_cast<unsigned char>(message[0])) != 0,
+                    "every error begins with its line");
+        return 0;
+    }
+    std::string again;
+    for (const auto& token : tokens->tokens()) {
+        fuzz::check(access::is_hash(token->hash), "only hashes are taken");
+        for (const auto& pattern : token->sessions) {
+            fuzz::check(access::is_valid_pattern(pattern), "only patterns are taken");
+            static_cast<void>(access::matches(pattern, token->name));
+        }
+        again += access::text_of(*token);
+    }
+    const auto reread = access::parse_tokens(again);
+    fuzz::check(reread.has_value() && reread->tokens().size() == tokens->tokens().size(),
+                "what is written can be read");
+    return 0;
+}

@@ -1,0 +1,115 @@
+#include "server/guard/gate.hpp"
+
+#include "server/access/secret.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanloom::guard {
+namespace {
+
+using access::Reason;
+using access::Role;
+using access::Token;
+using access::TokenRef;
+using access::TokenSet;
+using testing::HasSubstr;
+
+TokenRef token(std::string name, Role role, std::vector<std::string> sessions = {"*"}, std::size_t connections = 8) {
+    Token made{std::move(name), "", role, std::move(sessions), {}};
+    made.hash = access::hash_of("secret of " + made.name);
+    made.limits.connections = connections;
+    return std::make_shared<const Token>(std::move(made));
+}
+
+template <class T>
+std::pair<Reason, std::string> refusal(const Admitted<T>& admitted) {
+    return {admitted.error().reason, admitted.error().token};
+}
+
+TEST(Gate, IsOpenWithoutTokens) {
+    Gate gate;
+    EXPECT_TRUE(gate.is_open());
+    EXPECT_EQ(gate.admit("").value(), access::anybody());
+    EXPECT_TRUE(gate.let_drive("", "lab", "r").value()->token());
+    EXPECT_TRUE(gate.let_watch(access::anybody(), "lab").value()->token());
+}
+
+TEST(Gate, LetsInWhomItsTokensAllow) {
+    Gate gate(TokenSet({token("robot", Role::kRobot, {"depot-*"}), token("viewer", Role::kViewer)}));
+    EXPECT_FALSE(gate.is_open());
+    EXPECT_EQ(gate.let_drive("secret of robot", "depot-1", "r").value()->token()->name, "robot");
+    using Refusal = std::pair<Reason, std::string>;
+    EXPECT_EQ(refusal(gate.let_drive("", "depot-1", "r")), Refusal(Reason::kNoToken, ""));
+    EXPECT_EQ(refusal(gate.let_drive("guess", "depot-1", "r")), Refusal(Reason::kUnknownToken, ""));
+    EXPECT_EQ(refusal(gate.let_drive("secret of robot", "lab", "r")), Refusal(Reason::kWrongSession, "robot"));
+    EXPECT_EQ(refusal(gate.let_drive("secret of viewer", "lab", "r")), Refusal(Reason::kWrongRole, "viewer"));
+    EXPECT_TRUE(gate.let_watch(gate.admit("secret of viewer").value(), "lab"));
+    EXPECT_EQ(refusal(gate.let_watch(gate.admit("secret of robot").value(), "depot-1")),
+              Refusal(Reason::kWrongRole, "robot"));
+}
+
+TEST(Gate, ATokenHasAsManyRobotsAsItsLimitSays) {
+    Gate gate(TokenSet({token("two", Role::kRobot, {"*"}, 2), token("other", Role::kRobot, {"*"}, 1)}));
+    auto first = gate.let_drive("secret of two", "lab", "a").value();
+    const auto second = gate.let_drive("secret of two", "lab", "b").value();
+    const auto refused = gate.let_drive("secret of two", "lab", "c");
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().reason, Reason::kLimit);
+    EXPECT_EQ(refused.error().error.code, Errc::kOverloaded);
+    EXPECT_THAT(refused.error().error.message, AllOf(HasSubstr("'two'"), HasSubstr("`connections`")));
+    EXPECT_TRUE(gate.let_drive("secret of other", "lab", "c"));
+    const auto again = gate.let_drive("secret of two", "lab", "b"); // its old link is not gone yet
+    EXPECT_TRUE(again);
+    EXPECT_FALSE(gate.let_drive("secret of two", "depot", "b")); // of the same name, elsewhere
+    first.reset();
+    EXPECT_TRUE(gate.let_drive("secret of two", "lab", "c"));
+}
+
+TEST(Gate, PassesEndWithWhatAllowedThem) {
+    Gate gate(TokenSet(
+        {token("a", Role::kRobot), token("b", Role::kRobot), token("c", Role::kOperator), token("d", Role::kRobot)}));
+    std::map<std::string, int> told;
+    std::map<std::string, std::shared_ptr<Pass>> passes;
+    for (const std::string name : {"a", "b", "c", "d"}) {
+        passes[name] = gate.let_drive("secret of " + name, "lab", "robot-" + name).value();
+        passes[name]->when_changed([&told, name] { ++told[name]; });
+    }
+    passes["watch"] = gate.let_watch(gate.admit("secret of c").value(), "lab").value();
+    EXPECT_TRUE(told.empty());
+    // a as before, b is gone, c watches and drives no more, d is for other sessions.
+    gate.replace(
+        TokenSet({token("a", Role::kRobot, {"*"}, 3), token("c", Role::kViewer), token("d", Role::kRobot, {"x"})}));
+    EXPECT_EQ(passes["a"]->token()->limits.connections, 3U);
+    for (const auto* gone : {"b", "c", "d"}) EXPECT_EQ(passes[gone]->token(), nullptr) << gone;
+    EXPECT_NE(passes["watch"]->token(), nullptr);
+    for (const auto* name : {"a", "b", "c", "d"}) EXPECT_EQ(told[name], 1) << name;
+}
+
+TEST(Gate, WhoAsksLateIsToldAtOnce) {
+    Gate gate(TokenSet({token("a", Role::kRobot)}));
+    const auto pass = gate.let_drive("secret of a", "lab", "r").value();
+    gate.replace(TokenSet({token("b", Role::kRobot)}));
+    bool told = false;
+    pass->when_changed([&] { told = true; });
+    EXPECT_TRUE(told);
+}
+
+TEST(Gate, WhoeverCameBeforeThereWereTokensGoes) {
+    Gate gate;
+    const auto pass = gate.let_drive("", "lab", "r").value();
+    gate.replace(TokenSet({token("a", Role::kRobot)}));
+    EXPECT_EQ(pass->token(), nullptr);
+}
+
+TEST(Gate, APassMayOutliveIt) {
+    std::shared_ptr<Pass> pass;
+    {
+        Gate gate;
+        pass = gate.let_drive("", "lab", "r").value();
+    }
+    EXPECT_NE(pass->token(), nullptr);
+}
+
+} // namespace
+} // namespace scanloom::guard

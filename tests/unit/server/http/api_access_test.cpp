@@ -1,0 +1,344 @@
+#include "tests/unit/server/http/api_fixture.hpp"
+
+#include "server/access/secret.hpp"
+#include "server/http/permission.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace scanloom::http {
+namespace {
+
+using access::Role;
+using access::Token;
+
+constexpr std::string_view kHost = "maps.lab:8080";
+constexpr std::string_view kOwnPage = "http://maps.lab:8080";
+
+access::TokenRef token(std::string name, Role role, std::vector<std::string> sessions) {
+    const auto hash = access::hash_of("secret of " + name);
+    return std::make_shared<const Token>(Token{std::move(name), hash, role, std::move(sessions), {}});
+}
+
+/// An API that asks for tokens, with the sessions depot-1 and lab.
+class ApiAccessTest : public ApiTest {
+protected:
+    ApiAccessTest() {
+        create("depot-1");
+        create("lab");
+        gate_.replace(access::TokenSet(all_));
+    }
+
+    /// `who` is the name of a token; empty: nobody.
+    static Request request(std::string method, std::string target, const std::string& who, std::string body = "") {
+        Request asked;
+        asked.method = std::move(method);
+        asked.target = std::move(target);
+        asked.host = kHost;
+        asked.content_type = "application/json";
+        asked.body = std::move(body);
+        asked.peer = "192.0.2.1";
+        if (!who.empty()) asked.authorization = "Bearer secret of " + who;
+        return asked;
+    }
+
+    Response ask_as(const std::string& who, std::string method, std::string target, std::string body = "") {
+        return answer(api_, request(std::move(method), std::move(target), who, std::move(body)));
+    }
+
+    [[nodiscard]] double refusals(access::Reason reason) {
+        return metrics_.refusals().of(access::Port::kHttp, reason).Value();
+    }
+
+    std::vector<access::TokenRef> all_ = {
+        token("robot", Role::kRobot, {"*"}),           token("viewer", Role::kViewer, {"depot-*"}),
+        token("viewer-all", Role::kViewer, {"*"}),     token("operator", Role::kOperator, {"depot-*"}),
+        token("operator-all", Role::kOperator, {"*"}),
+    };
+};
+
+std::string target_of(const Route& route, std::string_view session) {
+    std::string target(route.pattern);
+    const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
+                                                       {"{layer}", "occupancy"},
+                                                       {"{z}", "9"},
+                                                       {"{x}", "256"},
+                                                       {"{y}", "255"},
+                                                       {"{weave}", "none"},
+                                                       {"{file}", "none.js"}};
+    for (const auto& [name, value] : values) {
+        if (const auto at = target.find(name); at != std::string::npos) target.replace(at, name.size(), value);
+    }
+    return target;
+}
+
+bool is_let_in(const Response& response) {
+    return response.status != Status::unauthorized && response.status != Status::forbidden;
+}
+
+/// The table of docs/security.md, written down once more.
+TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
+    const std::set<std::string_view> open = {"/",       "/assets/{file}", "/livez",
+                                             "/readyz", "/openapi.json",  "/api/v1/login"};
+    const std::set<std::string_view> change_nothing = {"plan", "coverage", "weave"};
+    for (const auto& route : routes()) {
+        if (open.contains(route.pattern)) continue; // AllThatAnybodyMay
+        const std::string method(route.method);
+        const bool looks =
+            method == "GET" || change_nothing.contains(route.pattern.substr(route.pattern.rfind('/') + 1));
+        const bool names_one = route.pattern.find("{session}") != std::string_view::npos;
+        for (const auto* session : {"depot-1", "depot-none", "lab", "none"}) {
+            const std::string_view name = session;
+            const bool matches = !names_one || name.starts_with("depot-");
+            const auto target = target_of(route, session);
+            const auto allowed = [&](const std::string& who) {
+                return is_let_in(ask_as(who, method, target, method == "POST" ? "[]" : ""));
+            };
+            const bool is_metrics = route.pattern == "/metrics";
+            EXPECT_FALSE(allowed("")) << method << " " << target;
+            EXPECT_FALSE(allowed("stranger")) << method << " " << target;
+            EXPECT_EQ(allowed("robot"), is_metrics) << method << " " << target;
+            EXPECT_EQ(allowed("viewer"), looks && matches && !is_metrics) << method << " " << target;
+            EXPECT_EQ(allowed("viewer-all"), looks) << method << " " << target;
+            if (method == "DELETE" && name != "none" && name != "depot-none") continue; // they are needed on
+            EXPECT_EQ(allowed("operator"), matches && !is_metrics) << method << " " << target;
+            EXPECT_TRUE(allowed("operator-all")) << method << " " << target;
+        }
+    }
+    EXPECT_EQ(ask_as("operator", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
+    EXPECT_EQ(ask_as("operator-all", "DELETE", "/api/v1/sessions/lab").status, Status::no_content);
+}
+
+TEST_F(ApiAccessTest, EveryOperationHasALineInTheTable) {
+    for (const auto& route : routes()) {
+        const bool is_open = need_of(route.operation) == Need::kNothing;
+        EXPECT_EQ(is_open, is_let_in(ask_as("", std::string(route.method), target_of(route, "lab"), "[]")))
+            << route.pattern;
+    }
+}
+
+TEST_F(ApiAccessTest, HeadIsAnsweredAsGet) {
+    EXPECT_EQ(ask_as("", "HEAD", "/api/v1/sessions/lab").status, Status::unauthorized);
+    EXPECT_EQ(ask_as("viewer", "HEAD", "/api/v1/sessions/lab").status, Status::forbidden);
+    EXPECT_EQ(ask_as("viewer", "HEAD", "/api/v1/sessions/depot-1").status, Status::ok);
+}
+
+TEST_F(ApiAccessTest, WhoShowsNoTokenIsToldHow) {
+    const auto none = ask_as("", "GET", "/api/v1/sessions");
+    EXPECT_THAT(detail(none, Status::unauthorized), HasSubstr("a token is needed"));
+    EXPECT_EQ(none.get("WWW-Authenticate"), R"(Bearer realm="scanloom")");
+    const auto unknown = ask_as("stranger", "GET", "/api/v1/sessions");
+    EXPECT_THAT(detail(unknown, Status::unauthorized), HasSubstr("not in force"));
+    EXPECT_EQ(unknown.get("WWW-Authenticate"), R"(Bearer realm="scanloom", error="invalid_token")");
+    EXPECT_EQ(refusals(access::Reason::kNoToken), 1.0);
+    EXPECT_EQ(refusals(access::Reason::kUnknownToken), 1.0);
+}
+
+/// What tells them apart would tell which sessions exist.
+TEST_F(ApiAccessTest, AForbiddenSessionAndAnUnknownOneLookAlike) {
+    for (const auto& route : routes()) {
+        if (route.pattern.find("{session}") == std::string_view::npos) continue;
+        const auto answers = [&](const std::string& session) {
+            const auto target = target_of(route, session);
+            const auto response = ask_as("operator", std::string(route.method), target, "{}");
+            std::string text(response.body.bytes());
+            for (auto at = text.find(session); at != std::string::npos; at = text.find(session))
+                text.erase(at, session.size());
+            return std::pair(response.status, text);
+        };
+        EXPECT_EQ(answers("lab").first, Status::forbidden) << route.pattern;
+        EXPECT_EQ(answers("lab"), answers("bal")) << route.pattern;
+    }
+    const auto made = [&](const std::string& name) {
+        return detail(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})"),
+                      Status::forbidden);
+    };
+    EXPECT_EQ(made("lab"), made("bal"));
+}
+
+TEST_F(ApiAccessTest, ListsShowWhatTheTokenIsFor) {
+    const auto names = [&](const std::string& who) {
+        std::vector<std::string> shown;
+        const auto page = boost::json::parse(ask_as(who, "GET", "/api/v1/sessions").body.bytes());
+        for (const auto& session : page.at("sessions").as_array()) shown.emplace_back(session.at("name").as_string());
+        return shown;
+    };
+    EXPECT_THAT(names("viewer"), testing::ElementsAre("depot-1"));
+    EXPECT_THAT(names("viewer-all"), testing::ElementsAre("depot-1", "lab"));
+    // Nor does the end of a page tell that another session follows.
+    const auto page = boost::json::parse(ask_as("viewer", "GET", "/api/v1/sessions?limit=1").body.bytes());
+    EXPECT_TRUE(page.at("next").is_null());
+}
+
+TEST_F(ApiAccessTest, OperatorsMakeTheSessionsTheyAreFor) {
+    EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"depot-2"})").status, Status::created);
+    EXPECT_EQ(ask_as("operator", "POST", "/api/v1/sessions", R"({"name":"attic"})").status, Status::forbidden);
+    EXPECT_EQ(registry_.find("attic"), nullptr);
+}
+
+TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
+    auto two = *token("two", Role::kOperator, {"*"});
+    two.limits.sessions = 2;
+    gate_.replace(access::TokenSet({std::make_shared<const Token>(two)}));
+    const auto make = [&](const std::string& name) {
+        return ask_as("two", "POST", "/api/v1/sessions", R"({"name":")" + name + R"("})");
+    };
+    EXPECT_EQ(make("a").status, Status::created);
+    EXPECT_EQ(make("b").status, Status::created);
+    EXPECT_THAT(detail(make("c"), Status::insufficient_storage), AllOf(HasSubstr("'two'"), HasSubstr("`sessions`")));
+    EXPECT_EQ(refusals(access::Reason::kLimit), 1.0);
+    EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
+    EXPECT_EQ(make("c").status, Status::insufficient_storage) << "that was somebody else's";
+    EXPECT_EQ(ask_as("two", "DELETE", "/api/v1/sessions/a").status, Status::no_content);
+    EXPECT_EQ(make("c").status, Status::created);
+}
+
+TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
+    store::MemoryScanLog damaged;
+    static_cast<void>(damaged.create_session("no record")); // cannot be read
+    session::SessionRegistry registry(damaged, pool_.get_executor(), [] { return 0.0; });
+    ASSERT_TRUE(registry.recover());
+    ASSERT_EQ(registry.damaged().size(), 1U);
+    Api api(registry, weaves_, goals_, damaged, metrics_, {gate_, audit_, logins_}, {});
+    api.set_recovered();
+    const auto count = [&](const std::string& who) {
+        const auto response = api.answer(request("GET", "/readyz", who));
+        EXPECT_EQ(response.status, Status::ok);
+        return boost::json::parse(response.body.bytes()).at("damaged").as_array().size();
+    };
+    EXPECT_EQ(count(""), 0U);
+    EXPECT_EQ(count("stranger"), 0U);
+    EXPECT_EQ(count("viewer"), 0U);
+    EXPECT_EQ(count("viewer-all"), 1U);
+    registry.drain();
+}
+
+TEST_F(ApiAccessTest, TilesAreKeptByNobodyInBetween) {
+    stream("lab", 1);
+    const auto id = registry_.find("lab")->info();
+    const auto tile = "/api/v1/sessions/lab/tiles/occupancy/9/256/255.png?v=1&id=x";
+    const auto cache = std::string(ask_as("viewer-all", "GET", tile).get("Cache-Control"));
+    EXPECT_EQ(cache.find("public"), std::string::npos) << cache;
+}
+
+TEST_F(ApiAccessTest, BodiesOfStrangersAreNotRead) {
+    const auto refused = [&](const std::string& who, const std::string& target) {
+        return api_.refuse(request("POST", target, who)).has_value();
+    };
+    EXPECT_TRUE(refused("", "/api/v1/sessions/depot-1/import"));
+    EXPECT_TRUE(refused("viewer", "/api/v1/sessions/depot-1/import"));
+    EXPECT_TRUE(refused("operator", "/api/v1/sessions/lab/import"));
+    EXPECT_FALSE(refused("operator", "/api/v1/sessions/depot-1/import"));
+    EXPECT_FALSE(refused("", "/nowhere")); // 404, as for all
+}
+
+class ApiLoginTest : public ApiAccessTest {
+protected:
+    /// Its cookie, as a browser sends it back.
+    std::string sign_in(const std::string& who) {
+        const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"secret of )" + who + R"("})");
+        EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
+        const auto cookie = response.get("Set-Cookie");
+        EXPECT_THAT(std::string(cookie), HasSubstr("; HttpOnly; SameSite=Strict"));
+        EXPECT_THAT(std::string(cookie), Not(HasSubstr("secret of")));
+        return std::string(cookie.substr(0, cookie.find(';')));
+    }
+
+    static Request with(const std::string& cookie, std::string method, std::string target, std::string_view origin,
+                        std::string body = "") {
+        auto asked = request(std::move(method), std::move(target), "", std::move(body));
+        asked.cookie = "theme=dark; " + cookie;
+        asked.origin = origin;
+        return asked;
+    }
+};
+
+TEST_F(ApiLoginTest, ACookieStandsForTheTokenUntilItIsGivenBack) {
+    const auto cookie = sign_in("viewer");
+    const auto look = [&](const std::string& session) {
+        return answer(api_, with(cookie, "GET", "/api/v1/sessions/" + session, "")).status;
+    };
+    EXPECT_EQ(look("depot-1"), Status::ok);
+    EXPECT_EQ(look("lab"), Status::forbidden);
+    const auto who = boost::json::parse(answer(api_, with(cookie, "GET", "/api/v1/login", "")).body.bytes());
+    EXPECT_EQ(who.at("token").at("name"), "viewer");
+    const auto out = answer(api_, with(cookie, "DELETE", "/api/v1/login", kOwnPage));
+    EXPECT_EQ(out.status, Status::no_content);
+    EXPECT_THAT(std::string(out.get("Set-Cookie")), HasSubstr("Max-Age=0"));
+    EXPECT_EQ(look("depot-1"), Status::unauthorized);
+}
+
+TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
+    const auto cookie = sign_in("operator-all");
+    const auto create = [&](std::string_view origin) {
+        return answer(api_, with(cookie, "POST", "/api/v1/sessions", origin, R"({"name":"new"})")).status;
+    };
+    for (const auto* foreign : {"", "null", "http://elsewhere", "https://maps.lab.elsewhere:8080"}) {
+        EXPECT_EQ(create(foreign), Status::forbidden) << foreign;
+    }
+    EXPECT_EQ(refusals(access::Reason::kForeignPage), 4.0);
+    EXPECT_EQ(registry_.find("new"), nullptr);
+    EXPECT_EQ(create(kOwnPage), Status::created);
+    EXPECT_EQ(answer(api_, with(cookie, "DELETE", "/api/v1/login", "http://elsewhere")).status, Status::forbidden);
+    EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::ok);
+}
+
+TEST_F(ApiLoginTest, ATokenInTheHeaderNeedsNoPage) {
+    auto asked = request("POST", "/api/v1/sessions", "operator-all", R"({"name":"new"})");
+    asked.origin = "http://elsewhere"; // no page can send that header without being allowed to
+    EXPECT_EQ(answer(api_, asked).status, Status::created);
+}
+
+TEST_F(ApiLoginTest, AWebSocketTakesCookieOrHeader) {
+    const auto cookie = sign_in("viewer");
+    const WebSocketUpgrade upgrade{"13", "dGhlIHNhbXBsZSBub25jZQ==", std::string(kOwnPage)};
+    const auto watch = [&](Request asked, std::string_view origin) {
+        asked.upgrade = upgrade;
+        asked.upgrade->origin = asked.origin = origin;
+        return answer(api_, asked).status;
+    };
+    const std::string live = "/api/v1/sessions/depot-1/live";
+    EXPECT_EQ(watch(with(cookie, "GET", live, ""), kOwnPage), Status::switching_protocols);
+    EXPECT_EQ(watch(with(cookie, "GET", live, ""), ""), Status::forbidden);
+    EXPECT_EQ(watch(with(cookie, "GET", live, ""), "http://elsewhere"), Status::forbidden);
+    EXPECT_EQ(watch(request("GET", live, "viewer"), ""), Status::switching_protocols);
+    EXPECT_EQ(watch(request("GET", live, "robot"), ""), Status::forbidden);
+    EXPECT_EQ(watch(request("GET", live, ""), kOwnPage), Status::unauthorized);
+}
+
+TEST_F(ApiLoginTest, ItEndsWithItsToken) {
+    const auto cookie = sign_in("viewer");
+    gate_.replace(access::TokenSet({all_[0]}));
+    EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::unauthorized);
+}
+
+TEST_F(ApiLoginTest, AWrongTokenSignsNobodyIn) {
+    const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"guess"})");
+    EXPECT_EQ(response.status, Status::unauthorized);
+    EXPECT_EQ(response.get("Set-Cookie"), "");
+    EXPECT_EQ(refusals(access::Reason::kUnknownToken), 1.0);
+    for (const auto* wrong : {"", "{}", R"({"token":1})", R"({"token":"a","more":1})"}) {
+        EXPECT_EQ(ask_as("", "POST", "/api/v1/login", wrong).status, Status::bad_request) << wrong;
+    }
+}
+
+TEST_F(ApiLoginTest, AllThatAnybodyMay) {
+    const auto who = boost::json::parse(ask_as("", "GET", "/api/v1/login").body.bytes());
+    EXPECT_EQ(who.at("needed"), true);
+    EXPECT_TRUE(who.at("token").is_null());
+    for (const auto* open : {"/livez", "/readyz", "/openapi.json"})
+        EXPECT_EQ(ask_as("", "GET", open).status, Status::ok);
+    EXPECT_EQ(refusals(access::Reason::kNoToken), 0.0);
+}
+
+TEST_F(ApiTest, WithoutTokensNobodyHasToSignIn) {
+    const auto who = boost::json::parse(get("/api/v1/login").body.bytes());
+    EXPECT_EQ(who.at("needed"), false);
+    const auto response = ask("POST", "/api/v1/login", R"({"token":"any"})");
+    EXPECT_EQ(response.status, Status::ok);
+    EXPECT_EQ(response.get("Set-Cookie"), "");
+}
+
+} // namespace
+} // namespace scanloom::http

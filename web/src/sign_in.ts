@@ -1,0 +1,72 @@
+/** Who looks: asks for a token where the server does, and lets the person sign out again. */
+import { onUnauthorized } from './api/http';
+import { fetchLogin, signIn, signOut, type Login } from './api/login';
+import { el, setText } from './dom';
+import { hurry } from './poll';
+import { FormDialog } from './sessions/form_dialog';
+
+export class SignIn {
+  private readonly dialog: FormDialog;
+  private readonly secret: HTMLInputElement;
+  private readonly name = el('span', { dir: 'auto' });
+
+  /** @param place shows who is signed in; hidden where nobody has to be */
+  constructor(private readonly place: HTMLElement) {
+    this.secret = el('input', {
+      id: 'token',
+      type: 'password',
+      required: '',
+      autocomplete: 'current-password',
+      autocapitalize: 'off',
+      spellcheck: 'false',
+      'aria-describedby': 'token-rule',
+    });
+    this.dialog = new FormDialog(
+      { title: 'Sign in', submit: 'Sign in', busy: 'Signing in\u2026' },
+      [
+        el('label', { for: 'token' }, 'Token'),
+        this.secret,
+        el('p', { id: 'token-rule', class: 'quiet' }, 'Whoever runs this server gives you one.'),
+      ],
+      (signal) => this.attempt(signal),
+    );
+    // Without a token there is nothing to go back to.
+    this.dialog.cancel.remove();
+    this.dialog.element.addEventListener('cancel', (event) => event.preventDefault());
+    const out = el('button', { type: 'button', class: 'wide-button' }, 'Sign out');
+    out.addEventListener('click', () => void this.leave());
+    place.replaceChildren(el('p', { class: 'quiet' }, 'Signed in with the token ', this.name, '.'), out);
+  }
+
+  /** From now on the form is shown whenever the server asks for it. What was open stays open behind it. */
+  async run(): Promise<void> {
+    onUnauthorized(() => this.ask());
+    // What goes wrong here, the next request tells.
+    const login = await fetchLogin(new AbortController().signal).catch(() => null);
+    if (login) this.show(login);
+  }
+
+  private ask(): void {
+    if (this.dialog.element.open) return;
+    this.secret.value = '';
+    this.dialog.open(this.secret);
+  }
+
+  private async attempt(signal: AbortSignal): Promise<void> {
+    const login = await signIn(this.secret.value.trim(), signal);
+    this.secret.value = '';
+    this.show(login);
+    hurry();
+  }
+
+  private show({ token }: Login): void {
+    this.place.hidden = token === null;
+    setText(this.name, token === null ? '' : `${token.name} (${token.role})`);
+  }
+
+  /** What was seen is forgotten with the page. */
+  private async leave(): Promise<void> {
+    await signOut(new AbortController().signal).catch(() => {});
+    location.reload();
+  }
+}
