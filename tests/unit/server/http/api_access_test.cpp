@@ -197,7 +197,7 @@ TEST_F(ApiAccessTest, ATokenMakesAsManySessionsAsItsLimitSays) {
 TEST_F(ApiAccessTest, ReadinessNamesSessionsToThoseWhoMaySeeThem) {
     store::MemoryScanLog damaged;
     static_cast<void>(damaged.create_session("no record")); // cannot be read
-    session::SessionRegistry registry(damaged, pool_.get_executor(), [] { return 0.0; });
+    session::SessionRegistry registry(damaged, {pool_.get_executor(), [] { return 0.0; }});
     ASSERT_TRUE(registry.recover());
     ASSERT_EQ(registry.damaged().size(), 1U);
     Api api(registry, weaves_, goals_, damaged, metrics_, {gate_, audit_, logins_}, {});
