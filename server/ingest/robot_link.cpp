@@ -52,8 +52,8 @@ bool is_retryable(Errc code) noexcept {
 }
 
 RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config)
-    : stream_(std::move(stream)), services_(services), config_(config), token_(access::anybody()),
-      inflow_(token_->limits.bytes_per_second, guard::steady_seconds()), unacknowledged_(services.counters),
+    : stream_(std::move(stream)), services_(services), config_(config), allowance_(guard::steady_seconds()),
+      unacknowledged_(services.counters),
       outbox_(stream_,
               [this](std::uint64_t durable_seq) {
                   unacknowledged_.acknowledge(durable_seq, std::chrono::steady_clock::now());
@@ -166,14 +166,13 @@ Result<> RobotLink::let_in(const wire::Hello& hello) {
 void RobotLink::look_at_pass() {
     if (!pass_) return;
     if (auto token = pass_->token()) {
-        token_ = std::move(token);
-        inflow_.set_rate(token_->limits.bytes_per_second, guard::steady_seconds());
+        allowance_.set_token(std::move(token), guard::steady_seconds());
         return;
     }
-    note_refusal(access::Reason::kRevoked, token_->name, pass_->session());
+    note_refusal(access::Reason::kRevoked, allowance_.token().name, pass_->session());
     end({Errc::kUnauthorized,
          fmt::format("the token '{}' does not allow this any more; ask whoever runs this server for another",
-                     token_->name)});
+                     allowance_.token().name)});
 }
 
 void RobotLink::note_refusal(access::Reason reason, const std::string& token, const std::string& session) const {
@@ -183,16 +182,16 @@ void RobotLink::note_refusal(access::Reason reason, const std::string& token, co
 asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     robot_ = hello.robot;
     if (auto in = let_in(hello); !in) co_return in.error();
-    const auto maker = session::maker_of(*token_);
+    const auto maker = session::maker_of(allowance_.token());
     auto session = co_await session_for(hello, services_.sessions, maker, services_.may_wait);
     if (!session && session.error().code == Errc::kFull)
-        note_refusal(access::Reason::kLimit, token_->name, hello.session);
+        note_refusal(access::Reason::kLimit, allowance_.token().name, hello.session);
     if (!session) co_return session.error();
     const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
     session_ = std::move(*session);
     index_ = joined->robot;
-    sensors_ = joined->sensors;
+    allowance_.set_sensors(joined->sensors);
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
@@ -218,9 +217,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
             frame_bytes_ = wire::kLengthPrefixBytes + (*body)->size();
             co_return wire::decode(**body);
         }
-        const auto most =
-            std::min(inflow_.rate(), static_cast<double>(kReadBytes)); // so that a pause is a second at most
-        const auto room = decoder_.prepare(static_cast<std::size_t>(most));
+        const auto room = decoder_.prepare(allowance_.read_max(kReadBytes));
         const auto [error, bytes] = co_await stream_.async_read_some(
             asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
         if (error) {
@@ -229,7 +226,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
         }
         decoder_.commit(bytes);
         read_ = std::chrono::steady_clock::now();
-        const double pause = inflow_.take(static_cast<double>(bytes), guard::steady_seconds());
+        const double pause = allowance_.pause_after(bytes, guard::steady_seconds());
         if (pause > 0.0) co_await hold_back(pause);
     }
 }
@@ -249,7 +246,7 @@ asio::awaitable<void> RobotLink::hold_back(double seconds) {
 Result<> RobotLink::handle(wire::Message message) {
     const auto self = shared_from_this();
     if (auto* sensor = std::get_if<Sensor>(&message)) {
-        if (auto ok = check_limits(*sensor); !ok) return ok.error();
+        if (auto ok = allowance_.check(*sensor); !ok) return over_limit(ok.error());
         if (auto ok = charge_description(); !ok) return ok.error();
         session_->submit(self, std::move(*sensor), frame_bytes_);
         return {};
@@ -261,7 +258,7 @@ Result<> RobotLink::handle(wire::Message message) {
         message = std::move(*batch);
     }
     if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
-        if (auto ok = check_limits(*batch); !ok) return ok.error();
+        if (auto ok = allowance_.check(*batch); !ok) return over_limit(ok.error());
         if (auto ok = charge_batch(); !ok) return ok.error();
         services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
         unacknowledged_.add(batch->scans.back().seq, batch->scans.size(), read_);
@@ -326,31 +323,10 @@ void RobotLink::answer(std::string frame, std::shared_ptr<const void> slot) {
     settled_.cancel();
 }
 
-Result<> RobotLink::check_limits(const Sensor& sensor) {
-    sensors_.insert(sensor.id);
-    const auto limit = token_->limits.sensors;
-    if (sensors_.size() <= limit) return {};
-    note_refusal(access::Reason::kLimit, token_->name, pass_->session());
-    return Error{
-        Errc::kTooLarge,
-        fmt::format("sensor_description.sensor is {}, of another sensor than the {} that the limit `sensors` of "
-                    "the token '{}' allows a robot; use these, or have the limit raised",
-                    sensor.id, limit, token_->name)};
-}
-
-Result<> RobotLink::check_limits(const wire::ScanBatch& batch) const {
-    const auto limit = token_->limits.beams;
-    for (std::size_t n = 0; n < batch.scans.size(); ++n) {
-        const auto beams = batch.scans[n].ranges.size();
-        if (beams <= limit) continue;
-        note_refusal(access::Reason::kLimit, token_->name, pass_->session());
-        return Error{
-            Errc::kTooLarge,
-            fmt::format("scan_batch.scans[{}].ranges has {} beams, the limit `beams` of the token '{}' allows {} "
-                        "a scan; send fewer, or have the limit raised",
-                        n, beams, token_->name, limit)};
-    }
-    return {};
+/// The audit hears of it, and the robot.
+Error RobotLink::over_limit(Error error) const {
+    note_refusal(access::Reason::kLimit, allowance_.token().name, pass_->session());
+    return error;
 }
 
 Result<> RobotLink::charge_batch() {

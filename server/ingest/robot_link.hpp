@@ -3,9 +3,9 @@
 #include "common/net/link_stream.hpp"
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
-#include "server/access/bucket.hpp"
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
+#include "server/ingest/allowance.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
 #include "server/ingest/unacknowledged.hpp"
@@ -23,7 +23,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 namespace scanloom::ingest {
@@ -87,8 +86,7 @@ private:
     [[nodiscard]] Result<> ask(Request request);
     [[nodiscard]] Result<> check_small_answers() const;
     void answer(std::string frame, std::shared_ptr<const void> slot);
-    [[nodiscard]] Result<> check_limits(const Sensor& sensor);
-    [[nodiscard]] Result<> check_limits(const wire::ScanBatch& batch) const;
+    [[nodiscard]] Error over_limit(Error error) const;
     [[nodiscard]] Result<> charge_batch();
     [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
@@ -112,9 +110,7 @@ private:
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
     std::size_t frame_bytes_ = 0;       // of the frame last received, with its length prefix
     std::shared_ptr<guard::Pass> pass_; // from the hello on
-    access::TokenRef token_;            // the newest that it had
-    access::Bucket inflow_;             // bytes that are read
-    std::set<std::uint32_t> sensors_;   // of the robot
+    Allowance allowance_;               // as its token was when it last allowed this
     std::shared_ptr<session::Session> session_;
     std::string robot_;
     RobotIndex index_ = 0;      // of the robot in the session
