@@ -17,10 +17,11 @@ Result<> Allowance::check(const Sensor& sensor) {
     sensors_.insert(sensor.id);
     const auto limit = token_->limits.sensors;
     if (sensors_.size() <= limit) return {};
-    return Error{Errc::kTooLarge,
-                 fmt::format("sensor_description.sensor is {}, of another sensor than the {} that the limit `sensors` of "
-                             "the token '{}' allows a robot; use these, or have the limit raised",
-                             sensor.id, limit, token_->name)};
+    return Error{
+        Errc::kTooLarge,
+        fmt::format("sensor_description.sensor is {}, of another sensor than the {} that the limit `sensors` of "
+                    "the token '{}' allows a robot; use these, or have the limit raised",
+                    sensor.id, limit, token_->name)};
 }
 
 Result<> Allowance::check(const wire::ScanBatch& batch) const {
@@ -28,10 +29,11 @@ Result<> Allowance::check(const wire::ScanBatch& batch) const {
     for (std::size_t n = 0; n < batch.scans.size(); ++n) {
         const auto beams = batch.scans[n].ranges.size();
         if (beams <= limit) continue;
-        return Error{Errc::kTooLarge,
-                     fmt::format("scan_batch.scans[{}].ranges has {} beams, the limit `beams` of the token '{}' allows {} "
-                                 "a scan; send fewer, or have the limit raised",
-                                 n, beams, token_->name, limit)};
+        return Error{
+            Errc::kTooLarge,
+            fmt::format("scan_batch.scans[{}].ranges has {} beams, the limit `beams` of the token '{}' allows {} "
+                        "a scan; send fewer, or have the limit raised",
+                        n, beams, token_->name, limit)};
     }
     return {};
 }
