@@ -208,7 +208,7 @@ Result<> SessionRegistry::remove(std::string_view name) {
         if (const auto wanted = roster_.arrived(left->info.name, summary)) start_reading(*wanted);
         return removed.error();
     }
-    roster_.remove(name, gone);
+    roster_.remove(name, no_such_session(name));
     left.reset(); // the maps go here, or when the strand is done with the session
     boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
     return {};

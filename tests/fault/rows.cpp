@@ -1,5 +1,6 @@
 #include "tests/fault/clock_row.hpp"
 #include "tests/fault/corrupt_row.hpp"
+#include "tests/fault/disk_row.hpp"
 #include "tests/fault/kill_row.hpp"
 #include "tests/fault/link_row.hpp"
 #include "tests/fault/power_row.hpp"
@@ -22,6 +23,8 @@ constexpr Row kRows[] = {
      run_restart_row},
     {"clock", "jumps", 10, 1'000, "the wall clocks of server and robot jump by a year, either way", run_clock_row},
     {"power", "cuts", 10, 200, "the disk loses its power: what was not written through is gone", run_power_row},
+    {"disk", "fillings", 5, 500, "a disk fills up under streaming robots, and has room again", run_disk_row},
+    {"sync", "scans", 1'000, 100'000, "one sync of five fails", run_sync_row},
     {"spool", "kills", 8, 800, "the network is away, and the robot is killed while it sends what waited",
      run_spool_row},
 };

@@ -27,6 +27,8 @@ TEST(FaultRow, DamagedStores) { run_short("corrupt"); }
 TEST(FaultRow, RestartsUnderManyRobots) { run_short("restart"); }
 TEST(FaultRow, JumpingClocks) { run_short("clock"); }
 TEST(FaultRow, PowerCuts) { run_short("power"); }
+TEST(FaultRow, FullDisks) { run_short("disk"); }
+TEST(FaultRow, FailingSyncs) { run_short("sync"); }
 TEST(FaultRow, OutagesAndKilledRobots) { run_short("spool"); }
 
 } // namespace

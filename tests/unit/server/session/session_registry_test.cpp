@@ -39,22 +39,23 @@ TEST_F(SessionRegistryTest, ANameIsTakenOnlyOnce) {
 }
 
 TEST_F(SessionRegistryTest, AMakersLimitsHoldAfterARestart) {
-    const Maker maker{"depot", 2, {4}};
+    const Maker maker{"depot", 2, 4};
     ASSERT_TRUE(registry_->create("a", {}, maker));
     ASSERT_TRUE(registry_->create("b", {}, maker));
     ASSERT_TRUE(registry_->create("c", {})); // nobody's in particular
-    ASSERT_TRUE(registry_->create("d", {}, {"other", 1, {}}));
+    ASSERT_TRUE(registry_->create("d", {}, {"other", 1}));
     registry_->drain();
     restart();
-    EXPECT_EQ(registry_->find("a")->info().created_by, "depot");
-    EXPECT_EQ(registry_->find("c")->info().created_by, "");
+    EXPECT_EQ(registry_->info("a")->created_by, "depot");
+    EXPECT_EQ(registry_->info("c")->created_by, "");
     const auto refused = registry_->create("e", {}, maker);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::kFull);
     EXPECT_THAT(refused.error().message, AllOf(HasSubstr("'depot'"), HasSubstr("`sessions`")));
 
     const auto link = std::make_shared<AwaitedLink>();
-    auto& small = *registry_->find("a");
+    const auto woken = registry_->wake("a").value();
+    auto& small = *woken;
     ASSERT_TRUE(join_and_wait(small, "r", link));
     small.submit(link, small_laser(), 0);
     small.submit(link, {random_scan(7, 1)}, 0);
