@@ -129,6 +129,12 @@ export async function until(page, holds) {
   }
 }
 
+/** Changes the system's colour scheme, and waits until the page has taken it on: that is with a later frame. */
+export async function colourScheme(page, scheme) {
+  await page.emulateMedia({ colorScheme: scheme });
+  await page.waitForSelector(`html[data-scheme="${scheme}"]`, { state: 'attached' });
+}
+
 /** Waits until the map shows one of these colours of the style sheet, at whatever opacity. */
 export async function showsColour(page, ...names) {
   const colours = await Promise.all(names.map((name) => colourOf(page, name)));

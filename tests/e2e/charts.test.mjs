@@ -1,7 +1,7 @@
 /** The charts of the server: rates, latencies, what is not told, and restarts. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
+import { colourScheme, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 
 const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
@@ -49,8 +49,7 @@ describe("the server's charts", { timeout: 180_000 }, () => {
     for (const title of kTitles) assert.ok(await drawn(title, '--robot-0'), `${title} is drawn`);
     assert.ok(await drawn('Ack latency', '--robot-1'), 'the slowest are a line of their own');
     await keepPicture(page, 'charts-light');
-    await page.emulateMedia({ colorScheme: 'dark' });
-    await page.waitForFunction(() => matchMedia('(prefers-color-scheme: dark)').matches);
+    await colourScheme(page, 'dark');
     assert.ok(await drawn('Memory', '--robot-0'), 'in the colours of the dark');
     await keepPicture(page, 'charts-dark');
   });

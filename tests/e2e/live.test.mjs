@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, describe, it } from 'node:test';
 import {
   colourOf,
+  colourScheme,
   countPixels,
   keepPicture,
   launchBrowser,
@@ -93,7 +94,7 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
   it('leaves a picture of what was seen', async () => {
     await says(page, '[data-robot="r1"] .row-detail', /[1-9]\d\.\d m/);
     await keepPicture(page, 'live-light');
-    await page.emulateMedia({ colorScheme: 'dark' });
+    await colourScheme(page, 'dark');
     await showsColour(page, '--cell-free');
     await keepPicture(page, 'live-dark');
     assert.deepEqual(complaints, []);

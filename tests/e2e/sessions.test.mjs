@@ -1,7 +1,7 @@
 /** The list of all sessions: found, sorted, pictured, made and deleted. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourOf, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
+import { colourOf, colourScheme, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
@@ -95,7 +95,7 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     assert.deepEqual([tilesOf('shown').length, tilesOf('other').length], [2, 1]);
     assert.ok(asked.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'), 'it has not changed');
     assert.match(tilesOf('shown')[1], /\?v=2&id=id-shown$/);
-    await page.emulateMedia({ colorScheme: 'dark' });
+    await colourScheme(page, 'dark');
     await pictured('shown', '--cell-free');
   });
 

@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import {
   colourOf,
+  colourScheme,
   countPixels,
   keepPicture,
   says,
@@ -297,7 +298,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await open({ scheme: 'dark' });
     await tilesShown();
     const dark = await colourOf(page, '--cell-free');
-    await page.emulateMedia({ colorScheme: 'light' });
+    await colourScheme(page, 'light');
     await freeShown();
     assert.notDeepEqual(await colourOf(page, '--cell-free'), dark);
   });

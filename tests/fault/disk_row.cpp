@@ -71,7 +71,8 @@ unsigned readiness(const ServerProcess& server) {
 
 /// Waits until the server says that it is ready, or that it is not, doing something again and again.
 /// @return false when it has not after a minute, as it never will.
-bool wait_for_readiness(const ServerProcess& server, unsigned status, const std::function<void()>& doing = [] {}) {
+bool wait_for_readiness(
+    const ServerProcess& server, unsigned status, const std::function<void()>& doing = [] {}) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (readiness(server) != status) {
         if (std::chrono::steady_clock::now() > until) return false;
@@ -153,12 +154,11 @@ Outcome fail_syncs(const Run& run, std::uint64_t seed, std::uint64_t scans) {
 } // namespace
 
 Outcome run_disk_row(const Run& run) {
-    return run_cases(run, {.row = "disk",
-                           .of_count = kFillingsPerDisk,
-                           .run = [&](std::uint64_t seed, std::uint64_t fillings) {
-                               auto outcome = fill_one_disk(run, seed, fillings);
-                               return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
-                           }});
+    return run_cases(
+        run, {.row = "disk", .of_count = kFillingsPerDisk, .run = [&](std::uint64_t seed, std::uint64_t fillings) {
+                  auto outcome = fill_one_disk(run, seed, fillings);
+                  return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
+              }});
 }
 
 Outcome run_sync_row(const Run& run) {
