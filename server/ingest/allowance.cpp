@@ -13,7 +13,13 @@ void Allowance::set_token(access::TokenRef token, double now) {
     inflow_.set_rate(token_->limits.bytes_per_second, now);
 }
 
-Result<> Allowance::check(const Sensor& sensor) {
+Result<> Allowance::check(const wire::Message& message) {
+    if (const auto* sensor = std::get_if<Sensor>(&message)) return check_sensor(*sensor);
+    if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) return check_beams(*batch);
+    return {};
+}
+
+Result<> Allowance::check_sensor(const Sensor& sensor) {
     sensors_.insert(sensor.id);
     const auto limit = token_->limits.sensors;
     if (sensors_.size() <= limit) return {};
@@ -24,7 +30,7 @@ Result<> Allowance::check(const Sensor& sensor) {
                     sensor.id, limit, token_->name)};
 }
 
-Result<> Allowance::check(const wire::ScanBatch& batch) const {
+Result<> Allowance::check_beams(const wire::ScanBatch& batch) const {
     const auto limit = token_->limits.beams;
     for (std::size_t n = 0; n < batch.scans.size(); ++n) {
         const auto beams = batch.scans[n].ranges.size();

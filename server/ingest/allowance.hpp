@@ -25,11 +25,9 @@ public:
     /// The robot has described these before.
     void set_sensors(std::set<std::uint32_t> sensors) { sensors_ = std::move(sensors); }
 
-    /// Counts the sensor among the robot's. Errors  kTooLarge: one too many.
-    [[nodiscard]] Result<> check(const Sensor& sensor);
-
-    /// Errors  kTooLarge: a scan with too many beams.
-    [[nodiscard]] Result<> check(const wire::ScanBatch& batch) const;
+    /// Counts a sensor that is described among the robot's.
+    /// Errors  kTooLarge: a sensor too many, a scan with too many beams.
+    [[nodiscard]] Result<> check(const wire::Message& message);
 
     /// Bytes to be read at once, at most so many: few enough that a pause after them is a second at most.
     [[nodiscard]] std::size_t read_max(std::size_t bytes) const noexcept;
@@ -38,6 +36,9 @@ public:
     [[nodiscard]] double pause_after(std::size_t bytes, double now) noexcept;
 
 private:
+    [[nodiscard]] Result<> check_sensor(const Sensor& sensor);
+    [[nodiscard]] Result<> check_beams(const wire::ScanBatch& batch) const;
+
     access::TokenRef token_;
     access::Bucket inflow_;
     std::set<std::uint32_t> sensors_;

@@ -1,6 +1,5 @@
 #include "server/ingest/robot_link.hpp"
 
-#include "common/scan/limits.hpp"
 #include "common/wire/compression.hpp"
 #include "server/ingest/entrance.hpp"
 
@@ -13,8 +12,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <type_traits>
 
 namespace scanloom::ingest {
 namespace asio = boost::asio;
@@ -22,15 +19,8 @@ namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10;
 
-/// Pongs and refusals that a robot has not read.
-constexpr std::size_t kSmallAnswerBytesMax = std::size_t{64} << 10;
-
 /// Requests that were not refused and whose replies are not written yet.
 constexpr std::size_t kRequestsUnderWayMax = 4;
-
-/// Sensor descriptions under way besides the credit, which is for scans: twice what 64 sensors of 4096 explicit
-/// angles take.
-constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
 
 constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 
@@ -53,12 +43,10 @@ bool is_retryable(Errc code) noexcept {
 
 RobotLink::RobotLink(net::LinkStream stream, LinkServices services, const LinkConfig& config)
     : stream_(std::move(stream)), services_(services), config_(config), allowance_(guard::steady_seconds()),
-      unacknowledged_(services.counters),
-      outbox_(stream_,
-              [this](std::uint64_t durable_seq) {
-                  unacknowledged_.acknowledge(durable_seq, std::chrono::steady_clock::now());
-              }),
-      held_back_(stream_.get_executor()),
+      outbox_([this] { writer_.start(shared_from_this()); }),
+      writer_(stream_, outbox_,
+              [this](std::uint64_t seq) { dialogue_.acknowledged(seq, std::chrono::steady_clock::now()); }),
+      dialogue_(services.counters, outbox_, config.credit_bytes), held_back_(stream_.get_executor()),
       settled_(stream_.get_executor(), std::chrono::steady_clock::time_point::max()),
       deadline_timer_(stream_.get_executor()) {
     boost::system::error_code ignored;
@@ -78,7 +66,7 @@ asio::awaitable<void> RobotLink::run() {
     } catch (const std::exception& exception) {
         served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
-    if (session_) session_->leave(self);
+    if (dialogue_.is_welcome()) dialogue_.session()->leave(self);
     pass_.reset();
     if (ended_by_) served = *ended_by_;
     if (!served) services_.counters.failed(served.error().code).Increment();
@@ -127,7 +115,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
     if (greeted_) greeted_();
     deadline_ = std::chrono::steady_clock::time_point::max(); // what is waited for now is our disk, not the robot
     if (auto entered = co_await enter(std::move(*hello)); !entered) co_return entered.error();
-    while (!goodbye_) {
+    while (!dialogue_.said_goodbye()) {
         expect_something_within(config_.idle_deadline);
         auto message = co_await receive();
         if (!message) co_return message.error();
@@ -140,7 +128,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
 /// is our matter.
 asio::awaitable<Result<>> RobotLink::settle() {
     deadline_ = std::chrono::steady_clock::time_point::max();
-    while ((under_way_ > 0 || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAsTuple);
+    while ((dialogue_.has_under_way() || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAsTuple);
     if (ended_by_) co_return *ended_by_;
     co_return Result<>();
 }
@@ -189,18 +177,11 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     if (!session) co_return session.error();
     const auto joined = co_await join(**session, hello, shared_from_this());
     if (!joined) co_return joined.error();
-    session_ = std::move(*session);
-    index_ = joined->robot;
     allowance_.set_sensors(joined->sensors);
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
     spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
                  joined->last_durable_seq, hello.client);
-    outbox_.send(wire::Welcome{session::tag_of(session_->info()), joined->last_durable_seq,
-                               wire::Limits{static_cast<std::uint32_t>(wire::kFrameBytesMax),
-                                            static_cast<std::uint32_t>(kBeamsMax),
-                                            static_cast<std::uint32_t>(kScansPerBatchMax)},
-                               config_.credit_bytes, true},
-                 shared_from_this());
+    dialogue_.welcome(std::move(*session), *joined);
     co_return Result<>();
 }
 
@@ -210,7 +191,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
         const auto body = decoder_.next();
         if (!body) {
             Error error = body.error();
-            if (session_ && error.code == Errc::kTooLarge) error.message += "; send fewer scans a batch";
+            if (dialogue_.is_welcome() && error.code == Errc::kTooLarge) error.message += "; send fewer scans a batch";
             co_return error;
         }
         if (*body) {
@@ -244,63 +225,26 @@ asio::awaitable<void> RobotLink::hold_back(double seconds) {
 }
 
 Result<> RobotLink::handle(wire::Message message) {
-    const auto self = shared_from_this();
-    if (auto* sensor = std::get_if<Sensor>(&message)) {
-        if (auto ok = allowance_.check(*sensor); !ok) return over_limit(ok.error());
-        if (auto ok = charge_description(); !ok) return ok.error();
-        session_->submit(self, std::move(*sensor), frame_bytes_);
-        return {};
-    }
     if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
         auto batch = wire::decompress(*compressed);
         if (!batch) return batch.error();
         frame_bytes_ = wire::bytes_under_way(*compressed);
         message = std::move(*batch);
     }
-    if (auto* batch = std::get_if<wire::ScanBatch>(&message)) {
-        if (auto ok = allowance_.check(*batch); !ok) return over_limit(ok.error());
-        if (auto ok = charge_batch(); !ok) return ok.error();
-        services_.counters.scans_received.Increment(static_cast<double>(batch->scans.size()));
-        unacknowledged_.add(batch->scans.back().seq, batch->scans.size(), read_);
-        session_->submit(self, std::move(batch->scans), frame_bytes_);
-        return {};
-    }
-    if (const auto* ping = std::get_if<wire::Ping>(&message)) return answer_ping(*ping);
+    if (auto ok = allowance_.check(message); !ok) return over_limit(ok.error());
     if (auto request = as_request(std::move(message))) return ask(std::move(*request));
-    if (std::holds_alternative<wire::Pong>(message)) return {};
-    if (std::holds_alternative<wire::Goodbye>(message)) {
-        goodbye_ = true;
-        return {};
-    }
-    return Error{Errc::kMalformed,
-                 fmt::format("a {} frame is not for the server; after the hello it takes sensor_description, "
-                             "scan_batch, requests, ping and goodbye",
-                             wire::name_of(message))};
-}
-
-Result<> RobotLink::answer_ping(const wire::Ping& ping) {
-    if (auto ok = check_small_answers(); !ok) return ok;
-    outbox_.send(wire::Pong{ping.nonce}, shared_from_this());
-    return {};
-}
-
-Result<> RobotLink::check_small_answers() const {
-    if (outbox_.waiting() <= kSmallAnswerBytesMax) return {};
-    return Error{Errc::kCreditExceeded,
-                 fmt::format("{} bytes of pongs and refusals wait to be read, at most {} may; read them before the "
-                             "next ping or request",
-                             outbox_.waiting(), kSmallAnswerBytesMax)};
+    return dialogue_.handle(std::move(message), frame_bytes_, read_, shared_from_this());
 }
 
 /// A request that cannot be taken now is refused at once; the link goes on.
 Result<> RobotLink::ask(Request request) {
-    if (auto ok = check_small_answers(); !ok) return ok;
+    if (auto ok = dialogue_.check_small_answers(); !ok) return ok;
     const std::size_t under_way = asked_ + outbox_.answers_waiting();
     if (under_way >= kRequestsUnderWayMax) {
         const Error why{Errc::kOverloaded, fmt::format("{} requests are under way, the most a link may have; read "
                                                        "their replies before the next",
                                                        under_way)};
-        outbox_.send(refusal_of(request, why), shared_from_this());
+        outbox_.send(refusal_of(request, why));
         return {};
     }
     auto done = [self = shared_from_this()](std::string frame, std::shared_ptr<const void> slot) {
@@ -308,9 +252,9 @@ Result<> RobotLink::ask(Request request) {
             self->answer(std::move(frame), std::move(slot));
         });
     };
-    const auto refused = services_.desk.ask({session_, index_}, request, std::move(done));
+    const auto refused = services_.desk.ask({dialogue_.session(), dialogue_.robot()}, request, std::move(done));
     if (refused) {
-        outbox_.send(refusal_of(request, *refused), shared_from_this());
+        outbox_.send(refusal_of(request, *refused));
     } else {
         ++asked_;
     }
@@ -319,7 +263,7 @@ Result<> RobotLink::ask(Request request) {
 
 void RobotLink::answer(std::string frame, std::shared_ptr<const void> slot) {
     --asked_;
-    outbox_.answer(std::move(frame), std::move(slot), shared_from_this());
+    outbox_.answer(std::move(frame), std::move(slot));
     settled_.cancel();
 }
 
@@ -329,31 +273,10 @@ Error RobotLink::over_limit(Error error) const {
     return error;
 }
 
-Result<> RobotLink::charge_batch() {
-    under_way_ += frame_bytes_;
-    if (under_way_ <= config_.credit_bytes + described_) return {};
-    return Error{Errc::kCreditExceeded,
-                 fmt::format("{} bytes of scan batches are under way, the credit is {}; wait for acks",
-                             under_way_ - described_, config_.credit_bytes)};
-}
-
-/// Descriptions need no credit, but what waits for the disk is bounded all the same.
-Result<> RobotLink::charge_description() {
-    under_way_ += frame_bytes_;
-    described_ += frame_bytes_;
-    if (described_ <= config_.credit_bytes + kDescriptionBytesMax) return {};
-    return Error{Errc::kCreditExceeded,
-                 fmt::format("{} bytes of sensor descriptions are under way, at most {} are allowed; describe a "
-                             "sensor only when it has changed",
-                             described_, config_.credit_bytes + kDescriptionBytesMax)};
-}
-
 void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
     asio::post(stream_.get_executor(), [self = shared_from_this(), durable_seq, bytes] {
-        self->under_way_ -= std::min(bytes, self->under_way_);
-        self->described_ = std::min(self->described_, self->under_way_);
-        self->outbox_.acknowledge({durable_seq, durable_seq, self->config_.credit_bytes}, self);
-        if (self->under_way_ == 0) self->settled_.cancel();
+        self->dialogue_.on_durable(durable_seq, bytes);
+        if (!self->dialogue_.has_under_way()) self->settled_.cancel();
     });
 }
 
@@ -372,10 +295,10 @@ void RobotLink::end(const Error& error) {
 /// Tells the robot why.
 asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
     ended_by_ = why.error;
-    if (!session_ && decoder_.holds_http()) {
-        outbox_.send_bytes(in_http(why.error.message), shared_from_this()); // who speaks HTTP reads no frames
+    if (!dialogue_.is_welcome() && decoder_.holds_http()) {
+        outbox_.send_bytes(in_http(why.error.message)); // who speaks HTTP reads no frames
     } else {
-        outbox_.send(why, shared_from_this());
+        outbox_.send(why);
     }
     co_await part();
 }
@@ -386,7 +309,7 @@ asio::awaitable<void> RobotLink::part() {
     parting_ = true;
     expect_something_within(config_.farewell_deadline);
     outbox_.close();
-    co_await outbox_.emptied();
+    co_await writer_.emptied();
     stream_.shutdown_send();
     for (;;) {
         const auto room = decoder_.prepare(kReadBytes);
@@ -422,8 +345,8 @@ asio::awaitable<void> RobotLink::watch_deadline() {
             co_return;
         }
         expect_something_within(config_.farewell_deadline);
-        end({Errc::kTimeout, session_ ? "nothing was received for too long; send a ping now and then"
-                                      : "no hello was received in time"});
+        end({Errc::kTimeout, dialogue_.is_welcome() ? "nothing was received for too long; send a ping now and then"
+                                                    : "no hello was received in time"});
     }
 }
 

@@ -6,9 +6,10 @@
 #include "server/guard/audit.hpp"
 #include "server/guard/gate.hpp"
 #include "server/ingest/allowance.hpp"
+#include "server/ingest/dialogue.hpp"
+#include "server/ingest/link_writer.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
-#include "server/ingest/unacknowledged.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
@@ -82,13 +83,9 @@ private:
     boost::asio::awaitable<Result<wire::Message>> receive();
     boost::asio::awaitable<void> hold_back(double seconds);
     [[nodiscard]] Result<> handle(wire::Message message);
-    [[nodiscard]] Result<> answer_ping(const wire::Ping& ping);
     [[nodiscard]] Result<> ask(Request request);
-    [[nodiscard]] Result<> check_small_answers() const;
     void answer(std::string frame, std::shared_ptr<const void> slot);
     [[nodiscard]] Error over_limit(Error error) const;
-    [[nodiscard]] Result<> charge_batch();
-    [[nodiscard]] Result<> charge_description();
     boost::asio::awaitable<void> watch_deadline();
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     boost::asio::awaitable<void> part();
@@ -111,19 +108,15 @@ private:
     std::size_t frame_bytes_ = 0;       // of the frame last received, with its length prefix
     std::shared_ptr<guard::Pass> pass_; // from the hello on
     Allowance allowance_;               // as its token was when it last allowed this
-    std::shared_ptr<session::Session> session_;
     std::string robot_;
-    RobotIndex index_ = 0;      // of the robot in the session
-    std::size_t under_way_ = 0; // bytes submitted and not yet durable
-    std::size_t described_ = 0; // at least as many of them as are of sensor descriptions, never more than all
-    std::size_t asked_ = 0;     // requests that are being met
-    bool goodbye_ = false;
-    bool parting_ = false; // nothing more is said or heard
+    std::size_t asked_ = 0; // requests that are being met
+    bool parting_ = false;  // nothing more is said or heard
 
     std::chrono::steady_clock::time_point read_; // when bytes were read off the socket last
-    Unacknowledged unacknowledged_;
 
     Outbox outbox_;
+    LinkWriter writer_;
+    Dialogue dialogue_;                   // from the welcome on
     boost::asio::steady_timer held_back_; // until more may be read
     boost::asio::steady_timer settled_;   // never runs out; cancelled when nothing is under way any more
 
