@@ -235,6 +235,8 @@ _BATCH_OVERHEAD = _LENGTH_BYTES + 16  # fields around the scans of a batch
 _SCAN_OVERHEAD = 16  # a scan's seq, tag and length
 _REQUESTS_MAX = 4  # that a server meets at a time
 _PINGS_MAX = 16  # unanswered; who sends more is not the server
+_REPLACED_MAX = 3  # links of this robot, within so many seconds:
+_REPLACED_WITHIN = 60.0
 _SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years of ten a second
 _NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
 _COORDINATE_MAX = 1e6  # metres
@@ -521,6 +523,7 @@ class _Conversation:
         self.bytes_sent = 0
         self.welcomes = 0
         self.progress = now
+        self.replaced: List[float] = []  # when links were, lately
         self.is_ending = False
 
     # What is to be sent
@@ -569,7 +572,7 @@ class _Conversation:
         self.link.heard = now
         kind = frame.WhichOneof("body")
         if kind == "error":
-            self._on_error(frame.error)
+            self._on_error(frame.error, now)
         elif kind == "goodbye":
             reason = _shown(frame.goodbye.reason) or "it gave no reason"
             raise _retry("SHUTTING_DOWN", f"the server said goodbye: {reason}")
@@ -586,10 +589,16 @@ class _Conversation:
         elif not (kind in ("plan_reply", "goal_reply", "coverage_reply") and self._on_reply(kind, frame)):
             raise _retry("MALFORMED_FRAME", f"the server sent an unexpected {kind or 'frame of an unknown kind'}")
 
-    def _on_error(self, error: Any) -> None:
+    def _on_error(self, error: Any, now: float) -> None:
         code = _enum_name("ErrorCode", error.code, "ERROR_CODE_")
         message = _shown(error.message) or f"the server ended the link with the error {code} and did not say why"
-        raise ScanloomError(code, message, error.retryable)
+        raise ScanloomError(code, message, self._may_pass(now) if code == "REPLACED" else error.retryable)
+
+    def _may_pass(self, now: float) -> bool:
+        """An earlier link whose hello arrived late replaces one, too; another program of the same name does it again
+        and again."""
+        self.replaced = [time for time in self.replaced if time + _REPLACED_WITHIN > now] + [now]
+        return len(self.replaced) < _REPLACED_MAX
 
     def _on_welcome(self, welcome: Any, now: float) -> None:
         assert self.link

@@ -60,7 +60,7 @@ void Conversation::close() {
 std::optional<wire::LinkError> Conversation::receive(const wire::Message& message, Time now) {
     assert(link_);
     link_->heard = now;
-    if (const auto* failure = std::get_if<wire::LinkError>(&message)) return in_plain_text(*failure);
+    if (const auto* failure = std::get_if<wire::LinkError>(&message)) return on_error(*failure, now);
     if (const auto* goodbye = std::get_if<wire::Goodbye>(&message)) {
         return retry(Errc::kShuttingDown, goodbye->reason.empty()
                                               ? "the server said goodbye without a reason"
@@ -83,6 +83,18 @@ std::optional<wire::LinkError> Conversation::receive(const wire::Message& messag
         if (requests_.answer(message)) return std::nullopt;
     }
     return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));
+}
+
+wire::LinkError Conversation::on_error(wire::LinkError failure, Time now) {
+    failure = in_plain_text(std::move(failure));
+    if (failure.error.code != Errc::kReplaced) return failure;
+    failure.retryable = replacements_.may_pass(now);
+    if (!failure.retryable) {
+        failure.error.message +=
+            fmt::format("; that happened {} times within {} s, so another program uses the same --robot and --session",
+                        Replacements::kMax, Replacements::kWithin.count());
+    }
+    return failure;
 }
 
 std::optional<wire::LinkError> Conversation::on_welcome(const wire::Welcome& welcome, Time now) {

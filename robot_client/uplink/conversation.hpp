@@ -4,6 +4,7 @@
 #include "common/wire/messages.hpp"
 #include "robot_client/uplink/credit_window.hpp"
 #include "robot_client/uplink/open_requests.hpp"
+#include "robot_client/uplink/replacements.hpp"
 #include "robot_client/uplink/send_buffer.hpp"
 
 #include <chrono>
@@ -109,6 +110,7 @@ private:
         std::optional<Error> cannot_send; ///< the next scan exceeds what this server takes
     };
 
+    [[nodiscard]] wire::LinkError on_error(wire::LinkError failure, Time now);
     [[nodiscard]] std::optional<wire::LinkError> on_welcome(const wire::Welcome& welcome, Time now);
     [[nodiscard]] std::optional<wire::LinkError> on_ack(const wire::Ack& ack, Time now);
     [[nodiscard]] std::optional<wire::Message> next_message(Time now);
@@ -121,6 +123,7 @@ private:
     ConversationOptions options_;
     SendBuffer buffer_;
     OpenRequests requests_;
+    Replacements replacements_;
     std::optional<Link> link_;
     std::optional<std::uint64_t> resumed_after_;
     std::string session_id_;

@@ -96,6 +96,28 @@ TEST_F(ConversationTest, SaysHelloFirstAndNothingElseBeforeTheWelcome) {
     EXPECT_FALSE(conversation_.resumed_after());
 }
 
+/// An earlier link's hello may arrive late; another program comes back again and again.
+TEST_F(ConversationTest, GivesUpOnlyWhenItIsReplacedAgainAndAgain) {
+    const wire::LinkError replaced{{Errc::kReplaced, "robot 'r1' connected again"}, false};
+    const auto end_of_link = [&] {
+        welcome();
+        const auto failure = conversation_.receive(replaced, now_);
+        conversation_.close();
+        return failure.value();
+    };
+    for (int n = 0; n < 4; ++n) { // seldom
+        EXPECT_TRUE(end_of_link().retryable);
+        now_ += Replacements::kWithin;
+    }
+    EXPECT_TRUE(end_of_link().retryable);
+    now_ += 1s;
+    EXPECT_TRUE(end_of_link().retryable);
+    now_ += 1s;
+    const auto last = end_of_link();
+    EXPECT_FALSE(last.retryable);
+    EXPECT_THAT(last.error.message, HasSubstr("another program uses the same --robot and --session"));
+}
+
 TEST_F(ConversationTest, DescribesASensorBeforeItsFirstScanAndOnceALink) {
     welcome();
     add(2);
