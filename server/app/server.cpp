@@ -194,10 +194,7 @@ void Server::wait_for_signal() {
 void Server::tidy_up() {
     if (sessions_.is_draining()) return;
     asio::post(changing_, [this] {
-        if (log_->try_again()) {
-            spdlog::info("the store {} has been opened again", options_.store.string());
-            sessions_.go_on_after_failure();
-        }
+        if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
     });
     tidying_.expires_after(kTidyEvery);

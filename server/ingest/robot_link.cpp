@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-
 namespace scanloom::ingest {
 namespace asio = boost::asio;
 namespace {

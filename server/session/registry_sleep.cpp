@@ -94,6 +94,7 @@ bool SessionRegistry::take_room(const Wanted& wanted) {
 // Going to sleep
 
 void SessionRegistry::tidy() {
+    if (!log_.stats().last_error) read_failed_again();
     lay_down(roster_.send_to_sleep(config_.clock() - config_.idle_after, std::numeric_limits<std::size_t>::max()),
              leaves_memory());
     make_room(spare_pages()); // before scans have to be refused
@@ -123,7 +124,8 @@ void SessionRegistry::is_asleep_now(const Session& session) {
     start_reading_again();
 }
 
-void SessionRegistry::go_on_after_failure() {
+/// Looked for each time, as a session may learn of its failure when the store has been opened again already.
+void SessionRegistry::read_failed_again() {
     auto failed = roster_.send_failed_to_sleep();
     std::vector<std::string> names;
     for (const auto& session : failed) names.push_back(session->info().name);

@@ -100,13 +100,10 @@ public:
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
     [[nodiscard]] Result<> remove(std::string_view name);
 
-    /// Sends to sleep whatever nobody has used for a while, and tries again to read what there was no room for. To be
-    /// called from time to time; waits for nothing.
+    /// Sends to sleep whatever nobody has used for a while, and tries again to read what there was no room for. Where
+    /// the store takes changes, sessions that have failed, with it or for themselves, are read again, as after a
+    /// restart; their links and viewers are told to come back. To be called from time to time; waits for nothing.
     void tidy();
-
-    /// The store takes changes again after it had failed: sessions that failed with it are read again, as after a
-    /// restart. Their links and viewers are told to come back. Waits for nothing.
-    void go_on_after_failure();
 
     /// Refuses new sessions, lets recover() give up, closes all, returns when everything submitted is durable.
     void drain();
@@ -149,6 +146,7 @@ private:
     [[nodiscard]] bool take_room(const Wanted& wanted);
     [[nodiscard]] std::size_t spare_pages() const noexcept;
     void make_room(std::size_t pages);
+    void read_failed_again();
     void lay_down(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
     void is_asleep_now(const Session& session);
 
