@@ -6,6 +6,7 @@
 #include "tests/fault/power_row.hpp"
 #include "tests/fault/restart_row.hpp"
 #include "tests/fault/row.hpp"
+#include "tests/fault/simulation_row.hpp"
 #include "tests/fault/spool_row.hpp"
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace scanloom::fault {
 namespace {
 
 constexpr Row kRows[] = {
+    {"simulation", "stories", 2'000, 1'000'000,
+     "robots and server on a simulated network, disk and clock, all of which fail", run_simulation_row},
     {"kill", "kills", 50, 1'000, "kill -9 of the server at random points while robots stream", run_kill_row},
     {"link", "robots", 200, 10'000, "links that split, delay, stall, end, flip, double and reorder what they carry",
      run_link_row},

@@ -21,6 +21,7 @@ void run_short(std::string_view name) {
     EXPECT_GT(outcome.acknowledged, 0U) << "nothing was tried";
 }
 
+TEST(FaultRow, Simulation) { run_short("simulation"); }
 TEST(FaultRow, KillNine) { run_short("kill"); }
 TEST(FaultRow, SpoiledLinks) { run_short("link"); }
 TEST(FaultRow, DamagedStores) { run_short("corrupt"); }

@@ -1,0 +1,140 @@
+#include "tests/fault/simulation/disk.hpp"
+
+#include <utility>
+
+namespace scanloom::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+
+Error full() { return {Errc::kOverloaded, "the disk has no room"}; }
+
+} // namespace
+
+/// The store while a program has it open.
+class Disk::OpenLog final : public store::ScanLog {
+public:
+    explicit OpenLog(Disk& disk) : disk_(disk) {}
+    ~OpenLog() override {
+        if (!disk_.waiting_.empty()) disk_.commit();
+    }
+
+    Result<store::SessionId> create_session(std::string_view record) override {
+        if (auto settled = disk_.settle(true); !settled) return settled.error();
+        return disk_.durable_.create_session(record);
+    }
+    Result<std::vector<store::StoredSession>> sessions() override { return disk_.durable_.sessions(); }
+    Result<Revision> end_of(store::SessionId session) override { return disk_.durable_.end_of(session); }
+    Result<> remove_session(store::SessionId session) override {
+        if (auto settled = disk_.settle(false); !settled) return settled;
+        return disk_.durable_.remove_session(session);
+    }
+    void append(store::SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        disk_.add({session, first, std::move(entries), std::move(done)});
+    }
+    Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
+        return disk_.durable_.read(session, after, visit);
+    }
+    Result<> clear_checkpoint(store::SessionId session) override {
+        if (auto settled = disk_.settle(false); !settled) return settled;
+        return disk_.durable_.clear_checkpoint(session);
+    }
+    Result<> write_checkpoint(store::SessionId session, std::vector<store::CheckpointPart> parts) override {
+        if (auto settled = disk_.settle(true); !settled) return settled;
+        return disk_.durable_.write_checkpoint(session, std::move(parts));
+    }
+    Result<> read_checkpoint(store::SessionId session, const VisitPart& visit) override {
+        return disk_.durable_.read_checkpoint(session, visit);
+    }
+    store::StoreStats stats() const override {
+        store::StoreStats stats;
+        if (disk_.failed_) stats.last_error = disk_.failed_->message;
+        return stats;
+    }
+    std::uint64_t bytes_on_disk() const override { return 0; }
+
+private:
+    Disk& disk_;
+};
+
+Result<std::unique_ptr<store::ScanLog>> Disk::open() {
+    if (world_.chance(trouble_.failing)) return Error{Errc::kStoreFailed, "the disk cannot be read"};
+    failed_.reset();
+    return std::make_unique<OpenLog>(*this);
+}
+
+void Disk::crash() {
+    const std::uint64_t reached = trouble_.hasty ? 0 : world_.draw(waiting_.size() + 1);
+    for (std::uint64_t n = 0; n < reached; ++n) waiting_[n].done = [](const Result<>&) {};
+    for (std::uint64_t n = 0; n < reached && !failed_; ++n) store(waiting_[n]);
+    waiting_.clear();
+    committing_ = 0;
+    failed_.reset();
+}
+
+void Disk::add(Append append) {
+    if (trouble_.hasty) std::exchange(append.done, [](const Result<>&) {})({});
+    waiting_.push_back(std::move(append));
+    if (at_once_) return commit();
+    if (committing_ != 0) return;
+    const bool slow = world_.chance(trouble_.slow);
+    const Duration latest = trouble_.hasty ? Duration(2s) : Duration(5ms);
+    committing_ = ++commits_;
+    world_.after(slow ? world_.between(1s, 20s) : world_.between(50us, latest), [this, number = committing_] {
+        if (committing_ == number) commit();
+    });
+}
+
+/// Everything that waits, of all sessions, with one write.
+void Disk::commit() {
+    committing_ = 0;
+    if (!failed_ && world_.chance(trouble_.failing)) return fail({Errc::kStoreFailed, "a write failed"});
+    if (world_.chance(trouble_.full)) full_until_ = world_.now() + world_.between(100ms, 5s);
+    const bool is_full = world_.now() < full_until_;
+    for (auto& append : std::exchange(waiting_, {})) {
+        if (failed_) {
+            append.done(*failed_);
+        } else if (is_full) {
+            append.done(full());
+        } else {
+            store(append);
+        }
+    }
+}
+
+void Disk::store(Append& append) {
+    world_.note("stored", append.first + append.entries.size());
+    const auto again = append.entries;
+    durable_.append(append.session, append.first, std::move(append.entries), std::move(append.done));
+    if (!trouble_.forgetful || !world_.chance(0.1)) return;
+    durable_.append(append.session, append.first + again.size(), again, [](const Result<>&) {});
+}
+
+/// What is stored of that which waited is not known to whoever asked for it.
+void Disk::fail(const Error& why) {
+    world_.note("failed");
+    const std::uint64_t reached = world_.draw(waiting_.size() + 1);
+    for (std::uint64_t n = 0; n < waiting_.size(); ++n) {
+        auto done = std::exchange(waiting_[n].done, [](const Result<>&) {});
+        if (n < reached) store(waiting_[n]);
+        done(why);
+    }
+    waiting_.clear();
+    failed_ = why;
+}
+
+/// What was handed over first is written first, and `adds` to what is there.
+Result<> Disk::settle(bool adds) {
+    if (!waiting_.empty()) commit();
+    if (!failed_ && world_.chance(trouble_.failing)) failed_ = Error{Errc::kStoreFailed, "a write failed"};
+    if (failed_) return *failed_;
+    if (adds && world_.now() < full_until_) return full();
+    return {};
+}
+
+void Disk::set_at_once(bool at_once) {
+    at_once_ = at_once;
+    if (at_once && !waiting_.empty()) commit();
+}
+
+} // namespace scanloom::simulation

@@ -1,0 +1,155 @@
+#include "tests/fault/simulation/robot.hpp"
+
+#include "tests/support/random_scans.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace scanloom::simulation {
+
+using namespace std::chrono_literals;
+
+Robot::Robot(World& world, fault::RobotPlan plan, Connect connect)
+    : world_(world), connect_(std::move(connect)),
+      laser_(std::make_shared<const Sensor>(testing_support::small_laser())) {
+    standing_.plan = std::move(plan);
+    start();
+}
+
+void Robot::start() {
+    ++runs_;
+    robot::ConversationOptions options;
+    options.hello.robot = standing_.plan.name;
+    options.hello.session = standing_.plan.session;
+    options.hello.create = fault::fleet_options();
+    options.hello.client = "simulation";
+    options.buffer_bytes_max = 2'000 + world_.draw(20'000);
+    options.batch_bytes_max = 200 + world_.draw(4'000);
+    options.compress = world_.chance(0.3);
+    options.welcome_timeout = 2s;
+    options.ping_after = 1s;
+    options.silence_max = 4s;
+    conversation_.emplace(std::move(options), world_.now());
+    backoff_.emplace(static_cast<std::uint32_t>(world_.draw(1'000)), robot::BackoffWaits{20ms, 1'000ms});
+    handed_over_ = 0;
+    connect();
+    feed();
+}
+
+void Robot::start_again() {
+    ++runs_;
+    ++links_;
+    drop_connection();
+    conversation_.reset();
+    const auto run = runs_;
+    world_.after(world_.between(10ms, 3s), [this, run] {
+        if (run == runs_) start();
+    });
+}
+
+void Robot::crash() {
+    if (done_ || !conversation_) return;
+    world_.note("robot crashes");
+    if (connection_) connection_->vanish(Side::kRobot);
+    connection_.reset();
+    start_again();
+}
+
+void Robot::connect() {
+    connection_ = connect_();
+    ++links_;
+    if (!connection_) return lose({{Errc::kUnreachable, "nobody listens"}, true});
+    decoder_ = wire::FrameDecoder(wire::kFrameBytesMax);
+    connection_->listen(Side::kRobot, {[this](std::string_view bytes) { hear(bytes); },
+                                       [this] { lose({{Errc::kUnreachable, "the connection was lost"}, true}); }});
+    conversation_->open(world_.now());
+    say();
+}
+
+void Robot::hear(std::string_view bytes) {
+    const auto link = links_;
+    std::ranges::copy(std::as_bytes(std::span(bytes)), decoder_.prepare(bytes.size()).begin());
+    decoder_.commit(bytes.size());
+    for (;;) {
+        const auto body = decoder_.next();
+        if (!body) return lose({body.error(), true});
+        if (!*body) break;
+        const auto message = wire::decode(**body);
+        if (!message) return lose({message.error(), true});
+        world_.note(wire::name_of(*message));
+        if (const auto failure = conversation_->receive(*message, world_.now())) return lose(*failure);
+        if (conversation_->acknowledged() > standing_.acknowledged) {
+            standing_.acknowledged = conversation_->acknowledged();
+            backoff_->reset();
+            world_.note(standing_.plan.name, standing_.acknowledged);
+        }
+    }
+    if (link == links_) say();
+}
+
+void Robot::say() {
+    if (!connection_) return;
+    while (auto frame = conversation_->next_frame(world_.now())) connection_->send(Side::kRobot, std::move(*frame));
+    if (conversation_->said_goodbye()) { // all is acknowledged
+        done_ = true;
+        drop_connection();
+        conversation_.reset();
+        return;
+    }
+    watch();
+}
+
+/// The recording's next scan, as soon as there is room for it.
+void Robot::feed() {
+    if (conversation_->resumed_after()) {
+        handed_over_ = std::max(handed_over_, *conversation_->resumed_after());
+        if (handed_over_ < standing_.plan.scans && conversation_->has_room()) {
+            conversation_->add({laser_, testing_support::random_scan(standing_.plan.seed, ++handed_over_)}, world_.now());
+            if (handed_over_ == standing_.plan.scans) conversation_->end();
+            say();
+        } else if (handed_over_ >= standing_.plan.scans) {
+            conversation_->end();
+            return say();
+        }
+    }
+    while_running(world_.between(1ms, 150ms), &Robot::feed);
+}
+
+void Robot::watch() {
+    if (!connection_) return;
+    if (const auto failure = conversation_->check(world_.now())) return lose(*failure);
+    const Time due = conversation_->deadline(world_.now());
+    if (due >= watching_ && watching_ > world_.now()) return; // looked at earlier than that anyway
+    watching_ = due;
+    while_linked(due, &Robot::say);
+}
+
+void Robot::lose(const wire::LinkError& why) {
+    world_.note(why.error.message);
+    drop_connection();
+    conversation_->close();
+    if (why.retryable) return while_running(backoff_->next(), &Robot::connect);
+    standing_.outcome = why.error;
+    start_again();
+}
+
+void Robot::drop_connection() {
+    if (connection_) connection_->close(Side::kRobot);
+    connection_.reset();
+    watching_ = Time::max();
+    ++links_;
+}
+
+void Robot::while_running(Duration delay, void (Robot::*what)()) {
+    world_.after(delay, [this, what, run = runs_] {
+        if (run == runs_ && conversation_) (this->*what)();
+    });
+}
+
+void Robot::while_linked(Time time, void (Robot::*what)()) {
+    world_.at(time, [this, what, link = links_] {
+        if (link == links_ && connection_) (this->*what)();
+    });
+}
+
+} // namespace scanloom::simulation

@@ -1,0 +1,47 @@
+#include "tests/fault/simulation/story.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace scanloom::simulation {
+namespace {
+
+class SimulationTest : public testing::Test {
+protected:
+    void SetUp() override { spdlog::set_level(spdlog::level::off); }
+};
+
+/// Whether one of the first seeds finds it out.
+bool is_found_out(Story story) {
+    constexpr std::uint64_t kSeeds = 50;
+    for (story.seed = 1; story.seed <= kSeeds; ++story.seed) {
+        if (!tell(story).outcome.passed()) return true;
+    }
+    return false;
+}
+
+TEST_F(SimulationTest, ASeedIsTheSameStoryAgain) {
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        const auto first = tell({.seed = seed});
+        const auto again = tell({.seed = seed});
+        EXPECT_EQ(first.fingerprint, again.fingerprint) << "seed " << seed;
+        EXPECT_EQ(first.outcome.figures, again.outcome.figures) << "seed " << seed;
+    }
+}
+
+TEST_F(SimulationTest, OtherSeedsAreOtherStories) {
+    EXPECT_NE(tell({.seed = 1}).fingerprint, tell({.seed = 2}).fingerprint);
+}
+
+TEST_F(SimulationTest, ADiskThatAcknowledgesTooEarlyIsFoundOut) {
+    EXPECT_TRUE(is_found_out({.hasty_disk = true}));
+}
+
+TEST_F(SimulationTest, ADiskThatStoresTwiceIsFoundOut) {
+    EXPECT_TRUE(is_found_out({.forgetful_disk = true}));
+}
+
+} // namespace
+} // namespace scanloom::simulation

@@ -1,0 +1,183 @@
+#include "tests/fault/simulation/story.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/mapping/digest.hpp"
+#include "tests/fault/verification.hpp"
+#include "tests/fault/simulation/robot.hpp"
+#include "tests/fault/simulation/server.hpp"
+#include "tests/support/log_reading.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace scanloom::simulation {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kTroubled = 15s;
+constexpr Duration kTimeToMend = 10min;
+
+/// All that goes wrong, as drawn at the beginning.
+struct Plot {
+    DiskTrouble disk;
+    NetworkTrouble network;
+    ServerOptions server;
+    std::vector<fault::RobotPlan> robots;
+    std::uint64_t server_crashes = 0;
+    std::uint64_t server_stops = 0;
+    std::uint64_t robot_crashes = 0;
+};
+
+/// Half of the stories do without it.
+double some(World& world, double most) { return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0; }
+
+Plot plot_of(World& world, const Story& story) {
+    Plot plot;
+    plot.disk = {some(world, 0.05), some(world, 0.1), some(world, 0.1), story.hasty_disk, story.forgetful_disk};
+    plot.network = {some(world, 0.7), some(world, 0.3), some(world, 0.5), some(world, 0.5), some(world, 0.3)};
+    plot.server.credit_bytes = world.chance(0.5) ? 4'000 + world.draw(8'000) : plot.server.credit_bytes;
+    plot.server.idle_after = world.chance(0.5) ? Duration(3s) : plot.server.idle_after;
+    if (world.chance(0.3)) plot.server.pages_max = 14 + world.draw(6); // one session takes 6, and a scan may touch 4
+    plot.server.idle_deadline = 10s;
+    plot.server_crashes = world.draw(4);
+    plot.server_stops = world.draw(3);
+    plot.robot_crashes = world.draw(4);
+    const auto robots = 1 + world.draw(3);
+    for (std::uint64_t n = 0; n < robots; ++n) {
+        plot.robots.push_back({fmt::format("session-{}", world.draw(2)), fmt::format("robot-{}", n),
+                               static_cast<unsigned>(story.seed * 3 + n), 10 + world.draw(60)});
+    }
+    return plot;
+}
+
+class Stage {
+public:
+    explicit Stage(const Story& story) : world_(story.seed, story.listener), plot_(plot_of(world_, story)), disk_(world_, plot_.disk) {}
+
+    Ending play() {
+        start_server();
+        for (const auto& plan : plot_.robots) {
+            robots_.push_back(std::make_unique<Robot>(world_, plan, [this] { return connect(); }));
+        }
+        plan_crashes();
+        calm_ = world_.now() + kTroubled;
+        world_.at(calm_, [this] {
+            disk_.calm();
+            plot_.network = {};
+        });
+        const Time end = calm_ + kTimeToMend;
+        while (!(world_.now() >= calm_ && all_done())) {
+            if (!world_.step(end)) break;
+        }
+        return judge();
+    }
+
+private:
+    void start_server() { server_.emplace(world_, disk_, plot_.server); }
+
+    std::shared_ptr<Connection> connect() {
+        if (!server_ || world_.chance(plot_.network.refuse)) return nullptr;
+        auto connection = Connection::make(world_, plot_.network);
+        server_->accept(connection);
+        return connection;
+    }
+
+    void plan_crashes() {
+        const auto sometime = [this] { return world_.now() + world_.between(0s, kTroubled); };
+        for (std::uint64_t n = 0; n < plot_.server_crashes; ++n) world_.at(sometime(), [this] { end_server(false); });
+        for (std::uint64_t n = 0; n < plot_.server_stops; ++n) world_.at(sometime(), [this] { end_server(true); });
+        for (std::uint64_t n = 0; n < plot_.robot_crashes; ++n) {
+            world_.at(sometime(), [this] { robots_[world_.draw(robots_.size())]->crash(); });
+        }
+    }
+
+    void end_server(bool in_order) {
+        if (!server_) return;
+        if (in_order) server_->stop();
+        server_.reset();
+        ++ends_;
+        world_.after(world_.between(10ms, 5s), [this] { start_server(); });
+    }
+
+    [[nodiscard]] bool all_done() const {
+        return std::ranges::all_of(robots_, [](const auto& robot) { return robot->is_done(); });
+    }
+
+    Ending judge() {
+        Ending ending;
+        auto& outcome = ending.outcome;
+        std::map<std::string, std::vector<fault::RobotStanding>> sessions;
+        for (const auto& robot : robots_) {
+            const auto& standing = robot->standing();
+            sessions[standing.plan.session].push_back(standing);
+            if (!robot->is_done()) {
+                outcome.amiss.push_back(fmt::format("robot '{}' has {} of {} scans acknowledged, and nothing moves",
+                                                    standing.plan.name, standing.acknowledged, standing.plan.scans));
+            }
+            if (standing.outcome) continue;
+            const Error& error = standing.outcome.error();
+            ++outcome.figures[fmt::format("ended_{}", name_of(error.code))];
+            if (!is_forged_) {
+                outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", standing.plan.name, error.message));
+            }
+        }
+        outcome.figures["server_ends"] = ends_;
+        for (const auto& [name, members] : sessions) {
+            const auto held = hold(name);
+            if (held) outcome.add(fault::verify(*held, members, fault::fleet_options()));
+            if (!held) outcome.amiss.push_back(fmt::format("session '{}': {}", name, held.error().message));
+        }
+        ending.fingerprint = world_.fingerprint();
+        return ending;
+    }
+
+    /// Also where the server has to be started first, or its store to be opened again.
+    Result<std::shared_ptr<session::Session>> wake(const std::string& name) {
+        const Time end = world_.now() + kTimeToMend;
+        for (;;) {
+            while (!server_) world_.step(Time::max());
+            std::optional<Result<std::shared_ptr<session::Session>>> woken;
+            server_->sessions().wake(name, [&](Result<std::shared_ptr<session::Session>> session) { woken = std::move(session); });
+            while (!woken) world_.step(Time::max());
+            if (*woken || world_.now() > end) return *woken;
+            const Time later = world_.now() + 1s;
+            while (world_.step(later)) {
+            }
+        }
+    }
+
+    /// What the server holds in the end.
+    Result<fault::Held> hold(const std::string& name) {
+        const auto woken = wake(name);
+        if (!woken) return woken.error();
+        const auto& session = *woken;
+        const auto snapshot = session->snapshot();
+        fault::Held held;
+        held.revision = snapshot->revision;
+        for (const auto layer : mapping::kLayers) {
+            held.digests.emplace(mapping::name_of(layer), mapping::digest_of(*snapshot, layer));
+        }
+        for (const auto& bytes : store::entries_after(disk_.durable(), session->info().id, 0).value()) {
+            held.log.push_back(wire::decode_entry(bytes).value());
+        }
+        return held;
+    }
+
+    World world_;
+    Plot plot_;
+    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then
+    Disk disk_;
+    std::optional<Server> server_;
+    std::vector<std::unique_ptr<Robot>> robots_;
+    Time calm_{};
+    std::uint64_t ends_ = 0;
+};
+
+} // namespace
+
+Ending tell(const Story& story) { return Stage(story).play(); }
+
+} // namespace scanloom::simulation

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "tests/fault/row.hpp"
+
+namespace scanloom::fault {
+
+/// Row "simulation": a story a seed, see simulation/story.hpp.
+[[nodiscard]] Outcome run_simulation_row(const Run& run);
+
+} // namespace scanloom::fault
