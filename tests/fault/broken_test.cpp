@@ -3,6 +3,7 @@
 #include "tests/fault/kill_row.hpp"
 #include "tests/fault/link_row.hpp"
 #include "tests/fault/power_row.hpp"
+#include "tests/fault/stall_row.hpp"
 #include "tests/support/memory_scan_log.hpp"
 
 #include <gtest/gtest.h>
@@ -34,6 +35,13 @@ TEST(CorruptRow, FindsAServerThatServesWhatWasNeverStored) {
 
 TEST(PowerRow, FindsAServerWhoseDiskDoesNotSync) {
     const Outcome outcome = run_power_row({.seed = 1, .count = 5, .server = broken_server("unsynced")});
+    if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
+    EXPECT_FALSE(outcome.passed());
+    EXPECT_TRUE(outcome.repeat);
+}
+
+TEST(StallRow, FindsAServerThatAcknowledgesTooEarly) {
+    const Outcome outcome = run_stall_row({.seed = 1, .count = 2, .server = broken_server("hasty")});
     if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
     EXPECT_FALSE(outcome.passed());
     EXPECT_TRUE(outcome.repeat);

@@ -31,15 +31,6 @@ constexpr std::uint64_t kFillingsPerDisk = 5;
 constexpr std::uint64_t kScansPerFilling = 100; // of each robot
 constexpr unsigned kRobots = 4;
 
-std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t scans) {
-    std::vector<RobotPlan> made;
-    for (unsigned n = 0; n < kRobots; ++n) {
-        made.push_back({n % 2 == 0 ? "shared" : fmt::format("alone{}", n), fmt::format("robot{}", n),
-                        static_cast<unsigned>(seed * kRobots + n), scans});
-    }
-    return made;
-}
-
 /// Somebody else's file, that takes the disk's room for as long as this lives.
 class Ballast {
 public:
@@ -94,7 +85,7 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", std::to_string(kReserveMib)});
-    Fleet fleet(plans(seed, fillings * kScansPerFilling), server.robot_port());
+    Fleet fleet(half_sharing(kRobots, seed, fillings * kScansPerFilling), server.robot_port());
     server.start_and_wait();
     Outcome outcome;
     for (std::uint64_t filling = 1; filling <= fillings && !fleet.has_given_up(); ++filling) {
@@ -135,7 +126,7 @@ std::uint64_t lines_ending_with(std::string_view text, const fs::path& log) {
 Outcome fail_syncs(const Run& run, std::uint64_t seed, std::uint64_t scans) {
     const TemporaryDirectory place;
     ServerProcess server(with_failing_syncs(run.server), place.path(), {"--disk-reserve", "0"});
-    Fleet fleet(plans(seed, scans / kRobots), server.robot_port());
+    Fleet fleet(half_sharing(kRobots, seed, scans / kRobots), server.robot_port());
     fleet.release_all();
     std::uint64_t starts = 0;
     do { // a new store syncs a dozen files, one of which may fail

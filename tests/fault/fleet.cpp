@@ -7,6 +7,7 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -185,6 +186,15 @@ private:
     bool given_up_ = false;
     std::thread thread_;
 };
+
+std::vector<RobotPlan> half_sharing(unsigned robots, std::uint64_t seed, std::uint64_t scans) {
+    std::vector<RobotPlan> made;
+    for (unsigned n = 0; n < robots; ++n) {
+        made.push_back({n % 2 == 0 ? "shared" : fmt::format("alone{}", n), fmt::format("robot{}", n),
+                        static_cast<unsigned>(seed * robots + n), scans});
+    }
+    return made;
+}
 
 Fleet::Fleet(std::vector<RobotPlan> plans, std::uint16_t port, const Patience& patience)
     : robots_(std::make_unique<Robots>(std::move(plans), port, patience)) {}

@@ -19,6 +19,9 @@ struct RobotPlan {
     std::uint64_t scans = 0; ///< in all
 };
 
+/// So many robots: every second one is in the session "shared", the others have one each.
+[[nodiscard]] std::vector<RobotPlan> half_sharing(unsigned robots, std::uint64_t seed, std::uint64_t scans);
+
 /// Of the sessions that robots make.
 [[nodiscard]] SessionOptions fleet_options();
 

@@ -21,24 +21,15 @@ using std::chrono::microseconds;
 
 constexpr std::uint64_t kKillsPerStore = 50; // then another store, so that recovery stays short
 constexpr std::uint64_t kScansPerKill = 300; // of each robot: a session of three has a checkpoint every few kills
+constexpr unsigned kRobots = 6;
 constexpr std::uint64_t kMicrosUntilKill = 20'000;
-
-/// Three robots share a session, three have one each.
-std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t scans) {
-    std::vector<RobotPlan> made;
-    for (unsigned n = 0; n < 6; ++n) {
-        const std::string session = n < 3 ? "shared" : fmt::format("alone{}", n);
-        made.push_back({session, fmt::format("robot{}", n), static_cast<unsigned>(seed * 10 + n), scans});
-    }
-    return made;
-}
 
 /// One store, and the kills that its servers suffer.
 class Killing {
 public:
     Killing(const Run& run, std::uint64_t seed, std::uint64_t kills)
         : random_(seed), kills_(kills), server_(run.server, place_.path()),
-          fleet_(plans(seed, kills * kScansPerKill), server_.robot_port()) {}
+          fleet_(half_sharing(kRobots, seed, kills * kScansPerKill), server_.robot_port()) {}
 
     Outcome run() {
         const auto begin = std::chrono::steady_clock::now();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <linux/fs.h>
 #include <sys/ioctl.h>
 #include <sys/mount.h>
 #include <unistd.h>
@@ -72,12 +73,21 @@ Result<> LoopDisk::mount() {
 }
 
 void LoopDisk::cut_power() const {
+    std::uint32_t how = kWithoutLogFlush;
+    control(kShutdown, &how, "FS_IOC_SHUTDOWN");
+}
+
+std::shared_ptr<const void> LoopDisk::freeze() const {
+    control(FIFREEZE, nullptr, "FIFREEZE");
+    return {this, [](const LoopDisk* disk) { disk->control(FITHAW, nullptr, "FITHAW"); }};
+}
+
+void LoopDisk::control(unsigned long what, void* how, const char* name) const {
     const int directory = ::open(mount_point_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const std::uint32_t how = kWithoutLogFlush;
-    const int done = directory < 0 ? -1 : ::ioctl(directory, kShutdown, &how);
+    const int done = directory < 0 ? -1 : ::ioctl(directory, what, how);
     const int reason = errno;
     if (directory >= 0) ::close(directory);
-    if (done != 0) throw std::system_error(reason, std::generic_category(), "FS_IOC_SHUTDOWN");
+    if (done != 0) throw std::system_error(reason, std::generic_category(), name);
 }
 
 void LoopDisk::mount_again() {

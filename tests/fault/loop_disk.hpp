@@ -23,6 +23,9 @@ public:
     /// What was not synced is lost, and every further access fails, until it is mounted again. Throws.
     void cut_power() const;
 
+    /// As long as what is returned lives, whoever writes or syncs waits. Throws.
+    [[nodiscard]] std::shared_ptr<const void> freeze() const;
+
     /// Takes it out and puts it in again: its journal is replayed. Pre: nobody has a file of it open. Throws.
     void mount_again();
 
@@ -31,6 +34,7 @@ private:
         : device_(std::move(device)), mount_point_(std::move(mount_point)) {}
 
     [[nodiscard]] Result<> mount();
+    void control(unsigned long what, void* how, const char* name) const;
 
     std::string device_; // "/dev/loop0"
     std::filesystem::path mount_point_;

@@ -22,15 +22,6 @@ constexpr std::uint64_t kScansPerCut = 200; // of each robot
 constexpr unsigned kRobots = 4;
 constexpr std::uint64_t kMicrosUntilCut = 5'000;
 
-std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t scans) {
-    std::vector<RobotPlan> made;
-    for (unsigned n = 0; n < kRobots; ++n) {
-        made.push_back({n % 2 == 0 ? "shared" : fmt::format("alone{}", n), fmt::format("robot{}", n),
-                        static_cast<unsigned>(seed * kRobots + n), scans});
-    }
-    return made;
-}
-
 /// Nothing where there is no such disk; then why not.
 Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) {
     const TemporaryDirectory place;
@@ -38,7 +29,7 @@ Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) 
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", "0"}); // it is a small disk
-    Fleet fleet(plans(seed, cuts * kScansPerCut), server.robot_port());
+    Fleet fleet(half_sharing(kRobots, seed, cuts * kScansPerCut), server.robot_port());
     server.start_and_wait();
     for (std::uint64_t cut = 1; cut <= cuts && !fleet.has_given_up(); ++cut) {
         fleet.release(cut * kScansPerCut);

@@ -1,3 +1,4 @@
+#include "tests/fault/beside.hpp"
 #include "tests/fault/clock_row.hpp"
 #include "tests/fault/corrupt_row.hpp"
 #include "tests/fault/disk_row.hpp"
@@ -7,7 +8,9 @@
 #include "tests/fault/restart_row.hpp"
 #include "tests/fault/row.hpp"
 #include "tests/fault/simulation_row.hpp"
+#include "tests/fault/soak_row.hpp"
 #include "tests/fault/spool_row.hpp"
+#include "tests/fault/stall_row.hpp"
 
 #include <algorithm>
 
@@ -30,6 +33,11 @@ constexpr Row kRows[] = {
     {"sync", "scans", 1'000, 100'000, "one sync of five fails", run_sync_row},
     {"spool", "kills", 8, 800, "the network is away, and the robot is killed while it sends what waited",
      run_spool_row},
+    {"stall", "stalls", 5, 200, "the disk takes nothing for seconds, and then all that waited", run_stall_row},
+    {"viewers", "viewers", 200, kViewersLong, "viewers that do not read", run_viewers_row},
+    {"flood", "connections", 120, kFloodLong, "senders that are slow, endless or talk nonsense, on both ports",
+     run_flood_row},
+    {"soak", "scans", 80'000, kSoakLong, "the same places again and again: memory must not grow", run_soak_row},
 };
 
 } // namespace

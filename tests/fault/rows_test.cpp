@@ -31,6 +31,10 @@ TEST(FaultRow, PowerCuts) { run_short("power"); }
 TEST(FaultRow, FullDisks) { run_short("disk"); }
 TEST(FaultRow, FailingSyncs) { run_short("sync"); }
 TEST(FaultRow, OutagesAndKilledRobots) { run_short("spool"); }
+TEST(FaultRow, StallingDisks) { run_short("stall"); }
+TEST(FaultRow, ViewersThatDoNotRead) { run_short("viewers"); }
+TEST(FaultRow, Floods) { run_short("flood"); }
+TEST(FaultRow, Soak) { run_short("soak"); }
 
 } // namespace
 } // namespace scanloom::fault

@@ -49,6 +49,7 @@ public:
     /// Lets it be for a while, unless it becomes ready, or ends, before.
     void let_be(std::chrono::microseconds time) const { (void)process_->has_output_within(time); }
 
+    [[nodiscard]] pid_t id() const { return process_->id(); }
     void signal(int number) const { process_->signal(number); }
     void kill_nine();
 

@@ -12,10 +12,10 @@ namespace scanloom::simulation {
 
 /// What a disk does wrong, until the world is calm.
 struct DiskTrouble {
-    double failing = 0.0; ///< of the writes: fail, after which all do until the store is opened again
-    double full = 0.0;    ///< of the writes: find the disk full, as do all for a while
-    double slow = 0.0;    ///< of the writes: take seconds
-    bool hasty = false;   ///< a lie: says of everything that it is durable before it is
+    double failing = 0.0;   ///< of the writes: fail, after which all do until the store is opened again
+    double full = 0.0;      ///< of the writes: find the disk full, as do all for a while
+    double slow = 0.0;      ///< of the writes: take seconds
+    bool hasty = false;     ///< a lie: says of everything that it is durable before it is
     bool forgetful = false; ///< a lie: stores some of it twice
 };
 

@@ -13,11 +13,11 @@ namespace scanloom::simulation {
 
 /// What a network does wrong, until the world is calm: probabilities of each connection.
 struct NetworkTrouble {
-    double cut = 0.0;      ///< ends, at some moment, for both sides
-    double silent = 0.0;   ///< carries nothing more from some moment on, and tells nobody
-    double stall = 0.0;    ///< carries nothing for a while, and all of it then
-    double refuse = 0.0;   ///< is not made
-    double forge = 0.0;    ///< carries some pieces twice, and some in another order
+    double cut = 0.0;    ///< ends, at some moment, for both sides
+    double silent = 0.0; ///< carries nothing more from some moment on, and tells nobody
+    double stall = 0.0;  ///< carries nothing for a while, and all of it then
+    double refuse = 0.0; ///< is not made
+    double forge = 0.0;  ///< carries some pieces twice, and some in another order
 };
 
 enum class Side { kRobot, kServer };
@@ -53,7 +53,7 @@ private:
 
     World& world_;
     std::array<Ears, 2> ears_;
-    std::array<Time, 2> last_arrival_{};                 // by the side that sends
+    std::array<Time, 2> last_arrival_{};                  // by the side that sends
     std::array<std::optional<std::string>, 2> kept_back_; // likewise: goes behind the next
     Duration latency_;
     Time stalls_from_ = Time::max();

@@ -61,7 +61,9 @@ void Robot::connect() {
     if (!connection_) return lose({{Errc::kUnreachable, "nobody listens"}, true});
     decoder_ = wire::FrameDecoder(wire::kFrameBytesMax);
     connection_->listen(Side::kRobot, {[this](std::string_view bytes) { hear(bytes); },
-                                       [this] { lose({{Errc::kUnreachable, "the connection was lost"}, true}); }});
+                                       [this] {
+                                           lose({{Errc::kUnreachable, "the connection was lost"}, true});
+                                       }});
     conversation_->open(world_.now());
     say();
 }
@@ -104,7 +106,8 @@ void Robot::feed() {
     if (conversation_->resumed_after()) {
         handed_over_ = std::max(handed_over_, *conversation_->resumed_after());
         if (handed_over_ < standing_.plan.scans && conversation_->has_room()) {
-            conversation_->add({laser_, testing_support::random_scan(standing_.plan.seed, ++handed_over_)}, world_.now());
+            conversation_->add({laser_, testing_support::random_scan(standing_.plan.seed, ++handed_over_)},
+                               world_.now());
             if (handed_over_ == standing_.plan.scans) conversation_->end();
             say();
         } else if (handed_over_ >= standing_.plan.scans) {

@@ -23,7 +23,8 @@ using namespace std::chrono_literals;
 class Server::Link final : public session::RobotListener, public std::enable_shared_from_this<Link> {
 public:
     Link(Server& server, std::shared_ptr<Connection> connection)
-        : server_(server), connection_(std::move(connection)), strand_(server.machine_->executor()), outbox_([this] { write_soon(); }),
+        : server_(server), connection_(std::move(connection)), strand_(server.machine_->executor()),
+          outbox_([this] { write_soon(); }),
           dialogue_(std::in_place, server.metrics_.ingest(), outbox_, server.options_.credit_bytes) {}
 
     void start() {
@@ -103,8 +104,8 @@ private:
 
     static asio::awaitable<void> enter(std::shared_ptr<Link> self, wire::Hello hello) {
         const session::Maker anybody;
-        auto entered = co_await ingest::session_for(hello, self->server_.sessions(), anybody,
-                                                    self->server_.machine_->executor());
+        auto entered =
+            co_await ingest::session_for(hello, self->server_.sessions(), anybody, self->server_.machine_->executor());
         if (!entered) {
             self->end(entered.error());
             co_return;
@@ -145,7 +146,8 @@ private:
     }
 
     void part_when_settled() {
-        if (!parted_ && dialogue_->said_goodbye() && !dialogue_->has_under_way()) later([](Link& self) { self.part(); });
+        if (!parted_ && dialogue_->said_goodbye() && !dialogue_->has_under_way())
+            later([](Link& self) { self.part(); });
     }
 
     void part() {

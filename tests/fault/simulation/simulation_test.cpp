@@ -35,13 +35,9 @@ TEST_F(SimulationTest, OtherSeedsAreOtherStories) {
     EXPECT_NE(tell({.seed = 1}).fingerprint, tell({.seed = 2}).fingerprint);
 }
 
-TEST_F(SimulationTest, ADiskThatAcknowledgesTooEarlyIsFoundOut) {
-    EXPECT_TRUE(is_found_out({.hasty_disk = true}));
-}
+TEST_F(SimulationTest, ADiskThatAcknowledgesTooEarlyIsFoundOut) { EXPECT_TRUE(is_found_out({.hasty_disk = true})); }
 
-TEST_F(SimulationTest, ADiskThatStoresTwiceIsFoundOut) {
-    EXPECT_TRUE(is_found_out({.forgetful_disk = true}));
-}
+TEST_F(SimulationTest, ADiskThatStoresTwiceIsFoundOut) { EXPECT_TRUE(is_found_out({.forgetful_disk = true})); }
 
 } // namespace
 } // namespace scanloom::simulation

@@ -2,9 +2,9 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/digest.hpp"
-#include "tests/fault/verification.hpp"
 #include "tests/fault/simulation/robot.hpp"
 #include "tests/fault/simulation/server.hpp"
+#include "tests/fault/verification.hpp"
 #include "tests/support/log_reading.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +32,9 @@ struct Plot {
 };
 
 /// Half of the stories do without it.
-double some(World& world, double most) { return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0; }
+double some(World& world, double most) {
+    return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0;
+}
 
 Plot plot_of(World& world, const Story& story) {
     Plot plot;
@@ -55,7 +57,8 @@ Plot plot_of(World& world, const Story& story) {
 
 class Stage {
 public:
-    explicit Stage(const Story& story) : world_(story.seed, story.listener), plot_(plot_of(world_, story)), disk_(world_, plot_.disk) {}
+    explicit Stage(const Story& story)
+        : world_(story.seed, story.listener), plot_(plot_of(world_, story)), disk_(world_, plot_.disk) {}
 
     Ending play() {
         start_server();
@@ -140,7 +143,8 @@ private:
         for (;;) {
             while (!server_) world_.step(Time::max());
             std::optional<Result<std::shared_ptr<session::Session>>> woken;
-            server_->sessions().wake(name, [&](Result<std::shared_ptr<session::Session>> session) { woken = std::move(session); });
+            server_->sessions().wake(
+                name, [&](Result<std::shared_ptr<session::Session>> session) { woken = std::move(session); });
             while (!woken) world_.step(Time::max());
             if (*woken || world_.now() > end) return *woken;
             const Time later = world_.now() + 1s;

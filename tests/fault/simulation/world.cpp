@@ -19,7 +19,8 @@ void World::note(std::string_view what, std::uint64_t number) {
     const auto mix = [this](std::uint64_t byte) { fingerprint_ = (fingerprint_ ^ byte) * 0x100'0000'01b3; };
     for (const char letter : what) mix(static_cast<unsigned char>(letter));
     for (int shift = 0; shift < 64; shift += 8) mix(number >> shift & 0xff);
-    for (int shift = 0; shift < 64; shift += 8) mix(static_cast<std::uint64_t>(now_.time_since_epoch().count()) >> shift & 0xff);
+    for (int shift = 0; shift < 64; shift += 8)
+        mix(static_cast<std::uint64_t>(now_.time_since_epoch().count()) >> shift & 0xff);
 }
 
 } // namespace scanloom::simulation

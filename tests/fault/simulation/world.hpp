@@ -27,7 +27,9 @@ public:
     [[nodiscard]] Time now() const noexcept { return now_; }
 
     /// Events of the same moment happen in the order in which they were planned.
-    void at(Time time, std::function<void()> event) { events_.emplace(Moment{std::max(time, now_), ++planned_}, std::move(event)); }
+    void at(Time time, std::function<void()> event) {
+        events_.emplace(Moment{std::max(time, now_), ++planned_}, std::move(event));
+    }
     void after(Duration delay, std::function<void()> event) { at(now_ + delay, std::move(event)); }
 
     /// Lets the next event happen. @return false: there is none until then.
@@ -35,7 +37,9 @@ public:
 
     /// Evenly from 0 to `below` - 1. Pre: below > 0.
     [[nodiscard]] std::uint64_t draw(std::uint64_t below) { return random_() % below; }
-    [[nodiscard]] bool chance(double probability) { return static_cast<double>(random_() >> 11) * 0x1p-53 < probability; }
+    [[nodiscard]] bool chance(double probability) {
+        return static_cast<double>(random_() >> 11) * 0x1p-53 < probability;
+    }
     [[nodiscard]] Duration between(Duration least, Duration most);
 
     /// What happened, for comparing two runs of a seed.

@@ -1,0 +1,102 @@
+#include "tests/fault/beside.hpp"
+
+#include "tests/fault/process_memory.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanloom::fault {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kBytesBesides = std::size_t{48} << 20; // of caches that fill, and the allocator
+
+void check_memory(std::uint64_t before, std::uint64_t after, const Beside& beside, Outcome& outcome) {
+    const std::uint64_t grown = after - std::min(before, after);
+    const std::uint64_t most = beside.size * beside.bytes_of_each_max + kBytesBesides;
+    outcome.figures["memory_grown_kib"] = grown >> 10;
+    if (grown <= most) return;
+    outcome.amiss.push_back(fmt::format("the server took {} MiB more for a crowd of {}, at most {} MiB are allowed",
+                                        grown >> 20, beside.size, most >> 20));
+}
+
+void check_pace(double in_peace_ms, double beside_ms, const Beside& beside, Outcome& outcome) {
+    outcome.figures["p99_in_peace_us"] = static_cast<std::uint64_t>(in_peace_ms * 1e3);
+    outcome.figures["p99_beside_us"] = static_cast<std::uint64_t>(beside_ms * 1e3);
+    if (!beside.must_keep_up || beside_ms <= 2.0 * in_peace_ms) return;
+    outcome.amiss.push_back(fmt::format("acknowledgements took {:.1f} ms (p99) beside the crowd, {:.1f} ms in peace",
+                                        beside_ms, in_peace_ms));
+}
+
+std::string upgrade_to_live(const std::string& session, std::uint16_t port) {
+    return fmt::format("GET /api/v1/sessions/{}/live HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nUpgrade: websocket\r\n"
+                       "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                       "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
+                       session, port);
+}
+
+} // namespace
+
+Outcome compare_with_peace(const Run& run, const Beside& beside) {
+    const auto duration = beside.must_keep_up ? 20s : 3s;
+    const TemporaryDirectory place;
+    ServerProcess server(run.server, place.path());
+    server.start_and_wait();
+    Outcome outcome;
+    const auto in_peace = PacedLoad(server, run.seed * 2, duration, place.path()).finish();
+    outcome.add(in_peace.outcome);
+    const auto before = resident_bytes(server.id());
+    PacedLoad load(server, run.seed * 2 + 1, duration, place.path());
+    load.wait_until_it_streams();
+    Crowd crowd(beside.crowd(server, load));
+    crowd.wait_until_there();
+    const auto disturbed = load.finish();
+    outcome.add(disturbed.outcome);
+    check_memory(before, resident_bytes(server.id()), beside, outcome);
+    check_pace(in_peace.p99_ms, disturbed.p99_ms, beside, outcome);
+    outcome.figures["hung_up_on"] = crowd.hung_up_on();
+    if (const auto status = test::http_request(server.http_port(), "GET", "/readyz").status; status != 200)
+        outcome.amiss.push_back(fmt::format("/readyz is answered with {} beside the crowd", status));
+    return outcome;
+}
+
+Outcome run_viewers_row(const Run& run) {
+    Beside beside{.size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kViewersLong};
+    beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
+        std::vector<Manner> viewers;
+        for (unsigned n = 0; n < run.count; ++n) {
+            const auto session = load.session(n % PacedLoad::kSessions);
+            viewers.push_back({server.http_port(), upgrade_to_live(session, server.http_port()), "", 0ms, false});
+        }
+        return viewers;
+    };
+    return compare_with_peace(run, beside);
+}
+
+Outcome run_flood_row(const Run& run) {
+    Beside beside{.size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kFloodLong};
+    beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
+        const auto robots = server.robot_port();
+        const auto http = server.http_port();
+        const std::string noise(1024, '\xa5');
+        const auto map = fmt::format("GET /api/v1/sessions/{}/map.png HTTP/1.1\r\nHost: localhost\r\n\r\n", load.session(0));
+        const std::vector<Manner> manners{
+            {robots, "", "", 0ms},                                              // says nothing
+            {robots, std::string("\0\0\1", 3), "\1", 500ms},                    // a hello that takes for ever
+            {robots, noise, noise, 50ms},                                       // nonsense, of a length that is too large
+            {http, "GET / HTTP/1.1\r\nHost: localhost\r\n", "X: y\r\n", 500ms}, // a header that takes for ever
+            {http, "POST /api/v1/sessions HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9999\r\n\r\n", "{", 500ms},
+            {http, map, map, 100ms, false}, // asks for more and more, and reads none of it
+        };
+        std::vector<Manner> crowd;
+        for (unsigned n = 0; n < run.count; ++n) crowd.push_back(manners[n % manners.size()]);
+        return crowd;
+    };
+    return compare_with_peace(run, beside);
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "tests/fault/crowd.hpp"
+#include "tests/fault/paced_load.hpp"
+#include "tests/fault/row.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace scanloom::fault {
+
+/// What robots notice of a crowd: the same load twice on one server, first in peace, then beside it.
+struct Beside {
+    std::uint64_t size = 0;             ///< of the crowd
+    std::size_t bytes_of_each_max = 0;  ///< of the server's memory, of each of the crowd
+    bool must_keep_up = false;          ///< acknowledgements may take twice as long at most
+    std::function<std::vector<Manner>(const ServerProcess&, const PacedLoad&)> crowd;
+};
+
+/// Figures  p99 of acknowledgements in peace and beside the crowd, in microseconds; what the server's memory grew by.
+[[nodiscard]] Outcome compare_with_peace(const Run& run, const Beside& beside);
+
+/// Row "viewers": viewers that do not read. Row "flood": whoever sends slowly, without end, or nonsense, to both ports.
+[[nodiscard]] Outcome run_viewers_row(const Run& run);
+[[nodiscard]] Outcome run_flood_row(const Run& run);
+
+constexpr std::uint64_t kViewersLong = 1'000;
+constexpr std::uint64_t kFloodLong = 600;
+
+} // namespace scanloom::fault

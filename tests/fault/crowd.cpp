@@ -1,0 +1,83 @@
+#include "tests/fault/crowd.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+#include <array>
+
+namespace scanloom::fault {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using namespace asio::experimental::awaitable_operators;
+
+namespace {
+
+constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
+constexpr std::chrono::milliseconds kComesAgainAfter{20};
+constexpr int kReceiveBytes = 4096; // so that who does not read is soon full
+
+/// Until the server hangs up.
+asio::awaitable<void> listen(tcp::socket& socket, bool reads) {
+    if (!reads) co_await socket.async_wait(tcp::socket::wait_error, kUse);
+    std::array<char, 4096> heard{};
+    for (;;) {
+        const auto [failed, bytes] = co_await socket.async_read_some(asio::buffer(heard), kUse);
+        if (failed) co_return;
+    }
+}
+
+} // namespace
+
+Crowd::Crowd(const std::vector<Manner>& members) : size_(members.size()) {
+    for (const Manner& manner : members) asio::co_spawn(io_, belong(manner), asio::detached);
+    thread_ = std::thread([this] { io_.run(); });
+}
+
+Crowd::~Crowd() {
+    io_.stop();
+    thread_.join();
+}
+
+void Crowd::wait_until_there() const {
+    for (auto made = made_.load(); made < size_; made = made_.load()) made_.wait(made);
+}
+
+asio::awaitable<void> Crowd::belong(Manner manner) {
+    asio::steady_timer pause(io_);
+    for (;;) {
+        tcp::socket socket(io_);
+        socket.open(tcp::v4());
+        socket.set_option(tcp::socket::receive_buffer_size(kReceiveBytes));
+        const auto [failed] = co_await socket.async_connect({asio::ip::address_v4::loopback(), manner.port}, kUse);
+        if (!failed) {
+            ++made_;
+            made_.notify_all();
+            co_await (listen(socket, manner.reads) && speak(socket, manner));
+            ++hung_up_on_;
+        }
+        pause.expires_after(kComesAgainAfter);
+        co_await pause.async_wait(kUse);
+    }
+}
+
+/// Until nobody takes it any more.
+asio::awaitable<void> Crowd::speak(tcp::socket& socket, const Manner& manner) {
+    asio::steady_timer pause(socket.get_executor());
+    const auto [unsaid, bytes] = co_await asio::async_write(socket, asio::buffer(manner.opening), kUse);
+    if (unsaid || manner.then.empty()) co_return;
+    for (;;) {
+        pause.expires_after(manner.pause);
+        co_await pause.async_wait(kUse);
+        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(manner.then), kUse);
+        if (failed) co_return;
+    }
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,47 @@
+#include "tests/fault/paced_load.hpp"
+
+#include "tests/support/running_server.hpp"
+
+#include <boost/json/parse.hpp>
+#include <fmt/format.h>
+
+namespace scanloom::fault {
+
+PacedLoad::PacedLoad(const ServerProcess& server, std::uint64_t seed, std::chrono::seconds duration,
+                     const std::filesystem::path& place)
+    : server_(server), seed_(seed),
+      program_(test::program("scanloom-load"),
+               {"--server", fmt::format("127.0.0.1:{}", server.robot_port()), "--http",
+                fmt::format("127.0.0.1:{}", server.http_port()), "--robots", std::to_string(kRobots), "--sessions",
+                std::to_string(kSessions), "--rate", "10", "--course", "100", "--seed", std::to_string(seed), "--duration",
+                std::to_string(duration.count()), "--json", "-"},
+               place / "load.log") {}
+
+void PacedLoad::wait_until_it_streams() const {
+    const auto last = "/api/v1/sessions/" + session(kSessions - 1);
+    while (test::http_request(server_.http_port(), "GET", last).status != 200) {
+        if (program_.has_output_within(std::chrono::milliseconds(5))) return; // it has ended: finish() tells why
+    }
+}
+
+PacedLoad::Report PacedLoad::finish() {
+    std::string text;
+    while (const auto line = program_.read_line()) text += *line;
+    const int code = program_.wait();
+    Report report;
+    boost::system::error_code failed;
+    const auto json = boost::json::parse(text, failed);
+    if (failed) {
+        report.outcome.amiss.push_back(fmt::format("scanloom-load ended with {} and no report", code));
+        return report;
+    }
+    report.p99_ms = json.at("ack_from_intended").at("p99_ms").to_number<double>();
+    report.outcome.acknowledged = json.at("scans").at("acknowledged").to_number<std::uint64_t>();
+    report.outcome.lost = json.at("scans").at("lost").to_number<std::uint64_t>();
+    const auto& verdict = json.at("verdict");
+    report.outcome.digest_equal = verdict.at("nothing_lost").as_bool();
+    if (code != 0 || !report.outcome.digest_equal) report.outcome.amiss.emplace_back(verdict.at("sentence").as_string());
+    return report;
+}
+
+} // namespace scanloom::fault

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "tests/fault/row.hpp"
+
+namespace scanloom::fault {
+
+/// Row "soak": many scans of the same places, during which the server's memory must not grow once it is warm.
+[[nodiscard]] Outcome run_soak_row(const Run& run);
+
+constexpr std::uint64_t kSoakLong = 5'000'000;
+
+} // namespace scanloom::fault

@@ -1,0 +1,66 @@
+#include "tests/fault/stall_row.hpp"
+
+#include "tests/fault/cases.hpp"
+#include "tests/fault/fleet.hpp"
+#include "tests/fault/loop_disk.hpp"
+#include "tests/fault/server_process.hpp"
+#include "tests/fault/verification.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <random>
+
+namespace scanloom::fault {
+namespace {
+
+constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20;
+constexpr std::uint64_t kStallsPerDisk = 5;
+constexpr std::uint64_t kScansPerStall = 100; // of each robot
+constexpr unsigned kRobots = 4;
+
+/// They wait longer than a disk stalls.
+constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000), .silence_max = std::chrono::milliseconds(15'000)};
+
+void check_that_maps_are_served(const ServerProcess& server, Outcome& outcome) {
+    const auto status = test::http_request(server.http_port(), "GET", "/api/v1/sessions/shared/digest").status;
+    if (status == 200) return;
+    outcome.amiss.push_back(fmt::format("a digest is answered with {} while the disk takes nothing", status));
+}
+
+Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t stalls) {
+    const TemporaryDirectory place;
+    auto disk = LoopDisk::make(place.path() / "disk", place.path() / "store", kDiskBytes);
+    if (!disk) return disk.error();
+    std::mt19937_64 random(seed);
+    ServerProcess server(run.server, place.path(), {"--disk-reserve", "16"});
+    Fleet fleet(half_sharing(kRobots, seed, stalls * kScansPerStall), server.robot_port(), kPatience);
+    server.start_and_wait();
+    Outcome outcome;
+    for (std::uint64_t stall = 1; stall <= stalls && !fleet.has_given_up(); ++stall) {
+        const auto before = stall * kScansPerStall - kScansPerStall / 2;
+        fleet.release(before);
+        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRobots * kScansPerStall / 2));
+        const auto frozen = (*disk)->freeze();
+        fleet.release(stall * kScansPerStall);
+        server.let_be(std::chrono::milliseconds(200 + random() % 2'000));
+        if (fleet.acknowledged() > before * kRobots)
+            outcome.amiss.emplace_back("scans are acknowledged that were sent while the disk took nothing");
+        check_that_maps_are_served(server, outcome);
+    }
+    fleet.release_all();
+    outcome.add(verify_server(server.http_port(), fleet.finish()));
+    return outcome;
+}
+
+} // namespace
+
+Outcome run_stall_row(const Run& run) {
+    return run_cases(run, {.row = "stall", .of_count = kStallsPerDisk, .run = [&](std::uint64_t seed, std::uint64_t stalls) {
+                               auto outcome = stall_one_disk(run, seed, stalls);
+                               return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
+                           }});
+}
+
+} // namespace scanloom::fault
