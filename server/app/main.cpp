@@ -4,6 +4,7 @@
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
+#include "server/log/json_formatter.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -18,7 +19,11 @@ using namespace scanloom;
 
 int run(const app::ServerOptions& options) {
     spdlog::set_default_logger(std::make_shared<spdlog::logger>("scanloom-server", app::standard_error_sink()));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    if (options.log_format == "json") {
+        spdlog::set_formatter(std::make_unique<log::JsonFormatter>());
+    } else {
+        spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    }
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);

@@ -99,6 +99,10 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--log-level", options.log_level, "How much is told on standard error")
         ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
         ->capture_default_str();
+    app.add_option("--log-format", options.log_format,
+                   "Lines for people, or objects of JSON with fields for session, robot and peer")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
     app.add_flag("--insecure", options.insecure,
                  "Listen beyond this machine, although nothing guards a port: anybody there may send and read");
 }

@@ -31,7 +31,8 @@ struct ServerOptions {
     std::size_t map_memory_bytes = std::size_t{1} << 30; ///< of the maps of all sessions that are in memory
     std::chrono::milliseconds idle_after{600'000};       ///< without use, a session leaves memory
     std::string log_level = "info";
-    bool insecure = false; ///< listen beyond loopback without a guard
+    std::string log_format = "text"; ///< or "json"
+    bool insecure = false;           ///< listen beyond loopback without a guard
 };
 
 [[nodiscard]] std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv);

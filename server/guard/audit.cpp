@@ -1,9 +1,9 @@
 #include "server/guard/audit.hpp"
 
 #include "common/scan/limits.hpp"
+#include "server/log/context.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <string>
@@ -20,8 +20,9 @@ std::string_view name_or(std::string_view text, std::string_view otherwise) {
 
 void tell(const access::RefusalTable::Line& line) {
     const auto& [port, reason, who, token, session] = line.newest;
-    spdlog::warn("event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
-                 name_or(token, "?"), name_of(reason), name_or(session, "?"), line.count);
+    log::warn({.session = is_valid_name(session) ? std::string_view(session) : "", .peer = who},
+              "event=refused port={} who={} token={} reason={} session={} count={}", name_of(port), who,
+              name_or(token, "?"), name_of(reason), name_or(session, "?"), line.count);
 }
 
 } // namespace

@@ -72,12 +72,16 @@ asio::awaitable<void> RobotLink::run() {
     if (served) co_await part();
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
-    spdlog::info("{} {}", who_ended(), served ? "goodbye" : served.error().message);
+    log::info(about(), "{} {}", who_ended(), served ? "goodbye" : served.error().message);
 }
 
 std::string RobotLink::who_ended() const {
     if (robot_.empty()) return fmt::format("a link from {} that never said a valid hello ended:", peer_);
     return fmt::format("robot '{}' at {} left:", robot_, peer_);
+}
+
+log::Context RobotLink::about() const {
+    return {dialogue_.is_welcome() ? std::string_view(dialogue_.session()->info().name) : "", robot_, peer_};
 }
 
 void RobotLink::cut_off() {
@@ -178,8 +182,8 @@ asio::awaitable<Result<>> RobotLink::enter(wire::Hello hello) {
     if (!joined) co_return joined.error();
     allowance_.set_sensors(joined->sensors);
     decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
-    spdlog::info("robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_, hello.session,
-                 joined->last_durable_seq, hello.client);
+    log::info({hello.session, robot_, peer_}, "robot '{}' at {} joined session '{}' after scan {} ({})", robot_, peer_,
+              hello.session, joined->last_durable_seq, hello.client);
     dialogue_.welcome(std::move(*session), *joined);
     co_return Result<>();
 }

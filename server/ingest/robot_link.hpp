@@ -10,6 +10,7 @@
 #include "server/ingest/link_writer.hpp"
 #include "server/ingest/outbox.hpp"
 #include "server/ingest/request_desk.hpp"
+#include "server/log/context.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
@@ -90,6 +91,7 @@ private:
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     boost::asio::awaitable<void> part();
     [[nodiscard]] std::string who_ended() const;
+    [[nodiscard]] log::Context about() const;
     void start_watch();
     void hang_up();
     void end(const Error& error);

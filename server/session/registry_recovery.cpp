@@ -1,10 +1,10 @@
 #include "server/session/session_registry.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "server/log/context.hpp"
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <latch>
@@ -77,8 +77,8 @@ void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_pat
     if (can_stay_asleep(info, map_patches)) return done();
     auto session = factory_.read(info, draining_, hurried_);
     if (session && *session && (*session)->snapshot()->revision < map_patches) {
-        spdlog::warn("session '{}' is removed: its import came to {} of {} parts before a crash", info.name,
-                     (*session)->snapshot()->revision, map_patches); // nobody was told that it exists
+        log::warn({.session = info.name}, "session '{}' is removed: its import came to {} of {} parts before a crash",
+                  info.name, (*session)->snapshot()->revision, map_patches); // nobody was told that it exists
         if (auto removed = log_.remove_session(info.id); !removed) keep_damaged(info.name, info.id, removed.error());
         return done();
     }

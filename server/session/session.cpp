@@ -1,11 +1,11 @@
 #include "server/session/session.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "server/log/context.hpp"
 #include "server/session/checkpoint.hpp"
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -284,7 +284,8 @@ void Session::begin_checkpoint() {
         const auto written =
             session::write_checkpoint(self->log_, self->info_.id, *snapshot, state, since, self->hurried_);
         if (!written && !self->hurried_)
-            spdlog::warn("session '{}': no checkpoint: {}", self->info_.name, written.error().message);
+            log::warn({.session = self->info_.name}, "session '{}': no checkpoint: {}", self->info_.name,
+                      written.error().message);
         self->on_strand([revision = written ? std::optional(state.revision) : since](Session& session) {
             session.checkpointed_ = revision;
             session.checkpointing_ = false;
@@ -299,7 +300,7 @@ void Session::begin_checkpoint() {
 /// The log could not be written, and what the disk holds is unknown until the store is opened again; or a durable
 /// entry could not be woven. Nothing more is taken; the maps stay readable as they are.
 void Session::stop_writing(const Error& error) {
-    spdlog::error("session '{}': {}", info_.name, error.message);
+    log::error({.session = info_.name}, "session '{}': {}", info_.name, error.message);
     refusing_ = error;
     broken_ = true;
     {

@@ -1,9 +1,8 @@
 #include "server/session/session_factory.hpp"
 
+#include "server/log/context.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/session/recovery.hpp"
-
-#include <spdlog/spdlog.h>
 
 #include <utility>
 
@@ -17,8 +16,8 @@ void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& reco
     const auto snapshot = recovered.projection.snapshot();
     const auto written =
         write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried);
-    spdlog::info("session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
-                 written ? "; the next start continues there" : "");
+    log::info({.session = info.name}, "session '{}': recovery stopped after entry {}{}", info.name, snapshot.revision,
+              written ? "; the next start continues there" : "");
 }
 
 } // namespace
@@ -36,8 +35,9 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
     auto recovered = recover(log, info.id, info.config, stop);
     if (!recovered) return recovered.error();
     if (recovered->checkpoint_rejected) {
-        spdlog::warn("session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", info.name,
-                     recovered->checkpoint_rejected->message);
+        log::warn({.session = info.name},
+                  "session '{}': its checkpoint cannot be used ({}); it was woven from its whole log", info.name,
+                  recovered->checkpoint_rejected->message);
     }
     if (!recovered->complete) {
         keep_progress(log, info, *recovered, hurried);

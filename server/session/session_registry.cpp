@@ -2,6 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
+#include "server/log/context.hpp"
 #include "server/mapping/reach.hpp"
 #include "server/session/checkpoint.hpp"
 
@@ -9,7 +10,6 @@
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <future>
 #include <latch>
@@ -105,7 +105,7 @@ std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
 }
 
 void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
-    spdlog::error("session '{}' cannot be recovered: {}", name, why.message);
+    log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
     const std::unique_lock lock(damaged_mutex_);
     damaged_[std::move(name)] = {id, std::move(why)};
 }

@@ -65,7 +65,8 @@ Outcome compare_with_peace(const Run& run, const Beside& beside) {
 }
 
 Outcome run_viewers_row(const Run& run) {
-    Beside beside{.size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kViewersLong};
+    Beside beside{
+        .size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kViewersLong};
     beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
         std::vector<Manner> viewers;
         for (unsigned n = 0; n < run.count; ++n) {
@@ -78,16 +79,18 @@ Outcome run_viewers_row(const Run& run) {
 }
 
 Outcome run_flood_row(const Run& run) {
-    Beside beside{.size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kFloodLong};
+    Beside beside{
+        .size = run.count, .bytes_of_each_max = std::size_t{256} << 10, .must_keep_up = run.count >= kFloodLong};
     beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
         const auto robots = server.robot_port();
         const auto http = server.http_port();
         const std::string noise(1024, '\xa5');
-        const auto map = fmt::format("GET /api/v1/sessions/{}/map.png HTTP/1.1\r\nHost: localhost\r\n\r\n", load.session(0));
+        const auto map =
+            fmt::format("GET /api/v1/sessions/{}/map.png HTTP/1.1\r\nHost: localhost\r\n\r\n", load.session(0));
         const std::vector<Manner> manners{
-            {robots, "", "", 0ms},                                              // says nothing
-            {robots, std::string("\0\0\1", 3), "\1", 500ms},                    // a hello that takes for ever
-            {robots, noise, noise, 50ms},                                       // nonsense, of a length that is too large
+            {robots, "", "", 0ms},                           // says nothing
+            {robots, std::string("\0\0\1", 3), "\1", 500ms}, // a hello that takes for ever
+            {robots, noise, noise, 50ms},                    // nonsense, of a length that is too large
             {http, "GET / HTTP/1.1\r\nHost: localhost\r\n", "X: y\r\n", 500ms}, // a header that takes for ever
             {http, "POST /api/v1/sessions HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9999\r\n\r\n", "{", 500ms},
             {http, map, map, 100ms, false}, // asks for more and more, and reads none of it

@@ -11,9 +11,9 @@ namespace scanloom::fault {
 
 /// What robots notice of a crowd: the same load twice on one server, first in peace, then beside it.
 struct Beside {
-    std::uint64_t size = 0;             ///< of the crowd
-    std::size_t bytes_of_each_max = 0;  ///< of the server's memory, of each of the crowd
-    bool must_keep_up = false;          ///< acknowledgements may take twice as long at most
+    std::uint64_t size = 0;            ///< of the crowd
+    std::size_t bytes_of_each_max = 0; ///< of the server's memory, of each of the crowd
+    bool must_keep_up = false;         ///< acknowledgements may take twice as long at most
     std::function<std::vector<Manner>(const ServerProcess&, const PacedLoad&)> crowd;
 };
 

@@ -16,11 +16,11 @@ namespace scanloom::fault {
 
 /// What somebody does who means no good, or cannot help it.
 struct Manner {
-    std::uint16_t port = 0; ///< of this machine
-    std::string opening;    ///< said at once
-    std::string then{};     ///< said again and again after that; empty: nothing
+    std::uint16_t port = 0;             ///< of this machine
+    std::string opening;                ///< said at once
+    std::string then{};                 ///< said again and again after that; empty: nothing
     std::chrono::milliseconds pause{0}; ///< before each of it
-    bool reads = true;      ///< or leaves whatever comes where it is
+    bool reads = true;                  ///< or leaves whatever comes where it is
 };
 
 /// Connections that keep a server busy until this goes. Whoever is hung up on comes again.

@@ -13,8 +13,8 @@ PacedLoad::PacedLoad(const ServerProcess& server, std::uint64_t seed, std::chron
       program_(test::program("scanloom-load"),
                {"--server", fmt::format("127.0.0.1:{}", server.robot_port()), "--http",
                 fmt::format("127.0.0.1:{}", server.http_port()), "--robots", std::to_string(kRobots), "--sessions",
-                std::to_string(kSessions), "--rate", "10", "--course", "100", "--seed", std::to_string(seed), "--duration",
-                std::to_string(duration.count()), "--json", "-"},
+                std::to_string(kSessions), "--rate", "10", "--course", "100", "--seed", std::to_string(seed),
+                "--duration", std::to_string(duration.count()), "--json", "-"},
                place / "load.log") {}
 
 void PacedLoad::wait_until_it_streams() const {
@@ -40,7 +40,8 @@ PacedLoad::Report PacedLoad::finish() {
     report.outcome.lost = json.at("scans").at("lost").to_number<std::uint64_t>();
     const auto& verdict = json.at("verdict");
     report.outcome.digest_equal = verdict.at("nothing_lost").as_bool();
-    if (code != 0 || !report.outcome.digest_equal) report.outcome.amiss.emplace_back(verdict.at("sentence").as_string());
+    if (code != 0 || !report.outcome.digest_equal)
+        report.outcome.amiss.emplace_back(verdict.at("sentence").as_string());
     return report;
 }
 

@@ -29,7 +29,9 @@ public:
     /// Waits until its sessions are there.
     void wait_until_it_streams() const;
 
-    [[nodiscard]] std::string session(unsigned n) const { return "load-" + std::to_string(seed_) + "-" + std::to_string(n); }
+    [[nodiscard]] std::string session(unsigned n) const {
+        return "load-" + std::to_string(seed_) + "-" + std::to_string(n);
+    }
 
     /// Waits for its end, and for what it then verifies.
     [[nodiscard]] Report finish();

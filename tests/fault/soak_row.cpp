@@ -40,8 +40,8 @@ Outcome run_soak_row(const Run& run) {
     outcome.figures["memory_grown_kib"] = grown >> 10;
     const bool is_warm_by_then = run.count >= kSoakLong;
     if (is_warm_by_then && grown * 100 > warm) {
-        outcome.amiss.push_back(fmt::format("the server's memory grew from {} to {} MiB in the second half", warm >> 20,
-                                            most >> 20));
+        outcome.amiss.push_back(
+            fmt::format("the server's memory grew from {} to {} MiB in the second half", warm >> 20, most >> 20));
     }
     return outcome;
 }

@@ -21,7 +21,8 @@ constexpr std::uint64_t kScansPerStall = 100; // of each robot
 constexpr unsigned kRobots = 4;
 
 /// They wait longer than a disk stalls.
-constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000), .silence_max = std::chrono::milliseconds(15'000)};
+constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000),
+                             .silence_max = std::chrono::milliseconds(15'000)};
 
 void check_that_maps_are_served(const ServerProcess& server, Outcome& outcome) {
     const auto status = test::http_request(server.http_port(), "GET", "/api/v1/sessions/shared/digest").status;
@@ -57,10 +58,11 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
 } // namespace
 
 Outcome run_stall_row(const Run& run) {
-    return run_cases(run, {.row = "stall", .of_count = kStallsPerDisk, .run = [&](std::uint64_t seed, std::uint64_t stalls) {
-                               auto outcome = stall_one_disk(run, seed, stalls);
-                               return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
-                           }});
+    return run_cases(run,
+                     {.row = "stall", .of_count = kStallsPerDisk, .run = [&](std::uint64_t seed, std::uint64_t stalls) {
+                          auto outcome = stall_one_disk(run, seed, stalls);
+                          return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
+                      }});
 }
 
 } // namespace scanloom::fault
