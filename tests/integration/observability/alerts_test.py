@@ -1,16 +1,23 @@
 """The alerts ask for what the server gives, name labels that there are, and say what to do."""
+import pathlib
 import re
 import unittest
 
 import yaml
 
 from promql import selectors
-from served import DOCS, ask_a_server
+from served import DOCS, PROMETHEUS_LABELS, ask_a_server
+
+HERE = pathlib.Path(__file__).resolve().parent
 
 
 def alerts():
     groups = yaml.safe_load((DOCS / "observability/alerts.yml").read_text())["groups"]
     return [rule for group in groups for rule in group["rules"]]
+
+
+def cases():
+    return yaml.safe_load((HERE / "alerts_cases.yml").read_text())["tests"]
 
 
 class Alerts(unittest.TestCase):
@@ -44,6 +51,18 @@ class Alerts(unittest.TestCase):
                 self.assertIn(alert["labels"]["severity"], ("critical", "warning"))
                 self.assertEqual(alert["annotations"].keys(), {"summary", "description"})
                 self.assertTrue(alert["annotations"]["description"].endswith("."))
+
+    def test_for_every_alert_there_is_a_case_in_which_it_fires(self):
+        fired = {name for case in cases() for asked in case["promql_expr_test"] for sample in asked["exp_samples"]
+                 for name in re.findall(r'alertname="(\w+)"', sample["labels"])}
+        self.assertEqual(fired, {alert["alert"] for alert in alerts()})
+
+    def test_cases_are_of_metrics_and_labels_that_there_are(self):
+        for series in (series["series"] for case in cases() for series in case["input_series"]):
+            [selector] = selectors(series)
+            self.assertIn(selector.metric, self.served.samples)
+            self.assertEqual(selector.matchers.keys() - PROMETHEUS_LABELS,
+                             self.served.samples[selector.metric].keys(), series)
 
     def test_alerts_name_the_job_of_the_manual(self):
         manual = (DOCS / "operations.md").read_text()

@@ -28,6 +28,7 @@ class Dashboard(unittest.TestCase):
         cls.dashboard = json.loads(cls.text)
         cls.panels = cls.dashboard["panels"]
         cls.shown = [panel for panel in cls.panels if panel["type"] != "row"]
+        cls.instance = next(one for one in cls.dashboard["templating"]["list"] if one["name"] == "instance")
         cls.served = ask_a_server()
 
     def targets(self):
@@ -82,13 +83,13 @@ class Dashboard(unittest.TestCase):
     def test_variables_are_declared_and_the_source_of_data_is_one(self):
         declared = {variable["name"] for variable in self.dashboard["templating"]["list"]} | GRAFANA_VARIABLES
         self.assertLessEqual(set(re.findall(r"\$\{?(\w+)", self.text)), declared)
-        for panel, target in self.targets():
-            for asked in (panel, target):
-                self.assertEqual(asked["datasource"], {"type": "prometheus", "uid": "${datasource}"}, panel["title"])
+        for asked in [self.instance, *self.shown, *(target for _, target in self.targets())]:
+            self.assertEqual(asked["datasource"], {"type": "prometheus", "uid": "${datasource}"}, asked)
 
-    def test_the_list_of_servers_comes_from_a_metric_and_label_there_are(self):
-        variable = next(one for one in self.dashboard["templating"]["list"] if one["name"] == "instance")
-        metric, label = re.fullmatch(r"label_values\((\w+), (\w+)\)", variable["query"]["query"]).groups()
+    def test_the_list_of_servers_comes_from_a_metric_there_is(self):
+        query = self.instance["query"]["query"]
+        self.assertEqual(self.instance["definition"], query)
+        metric, label = re.fullmatch(r"label_values\((\w+), (\w+)\)", query).groups()
         self.assertIn(metric, self.served.families)
         self.assertEqual(label, "instance")
 
