@@ -54,6 +54,19 @@ std::filesystem::path default_web() {
     return std::filesystem::exists(installed, ignored) ? installed : programs.parent_path() / "web";
 }
 
+/// @param port  how the options of this port begin
+/// @param who   comes to it
+void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string& port, const std::string& who) {
+    auto* certificate = app.add_option(
+        port + "-tls-cert", files.certificate,
+        fmt::format("Certificate chain in PEM: {} must speak TLS, and may check whom they speak to. SIGHUP has it read "
+                    "again",
+                    who));
+    auto* key = app.add_option(port + "-tls-key", files.key, "Its private key in PEM, without a password");
+    certificate->needs(key);
+    key->needs(certificate);
+}
+
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
         ->capture_default_str();
@@ -65,12 +78,8 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
            "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
         ->delimiter(',')
         ->allow_extra_args(false);
-    auto* certificate =
-        app.add_option("--robot-tls-cert", options.tls_certificate,
-                       "Certificate chain in PEM: robots must speak TLS, and may check whom they speak to");
-    auto* key = app.add_option("--robot-tls-key", options.tls_key, "Its private key in PEM, without a password");
-    certificate->needs(key);
-    key->needs(certificate);
+    add_tls_options(app, options.robot_tls, "--robot", "robots");
+    add_tls_options(app, options.http_tls, "--http", "browsers and programs");
     app.add_option("--tokens", raw.tokens,
                    "File that says who may do what (TOML); without it, whoever reaches a port may do everything. "
                    "SIGHUP has it read again");
@@ -201,9 +210,10 @@ struct Guard {
 
 std::array<Guard, 2> guards_of(const ServerOptions& options) {
     const bool has_tokens = !options.tokens.empty();
-    return {{{"--listen", options.listen, has_tokens, !options.tls_certificate.empty(),
-              "--tokens or --robot-tls-cert guard it"},
-             {"--http", options.http, has_tokens, false, "--tokens guards it"}}};
+    return {
+        {{"--listen", options.listen, has_tokens, options.robot_tls.is_given(),
+          "--tokens or --robot-tls-cert guard it"},
+         {"--http", options.http, has_tokens, options.http_tls.is_given(), "--tokens or --http-tls-cert guard it"}}};
 }
 
 } // namespace

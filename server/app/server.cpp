@@ -44,6 +44,12 @@ std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
     return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
 }
 
+/// Null where none is asked for.
+Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files) {
+    if (!files.is_given()) return std::shared_ptr<sockets::PortTls>();
+    return sockets::PortTls::open(files);
+}
+
 } // namespace
 
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
@@ -111,14 +117,16 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
 }
 
 Result<> Server::listen() {
+    auto robot_tls = tls_of(options_.robot_tls);
+    if (!robot_tls) return prefixed("--robot-tls-cert: ", robot_tls.error());
+    auto http_tls = tls_of(options_.http_tls);
+    if (!http_tls) return prefixed("--http-tls-cert: ", http_tls.error());
+    robot_tls_ = std::move(*robot_tls);
+    http_tls_ = std::move(*http_tls);
     ingest::IngestConfig robots;
     robots.links_max = limits_.robots;
     robots.greeting_max = limits_.greeting;
-    if (!options_.tls_certificate.empty()) {
-        auto tls = net::server_tls(options_.tls_certificate, options_.tls_key);
-        if (!tls) return tls.error();
-        robots.tls = std::move(*tls);
-    }
+    robots.tls = robot_tls_;
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen,
@@ -132,6 +140,7 @@ Result<> Server::listen() {
     http::ServerConfig config;
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
+    config.tls = http_tls_;
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
         io_,
@@ -150,7 +159,7 @@ Result<> Server::listen() {
 
 Result<> Server::run() {
     wait_for_signal();
-    if (!options_.tokens.empty()) wait_for_hangup();
+    if (!options_.tokens.empty() || robot_tls_ || http_tls_) wait_for_hangup();
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
@@ -175,8 +184,9 @@ Result<> Server::run() {
 void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
-    spdlog::info("robots: {}:{}, people: http://{}:{}/, store: {}", options_.listen.address().to_string(),
-                 ingest_->port(), options_.http.address().to_string(), http_->port(), options_.store.string());
+    spdlog::info("robots: {}:{}, people: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
+                 ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
+                 options_.store.string());
 }
 
 void Server::wait_for_signal() {
@@ -210,7 +220,8 @@ void Server::wait_for_hangup() {
     if (!hangup_) hangup_.emplace(io_, SIGHUP);
     hangup_->async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
-        read_tokens_again();
+        if (!options_.tokens.empty()) read_tokens_again();
+        read_certificates_again();
         wait_for_hangup();
     });
 }
@@ -224,6 +235,18 @@ void Server::read_tokens_again() {
     }
     spdlog::info("{} tokens are in force, read again from {}", tokens->tokens().size(), options_.tokens.string());
     gate_.replace(std::move(*tokens));
+}
+
+/// Connections that are open go on with what they began with.
+void Server::read_certificates_again() {
+    for (const auto& [flag, tls] : {std::pair("--robot-tls-cert", robot_tls_), {"--http-tls-cert", http_tls_}}) {
+        if (!tls) continue;
+        if (auto read = tls->read_again(); !read) {
+            spdlog::error("{}: {}; the certificate read before stays in force", flag, read.error().message);
+        } else {
+            spdlog::info("{}: read again from {}", flag, tls->files().certificate.string());
+        }
+    }
 }
 
 /// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then

@@ -51,7 +51,7 @@ const std::vector<Folder> kFolders = {
                      "server/grid", "server/mapping"}},
     {.path = "server/exchange", .may_include = {"common/error", "common/geometry", "common/scan"}, .pure = true},
     {.path = "server/metrics", .may_include = {"common/error", "server/access"}},
-    {.path = "server/sockets", .may_include = {}},
+    {.path = "server/sockets", .may_include = {"common"}},
     {.path = "server/ingest",
      .may_include = {"common", "server/access", "server/guard", "server/guide", "server/mapping", "server/metrics",
                      "server/planning", "server/session", "server/sockets", "server/store"}},
