@@ -25,9 +25,24 @@ Error unusable(const std::string& file, std::string_view what, const boost::syst
     return {Errc::kNotFound, fmt::format("{}: no {} in PEM can be read: {}", file, what, failed.message())};
 }
 
+Result<> show(ssl::context& context, const CertificateFiles& files) {
+    if (files.certificate_file.empty()) return {};
+    boost::system::error_code failed;
+    context.use_certificate_chain_file(files.certificate_file, failed);
+    if (failed) return unusable(files.certificate_file, "certificate", failed);
+    context.set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
+    context.use_private_key_file(files.key_file, ssl::context::pem, failed);
+    if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
+        return Error{Errc::kConflict,
+                     fmt::format("{} is not the key of the certificate in {}", files.key_file, files.certificate_file)};
+    }
+    if (failed) return unusable(files.key_file, "private key without a password", failed);
+    return {};
+}
+
 } // namespace
 
-Result<TlsContext> client_tls(const std::string& ca_file) {
+Result<TlsContext> client_tls(const std::string& ca_file, const CertificateFiles& shown) {
     auto context = context_for(ssl::context::tls_client);
     boost::system::error_code failed;
     if (ca_file.empty()) {
@@ -37,6 +52,7 @@ Result<TlsContext> client_tls(const std::string& ca_file) {
     }
     if (failed) return unusable(ca_file.empty() ? "the system's certificates" : ca_file, "certificate", failed);
     context->set_verify_mode(ssl::verify_peer, failed);
+    if (auto is_shown = show(*context, shown); !is_shown) return is_shown.error();
     return context;
 }
 
@@ -56,21 +72,24 @@ void harden(SSL_CTX* context) {
     SSL_CTX_set_cipher_list(context, kCiphers);
 }
 
+/// Names who signed, too: a browser that has several certificates asks for one of theirs.
+Result<> ask_clients(ssl::context& context, const std::string& ca_file) {
+    boost::system::error_code failed;
+    context.load_verify_file(ca_file, failed);
+    if (failed) return unusable(ca_file, "certificate", failed);
+    SSL_CTX_set_client_CA_list(context.native_handle(), SSL_load_client_CA_file(ca_file.c_str()));
+    context.set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert, failed);
+    return {};
+}
+
 } // namespace
 
-Result<TlsContext> server_tls(const std::string& certificate_file, const std::string& key_file) {
+Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& client_ca_file) {
     auto context = context_for(ssl::context::tls_server);
     harden(context->native_handle());
-    boost::system::error_code failed;
-    context->use_certificate_chain_file(certificate_file, failed);
-    if (failed) return unusable(certificate_file, "certificate", failed);
-    context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
-    context->use_private_key_file(key_file, ssl::context::pem, failed);
-    if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
-        return Error{Errc::kConflict,
-                     fmt::format("{} is not the key of the certificate in {}", key_file, certificate_file)};
-    }
-    if (failed) return unusable(key_file, "private key without a password", failed);
+    if (auto is_shown = show(*context, shown); !is_shown) return is_shown.error();
+    if (client_ca_file.empty()) return context;
+    if (auto asked = ask_clients(*context, client_ca_file); !asked) return asked.error();
     return context;
 }
 
@@ -99,6 +118,25 @@ std::string certificate_text(long verify_result) {
 
 } // namespace
 
+std::optional<ClientFault> client_fault_of(const boost::system::error_code& failed) noexcept {
+    const int reason = reason_of(failed);
+    if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return ClientFault::kMissing;
+    if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED) return ClientFault::kForeign;
+    return std::nullopt;
+}
+
+bool is_refused_certificate(const boost::system::error_code& failed) noexcept {
+    switch (reason_of(failed)) {
+    case SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED:
+    case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
+    case SSL_R_SSLV3_ALERT_BAD_CERTIFICATE:
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_EXPIRED:
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN:
+    case SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE: return true;
+    default: return false;
+    }
+}
+
 bool is_plain_http(const boost::system::error_code& failed) noexcept { return reason_of(failed) == SSL_R_HTTP_REQUEST; }
 
 std::string handshake_text(const boost::system::error_code& failed, long verify_result) {
@@ -106,6 +144,11 @@ std::string handshake_text(const boost::system::error_code& failed, long verify_
     const int reason = reason_of(failed);
     if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED) {
         return certificate_text(verify_result);
+    }
+    if (is_refused_certificate(failed)) {
+        return fmt::format("the server takes only whoever shows a certificate that it trusts ({}); name yours with "
+                           "--tls-cert and --tls-key",
+                           failed.message());
     }
     if (reason == SSL_R_WRONG_VERSION_NUMBER || reason == SSL_R_HTTP_REQUEST || !is_openssl) {
         return fmt::format("what listens there does not speak TLS ({}); leave --tls out, or have the server given a "

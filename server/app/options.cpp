@@ -65,6 +65,10 @@ void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string&
     auto* key = app.add_option(port + "-tls-key", files.key, "Its private key in PEM, without a password");
     certificate->needs(key);
     key->needs(certificate);
+    app.add_option(
+           port + "-client-ca", files.client_ca,
+           fmt::format("Certificates in PEM: {} must show one that these signed. SIGHUP has it read again", who))
+        ->needs(certificate);
 }
 
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
@@ -202,7 +206,7 @@ struct Guard {
     const char* flag;
     const boost::asio::ip::tcp::endpoint& endpoint;
     bool has_tokens;
-    bool has_tls;
+    const sockets::TlsFiles& tls;
     const char* remedy; ///< what else would guard it
 
     [[nodiscard]] bool is_reached() const { return !endpoint.address().is_loopback(); }
@@ -210,10 +214,8 @@ struct Guard {
 
 std::array<Guard, 2> guards_of(const ServerOptions& options) {
     const bool has_tokens = !options.tokens.empty();
-    return {
-        {{"--listen", options.listen, has_tokens, options.robot_tls.is_given(),
-          "--tokens or --robot-tls-cert guard it"},
-         {"--http", options.http, has_tokens, options.http_tls.is_given(), "--tokens or --http-tls-cert guard it"}}};
+    return {{{"--listen", options.listen, has_tokens, options.robot_tls, "--tokens or --robot-tls-cert guard it"},
+             {"--http", options.http, has_tokens, options.http_tls, "--tokens or --http-tls-cert guard it"}}};
 }
 
 } // namespace
@@ -221,7 +223,7 @@ std::array<Guard, 2> guards_of(const ServerOptions& options) {
 Result<> check_guarded(const ServerOptions& options) {
     if (options.insecure) return {};
     for (const auto& guard : guards_of(options)) {
-        if (!guard.is_reached() || guard.has_tokens || guard.has_tls) continue;
+        if (!guard.is_reached() || guard.has_tokens || guard.tls.is_given()) continue;
         return Error{
             Errc::kInvalidField,
             fmt::format(
@@ -236,15 +238,17 @@ std::vector<std::string> guard_warnings(const ServerOptions& options) {
     std::vector<std::string> warnings;
     for (const auto& guard : guards_of(options)) {
         if (!guard.is_reached()) continue;
-        if (!guard.has_tls && guard.has_tokens) {
+        if (!guard.tls.is_given() && guard.has_tokens) {
             warnings.push_back(
                 fmt::format("{}: tokens come in without TLS, and whoever is on the way there can read them "
                             "and all else, and use them",
                             guard.flag));
         } else if (!guard.has_tokens) {
-            warnings.push_back(fmt::format("{}: no token is asked for, and whoever reaches it can send and read "
-                                           "everything{}",
-                                           guard.flag, guard.has_tls ? ", though nobody on the way can" : ""));
+            const bool is_mutual = !guard.tls.client_ca.empty();
+            warnings.push_back(fmt::format(
+                "{}: no token is asked for, and whoever {} can send and read everything{}", guard.flag,
+                is_mutual ? "shows a certificate that " + guard.tls.client_ca.string() + " signed" : "reaches it",
+                guard.tls.is_given() ? ", though nobody on the way can" : ""));
         }
     }
     return warnings;

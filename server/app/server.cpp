@@ -150,7 +150,8 @@ Result<> Server::listen() {
         {[this](const http::Request& request) { return api_.answer(request); },
          [this](const http::Request& request) { return api_.look(request); },
          [this](const http::Request& request) { return api_.refuse(request); },
-         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); }},
+         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); },
+         [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); }},
         metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);

@@ -134,6 +134,9 @@ asio::awaitable<bool> Connection::shake_hands() {
     spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
     if (net::is_plain_http(failed)) {
         co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
+    } else if (const auto fault = net::client_fault_of(failed)) {
+        service_->answering.turned_away(peer_, *fault);
+        must_linger_ = true; // until TLS's own alert is read
     }
     co_return false;
 }

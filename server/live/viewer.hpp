@@ -2,9 +2,9 @@
 
 #include "common/error/error.hpp"
 #include "common/net/link_stream.hpp"
+#include "common/net/websocket_teardown.hpp"
 #include "server/live/core/narrator.hpp"
 #include "server/live/invitation.hpp"
-#include "server/live/link_teardown.hpp"
 #include "server/live/live_config.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/watchers.hpp"

@@ -6,7 +6,7 @@ namespace scanloom::sockets {
 namespace {
 
 Result<net::TlsContext> read(const TlsFiles& files) {
-    return net::server_tls(files.certificate.string(), files.key.string());
+    return net::server_tls({files.certificate.string(), files.key.string()}, files.client_ca.string());
 }
 
 } // namespace

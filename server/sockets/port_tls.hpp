@@ -16,6 +16,7 @@ namespace scanloom::sockets {
 struct TlsFiles {
     std::filesystem::path certificate;
     std::filesystem::path key;
+    std::filesystem::path client_ca; ///< who signed the certificates of clients; empty: they need none
 
     [[nodiscard]] bool is_given() const noexcept { return !certificate.empty(); }
 };

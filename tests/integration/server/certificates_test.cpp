@@ -28,7 +28,8 @@ using testing_support::write_certificate;
 class CertificatesTest : public testing::Test {
 protected:
     void start(std::vector<std::string> more = {}) {
-        more.insert(more.end(), {"--http-tls-cert", files_.certificate.string(), "--http-tls-key", files_.key.string()});
+        more.insert(more.end(),
+                    {"--http-tls-cert", files_.certificate.string(), "--http-tls-key", files_.key.string()});
         server_ = std::make_unique<RunningServer>(place_.path() / "store", log_, 0, 0, more);
     }
 
@@ -55,7 +56,8 @@ protected:
 
 TEST_F(CertificatesTest, BrowsersAreKeptToTls) {
     const auto tokens = place_.path() / "tokens.toml";
-    ChildProcess maker(program("scanloom-server"), {"token", "--name", "v", "--role", "viewer"}, place_.path() / "maker");
+    ChildProcess maker(program("scanloom-server"), {"token", "--name", "v", "--role", "viewer"},
+                       place_.path() / "maker");
     const auto secret = maker.read_line().value();
     {
         std::ofstream file(tokens);
@@ -89,6 +91,37 @@ TEST_F(CertificatesTest, AreReadAgainAtAHangupAndABadFileChangesNothing) {
     wait_for_log("--http-tls-cert: read again from");
     EXPECT_TRUE(TlsHttpClient(server_->http_port(), {.trusted = files_.certificate}).is_trusted());
     EXPECT_FALSE(TlsHttpClient(server_->http_port(), {.trusted = old}).is_trusted());
+}
+
+TEST_F(CertificatesTest, OfClientsAreAskedForOnBothPortsWhereSomebodyIsNamedWhoSignsThem) {
+    const auto robot = write_certificate(place_.path(), "robot.example");
+    const auto ca = robot.certificate.string();
+    start({"--http-client-ca", ca, "--robot-tls-cert", files_.certificate.string(), "--robot-tls-key",
+           files_.key.string(), "--robot-client-ca", ca});
+    for (const auto port : {server_->http_port(), server_->robot_port()}) {
+        TlsHttpClient stranger(port, {.trusted = files_.certificate});
+        EXPECT_EQ(stranger.read().status, 0);
+        EXPECT_THAT(stranger.complaint(), HasSubstr("certificate required"));
+        TlsHttpClient foreigner(port, {.trusted = files_.certificate, .shown = files_});
+        EXPECT_EQ(foreigner.read().status, 0);
+        EXPECT_THAT(foreigner.complaint(), HasSubstr("alert unknown ca"));
+    }
+    for (const auto* port : {"http", "robot"}) {
+        EXPECT_THAT(log(), HasSubstr(fmt::format("port={} who=127.0.0.1 token=- reason=no_certificate", port)));
+        EXPECT_THAT(log(), HasSubstr(fmt::format("port={} who=127.0.0.1 token=- reason=foreign_certificate", port)));
+    }
+    ChildProcess known(program("scanloom-robot"),
+                       {"--server", server_->robot_address(), "--session", "s", "--robot", "r", "--tls-ca",
+                        files_.certificate.string(), "--tls-cert", ca, "--tls-key", robot.key.string(), "simulate",
+                        "--speed", "0", "--scans", "20"},
+                       place_.path() / "robot");
+    static_cast<void>(known.read_line());
+    EXPECT_EQ(known.wait(), 0);
+    TlsHttpClient reader(server_->http_port(), {.trusted = files_.certificate, .shown = robot});
+    reader.send("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    const auto metrics = reader.read().body;
+    EXPECT_THAT(metrics, HasSubstr("scanloom_refusals_total{port=\"robot\",reason=\"no_certificate\"} 1"));
+    EXPECT_THAT(metrics, HasSubstr("scanloom_refusals_total{port=\"http\",reason=\"foreign_certificate\"} 1"));
 }
 
 TEST_F(CertificatesTest, ThatCannotBeReadAreNamedBeforeAnythingIsServed) {

@@ -30,7 +30,8 @@ const std::vector<Folder> kFolders = {
     {.path = "common/wire", .may_include = {"common/error", "common/geometry", "common/hash", "common/scan"}},
 
     {.path = "server/access", .may_include = {"common/error", "common/hash", "common/scan"}, .pure = true},
-    {.path = "server/guard", .may_include = {"common/error", "common/scan", "server/access", "server/metrics"}},
+    {.path = "server/guard",
+     .may_include = {"common/error", "common/net", "common/scan", "server/access", "server/metrics"}},
     {.path = "server/grid", .may_include = {"common/scan"}, .pure = true},
     {.path = "server/classify",
      .may_include = {"common/error", "common/geometry", "common/scan", "server/grid"},
@@ -121,7 +122,7 @@ const std::vector<Package> kPackages = {
      {"common/net", "server/session", "server/sockets", "server/ingest", "server/live", "server/http", "server/app",
       "robot_client/source", "robot_client/spool", "robot_client/uplink", "robot_client/client", "robot_client/app",
       "load/net", "load/app"}},
-    {"boost/beast", {"server/live", "server/http", "server/app", "load/net"}},
+    {"boost/beast", {"common/net", "server/live", "server/http", "server/app", "load/net"}},
     {"bzlib.h", {"robot_client/source"}},
     {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},
     {"zstd.h", {"common/wire", "server/session"}},

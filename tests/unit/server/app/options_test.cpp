@@ -140,6 +140,10 @@ TEST_F(ServerOptionsTest, WhatAGuardDoesNotKeepOutIsSaid) {
                 testing::IsEmpty());
     EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--tokens", "t", "--http-tls-cert", "c", "--http-tls-key", "k"}),
                 testing::IsEmpty());
+    EXPECT_THAT(
+        warnings({"--http", "0.0.0.0:1", "--http-tls-cert", "c", "--http-tls-key", "k", "--http-client-ca", "a.pem"}),
+        ElementsAre(HasSubstr("whoever shows a certificate that a.pem signed can")));
+    EXPECT_THAT(refusal({"--robot-client-ca", "a.pem"}), HasSubstr("--robot-tls-cert"));
     EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--insecure"}), ElementsAre(HasSubstr("--http: no token")));
 }
 

@@ -25,9 +25,11 @@ inline Response echo(const Request& request) {
 /// An http::Server on two threads, with threads of its own for each lane.
 class RunningHttp {
 public:
-    explicit RunningHttp(ServerConfig config = {}, Answer answer = echo) {
+    explicit RunningHttp(ServerConfig config = {}, Answer answer = echo)
+        : RunningHttp(std::move(config), Answering{std::move(answer)}) {}
+    RunningHttp(ServerConfig config, Answering answering) {
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
-        server_ = Server::listen(io_, executors(), config, {std::move(answer)}, counters_).value();
+        server_ = Server::listen(io_, executors(), config, std::move(answering), counters_).value();
         server_->start();
         for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
     }
@@ -73,6 +75,8 @@ private:
     bool stopped_ = false;
 };
 
-inline std::string get(std::string_view target) { return fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\n\r\n", target); }
+inline std::string get(std::string_view target) {
+    return fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\n\r\n", target);
+}
 
 } // namespace scanloom::http

@@ -8,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <future>
+#include <fstream>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -167,6 +169,55 @@ TEST_F(TlsServerTest, CertificatesAreReadAgainAndABadFileChangesNothing) {
     EXPECT_FALSE(TlsHttpClient(server.port(), {.trusted = kept}).is_trusted());
     before.send(get("/")); // what is open goes on
     EXPECT_EQ(before.read().status, 200);
+}
+
+TEST_F(TlsServerTest, WhoShowsNoCertificateThatIsTrustedIsTurnedAwayWhicheverTlsHeSpeaks) {
+    const auto known = write_certificate(directory_.path(), "known.example");
+    const auto stranger = write_certificate(directory_.path(), "stranger.example");
+    const auto expired = write_certificate(directory_.path(), "expired.example", -3600);
+    const auto trusted = directory_.path() / "trusted.pem";
+    for (const auto& file : {known, expired}) {
+        std::ofstream(trusted, std::ios::app) << std::ifstream(file.certificate).rdbuf();
+    }
+    auto mutual = config();
+    mutual.tls = sockets::PortTls::open({files_.certificate, files_.key, trusted}).value();
+    std::mutex mutex;
+    std::vector<net::ClientFault> faults;
+    Answering answering{echo};
+    answering.turned_away = [&](const std::string& who, net::ClientFault fault) {
+        const std::lock_guard lock(mutex);
+        EXPECT_EQ(who, "127.0.0.1");
+        faults.push_back(fault);
+    };
+    RunningHttp server(mutual, answering);
+    using Shown = std::optional<testing_support::CertificateFiles>;
+    for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION}) {
+        const auto answer_to = [&](Shown shown) {
+            TlsHttpClient client(server.port(),
+                                 {.trusted = files_.certificate, .shown = std::move(shown), .version_max = version});
+            client.send(get("/"));
+            return client.read().status;
+        };
+        EXPECT_EQ(answer_to(known), 200);
+        EXPECT_EQ(answer_to(std::nullopt), 0);
+        EXPECT_EQ(answer_to(stranger), 0);
+        EXPECT_EQ(answer_to(expired), 0);
+    }
+    server.stop();
+    using enum net::ClientFault;
+    EXPECT_THAT(faults, testing::ElementsAre(kMissing, kForeign, kForeign, kMissing, kForeign, kForeign));
+}
+
+TEST_F(TlsServerTest, WhoIsTurnedAwayHearsWhy) {
+    const auto known = write_certificate(directory_.path(), "known.example");
+    auto mutual = config();
+    mutual.tls = sockets::PortTls::open({files_.certificate, files_.key, known.certificate}).value();
+    RunningHttp server(mutual);
+    TlsHttpClient client(server.port(), manner());
+    ASSERT_TRUE(client.is_trusted()) << "of TLS 1.3 the client comes to the end first";
+    client.send(get("/"));
+    EXPECT_EQ(client.read().status, 0);
+    EXPECT_THAT(client.complaint(), HasSubstr("certificate required"));
 }
 
 TEST_F(TlsServerTest, OneConnectionTooManyIsClosedWithoutAWord) {
