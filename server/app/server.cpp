@@ -1,6 +1,7 @@
 #include "server/app/server.hpp"
 
 #include "common/app/program.hpp"
+#include "server/app/service_manager.hpp"
 #include "server/guard/token_file.hpp"
 #include "server/sockets/run_to_the_end.hpp"
 
@@ -160,7 +161,7 @@ Result<> Server::listen() {
 
 Result<> Server::run() {
     wait_for_signal();
-    if (!options_.tokens.empty() || robot_tls_ || http_tls_) wait_for_hangup();
+    wait_for_hangup(); // even where nothing is read again: it would end the program
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
@@ -185,6 +186,7 @@ Result<> Server::run() {
 void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
+    tell_service_manager("READY=1");
     spdlog::info("robots: {}:{}, people: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
                  ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
                  options_.store.string());
@@ -221,8 +223,12 @@ void Server::wait_for_hangup() {
     if (!hangup_) hangup_.emplace(io_, SIGHUP);
     hangup_->async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
-        if (!options_.tokens.empty()) read_tokens_again();
+        const bool has_tokens = !options_.tokens.empty();
+        if (has_tokens) read_tokens_again();
         read_certificates_again();
+        if (!has_tokens && !robot_tls_ && !http_tls_) {
+            spdlog::info("a hangup: there are neither tokens nor certificates to be read again");
+        }
         wait_for_hangup();
     });
 }
@@ -254,6 +260,7 @@ void Server::read_certificates_again() {
 /// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
+    tell_service_manager("STOPPING=1");
     ingest_->stop();
     weaves_.stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });

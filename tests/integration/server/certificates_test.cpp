@@ -93,6 +93,13 @@ TEST_F(CertificatesTest, AreReadAgainAtAHangupAndABadFileChangesNothing) {
     EXPECT_FALSE(TlsHttpClient(server_->http_port(), {.trusted = old}).is_trusted());
 }
 
+TEST_F(CertificatesTest, WhereThereAreNoneAHangupEndsNothing) {
+    RunningServer server(place_.path() / "store", log_);
+    server.process().signal(SIGHUP);
+    wait_for_log("neither tokens nor certificates");
+    EXPECT_EQ(server.get("/livez").status, 200U);
+}
+
 TEST_F(CertificatesTest, OfClientsAreAskedForOnBothPortsWhereSomebodyIsNamedWhoSignsThem) {
     const auto robot = write_certificate(place_.path(), "robot.example");
     const auto ca = robot.certificate.string();
