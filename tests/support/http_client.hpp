@@ -77,6 +77,13 @@ public:
         return last_size_ == 0;
     }
 
+    /// All that comes until the stream ends.
+    [[nodiscard]] std::string read_all() {
+        while (receive()) {
+        }
+        return buffer_;
+    }
+
     /// Reads a few bytes at a time until the stream ends; how many there were. Steady, but slow: some 10 MB a second.
     [[nodiscard]] std::size_t read_slowly() {
         std::size_t count = 0;

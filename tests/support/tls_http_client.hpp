@@ -17,8 +17,8 @@ namespace scanloom::testing_support {
 
 /// What somebody does who speaks TLS: with OpenSSL itself, without the code that is tested.
 struct TlsManner {
-    std::filesystem::path trusted;            ///< whose certificates are believed
-    std::optional<CertificateFiles> shown{};  ///< of one's own
+    std::filesystem::path trusted;           ///< whose certificates are believed
+    std::optional<CertificateFiles> shown{}; ///< of one's own
     int version_min = TLS1_2_VERSION;
     int version_max = TLS1_3_VERSION;
 };
@@ -49,9 +49,7 @@ public:
     [[nodiscard]] bool has_ticket() const { return SSL_SESSION_has_ticket(SSL_get_session(tls_.get())) == 1; }
 
     /// Asks for another handshake, of TLS 1.2. @return whether the server had it.
-    [[nodiscard]] bool renegotiate() {
-        return SSL_renegotiate(tls_.get()) == 1 && SSL_do_handshake(tls_.get()) == 1;
-    }
+    [[nodiscard]] bool renegotiate() { return SSL_renegotiate(tls_.get()) == 1 && SSL_do_handshake(tls_.get()) == 1; }
 
     /// Whether the server has said in TLS that it says no more, rather than being cut off.
     [[nodiscard]] bool is_taken_leave_of() {
@@ -64,7 +62,8 @@ public:
 
 protected:
     ssize_t put(std::string_view bytes) override {
-        return noted(SSL_write(tls_.get(), bytes.data(), static_cast<int>(std::min<std::size_t>(bytes.size(), 1 << 20))));
+        return noted(
+            SSL_write(tls_.get(), bytes.data(), static_cast<int>(std::min<std::size_t>(bytes.size(), 1 << 20))));
     }
     ssize_t take(char* into, std::size_t size) override {
         return noted(SSL_read(tls_.get(), into, static_cast<int>(size)));

@@ -205,6 +205,13 @@ TEST(HttpServer, SlowBodiesAreCutOff) {
     EXPECT_TRUE(client.is_closed());
 }
 
+TEST(HttpServer, ABodyThatStopsComingIsCutOffThoughItsTimeIsNotOver) {
+    RunningHttp server(ServerConfig{.body = 1h, .body_pause = 50ms});
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhel");
+    EXPECT_TRUE(client.is_closed());
+}
+
 TEST(HttpServer, AnAnnouncedLengthGivesNoTimeBeforeItIsSent) {
     RunningHttp server(ServerConfig{.body = 50ms, .body_pause = 1h, .read_rate_min = 100});
     HttpClient client(server.port());
@@ -232,6 +239,25 @@ TEST(HttpServer, WhoDoesNotReadIsCutOff) {
     client.send(get("/"));
     entered.get_future().wait();
     server.stop(); // returns when the connection is closed, though nobody read a byte
+}
+
+TEST(HttpServer, WhoDoesNotHangUpAfterTheLastAnswerIsHungUpOn) {
+    RunningHttp server(ServerConfig{.linger = 50ms, .drain = 1h});
+    HttpClient client(server.port());
+    client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    EXPECT_EQ(client.read().status, 200);
+    server.stop(); // returns when the connection is closed
+}
+
+TEST(HttpServer, WhoIsNotReadyWhenDrainingIsOverIsCutOff) {
+    RunningHttp server(ServerConfig{.header = 1h, .drain = 50ms});
+    HttpClient client(server.port());
+    client.send("GET / HTTP/1.1\r\nHost: loc");
+    HttpClient other(server.port());
+    other.send(get("/"));
+    EXPECT_EQ(other.read().status, 200); // so the first has been accepted
+    server.stop();                       // returns when the connection is closed
+    EXPECT_TRUE(client.is_closed());
 }
 
 TEST(HttpServer, WhoReadsTooSlowlyIsCutOff) {

@@ -111,6 +111,17 @@ TEST_F(TlsServerTest, WhoDoesNotFinishTheHandshakeIsCutOffAndHoldsUpNobody) {
     EXPECT_TRUE(slow.is_closed());
 }
 
+TEST_F(TlsServerTest, WhoDoesNotReturnTheGoodbyeIsHungUpOn) {
+    auto impatient = config();
+    impatient.linger = 50ms;
+    impatient.drain = 1h;
+    RunningHttp server(impatient);
+    TlsHttpClient client(server.port(), manner());
+    client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    EXPECT_EQ(client.read().status, 200);
+    server.stop(); // returns when the connection is closed
+}
+
 TEST_F(TlsServerTest, StoppingWaitsForNoHandshake) {
     auto patient = config();
     patient.handshake = 1h;
