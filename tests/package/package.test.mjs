@@ -96,6 +96,17 @@ test('what npm needs to make the page only is left out', () => {
   assert.deepEqual(npmPackages(lock).map((one) => [one.name, one.versionInfo, one.licenseDeclared]), [['a', '1', 'MIT AND Zlib'], ['@b/c', '2', 'NOASSERTION']]);
 });
 
+test('the configuration and the compose file with everything guarded know no option that the server does not', () => {
+  const known = new Set([...run(join(build, 'bin/scanloom-server'), '--help').matchAll(/--[a-z-]+/g)].map((match) => match[0]));
+  const secure = readFileSync(join(source, 'docker/compose.secure.yaml'), 'utf8').match(/ {4}entrypoint:[^]*?ports:/)[0];
+  const told = [...secure.matchAll(/--[a-z-]+/g)].map((match) => match[0]);
+  const file = readFileSync(join(source, 'packaging/scanloom-server.toml'), 'utf8');
+  const written = [...file.matchAll(/^(?:# )?([a-z-]+) = /gm)].map((match) => `--${match[1]}`);
+  assert.ok(told.length > 8 && written.length > 8);
+  for (const option of [...told, ...written]) assert.ok(known.has(option), option);
+  assert.ok(!told.includes('--insecure'));
+});
+
 const noSystemd = skip || (has('systemd-analyze') ? false : 'systemd-analyze is not installed');
 
 test('the service is one that systemd takes, and hardened', { skip: noSystemd }, () => {
