@@ -31,12 +31,13 @@ Result<> show(ssl::context& context, const CertificateFiles& files) {
     context.use_certificate_chain_file(files.certificate_file, failed);
     if (failed) return unusable(files.certificate_file, "certificate", failed);
     context.set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
-    context.use_private_key_file(files.key_file, ssl::context::pem, failed);
+    const std::string& key_file = files.key_file.empty() ? files.certificate_file : files.key_file;
+    context.use_private_key_file(key_file, ssl::context::pem, failed);
     if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
         return Error{Errc::kConflict,
-                     fmt::format("{} is not the key of the certificate in {}", files.key_file, files.certificate_file)};
+                     fmt::format("{} is not the key of the certificate in {}", key_file, files.certificate_file)};
     }
-    if (failed) return unusable(files.key_file, "private key without a password", failed);
+    if (failed) return unusable(key_file, "private key without a password", failed);
     return {};
 }
 

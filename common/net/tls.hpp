@@ -15,7 +15,7 @@ using TlsContext = std::shared_ptr<boost::asio::ssl::context>;
 /// A certificate that is shown, in PEM; none where `certificate_file` is empty.
 struct CertificateFiles {
     std::string certificate_file; ///< the certificate, then those that lead to one that is trusted
-    std::string key_file;         ///< its private key, without a password
+    std::string key_file;         ///< its private key, without a password; empty: in the same file
 };
 
 /// For a client that checks whom it speaks to. TLS 1.2 at least.

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 /// Links that are encrypted, compressed, or both.
 namespace scanloom::robot {
 namespace {
@@ -168,6 +170,14 @@ TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
     EXPECT_THAT(net::client_tls("/nowhere").error().message, HasSubstr("/nowhere"));
     EXPECT_THAT(net::server_tls({files_.key, files_.key}).error().message, HasSubstr("no certificate"));
     EXPECT_THAT(net::server_tls({files_.certificate, files_.certificate}).error().message, HasSubstr("no private key"));
+    EXPECT_THAT(net::client_tls(files_.certificate, {files_.certificate}).error().message, HasSubstr("no private key"));
+    const auto both = directory_.path() / "both.pem";
+    for (const auto& file : {files_.certificate, files_.key}) {
+        std::ofstream(both, std::ios::app) << std::ifstream(file).rdbuf();
+    }
+    EXPECT_TRUE(net::client_tls(files_.certificate, {both})) << "the key is in the same file";
+    EXPECT_THAT(net::server_tls({files_.certificate, files_.key}, files_.key).error().message,
+                HasSubstr("127.0.0.1.key: no certificate"));
     const auto other = write_certificate(directory_.path(), "localhost");
     EXPECT_EQ(net::server_tls({files_.certificate, other.key}).error().code, Errc::kConflict);
 }
