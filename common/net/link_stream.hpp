@@ -13,7 +13,8 @@
 
 namespace scanloom::net {
 
-/// A TCP connection of the robot link, encrypted or not. Whoever reads and writes need not know which.
+/// A TCP connection, encrypted or not. Whoever reads and writes need not know which: it carries the frames of robots,
+/// HTTP, and the WebSockets of Beast.
 ///
 /// Thread  as of Asio's sockets: one at a time; one read and one write may be under way together.
 class LinkStream {
@@ -23,7 +24,7 @@ public:
     enum class Role { kServer, kClient };
 
     explicit LinkStream(Socket socket) : stream_(std::move(socket)) {}
-    /// `tls` stays until this is gone.
+    /// OpenSSL keeps what it needs of `tls`, which may go.
     LinkStream(Socket socket, boost::asio::ssl::context& tls) : stream_(Tls(std::move(socket), tls)) {}
 
     [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }
@@ -32,6 +33,7 @@ public:
         return std::get<Socket>(stream_);
     }
     [[nodiscard]] bool is_open() { return socket().is_open(); }
+    [[nodiscard]] bool is_encrypted() const noexcept { return std::holds_alternative<Tls>(stream_); }
     void close() {
         boost::system::error_code ignored;
         socket().close(ignored);
@@ -67,6 +69,34 @@ public:
         socket().shutdown(Socket::shutdown_send, ignored);
     }
 
+    /// Nothing more is written, and the peer can tell that from a connection that was cut: TLS's own goodbye, which the
+    /// peer should return. Then what is left may be read from the socket itself.
+    template <class Token>
+    auto async_farewell(Token&& token) {
+        return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
+            [this](auto handler) {
+                if (auto* tls = std::get_if<Tls>(&stream_)) {
+                    tls->async_shutdown(std::move(handler));
+                } else {
+                    shutdown_send();
+                    boost::asio::post(get_executor(), [handler = std::move(handler)]() mutable {
+                        std::move(handler)(boost::system::error_code());
+                    });
+                }
+            },
+            token);
+    }
+
+    /// What the socket takes at once, without waiting; nothing where it would have to be encrypted first.
+    /// Pre     the socket does not block.
+    /// Errors  would_block where it takes nothing now.
+    template <class Buffers>
+    std::size_t try_write(const Buffers& buffers, boost::system::error_code& failed) {
+        failed = {};
+        auto* plain = std::get_if<Socket>(&stream_);
+        return plain == nullptr ? 0 : plain->write_some(buffers, failed);
+    }
+
     template <class Buffers, class Token>
     auto async_read_some(const Buffers& buffers, Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
@@ -83,6 +113,12 @@ public:
                 std::visit([&](auto& stream) { stream.async_write_some(from, std::move(handler)); }, stream_);
             },
             token, buffers);
+    }
+
+    /// Calls `use` with the socket, or with Asio's ssl::stream over it: for libraries that know both.
+    template <class Use>
+    void with_carrier(Use&& use) {
+        std::visit(std::forward<Use>(use), stream_);
     }
 
 private:

@@ -25,9 +25,25 @@ Error unusable(const std::string& file, std::string_view what, const boost::syst
     return {Errc::kNotFound, fmt::format("{}: no {} in PEM can be read: {}", file, what, failed.message())};
 }
 
+Result<> show(ssl::context& context, const CertificateFiles& files) {
+    if (files.certificate_file.empty()) return {};
+    boost::system::error_code failed;
+    context.use_certificate_chain_file(files.certificate_file, failed);
+    if (failed) return unusable(files.certificate_file, "certificate", failed);
+    context.set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
+    const std::string& key_file = files.key_file.empty() ? files.certificate_file : files.key_file;
+    context.use_private_key_file(key_file, ssl::context::pem, failed);
+    if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
+        return Error{Errc::kConflict,
+                     fmt::format("{} is not the key of the certificate in {}", key_file, files.certificate_file)};
+    }
+    if (failed) return unusable(key_file, "private key without a password", failed);
+    return {};
+}
+
 } // namespace
 
-Result<TlsContext> client_tls(const std::string& ca_file) {
+Result<TlsContext> client_tls(const std::string& ca_file, const CertificateFiles& shown) {
     auto context = context_for(ssl::context::tls_client);
     boost::system::error_code failed;
     if (ca_file.empty()) {
@@ -37,25 +53,54 @@ Result<TlsContext> client_tls(const std::string& ca_file) {
     }
     if (failed) return unusable(ca_file.empty() ? "the system's certificates" : ca_file, "certificate", failed);
     context->set_verify_mode(ssl::verify_peer, failed);
-    return context;
-}
-
-Result<TlsContext> server_tls(const std::string& certificate_file, const std::string& key_file) {
-    auto context = context_for(ssl::context::tls_server);
-    boost::system::error_code failed;
-    context->use_certificate_chain_file(certificate_file, failed);
-    if (failed) return unusable(certificate_file, "certificate", failed);
-    context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
-    context->use_private_key_file(key_file, ssl::context::pem, failed);
-    if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
-        return Error{Errc::kConflict,
-                     fmt::format("{} is not the key of the certificate in {}", key_file, certificate_file)};
-    }
-    if (failed) return unusable(key_file, "private key without a password", failed);
+    if (auto is_shown = show(*context, shown); !is_shown) return is_shown.error();
     return context;
 }
 
 namespace {
+
+/// Of TLS 1.2; those of 1.3 are all good.
+constexpr const char* kCiphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
+
+/// A renegotiation costs whoever asks for it much less than the server. A ticket would go on to be good after the
+/// certificates were read again.
+void harden(SSL_CTX* context) {
+    SSL_CTX_set_options(context, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_TICKET | SSL_OP_NO_COMPRESSION |
+                                     SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_PRIORITIZE_CHACHA);
+    SSL_CTX_set_num_tickets(context, 0);
+    SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF);
+    SSL_CTX_set_mode(context, SSL_MODE_RELEASE_BUFFERS); // thousands of connections are quiet most of the time
+    SSL_CTX_set_cipher_list(context, kCiphers);
+}
+
+/// Names who signed, too: a browser that has several certificates asks for one of theirs.
+Result<> ask_clients(ssl::context& context, const std::string& ca_file) {
+    boost::system::error_code failed;
+    context.load_verify_file(ca_file, failed);
+    if (failed) return unusable(ca_file, "certificate", failed);
+    SSL_CTX_set_client_CA_list(context.native_handle(), SSL_load_client_CA_file(ca_file.c_str()));
+    context.set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert, failed);
+    return {};
+}
+
+} // namespace
+
+Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& client_ca_file) {
+    auto context = context_for(ssl::context::tls_server);
+    harden(context->native_handle());
+    if (auto is_shown = show(*context, shown); !is_shown) return is_shown.error();
+    if (client_ca_file.empty()) return context;
+    if (auto asked = ask_clients(*context, client_ca_file); !asked) return asked.error();
+    return context;
+}
+
+namespace {
+
+/// 0: none of OpenSSL's.
+int reason_of(const boost::system::error_code& failed) noexcept {
+    if (failed.category() != boost::asio::error::get_ssl_category()) return 0;
+    return ERR_GET_REASON(static_cast<unsigned long>(failed.value()));
+}
 
 std::string certificate_text(long verify_result) {
     switch (verify_result) {
@@ -74,11 +119,37 @@ std::string certificate_text(long verify_result) {
 
 } // namespace
 
+std::optional<ClientFault> client_fault_of(const boost::system::error_code& failed) noexcept {
+    const int reason = reason_of(failed);
+    if (reason == SSL_R_PEER_DID_NOT_RETURN_A_CERTIFICATE) return ClientFault::kMissing;
+    if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED) return ClientFault::kForeign;
+    return std::nullopt;
+}
+
+bool is_refused_certificate(const boost::system::error_code& failed) noexcept {
+    switch (reason_of(failed)) {
+    case SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED:
+    case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
+    case SSL_R_SSLV3_ALERT_BAD_CERTIFICATE:
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_EXPIRED:
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN:
+    case SSL_R_SSLV3_ALERT_UNSUPPORTED_CERTIFICATE: return true;
+    default: return false;
+    }
+}
+
+bool is_plain_http(const boost::system::error_code& failed) noexcept { return reason_of(failed) == SSL_R_HTTP_REQUEST; }
+
 std::string handshake_text(const boost::system::error_code& failed, long verify_result) {
     const bool is_openssl = failed.category() == boost::asio::error::get_ssl_category();
-    const int reason = is_openssl ? ERR_GET_REASON(static_cast<unsigned long>(failed.value())) : 0;
+    const int reason = reason_of(failed);
     if (reason == SSL_R_CERTIFICATE_VERIFY_FAILED) {
         return certificate_text(verify_result);
+    }
+    if (is_refused_certificate(failed)) {
+        return fmt::format("the server takes only whoever shows a certificate that it trusts ({}); name yours with "
+                           "--tls-cert and --tls-key",
+                           failed.message());
     }
     if (reason == SSL_R_WRONG_VERSION_NUMBER || reason == SSL_R_HTTP_REQUEST || !is_openssl) {
         return fmt::format("what listens there does not speak TLS ({}); leave --tls out, or have the server given a "

@@ -72,13 +72,11 @@ RunSettings settings_of(const LoadOptions& options, const Course& course) {
 } // namespace
 
 LoadRun::LoadRun(asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-                 LiveDisplay& display)
+                 const HttpPlace& http, LiveDisplay& display)
     : io_(io), options_(options), course_(course), link_(link), display_(display), sessions_(session_names(options)),
-      robots_(spread_over(sessions_, options.robots, course.scans.size())),
-      http_(io.get_executor(), options.http, link.hello.token),
+      robots_(spread_over(sessions_, options.robots, course.scans.size())), http_(io.get_executor(), http),
       fleet_(fleet_plan(options), robots_, clock_, course_, link_),
-      audience_({options.viewers, options.tile_readers, options.tile_rate, options.http, link.hello.token, sessions_},
-                clock_) {
+      audience_({options.viewers, options.tile_readers, options.tile_rate, http, sessions_}, clock_) {
     report_.settings = settings_of(options, course);
     report_.evidence.asked = options.verify;
     report_.evidence.sessions = options.sessions;

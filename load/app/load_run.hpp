@@ -25,7 +25,7 @@ class LoadRun {
 public:
     /// The references stay until this is gone.
     LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
-            LiveDisplay& display);
+            const HttpPlace& http, LiveDisplay& display);
 
     /// Call once.
     /// Errors  nothing was begun: kAlreadyExists: sessions of its names; those of HTTP.

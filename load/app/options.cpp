@@ -42,7 +42,10 @@ CLI::Option* add_count(CLI::App& app, const char* name, Number& into, const char
 
 void add_link_options(CLI::App& app, LoadOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
-    app.add_option("--http", raw.http, "HTTP port of the server, HOST:PORT: to watch, to verify, and for its CPU")
+    app.add_option(
+           "--http", raw.http,
+           "HTTP port of the server, HOST:PORT, or https://HOST:PORT where it has TLS: to watch, to verify, and for "
+           "its CPU")
         ->capture_default_str();
     app.add_option("--token-file", options.token_file,
                    "File that holds a token: of the robots, and of whoever asks over HTTP; of the role operator")
@@ -51,6 +54,15 @@ void add_link_options(CLI::App& app, LoadOptions& options, Raw& raw) {
     app.add_option("--tls-ca", options.tls_ca_file,
                    "File with the certificates to trust, in PEM, instead of the system's; means --tls")
         ->check(CLI::ExistingFile);
+    auto* certificate =
+        app.add_option("--tls-cert", options.tls_cert_file,
+                       "File with the certificate to show to a server that asks for one, in PEM, on both ports; means "
+                       "--tls")
+            ->check(CLI::ExistingFile);
+    auto* key = app.add_option("--tls-key", options.tls_key_file, "File with its private key, without a password")
+                    ->check(CLI::ExistingFile);
+    certificate->needs(key);
+    key->needs(certificate);
 }
 
 void add_load_options(CLI::App& app, LoadOptions& options) {
@@ -137,8 +149,10 @@ void add_end_options(CLI::App& app, LoadOptions& options, Raw& raw) {
 std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
     const auto server = robot::parse_server_address(raw.server);
     if (!server) return fmt::format("--server: '{}' is not HOST:PORT", raw.server);
-    const auto http = robot::parse_server_address(raw.http);
-    if (!http) return fmt::format("--http: '{}' is not HOST:PORT", raw.http);
+    constexpr std::string_view kScheme = "https://";
+    options.http_tls = raw.http.starts_with(kScheme);
+    const auto http = robot::parse_server_address(raw.http.substr(options.http_tls ? kScheme.size() : 0));
+    if (!http) return fmt::format("--http: '{}' is not HOST:PORT, nor https://HOST:PORT", raw.http);
     const auto faults = parse_faults(options.faults_text);
     if (!faults) return "--faults: " + faults.error().message;
     if (options.sessions > options.robots) {
@@ -149,7 +163,7 @@ std::optional<std::string> sort_in(const Raw& raw, LoadOptions& options) {
     options.server = *server;
     options.http = *http;
     options.faults = *faults;
-    options.tls = options.tls || !options.tls_ca_file.empty();
+    options.tls = options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty();
     if (options.sessions == 0) options.sessions = options.robots;
     options.verify = raw.verify == "none" ? Verify::kNone : raw.verify == "counts" ? Verify::kCounts : Verify::kDigests;
     return std::nullopt;

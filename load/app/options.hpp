@@ -15,9 +15,12 @@ namespace scanloom::load {
 struct LoadOptions {
     robot::ServerAddress server;
     robot::ServerAddress http;
+    bool http_tls = false;  ///< --http began with https://
     std::string token_file; ///< empty: no token
     bool tls = false;
-    std::string tls_ca_file; ///< empty: what the system trusts
+    std::string tls_ca_file;   ///< empty: what the system trusts
+    std::string tls_cert_file; ///< that is shown on both ports; empty: none
+    std::string tls_key_file;
 
     std::uint32_t robots = 100;
     std::uint32_t sessions = 0; ///< as given; parse_options() makes 0 one a robot

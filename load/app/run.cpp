@@ -39,6 +39,19 @@ Result<std::vector<asio::ip::tcp::endpoint>> resolve(asio::io_context& io, const
                  fmt::format("cannot find {}:{}: {}; check --server", server.host, server.port, failed.message())};
 }
 
+Result<net::TlsContext> tls_of(const LoadOptions& options) {
+    return net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
+}
+
+Result<HttpPlace> http_place(const LoadOptions& options, const std::string& token) {
+    HttpPlace place{options.http, nullptr, token};
+    if (!options.http_tls) return place;
+    auto tls = tls_of(options);
+    if (!tls) return tls.error();
+    place.tls = std::move(*tls);
+    return place;
+}
+
 Result<RobotLinkOptions> link_options(asio::io_context& io, const LoadOptions& options) {
     RobotLinkOptions link;
     auto endpoints = resolve(io, options.server);
@@ -46,7 +59,7 @@ Result<RobotLinkOptions> link_options(asio::io_context& io, const LoadOptions& o
     link.server = std::move(*endpoints);
     link.host = options.server.host;
     if (options.tls) {
-        auto tls = net::client_tls(options.tls_ca_file);
+        auto tls = tls_of(options);
         if (!tls) return tls.error();
         link.tls = std::move(*tls);
     }
@@ -119,12 +132,14 @@ ExitCode run(const LoadOptions& options) {
     asio::io_context io(1);
     const auto link = link_options(io, options);
     if (!link) return fail(link.error());
+    const auto http = http_place(options, link->hello.token);
+    if (!http) return fail(http.error());
     if (auto ok = check_descriptors(options); !ok) return fail(ok.error());
     display.passing("driving through the world");
     const auto course = drive_course(options);
     if (!course) return fail(course.error());
 
-    LoadRun run(io, options, *course, *link, display);
+    LoadRun run(io, options, *course, *link, *http, display);
     std::optional<Result<RunReport>> outcome; // none where a second signal ends it
     asio::co_spawn(io, obey_signals(io, run, display), asio::detached);
     asio::co_spawn(io, run.conduct(), [&](std::exception_ptr failed, Result<RunReport> result) {

@@ -11,7 +11,7 @@ namespace scanloom::load {
 namespace asio = boost::asio;
 
 Audience::Audience(const AudiencePlan& plan, const RunClock& clock)
-    : plan_(plan), shared_{clock, plan.http, plan.token, figures_}, thread_([this] { io_.run(); }) {}
+    : plan_(plan), shared_{clock, plan.http, figures_}, thread_([this] { io_.run(); }) {}
 
 Audience::~Audience() { stop(); }
 

@@ -19,8 +19,7 @@ struct AudiencePlan {
     std::uint32_t viewers = 0;
     std::uint32_t tile_readers = 0;
     double tile_rate = 0.0; ///< requests a second of each reader
-    robot::ServerAddress http;
-    std::string token;                 ///< empty: none
+    HttpPlace http;
     std::vector<std::string> sessions; ///< the first viewer watches the first, and so on, round and round
 };
 

@@ -1,15 +1,14 @@
 #include "load/net/http_connection.hpp"
 
 #include "load/core/words.hpp"
+#include "load/net/open_link.hpp"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/error.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
 
@@ -18,8 +17,7 @@
 namespace scanloom::load {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
+namespace http = boost::beast::http;
 
 namespace {
 
@@ -30,64 +28,73 @@ constexpr std::uint64_t kBodyMax = std::uint64_t{64} << 20;
 
 std::string authorization_of(const std::string& token) { return token.empty() ? token : "Bearer " + token; }
 
-HttpConnection::HttpConnection(asio::any_io_executor executor, robot::ServerAddress server, const std::string& token)
-    : server_(std::move(server)), authorization_(authorization_of(token)), stream_(std::move(executor)) {}
+HttpConnection::HttpConnection(asio::any_io_executor executor, HttpPlace place)
+    : executor_(std::move(executor)), place_(std::move(place)), authorization_(authorization_of(place_.token)) {}
 
 asio::awaitable<boost::system::error_code> HttpConnection::connect() {
-    asio::ip::tcp::resolver resolver(stream_.get_executor());
-    const auto [unresolved, addresses] = co_await resolver.async_resolve(server_.host, server_.port, kUse);
-    if (unresolved) co_return unresolved;
-    const auto [refused, endpoint] = co_await stream_.async_connect(addresses, kUse);
-    if (refused) co_return refused;
-    is_open_ = true;
+    stream_.emplace(link_to(place_, executor_));
     buffer_.clear();
-    boost::system::error_code ignored; // without it small requests only wait longer
-    stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-    co_return refused;
+    const auto failed = co_await open_link(*stream_, place_);
+    is_open_ = !failed;
+    co_return failed;
+}
+
+asio::awaitable<boost::system::error_code> HttpConnection::exchange(const Request& request, Parser& parser) {
+    if (!is_open_) {
+        const auto failed = co_await connect();
+        if (failed) co_return failed;
+    }
+    const auto [unsent, sent] = co_await http::async_write(*stream_, request, kUse);
+    if (unsent) co_return unsent;
+    const auto [unread, count] = co_await http::async_read(*stream_, buffer_, parser, kUse);
+    bytes_in_ += count;
+    co_return unread;
+}
+
+asio::awaitable<boost::system::error_code> HttpConnection::within_patience(const Request& request, Parser& parser) {
+    using namespace asio::experimental::awaitable_operators;
+    asio::steady_timer timer(executor_);
+    timer.expires_after(patience_);
+    const auto first = co_await (exchange(request, parser) || timer.async_wait(kUse));
+    if (first.index() != 0) co_return boost::system::error_code(asio::error::timed_out);
+    co_return std::get<0>(first);
 }
 
 asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::string target,
                                                         std::string if_none_match) {
-    http::request<http::empty_body> request(method, target, 11);
-    request.set(http::field::host, fmt::format("{}:{}", server_.host, server_.port));
+    Request request(method, target, 11);
+    request.set(http::field::host, fmt::format("{}:{}", place_.server.host, place_.server.port));
     if (!authorization_.empty()) request.set(http::field::authorization, authorization_);
     if (!if_none_match.empty()) request.set(http::field::if_none_match, if_none_match);
-    boost::system::error_code failed;
     for (;;) {
         const bool was_open = is_open_;
-        stream_.expires_after(patience_);
-        failed = {};
-        if (!was_open) failed = co_await connect();
-        http::response_parser<http::string_body> parser;
+        Parser parser;
         parser.body_limit(kBodyMax);
-        if (!failed) std::tie(failed, std::ignore) = co_await http::async_write(stream_, request, kUse);
-        if (!failed) {
-            const auto [unread, count] = co_await http::async_read(stream_, buffer_, parser, kUse);
-            failed = unread;
-            bytes_in_ += count;
-        }
+        const auto failed = co_await within_patience(request, parser);
         if (!failed) {
             if (!parser.get().keep_alive()) close();
-            stream_.expires_never();
             co_return HttpAnswer{parser.get().result_int(), std::string(parser.get()[http::field::etag]),
                                  std::move(parser.get().body())};
         }
         close();
-        if (!was_open || failed == beast::error::timeout) break; // or the server has closed it while it was idle
+        if (was_open && failed != asio::error::timed_out) continue; // the server has closed it while it was idle
+        if (failed != asio::error::timed_out) co_return unreachable(failed);
+        co_return Error{Errc::kTimeout, fmt::format("{}:{} did not answer {} within {} s", place_.server.host,
+                                                    place_.server.port, target, patience_.count())};
     }
-    if (failed == beast::error::timeout) {
-        co_return Error{Errc::kTimeout, fmt::format("{}:{} did not answer {} within {} s", server_.host, server_.port,
-                                                    target, patience_.count())};
-    }
-    co_return Error{Errc::kUnreachable, fmt::format("{}:{} does not answer HTTP: {}; give the server's HTTP port to "
-                                                    "--http, or --verify none without viewers and tile readers",
-                                                    server_.host, server_.port, failed.message())};
+}
+
+Error HttpConnection::unreachable(const boost::system::error_code& failed) const {
+    return {Errc::kUnreachable,
+            fmt::format("{}:{} does not answer {}: {}; give the server's HTTP port to --http, or --verify none "
+                        "without viewers and tile readers",
+                        place_.server.host, place_.server.port, place_.tls ? "HTTPS" : "HTTP",
+                        trouble_with(*stream_, failed))};
 }
 
 void HttpConnection::close() {
     is_open_ = false;
-    boost::system::error_code ignored;
-    stream_.socket().close(ignored);
+    if (stream_) stream_->close();
 }
 
 Error refusal(const HttpAnswer& answer, const std::string& target) {

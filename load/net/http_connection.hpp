@@ -1,12 +1,16 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "robot_client/uplink/server_address.hpp"
+#include "common/net/link_stream.hpp"
+#include "load/net/http_place.hpp"
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/verb.hpp>
 
 #include <chrono>
@@ -27,8 +31,7 @@ struct HttpAnswer {
 /// Thread  one request at a time, on its executor.
 class HttpConnection {
 public:
-    /// `token` is shown with every request; empty: none.
-    HttpConnection(boost::asio::any_io_executor executor, robot::ServerAddress server, const std::string& token);
+    HttpConnection(boost::asio::any_io_executor executor, HttpPlace place);
 
     /// Pre     the connection stays until this is done.
     /// Errors  kUnreachable: nobody answers; kTimeout.
@@ -43,14 +46,21 @@ public:
     void close();
 
     [[nodiscard]] std::uint64_t bytes_in() const noexcept { return bytes_in_; }
-    [[nodiscard]] const robot::ServerAddress& server() const noexcept { return server_; }
 
 private:
-    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect();
+    using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+    using Parser = boost::beast::http::response_parser<boost::beast::http::string_body>;
 
-    robot::ServerAddress server_;
-    std::string authorization_; // empty: none
-    boost::beast::tcp_stream stream_;
+    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> connect();
+    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> exchange(const Request& request, Parser& parser);
+    [[nodiscard]] boost::asio::awaitable<boost::system::error_code> within_patience(const Request& request,
+                                                                                    Parser& parser);
+    [[nodiscard]] Error unreachable(const boost::system::error_code& failed) const;
+
+    boost::asio::any_io_executor executor_;
+    HttpPlace place_;
+    std::string authorization_;             // empty: none
+    std::optional<net::LinkStream> stream_; // the newest
     boost::beast::flat_buffer buffer_;
     std::chrono::seconds patience_{30};
     std::uint64_t bytes_in_ = 0;

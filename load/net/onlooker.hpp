@@ -1,8 +1,8 @@
 #pragma once
 
 #include "load/core/audience_figures.hpp"
+#include "load/net/http_place.hpp"
 #include "load/net/run_clock.hpp"
-#include "robot_client/uplink/server_address.hpp"
 
 #include <boost/asio/awaitable.hpp>
 
@@ -14,8 +14,7 @@ namespace scanloom::load {
 /// What viewers and tile readers of one thread share.
 struct OnlookerShared {
     const RunClock& clock;
-    robot::ServerAddress http;
-    std::string token; ///< empty: none
+    HttpPlace http;
     AudienceFigures& figures;
     bool stopped = false; ///< whoever sees it ends
 };

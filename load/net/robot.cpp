@@ -130,6 +130,7 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
 
 /// A server that speaks TLS hangs up on the first bytes that are none.
 std::string Robot::ended(const Link& link, const boost::system::error_code& why) const {
+    if (net::is_refused_certificate(why)) return net::handshake_text(why, 0);
     const bool may_want_tls = !shared_.link.tls && !link.has_heard;
     return fmt::format("the connection was lost: {}{}", why.message(),
                        may_want_tls ? " before the server said a word; it may want TLS (--tls)" : "");

@@ -26,8 +26,7 @@ constexpr unsigned kNotModified = 304;
 class TileReader {
 public:
     TileReader(OnlookerShared& shared, std::string session, asio::any_io_executor executor, const TileTour& tour)
-        : shared_(shared), session_(std::move(session)), http_(executor, shared.http, shared.token), timer_(executor),
-          tour_(tour) {}
+        : shared_(shared), session_(std::move(session)), http_(executor, shared.http), timer_(executor), tour_(tour) {}
 
     asio::awaitable<void> run() {
         for (;;) {

@@ -1,13 +1,15 @@
+#include "common/net/websocket_teardown.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
+#include "load/net/open_link.hpp"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <fmt/format.h>
 
@@ -23,7 +25,7 @@ constexpr std::chrono::seconds kConnectMax{10};
 constexpr std::chrono::seconds kPause{1};
 constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's are at most 512 KiB
 
-using Stream = beast::websocket::stream<beast::tcp_stream>;
+using Stream = beast::websocket::stream<net::LinkStream>;
 
 /// What came of asking to watch.
 struct Entry {
@@ -32,25 +34,29 @@ struct Entry {
 };
 
 asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::string session) {
-    const auto& server = shared.http;
-    asio::ip::tcp::resolver resolver(stream.get_executor());
-    const auto [unresolved, addresses] = co_await resolver.async_resolve(server.host, server.port, kUse);
-    if (unresolved) co_return Entry{unresolved, {}};
-    auto& tcp = beast::get_lowest_layer(stream);
-    tcp.expires_after(kConnectMax);
-    const auto [refused, endpoint] = co_await tcp.async_connect(addresses, kUse);
-    if (refused) co_return Entry{refused, {}};
+    const auto& server = shared.http.server;
+    const auto unlinked = co_await open_link(stream.next_layer(), shared.http);
+    if (unlinked) co_return Entry{unlinked, {}};
     const auto host = fmt::format("{}:{}", server.host, server.port);
     const auto target = fmt::format("/api/v1/sessions/{}/live", session);
-    if (const auto authorization = authorization_of(shared.token); !authorization.empty()) {
+    if (const auto authorization = authorization_of(shared.http.token); !authorization.empty()) {
         stream.set_option(beast::websocket::stream_base::decorator(
             [authorization](auto& request) { request.set(beast::http::field::authorization, authorization); }));
     }
     beast::websocket::response_type answer;
     const auto [failed] = co_await stream.async_handshake(answer, host, target, kUse);
-    tcp.expires_never(); // while nothing changes there are no events
     if (failed != beast::websocket::error::upgrade_declined) co_return Entry{failed, {}};
     co_return Entry{failed, refusal({answer.result_int(), {}, answer.body()}, target).message};
+}
+
+/// While nothing changes there are no events, but letting somebody in takes no time.
+asio::awaitable<Entry> enter_in_time(Stream& stream, const OnlookerShared& shared, std::string session) {
+    using namespace asio::experimental::awaitable_operators;
+    asio::steady_timer timer(stream.get_executor());
+    timer.expires_after(kConnectMax);
+    auto first = co_await (enter(stream, shared, std::move(session)) || timer.async_wait(kUse));
+    if (first.index() != 0) co_return Entry{asio::error::timed_out, {}};
+    co_return std::get<0>(std::move(first));
 }
 
 asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceFigures& figures) {
@@ -96,8 +102,8 @@ asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
     AudienceFigures& figures = shared.figures;
     Standing standing(figures);
     while (!shared.stopped) {
-        Stream stream(executor);
-        Entry entry = co_await enter(stream, shared, session);
+        Stream stream(link_to(shared.http, executor));
+        Entry entry = co_await enter_in_time(stream, shared, session);
         const bool watches = !entry.failed;
         if (watches) {
             standing.let_in();
@@ -108,8 +114,9 @@ asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
         if (shared.stopped) co_return;
         if (watches) ++figures.viewer_ends;
         if (!entry.refusal.empty()) standing.refused();
-        figures.trouble = fmt::format("a viewer of session {}: {}", session,
-                                      entry.refusal.empty() ? entry.failed.message() : entry.refusal);
+        figures.trouble =
+            fmt::format("a viewer of session {}: {}", session,
+                        entry.refusal.empty() ? trouble_with(stream.next_layer(), entry.failed) : entry.refusal);
         pause.expires_after(kPause);
         co_await pause.async_wait(kUse);
     }

@@ -58,6 +58,14 @@ void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--tls-ca", options.tls_ca_file,
                    "File with the certificates to trust, in PEM, instead of the system's; means --tls")
         ->check(CLI::ExistingFile);
+    auto* certificate =
+        app.add_option("--tls-cert", options.tls_cert_file,
+                       "File with the certificate to show to a server that asks for one, in PEM; means --tls")
+            ->check(CLI::ExistingFile);
+    auto* key = app.add_option("--tls-key", options.tls_key_file, "File with its private key, without a password")
+                    ->check(CLI::ExistingFile);
+    certificate->needs(key);
+    key->needs(certificate);
     app.add_option("--cell-size", options.cell_size, "Metres a cell, for a session made here")
         ->check(check_within(kCellSizeMin, kCellSizeMax));
     app.add_option("--body-radius", options.body_radius,
@@ -108,7 +116,7 @@ void sort_in(const Raw& raw, RobotOptions& options) {
     const auto milliseconds = [](double seconds) {
         return std::chrono::milliseconds(static_cast<std::int64_t>(std::min(seconds, 1e9) * 1e3));
     };
-    options.tls = options.tls || !options.tls_ca_file.empty();
+    options.tls = options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty();
     if (!raw.no_return.empty()) options.no_return = raw.no_return == "free" ? NoReturn::kFree : NoReturn::kDrop;
     if (raw.give_up_after) options.give_up_after = milliseconds(*raw.give_up_after);
     options.spool_bytes_max = bytes(raw.spool_mib * kMebibyte);

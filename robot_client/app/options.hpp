@@ -59,7 +59,9 @@ struct RobotOptions {
     std::string robot;
     std::string token_file; ///< empty: no token
     bool tls = false;
-    std::string tls_ca_file;           ///< empty: what the system trusts
+    std::string tls_ca_file;   ///< empty: what the system trusts
+    std::string tls_cert_file; ///< that this robot shows; empty: none
+    std::string tls_key_file;
     std::optional<double> cell_size;   ///< metres
     std::optional<double> range_max;   ///< metres
     std::optional<double> body_radius; ///< metres

@@ -132,7 +132,7 @@ ExitCode run(const RobotOptions& options) {
 
     UplinkOptions carried = uplink_options(options, *token, *prepared, console);
     if (options.tls) {
-        auto tls = net::client_tls(options.tls_ca_file);
+        auto tls = net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
         if (!tls) return fail(tls.error());
         carried.tls = std::move(*tls);
     }

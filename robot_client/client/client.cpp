@@ -22,8 +22,8 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     if (!server) return Error{Errc::kInvalidField, fmt::format("'{}' is not HOST:PORT", options.server)};
     UplinkOptions uplink;
     uplink.server = *server;
-    if (options.tls || !options.tls_ca_file.empty()) {
-        auto tls = net::client_tls(options.tls_ca_file);
+    if (options.tls || !options.tls_ca_file.empty() || !options.tls_cert_file.empty()) {
+        auto tls = net::client_tls(options.tls_ca_file, {options.tls_cert_file, options.tls_key_file});
         if (!tls) return tls.error();
         uplink.tls = std::move(*tls);
     }

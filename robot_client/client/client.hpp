@@ -25,7 +25,9 @@ struct ClientOptions {
     std::optional<double> body_radius;     ///< metres, of a disc around the robot's origin that holds all of it
 
     bool tls = false;
-    std::string tls_ca_file; ///< PEM, and sets tls; empty: what the system trusts
+    std::string tls_ca_file;   ///< PEM, and sets tls; empty: what the system trusts
+    std::string tls_cert_file; ///< PEM, and sets tls: shown to a server that asks for one; empty: none
+    std::string tls_key_file;  ///< its key, without a password; empty: in the same file
 
     /// A directory that keeps scans until they are stored, also when this program ends before. Empty: memory keeps
     /// them.

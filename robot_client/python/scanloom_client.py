@@ -868,6 +868,9 @@ class _Connection:
                 self._in += received
         except (BlockingIOError, ssl.SSLWantReadError, ssl.SSLWantWriteError):
             pass
+        except ssl.SSLError as error:
+            advice = "; " + _SHOW_A_CERTIFICATE if error.reason in _REFUSED_CERTIFICATE else ""
+            return (error.strerror or str(error)) + advice
         except OSError as error:
             return error.strerror or str(error)
         return ""
@@ -889,6 +892,12 @@ _CERTIFICATE_ADVICE = {  # by OpenSSL's X509_V_ERR_...
     62: "give the name that is in it as the server's address, or have the server given a certificate for this one",
     64: "give the name that is in it as the server's address, or have the server given a certificate for this one",
 }
+
+
+# What a server says that wants a certificate of the robot, and gets none that it trusts; of TLS 1.3 after the handshake.
+_REFUSED_CERTIFICATE = ("TLSV13_ALERT_CERTIFICATE_REQUIRED", "TLSV1_ALERT_UNKNOWN_CA", "SSLV3_ALERT_BAD_CERTIFICATE",
+                        "SSLV3_ALERT_CERTIFICATE_EXPIRED", "SSLV3_ALERT_CERTIFICATE_UNKNOWN")
+_SHOW_A_CERTIFICATE = "the server takes only whoever shows a certificate that it trusts: tls.load_cert_chain()"
 
 
 def _split_address(address: str) -> Tuple[str, int]:
@@ -1364,6 +1373,8 @@ def _parse_options(arguments: Optional[List[str]]) -> argparse.Namespace:
     parser.add_argument("--range-max", type=float, metavar="M", required=True, help="how far the laser sees")
     parser.add_argument("--token-file", metavar="FILE", help="holds the token that the server asks for")
     parser.add_argument("--tls-ca", metavar="FILE", help="use TLS; the certificate that signed the server's")
+    parser.add_argument("--tls-cert", metavar="FILE", help="use TLS, and show this certificate where one is asked for")
+    parser.add_argument("--tls-key", metavar="FILE", help="its private key [in the file of --tls-cert]")
     parser.add_argument("--source", default="", metavar="NAME",
                         help="the same lines may be streamed again: those the server has are passed over")
     return parser.parse_args(arguments)
@@ -1374,7 +1385,9 @@ def _open(options: argparse.Namespace) -> Client:
     if options.token_file:
         with open(options.token_file, encoding="utf-8") as file:
             token = file.read().strip()
-    tls = ssl.create_default_context(cafile=options.tls_ca) if options.tls_ca else None
+    tls = ssl.create_default_context(cafile=options.tls_ca) if options.tls_ca or options.tls_cert else None
+    if tls and options.tls_cert:
+        tls.load_cert_chain(options.tls_cert, options.tls_key)
     return Client(options.server, session=options.session, robot=options.robot, cell_size=options.cell_size,
                   token=token, tls=tls, source=options.source)
 

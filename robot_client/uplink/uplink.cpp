@@ -239,6 +239,10 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
 }
 
 wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
+    if (net::is_refused_certificate(failed)) {
+        return lost(fmt::format("no encrypted link to {}:{}: {}", options_.server.host, options_.server.port,
+                                net::handshake_text(failed, 0)));
+    }
     if (conversation_.is_welcome() || options_.tls || failed != asio::error::eof) {
         return lost(fmt::format("the connection was lost: {}", failed.message()));
     }

@@ -12,18 +12,20 @@ inline constexpr std::array kPorts = {Port::kRobot, Port::kHttp};
 
 /// Why somebody is not let in, or may not do what he asks.
 enum class Reason {
-    kNoToken,      ///< none was sent where one is needed
-    kUnknownToken, ///< what was sent is no token that is in force
-    kWrongRole,    ///< it is not for that
-    kWrongSession, ///< it is not for that session
-    kForeignPage,  ///< a browser that is signed in asks for somebody else's page
-    kLimit,        ///< it has all that it may have
-    kRevoked,      ///< its token is no longer in force, while it was in use
+    kNoToken,            ///< none was sent where one is needed
+    kUnknownToken,       ///< what was sent is no token that is in force
+    kWrongRole,          ///< it is not for that
+    kWrongSession,       ///< it is not for that session
+    kForeignPage,        ///< a browser that is signed in asks for somebody else's page
+    kLimit,              ///< it has all that it may have
+    kRevoked,            ///< its token is no longer in force, while it was in use
+    kNoCertificate,      ///< none was shown where one is needed
+    kForeignCertificate, ///< what was shown, nobody who is trusted here signed, or it is not valid now
 };
 
-inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownToken, Reason::kWrongRole,
-                                        Reason::kWrongSession, Reason::kForeignPage,  Reason::kLimit,
-                                        Reason::kRevoked};
+inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownToken,  Reason::kWrongRole,
+                                        Reason::kWrongSession, Reason::kForeignPage,   Reason::kLimit,
+                                        Reason::kRevoked,      Reason::kNoCertificate, Reason::kForeignCertificate};
 
 [[nodiscard]] constexpr std::string_view name_of(Port port) noexcept { return port == Port::kRobot ? "robot" : "http"; }
 
@@ -36,6 +38,8 @@ inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownT
     case Reason::kForeignPage: return "foreign_page";
     case Reason::kLimit: return "limit";
     case Reason::kRevoked: return "revoked";
+    case Reason::kNoCertificate: return "no_certificate";
+    case Reason::kForeignCertificate: return "foreign_certificate";
     }
     return "unknown";
 }

@@ -54,6 +54,23 @@ std::filesystem::path default_web() {
     return std::filesystem::exists(installed, ignored) ? installed : programs.parent_path() / "web";
 }
 
+/// @param port  how the options of this port begin
+/// @param who   comes to it
+void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string& port, const std::string& who) {
+    auto* certificate = app.add_option(
+        port + "-tls-cert", files.certificate,
+        fmt::format("Certificate chain in PEM: {} must speak TLS, and may check whom they speak to. SIGHUP has it read "
+                    "again",
+                    who));
+    auto* key = app.add_option(port + "-tls-key", files.key, "Its private key in PEM, without a password");
+    certificate->needs(key);
+    key->needs(certificate);
+    app.add_option(
+           port + "-client-ca", files.client_ca,
+           fmt::format("Certificates in PEM: {} must show one that these signed. SIGHUP has it read again", who))
+        ->needs(certificate);
+}
+
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
         ->capture_default_str();
@@ -65,12 +82,8 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
            "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
         ->delimiter(',')
         ->allow_extra_args(false);
-    auto* certificate =
-        app.add_option("--robot-tls-cert", options.tls_certificate,
-                       "Certificate chain in PEM: robots must speak TLS, and may check whom they speak to");
-    auto* key = app.add_option("--robot-tls-key", options.tls_key, "Its private key in PEM, without a password");
-    certificate->needs(key);
-    key->needs(certificate);
+    add_tls_options(app, options.robot_tls, "--robot", "robots");
+    add_tls_options(app, options.http_tls, "--http", "browsers and programs");
     app.add_option("--tokens", raw.tokens,
                    "File that says who may do what (TOML); without it, whoever reaches a port may do everything. "
                    "SIGHUP has it read again");
@@ -197,7 +210,7 @@ struct Guard {
     const char* flag;
     const boost::asio::ip::tcp::endpoint& endpoint;
     bool has_tokens;
-    bool has_tls;
+    const sockets::TlsFiles& tls;
     const char* remedy; ///< what else would guard it
 
     [[nodiscard]] bool is_reached() const { return !endpoint.address().is_loopback(); }
@@ -205,9 +218,8 @@ struct Guard {
 
 std::array<Guard, 2> guards_of(const ServerOptions& options) {
     const bool has_tokens = !options.tokens.empty();
-    return {{{"--listen", options.listen, has_tokens, !options.tls_certificate.empty(),
-              "--tokens or --robot-tls-cert guard it"},
-             {"--http", options.http, has_tokens, false, "--tokens guards it"}}};
+    return {{{"--listen", options.listen, has_tokens, options.robot_tls, "--tokens or --robot-tls-cert guard it"},
+             {"--http", options.http, has_tokens, options.http_tls, "--tokens or --http-tls-cert guard it"}}};
 }
 
 } // namespace
@@ -215,7 +227,7 @@ std::array<Guard, 2> guards_of(const ServerOptions& options) {
 Result<> check_guarded(const ServerOptions& options) {
     if (options.insecure) return {};
     for (const auto& guard : guards_of(options)) {
-        if (!guard.is_reached() || guard.has_tokens || guard.has_tls) continue;
+        if (!guard.is_reached() || guard.has_tokens || guard.tls.is_given()) continue;
         return Error{
             Errc::kInvalidField,
             fmt::format(
@@ -230,15 +242,17 @@ std::vector<std::string> guard_warnings(const ServerOptions& options) {
     std::vector<std::string> warnings;
     for (const auto& guard : guards_of(options)) {
         if (!guard.is_reached()) continue;
-        if (!guard.has_tls && guard.has_tokens) {
+        if (!guard.tls.is_given() && guard.has_tokens) {
             warnings.push_back(
                 fmt::format("{}: tokens come in without TLS, and whoever is on the way there can read them "
                             "and all else, and use them",
                             guard.flag));
         } else if (!guard.has_tokens) {
-            warnings.push_back(fmt::format("{}: no token is asked for, and whoever reaches it can send and read "
-                                           "everything{}",
-                                           guard.flag, guard.has_tls ? ", though nobody on the way can" : ""));
+            const bool is_mutual = !guard.tls.client_ca.empty();
+            warnings.push_back(fmt::format(
+                "{}: no token is asked for, and whoever {} can send and read everything{}", guard.flag,
+                is_mutual ? "shows a certificate that " + guard.tls.client_ca.string() + " signed" : "reaches it",
+                guard.tls.is_given() ? ", though nobody on the way can" : ""));
         }
     }
     return warnings;

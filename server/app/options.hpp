@@ -2,6 +2,7 @@
 
 #include "common/app/program.hpp"
 #include "common/error/error.hpp"
+#include "server/sockets/port_tls.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
 
@@ -20,10 +21,10 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
-    std::filesystem::path web;             ///< the viewer's files
-    std::filesystem::path tls_certificate; ///< of the robot port; empty: robots speak plainly
-    std::filesystem::path tls_key;
-    std::filesystem::path tokens;        ///< who may do what; empty: everybody may do everything
+    std::filesystem::path web;    ///< the viewer's files
+    std::filesystem::path tokens; ///< who may do what; empty: everybody may do everything
+    sockets::TlsFiles robot_tls;
+    sockets::TlsFiles http_tls;
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;

@@ -1,6 +1,7 @@
 #include "server/app/server.hpp"
 
 #include "common/app/program.hpp"
+#include "server/app/service_manager.hpp"
 #include "server/guard/token_file.hpp"
 #include "server/sockets/run_to_the_end.hpp"
 
@@ -42,6 +43,12 @@ std::size_t io_threads_for(std::size_t threads) { return std::min(threads, std::
 
 std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
     return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
+}
+
+/// Null where none is asked for.
+Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files) {
+    if (!files.is_given()) return std::shared_ptr<sockets::PortTls>();
+    return sockets::PortTls::open(files);
 }
 
 } // namespace
@@ -111,14 +118,16 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
 }
 
 Result<> Server::listen() {
+    auto robot_tls = tls_of(options_.robot_tls);
+    if (!robot_tls) return prefixed("--robot-tls-cert: ", robot_tls.error());
+    auto http_tls = tls_of(options_.http_tls);
+    if (!http_tls) return prefixed("--http-tls-cert: ", http_tls.error());
+    robot_tls_ = std::move(*robot_tls);
+    http_tls_ = std::move(*http_tls);
     ingest::IngestConfig robots;
     robots.links_max = limits_.robots;
     robots.greeting_max = limits_.greeting;
-    if (!options_.tls_certificate.empty()) {
-        auto tls = net::server_tls(options_.tls_certificate, options_.tls_key);
-        if (!tls) return tls.error();
-        robots.tls = std::move(*tls);
-    }
+    robots.tls = robot_tls_;
     try {
         ingest_ = std::make_unique<ingest::IngestServer>(
             io_, options_.listen,
@@ -132,6 +141,7 @@ Result<> Server::listen() {
     http::ServerConfig config;
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
+    config.tls = http_tls_;
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
         io_,
@@ -141,7 +151,8 @@ Result<> Server::listen() {
         {[this](const http::Request& request) { return api_.answer(request); },
          [this](const http::Request& request) { return api_.look(request); },
          [this](const http::Request& request) { return api_.refuse(request); },
-         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); }},
+         [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); },
+         [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); }},
         metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);
@@ -150,7 +161,7 @@ Result<> Server::listen() {
 
 Result<> Server::run() {
     wait_for_signal();
-    if (!options_.tokens.empty()) wait_for_hangup();
+    wait_for_hangup(); // even where nothing is read again: it would end the program
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
@@ -175,8 +186,10 @@ Result<> Server::run() {
 void Server::announce() const {
     boost::json::object ready{{"event", "ready"}, {"robot_port", ingest_->port()}, {"http_port", http_->port()}};
     std::cout << boost::json::serialize(ready) << std::endl;
-    spdlog::info("robots: {}:{}, people: http://{}:{}/, store: {}", options_.listen.address().to_string(),
-                 ingest_->port(), options_.http.address().to_string(), http_->port(), options_.store.string());
+    tell_service_manager("READY=1");
+    spdlog::info("robots: {}:{}, people: {}://{}:{}/, store: {}", options_.listen.address().to_string(),
+                 ingest_->port(), http_tls_ ? "https" : "http", options_.http.address().to_string(), http_->port(),
+                 options_.store.string());
 }
 
 void Server::wait_for_signal() {
@@ -207,7 +220,12 @@ void Server::wait_for_hangup() {
     if (!hangup_) hangup_.emplace(io_, SIGHUP);
     hangup_->async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
-        read_tokens_again();
+        const bool has_tokens = !options_.tokens.empty();
+        if (has_tokens) read_tokens_again();
+        read_certificates_again();
+        if (!has_tokens && !robot_tls_ && !http_tls_) {
+            spdlog::info("a hangup: there are neither tokens nor certificates to be read again");
+        }
         wait_for_hangup();
     });
 }
@@ -223,10 +241,23 @@ void Server::read_tokens_again() {
     gate_.replace(std::move(*tokens));
 }
 
+/// Connections that are open go on with what they began with.
+void Server::read_certificates_again() {
+    for (const auto& [flag, tls] : {std::pair("--robot-tls-cert", robot_tls_), {"--http-tls-cert", http_tls_}}) {
+        if (!tls) continue;
+        if (auto read = tls->read_again(); !read) {
+            spdlog::error("{}: {}; the certificate read before stays in force", flag, read.error().message);
+        } else {
+            spdlog::info("{}: read again from {}", flag, tls->files().certificate.string());
+        }
+    }
+}
+
 /// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then
 /// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
+    tell_service_manager("STOPPING=1");
     ingest_->stop();
     weaves_.stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });

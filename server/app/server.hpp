@@ -56,7 +56,7 @@ public:
     ~Server();
 
     /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains. SIGHUP has it read the
-    /// tokens again.
+    /// tokens and the certificates again.
     /// Errors  kStoreFailed: the sessions cannot be listed, or the store failed meanwhile.
     [[nodiscard]] Result<> run();
 
@@ -70,6 +70,7 @@ private:
     void tidy_up();
     void wait_for_hangup();
     void read_tokens_again();
+    void read_certificates_again();
     void drain();
     void join_pools();
 
@@ -98,6 +99,8 @@ private:
     guide::GoalBook goals_;
     ingest::RequestDesk desk_;
     http::Api api_;
+    std::shared_ptr<sockets::PortTls> robot_tls_; // none: the port speaks plainly, as the next
+    std::shared_ptr<sockets::PortTls> http_tls_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;

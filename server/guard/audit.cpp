@@ -45,4 +45,9 @@ void Audit::note(access::Refusal refusal) {
     for (const auto& line : lines) tell(line);
 }
 
+void Audit::note(access::Port port, const std::string& who, net::ClientFault fault) {
+    const bool is_missing = fault == net::ClientFault::kMissing;
+    note({port, is_missing ? access::Reason::kNoCertificate : access::Reason::kForeignCertificate, who, {}, {}});
+}
+
 } // namespace scanloom::guard

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "common/net/tls.hpp"
 #include "server/access/refusal_table.hpp"
 #include "server/metrics/metrics.hpp"
 
 #include <functional>
 #include <mutex>
+#include <string>
 
 namespace scanloom::guard {
 
@@ -26,6 +28,9 @@ public:
     Audit& operator=(const Audit&) = delete;
 
     void note(access::Refusal refusal);
+
+    /// Of who comes without a certificate that is asked for.
+    void note(access::Port port, const std::string& who, net::ClientFault fault);
 
 private:
     metrics::RefusalCounters& counters_;

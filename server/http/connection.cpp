@@ -26,16 +26,22 @@
 namespace scanloom::http {
 namespace {
 
+namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace net = boost::asio;
 
-constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
+constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 4096;
 constexpr std::size_t kLingerBytesMax = 256 * 1024;
 
 /// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
 bool is_frame(const beast::flat_buffer& unread) {
     return unread.size() > 0 && *static_cast<const char*>(unread.data().data()) == '\0';
+}
+
+/// Whether they begin as TLS does: with a record of a handshake (RFC 8446, section 5.1).
+bool is_tls_hello(const beast::flat_buffer& unread) {
+    const std::string_view bytes(static_cast<const char*>(unread.data().data()), unread.size());
+    return bytes.starts_with("\x16\x03");
 }
 
 /// The answer to bytes that are no request we read; nothing when there is nobody to answer.
@@ -76,19 +82,19 @@ Result<std::string> next_guarded(BodyStream& stream) {
 
 } // namespace
 
-Connection::Connection(net::ip::tcp::socket socket, std::shared_ptr<const Service> service)
-    : socket_(std::move(socket)), deadline_(socket_.get_executor()),
+Connection::Connection(net::LinkStream stream, std::shared_ptr<const Service> service)
+    : stream_(std::move(stream)), deadline_(stream_.get_executor()),
       buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
     beast::error_code ignored;
-    peer_ = socket_.remote_endpoint(ignored).address().to_string();
+    peer_ = stream_.socket().remote_endpoint(ignored).address().to_string();
 }
 
-net::awaitable<void> Connection::run() {
+asio::awaitable<void> Connection::run() {
     // g++ 12 loses `this` where a condition mixes && and co_await: one co_await a statement in this file.
     beast::error_code ignored;
-    socket_.non_blocking(true, ignored);
+    stream_.socket().non_blocking(true, ignored);
     deadline_.watch(weak_from_this(), [this] { close(); });
-    bool open = true;
+    bool open = co_await shake_hands();
     while (open && !stopping_) {
         open = co_await wait_for_request();
         if (open) open = co_await serve_request();
@@ -98,32 +104,56 @@ net::awaitable<void> Connection::run() {
     close();
 }
 
-void Connection::close() {
-    beast::error_code ignored;
-    socket_.close(ignored);
-}
+void Connection::close() { stream_.close(); }
 
 void Connection::stop() {
-    net::dispatch(socket_.get_executor(), [self = shared_from_this()] {
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->stopping_ = true;
         if (self->viewer_) self->viewer_->stop();
         beast::error_code ignored;
-        if (self->idle_) self->socket_.cancel(ignored);
+        if (self->idle_) self->stream_.socket().cancel(ignored);
     });
 }
 
 void Connection::abort() {
-    net::dispatch(socket_.get_executor(), [self = shared_from_this()] {
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->close();
         if (self->viewer_) self->viewer_->abort();
     });
 }
 
-net::awaitable<bool> Connection::wait_for_request() {
+/// @return whether requests can be read.
+asio::awaitable<bool> Connection::shake_hands() {
+    if (!stream_.is_encrypted()) co_return true;
+    idle_ = true; // whoever stops the server does not wait for it
+    deadline_.set_after(service_->config.handshake);
+    const auto [failed] = co_await stream_.async_handshake(net::LinkStream::Role::kServer, kAwaitTuple);
+    deadline_.clear();
+    idle_ = false;
+    if (!failed) co_return true;
+    spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
+    if (net::is_plain_http(failed)) {
+        co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
+    } else if (const auto fault = net::client_fault_of(failed)) {
+        service_->answering.turned_away(peer_, *fault);
+        must_linger_ = true; // until TLS's own alert is read
+    }
+    co_return false;
+}
+
+/// To whoever did not encrypt what he asked.
+asio::awaitable<void> Connection::tell_plainly(std::string_view sentence) {
+    const auto response = problem(Status::bad_request, sentence, "");
+    service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
+    stream_ = net::LinkStream(std::move(stream_.socket()));
+    must_linger_ = co_await write_all(head_text(response, false, date_now()), response.body.bytes());
+}
+
+asio::awaitable<bool> Connection::wait_for_request() {
     if (buffer_.size() > 0) co_return true; // pipelined
     idle_ = true;
     deadline_.set_after(service_->config.idle);
-    const auto [error, size] = co_await socket_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+    const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
     deadline_.clear();
     idle_ = false;
     buffer_.commit(size);
@@ -131,7 +161,7 @@ net::awaitable<bool> Connection::wait_for_request() {
 }
 
 /// @return whether the connection can take another request.
-net::awaitable<bool> Connection::serve_request() {
+asio::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
     parser.body_limit(service_->config.import_bytes_max); // of what it asks for, once that is known: refusal_of()
@@ -157,6 +187,7 @@ net::awaitable<bool> Connection::serve_request() {
     const auto begin = std::chrono::steady_clock::now();
     Request request = request_of(message);
     request.peer = peer_;
+    request.is_secure = stream_.is_encrypted();
     Outlook outlook = guarded(service_->answering.look, request);
     if (const auto* asleep = std::get_if<Asleep>(&outlook)) {
         co_await wake(*asleep);
@@ -178,9 +209,10 @@ net::awaitable<bool> Connection::serve_request() {
 
 /// Nobody sends a body to be refused after it. `slot` is for what is kept while the request is under way.
 /// @return false when the connection cannot be used any more.
-net::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const void>& slot) {
+asio::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const void>& slot) {
     Request head = head_of(parser.get());
     head.peer = peer_;
+    head.is_secure = stream_.is_encrypted();
     if (const auto refusal = service_->answering.refuse(head)) {
         co_await write(*refusal, {});
         co_return false;
@@ -198,12 +230,12 @@ net::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const
 }
 
 /// Most often all of it has come with the first bytes, and nothing is waited for.
-net::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
+asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
     beast::error_code error;
     buffer_.consume(parser.put(buffer_.data(), error));
     if (error != beast::http::error::need_more) co_return error;
     deadline_.set_after(service_->config.header);
-    const auto [failed, size] = co_await beast::http::async_read_header(socket_, buffer_, parser, kAwaitTuple);
+    const auto [failed, size] = co_await beast::http::async_read_header(stream_, buffer_, parser, kAwaitTuple);
     deadline_.clear();
     co_return failed;
 }
@@ -236,7 +268,7 @@ std::optional<Response> Connection::refusal_of(const Parser& parser) const {
 }
 
 /// @return false when the connection cannot be used any more.
-net::awaitable<bool> Connection::read_body(Parser& parser) {
+asio::awaitable<bool> Connection::read_body(Parser& parser) {
     if (parser.is_done()) co_return true;
     if (beast::iequals(parser.get()[beast::http::field::expect], "100-continue")) {
         const bool asked = co_await write_all("HTTP/1.1 100 Continue\r\n\r\n", {});
@@ -250,7 +282,7 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
         const auto end = begin + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
         deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
-        const auto [error, size] = co_await beast::http::async_read_some(socket_, buffer_, parser, kAwaitTuple);
+        const auto [error, size] = co_await beast::http::async_read_some(stream_, buffer_, parser, kAwaitTuple);
         deadline_.clear();
         if (!error) continue;
         co_await refuse(error);
@@ -260,7 +292,7 @@ net::awaitable<bool> Connection::read_body(Parser& parser) {
 }
 
 /// Hands the socket over to a viewer, until that ends.
-net::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
+asio::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
     const auto path = instance_of(view(upgrade.target()));
     auto seat = service_->seats.try_take(invitation.session_id);
     std::optional<Response> refusal;
@@ -276,41 +308,43 @@ net::awaitable<void> Connection::show(const live::Invitation& invitation, const 
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
     viewer_ = std::make_shared<live::Viewer>(
-        std::move(socket_), invitation, std::move(seat),
+        std::move(stream_), invitation, std::move(seat),
         live::Viewer::Services{service_->config.live, service_->executors.showing, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);
 }
 
 /// Returns when the session has been read, or cannot be.
-net::awaitable<void> Connection::wake(Asleep asleep) {
-    const auto executor = socket_.get_executor();
-    co_await net::async_initiate<const net::use_awaitable_t<>&, void()>(
+asio::awaitable<void> Connection::wake(Asleep asleep) {
+    const auto executor = stream_.get_executor();
+    co_await asio::async_initiate<const asio::use_awaitable_t<>&, void()>(
         [&](auto handler) {
             auto shared = std::make_shared<decltype(handler)>(std::move(handler));
             service_->answering.wake(asleep,
-                                     [shared, executor] { net::post(executor, [shared] { std::move (*shared)(); }); });
+                                     [shared, executor] { asio::post(executor, [shared] { std::move (*shared)(); }); });
         },
-        net::use_awaitable);
+        asio::use_awaitable);
 }
 
 /// Off this thread, which serves other sockets too, unless there is nothing to wait for.
 /// `slot` is that of an import, whose body was read with it.
-net::awaitable<Response> Connection::compute(Lane lane, Request request, std::shared_ptr<const void> slot) {
+asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::shared_ptr<const void> slot) {
     if (lane == Lane::kAtOnce) co_return guarded(service_->answering.answer, request);
     if (!slot) {
         auto taken = take_slot(*service_, lane);
         if (!taken) co_return problem(taken.error(), instance_of(request.target));
         slot = std::move(*taken);
     }
-    auto work = [service = service_, request = std::move(request)]() -> net::awaitable<Response> {
+    auto work = [service = service_, request = std::move(request)]() -> asio::awaitable<Response> {
         co_return guarded(service->answering.answer, request);
     };
-    co_return co_await net::co_spawn(executor_of(service_->executors, lane), std::move(work), net::use_awaitable);
+    co_return co_await asio::co_spawn(executor_of(service_->executors, lane), std::move(work), asio::use_awaitable);
 }
 
-net::awaitable<void> Connection::refuse(beast::error_code reason) {
-    if (is_frame(buffer_)) {
+asio::awaitable<void> Connection::refuse(beast::error_code reason) {
+    if (is_tls_hello(buffer_)) {
+        must_linger_ = true; // no words of ours could be read there
+    } else if (is_frame(buffer_)) {
         co_await write(problem(Status::bad_request,
                                "this is no HTTP but what robots send; they connect to the robot port (--listen)", ""),
                        {});
@@ -320,14 +354,14 @@ net::awaitable<void> Connection::refuse(beast::error_code reason) {
 }
 
 /// @return whether the connection can take another request.
-net::awaitable<bool> Connection::write(const Response& response, Manner manner) {
+asio::awaitable<bool> Connection::write(const Response& response, Manner manner) {
     service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
     const bool is_streamed = response.stream != nullptr;
     const Framing framing = !is_streamed          ? Framing::kLength
                             : manner.takes_chunks ? Framing::kChunked
                                                   : Framing::kUntilClosed;
     if (framing == Framing::kUntilClosed) manner.keep_alive = false;
-    const std::string head = head_text(response, manner.keep_alive, date_now(), framing);
+    const std::string head = head_text(response, manner.keep_alive, date_now(), framing, stream_.is_encrypted());
     const bool with_body = manner.with_body && !is_streamed;
     bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
     const bool with_stream = written && manner.with_body && is_streamed;
@@ -338,11 +372,11 @@ net::awaitable<bool> Connection::write(const Response& response, Manner manner) 
 }
 
 /// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
-net::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
+asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
     for (;;) {
-        auto make = [&stream]() -> net::awaitable<Result<std::string>> { co_return next_guarded(stream); };
+        auto make = [&stream]() -> asio::awaitable<Result<std::string>> { co_return next_guarded(stream); };
         const Result<std::string> piece =
-            co_await net::co_spawn(service_->executors.survey, std::move(make), net::use_awaitable);
+            co_await asio::co_spawn(service_->executors.survey, std::move(make), asio::use_awaitable);
         if (!piece) {
             spdlog::error("an answer broke off: {}", piece.error().message);
             co_return false;
@@ -362,12 +396,12 @@ net::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framin
 /// What the socket takes at once, goes at once. For the rest a deadline for each piece, so that a large answer may take
 /// its time as long as somebody reads it; and one for all, so that nobody holds one in memory by reading a byte now and
 /// then.
-net::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
-    const std::array<net::const_buffer, 2> whole = {net::buffer(head), net::buffer(body)};
-    beast::buffers_suffix<std::array<net::const_buffer, 2>> rest(whole);
+asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
+    const std::array<asio::const_buffer, 2> whole = {asio::buffer(head), asio::buffer(body)};
+    beast::buffers_suffix<std::array<asio::const_buffer, 2>> rest(whole);
     beast::error_code failed;
-    rest.consume(socket_.write_some(whole, failed));
-    if (failed && failed != net::error::would_block) co_return false;
+    rest.consume(stream_.try_write(whole, failed));
+    if (failed && failed != asio::error::would_block) co_return false;
     if (beast::buffer_bytes(rest) == 0) co_return true;
     const auto& config = service_->config;
     const auto size_seconds =
@@ -376,7 +410,7 @@ net::awaitable<bool> Connection::write_all(std::string_view head, std::string_vi
                      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
     while (beast::buffer_bytes(rest) > 0) {
         deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.write));
-        const auto [error, size] = co_await socket_.async_write_some(rest, kAwaitTuple);
+        const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
         deadline_.clear();
         if (error) co_return false;
         rest.consume(size);
@@ -386,13 +420,13 @@ net::awaitable<bool> Connection::write_all(std::string_view head, std::string_vi
 
 /// Closing a socket with unread bytes resets it, and a peer still sending would never see the answer.
 /// So: say that nothing more comes, and read on for a while.
-net::awaitable<void> Connection::linger() {
-    beast::error_code ignored;
-    socket_.shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+asio::awaitable<void> Connection::linger() {
     deadline_.set_after(service_->config.linger);
+    co_await stream_.async_farewell(kAwaitTuple);
+    stream_.shutdown_send();
     std::array<char, kReadBytes> rubbish;
     for (std::size_t total = 0; total < kLingerBytesMax;) {
-        const auto [error, size] = co_await socket_.async_read_some(net::buffer(rubbish), kAwaitTuple);
+        const auto [error, size] = co_await stream_.socket().async_read_some(asio::buffer(rubbish), kAwaitTuple);
         if (error) break;
         total += size;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/net/link_stream.hpp"
 #include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/lane.hpp"
@@ -9,7 +10,6 @@
 #include "server/live/viewer.hpp"
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/error.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -21,15 +21,15 @@
 
 namespace scanloom::http {
 
-/// One connection: reads a request, has it answered, writes the answer, and again, in order. A request that is invited
-/// to watch a session is the last: the connection becomes a live::Viewer's.
+/// One connection: shakes hands where the port has TLS, reads a request, has it answered, writes the answer, and again,
+/// in order. A request that is invited to watch a session is the last: the connection becomes a live::Viewer's.
 ///
 /// No request with Transfer-Encoding is read. Nothing here needs one, and Beast 1.81 throws
 /// std::length_error at long chunked trailers.
 /// Thread  everything runs on the socket's executor, a strand; stop() and abort() may be called from any.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-    Connection(boost::asio::ip::tcp::socket socket, std::shared_ptr<const Service> service);
+    Connection(net::LinkStream stream, std::shared_ptr<const Service> service);
 
     /// Serves until the peer hangs up, a deadline passes, the peer breaks the protocol, or stop().
     [[nodiscard]] boost::asio::awaitable<void> run();
@@ -43,6 +43,7 @@ public:
 private:
     using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
+    [[nodiscard]] boost::asio::awaitable<bool> shake_hands();
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<boost::beast::error_code> read_header(Parser& parser);
@@ -66,14 +67,15 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
     [[nodiscard]] boost::asio::awaitable<void> linger();
     void close();
+    [[nodiscard]] boost::asio::awaitable<void> tell_plainly(std::string_view sentence);
 
-    boost::asio::ip::tcp::socket socket_; // never blocks
-    Deadline deadline_;                   // closes it
+    net::LinkStream stream_; // its socket never blocks
+    Deadline deadline_;      // closes it
     boost::beast::flat_buffer buffer_;
     std::string peer_; // the address
     std::shared_ptr<const Service> service_;
     std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
-    bool idle_ = false;
+    bool idle_ = false;                    // between requests, or before the first
     bool stopping_ = false;
     bool must_linger_ = false; // the peer may still have the last answer to read
 };

@@ -89,7 +89,7 @@ guard::Admitted<TokenRef> Doorman::identify_browser(const Request& request, std:
         return Denied{
             Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
     }
-    if (!needs_own_page(request) || is_own_page(request.origin, request.host)) return token;
+    if (!needs_own_page(request) || is_own_page(request.origin, request.host, request.is_secure)) return token;
     return denied(Reason::kForeignPage, *token,
                   fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
                               in_quotes(request.origin)));

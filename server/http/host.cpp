@@ -29,7 +29,7 @@ bool is_loopback(const boost::urls::authority_view& authority) {
 
 } // namespace
 
-bool is_own_page(std::string_view origin, std::string_view host_field) {
+bool is_own_page(std::string_view origin, std::string_view host_field, bool is_secure) {
     const auto colon = origin.find("://");
     if (colon == std::string_view::npos) return false; // "null"
     const auto scheme = origin.substr(0, colon);
@@ -37,7 +37,8 @@ bool is_own_page(std::string_view origin, std::string_view host_field) {
     const auto page = boost::urls::parse_authority(origin.substr(colon + 3));
     const auto host = boost::urls::parse_authority(host_field);
     if (!page || !host || page->has_userinfo() || page->host_type() == boost::urls::host_type::none) return false;
-    return is_loopback(*page) || boost::urls::grammar::ci_is_equal(page->host(), host->host());
+    if (is_loopback(*page)) return true;
+    return (scheme == "https" || !is_secure) && boost::urls::grammar::ci_is_equal(page->host(), host->host());
 }
 
 bool is_websocket_key(std::string_view key) noexcept {
@@ -48,13 +49,14 @@ bool is_websocket_key(std::string_view key) noexcept {
     });
 }
 
-std::string websocket_sources(std::string_view host_field) {
+std::string websocket_sources(std::string_view host_field, bool is_secure) {
     const bool is_plain = !host_field.empty() && std::ranges::all_of(host_field, [](char c) {
         return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
                c == ':';
     });
     const std::string host(host_field);
-    return is_plain ? "ws://" + host + " wss://" + host : std::string();
+    if (!is_plain) return {};
+    return is_secure ? "wss://" + host : "ws://" + host + " wss://" + host;
 }
 
 } // namespace scanloom::http

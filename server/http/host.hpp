@@ -14,15 +14,16 @@ namespace scanloom::http {
 [[nodiscard]] bool is_known_host(std::string_view host_field, const std::vector<std::string>& names);
 
 /// Whether a page of that origin ("http://localhost:8080") may use what only pages of this server should: it is of the
-/// host that was asked (RFC 6454; behind a proxy the ports differ), or of this very machine.
+/// host that was asked (RFC 6454; behind a proxy the ports differ), or of this very machine. Where it is asked over TLS
+/// (`is_secure`), pages of this host that came without may be anybody's.
 /// Pre  the Host field is one of a known host.
-[[nodiscard]] bool is_own_page(std::string_view origin, std::string_view host_field);
+[[nodiscard]] bool is_own_page(std::string_view origin, std::string_view host_field, bool is_secure);
 
 /// Whether it is what a WebSocket's handshake asks for: 16 bytes in base64.
 [[nodiscard]] bool is_websocket_key(std::string_view key) noexcept;
 
 /// The Host field as an address of the WebSockets of this server in a Content-Security-Policy: "ws://localhost:8080
-/// wss://localhost:8080"; empty where it cannot be one.
-[[nodiscard]] std::string websocket_sources(std::string_view host_field);
+/// wss://localhost:8080", of which the second alone where it is asked over TLS; empty where it cannot be one.
+[[nodiscard]] std::string websocket_sources(std::string_view host_field, bool is_secure);
 
 } // namespace scanloom::http

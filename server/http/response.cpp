@@ -12,6 +12,9 @@ namespace {
 /// What is no page of ours may load nothing and be framed nowhere.
 constexpr std::string_view kNothingAllowed = "default-src 'none'; frame-ancestors 'none'";
 
+/// Of this host alone: what others of its domain speak is not known here.
+constexpr std::string_view kSecureForAYear = "max-age=31536000";
+
 } // namespace
 
 Response& Response::set(std::string_view field, std::string_view value) & {
@@ -41,7 +44,8 @@ Response not_modified(std::string_view etag, std::string_view cache_control) {
     return response;
 }
 
-std::string head_text(const Response& response, bool keep_alive, std::string_view date, Framing framing) {
+std::string head_text(const Response& response, bool keep_alive, std::string_view date, Framing framing,
+                      bool is_secure) {
     constexpr std::size_t kUsualBytes = 512;
     const auto reason = boost::beast::http::obsolete_reason(response.status);
     std::string head;
@@ -58,6 +62,7 @@ std::string head_text(const Response& response, bool keep_alive, std::string_vie
         if (framing == Framing::kChunked) add("Transfer-Encoding", "chunked");
     }
     if (!keep_alive) add("Connection", "close");
+    if (is_secure) add("Strict-Transport-Security", kSecureForAYear);
     add("X-Content-Type-Options", "nosniff");
     add("Referrer-Policy", "no-referrer");
     if (response.get("Content-Security-Policy").empty()) add("Content-Security-Policy", kNothingAllowed);

@@ -80,8 +80,9 @@ enum class Framing {
 
 /// Status line and fields up to the empty line, as they go over the wire; with what every answer
 /// carries: its framing, whether the connection stays, and what browsers may do with it.
-/// `date` is an IMF-fixdate (RFC 9110, section 5.6.7).
+/// `date` is an IMF-fixdate (RFC 9110, section 5.6.7); `is_secure`: it goes over TLS, and browsers are told to come
+/// back so alone (RFC 6797).
 [[nodiscard]] std::string head_text(const Response& response, bool keep_alive, std::string_view date,
-                                    Framing framing = Framing::kLength);
+                                    Framing framing = Framing::kLength, bool is_secure = false);
 
 } // namespace scanloom::http

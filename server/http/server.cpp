@@ -84,7 +84,8 @@ void Server::take(tcp::socket socket) {
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const auto executor = socket.get_executor();
-    auto connection = std::make_shared<Connection>(std::move(socket), service_);
+    auto connection =
+        std::make_shared<Connection>(sockets::stream_over(std::move(socket), service_->config.tls), service_);
     connections_.insert(connection);
     service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
     try {
@@ -98,6 +99,7 @@ void Server::take(tcp::socket socket) {
 /// Says why, as far as that is possible without waiting: nothing may pile up here.
 void Server::refuse(tcp::socket socket) {
     service_->counters.connections_refused.Increment();
+    if (service_->config.tls) return; // a handshake would have to be waited for
     const auto response = problem(Error{Errc::kOverloaded, "too many connections are open; try again later"}, "");
     const auto text = head_text(response, false, "") + std::string(response.body.bytes());
     boost::system::error_code ignored;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "server/live/live_config.hpp"
+#include "server/sockets/port_tls.hpp"
 
 #include <boost/asio/ip/tcp.hpp>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,9 @@ struct ServerConfig {
 
     live::LiveConfig live; ///< each viewer is one of the connections
 
+    std::shared_ptr<const sockets::PortTls> tls = nullptr; ///< none: requests come in plainly
+
+    std::chrono::milliseconds handshake{10'000};  ///< of TLS, from the connection on
     std::chrono::milliseconds idle{60'000};       ///< between requests
     std::chrono::milliseconds header{10'000};     ///< from a request's first byte to the end of its header
     std::chrono::milliseconds body{30'000};       ///< for the body's beginning; each byte gives more, by read_rate_min

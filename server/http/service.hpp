@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/net/tls.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
@@ -14,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace scanloom::http {
 
@@ -30,6 +32,8 @@ struct Answering {
         return std::nullopt;
     }; ///< on I/O threads, before a body is read: the answer to who is not let in
     std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; tells when, on any
+    std::function<void(const std::string&, net::ClientFault)> turned_away = [](const std::string&, net::ClientFault) {
+    }; ///< on I/O threads: at that address, in the handshake
 };
 
 /// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:

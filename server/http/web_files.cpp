@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kBytesMax = std::size_t{64} << 20;
 
-std::string viewer_policy(std::string_view host) {
-    const auto websockets = websocket_sources(host);
+std::string viewer_policy(std::string_view host, bool is_secure) {
+    const auto websockets = websocket_sources(host, is_secure);
     return fmt::format("default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
                        "connect-src 'self'{}{}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
                        websockets.empty() ? "" : " ", websockets);
@@ -123,7 +123,7 @@ Result<WebFiles> load_web_files(const std::filesystem::path& folder) {
 }
 
 Result<Response> serve_web_file(const WebFiles& files, std::string_view name, std::string_view if_none_match,
-                                std::string_view host) {
+                                std::string_view host, bool is_secure) {
     const auto found = files.find(name);
     if (found == files.end()) {
         if (name == "index.html") return not_built();
@@ -136,7 +136,7 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
             ? not_modified(file.etag, cache_control)
             : ok(file.content_type, Body(file.content)).set("ETag", file.etag).set("Cache-Control", cache_control);
     // Of a 304, too: a browser applies its fields to the page it has (RFC 9111, section 3.2).
-    response.set("Content-Security-Policy", viewer_policy(host));
+    response.set("Content-Security-Policy", viewer_policy(host, is_secure));
     return response;
 }
 

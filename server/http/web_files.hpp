@@ -30,9 +30,10 @@ using WebFiles = std::map<std::string, WebFile, std::less<>>;
 
 /// Answers with the file of that name; with a page that explains, when there are none at all. A page may ask this
 /// server alone, under the name of `host`, the request's Host field: older browsers do not count ws: as the same
-/// origin.
+/// origin. `is_secure`: it is asked over TLS, and opens its WebSockets so.
 /// Errors  kNotFound.
 [[nodiscard]] Result<Response> serve_web_file(const WebFiles& files, std::string_view name,
-                                              std::string_view if_none_match, std::string_view host);
+                                              std::string_view if_none_match, std::string_view host,
+                                              bool is_secure = false);
 
 } // namespace scanloom::http

@@ -50,9 +50,8 @@ void IngestServer::take(asio::ip::tcp::socket socket) {
     if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
     if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room_for_greeting();
-    net::LinkStream stream =
-        config_.tls ? net::LinkStream(std::move(socket), *config_.tls) : net::LinkStream(std::move(socket));
-    auto link = std::make_shared<RobotLink>(std::move(stream), services_, config_.link);
+    auto link =
+        std::make_shared<RobotLink>(sockets::stream_over(std::move(socket), config_.tls), services_, config_.link);
     const auto guest = std::make_shared<Guest>(Guest{link, full ? Standing::kLeaving : Standing::kGreeting});
     if (!full) greeting_.push_back(guest);
     ++count(guest->standing);

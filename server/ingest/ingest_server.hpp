@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/net/tls.hpp"
 #include "server/ingest/robot_link.hpp"
+#include "server/sockets/port_tls.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -16,9 +16,9 @@ namespace scanloom::ingest {
 
 struct IngestConfig {
     LinkConfig link;
-    std::size_t links_max = 10'000; ///< that said hello; more are refused with an Error
-    net::TlsContext tls;            ///< none: robots speak plainly
-    std::size_t greeting_max = 256; ///< that did not yet; one more, and the oldest is cut off
+    std::size_t links_max = 10'000;                        ///< that said hello; more are refused with an Error
+    std::size_t greeting_max = 256;                        ///< that did not yet; one more, and the oldest is cut off
+    std::shared_ptr<const sockets::PortTls> tls = nullptr; ///< none: robots speak plainly
 };
 
 /// Listens for robots and serves each on a link of its own.

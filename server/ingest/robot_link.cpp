@@ -100,8 +100,11 @@ asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
 asio::awaitable<bool> RobotLink::shake_hands() {
     const auto [failed] = co_await stream_.async_handshake(
         net::LinkStream::Role::kServer, asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
-    if (failed) spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
-    co_return !failed;
+    if (!failed) co_return true;
+    spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
+    if (const auto fault = net::client_fault_of(failed)) services_.audit.note(access::Port::kRobot, address_, *fault);
+    co_await let_hang_up();
+    co_return false;
 }
 
 /// The conversation, in the order in which it happens.
@@ -313,10 +316,18 @@ asio::awaitable<void> RobotLink::part() {
     expect_something_within(config_.farewell_deadline);
     outbox_.close();
     co_await writer_.emptied();
+    co_await let_hang_up();
+}
+
+/// What was said last must have been read by then, be it TLS's own alert.
+asio::awaitable<void> RobotLink::let_hang_up() {
+    parting_ = true;
+    expect_something_within(config_.farewell_deadline);
     stream_.shutdown_send();
     for (;;) {
         const auto room = decoder_.prepare(kReadBytes);
-        const auto [failed, bytes] = co_await stream_.async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
+        const auto [failed, bytes] =
+            co_await stream_.socket().async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
         if (failed) co_return;
     }
 }

@@ -90,6 +90,7 @@ private:
     boost::asio::awaitable<void> watch_deadline();
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     boost::asio::awaitable<void> part();
+    boost::asio::awaitable<void> let_hang_up();
     [[nodiscard]] std::string who_ended() const;
     [[nodiscard]] log::Context about() const;
     void start_watch();

@@ -17,11 +17,11 @@
 namespace scanloom::live {
 namespace {
 
+namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace net = boost::asio;
 namespace websocket = boost::beast::websocket;
 
-constexpr auto kAwaitTuple = net::as_tuple(net::use_awaitable);
+constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 
 /// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 401 and 404.
 constexpr websocket::close_code kTokenGone{4401};
@@ -59,14 +59,13 @@ private:
 
 } // namespace
 
-Viewer::Viewer(net::ip::tcp::socket socket, Invitation invitation, std::shared_ptr<const void> seat, Services services)
-    : stream_(std::move(socket)), invitation_(std::move(invitation)), seat_(std::move(seat)),
+Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services)
+    : stream_(std::move(stream)), invitation_(std::move(invitation)), seat_(std::move(seat)),
       services_(std::move(services)), narrator_(invitation_.tag), turn_(stream_.get_executor()),
       deadline_(stream_.get_executor()) {
     const auto& config = services_.config;
     boost::system::error_code ignored;
-    beast::get_lowest_layer(stream_).socket().set_option(net::socket_base::send_buffer_size(config.send_buffer_bytes),
-                                                         ignored);
+    stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(config.send_buffer_bytes), ignored);
     stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
     stream_.set_option(websocket::stream_base::decorator( // or Beast would tell its version
         [](websocket::response_type& response) { response.set(beast::http::field::server, "Scanloom"); }));
@@ -80,7 +79,7 @@ Viewer::Viewer(net::ip::tcp::socket socket, Invitation invitation, std::shared_p
 void Viewer::on_changed() noexcept {
     if (told_.exchange(true)) return;
     try {
-        net::post(stream_.get_executor(), [weak = weak_from_this()] {
+        asio::post(stream_.get_executor(), [weak = weak_from_this()] {
             if (const auto self = weak.lock()) {
                 self->changed_ = true;
                 self->wake();
@@ -92,20 +91,19 @@ void Viewer::on_changed() noexcept {
 }
 
 void Viewer::stop() {
-    net::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         self->end(close_with(websocket::close_code::going_away,
                              "the server is shutting down; connect again when it is back"));
     });
 }
 
 void Viewer::abort() {
-    net::dispatch(stream_.get_executor(),
-                  [self = shared_from_this()] { beast::get_lowest_layer(self->stream_).close(); });
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] { self->stream_.next_layer().close(); });
 }
 
 // On the strand
 
-net::awaitable<void> Viewer::run(const Upgrade& upgrade) {
+asio::awaitable<void> Viewer::run(const Upgrade& upgrade) {
     const bool accepted = co_await accept(upgrade);
     if (!accepted) co_return;
     const Counted counted(services_.counters.viewers);
@@ -116,7 +114,7 @@ net::awaitable<void> Viewer::run(const Upgrade& upgrade) {
         });
     }
     reading_ = true;
-    net::co_spawn(stream_.get_executor(), read_requests(), [self = shared_from_this()](std::exception_ptr) {
+    asio::co_spawn(stream_.get_executor(), read_requests(), [self = shared_from_this()](std::exception_ptr) {
         self->reading_ = false;
         self->wake();
     });
@@ -133,13 +131,13 @@ net::awaitable<void> Viewer::run(const Upgrade& upgrade) {
     }
 }
 
-net::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
+asio::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
     const auto [error] = co_await stream_.async_accept(upgrade, kAwaitTuple);
     co_return !error;
 }
 
 /// Ends when the viewer hangs up, when it breaks a rule, and with the connection.
-net::awaitable<void> Viewer::read_requests() {
+asio::awaitable<void> Viewer::read_requests() {
     const auto self = shared_from_this();
     for (;;) {
         buffer_.clear();
@@ -166,14 +164,14 @@ std::optional<Viewer::Close> Viewer::fault_of_message() {
     return std::nullopt;
 }
 
-net::awaitable<void> Viewer::tell_events() {
+asio::awaitable<void> Viewer::tell_events() {
     for (;;) {
         co_await wait_for_turn();
         if (ending_ || !reading_) co_return;
         changed_ = false;
         if (wishes_) narrator_.set_wishes(*std::exchange(wishes_, std::nullopt));
-        auto work = [self = shared_from_this()]() -> net::awaitable<Narration> { co_return self->narrate(); };
-        const Narration narration = co_await net::co_spawn(services_.showing, std::move(work), net::use_awaitable);
+        auto work = [self = shared_from_this()]() -> asio::awaitable<Narration> { co_return self->narrate(); };
+        const Narration narration = co_await asio::co_spawn(services_.showing, std::move(work), asio::use_awaitable);
         look_again_ = narration.look_again;
         if (narration.end) end(*narration.end);
         if (!narration.event) continue;
@@ -184,7 +182,7 @@ net::awaitable<void> Viewer::tell_events() {
 }
 
 /// Until there may be something to tell, and it may be told; or the end.
-net::awaitable<void> Viewer::wait_for_turn() {
+asio::awaitable<void> Viewer::wait_for_turn() {
     while (!ending_ && reading_) {
         changed_ = changed_ || Clock::now() >= look_again_;
         if (changed_ && Clock::now() >= due_) co_return;
@@ -212,9 +210,9 @@ Viewer::Narration Viewer::narrate() {
 }
 
 /// @return false when the connection cannot be used any more.
-net::awaitable<bool> Viewer::send(const std::string& event) {
+asio::awaitable<bool> Viewer::send(const std::string& event) {
     if (!ending_) cut_off_after(services_.config.write);
-    const auto [error, size] = co_await stream_.async_write(net::buffer(event), kAwaitTuple);
+    const auto [error, size] = co_await stream_.async_write(asio::buffer(event), kAwaitTuple);
     if (!ending_) deadline_.cancel();
     if (error) co_return false;
     services_.counters.events.Increment();
@@ -222,10 +220,10 @@ net::awaitable<bool> Viewer::send(const std::string& event) {
     co_return true;
 }
 
-net::awaitable<void> Viewer::close() {
+asio::awaitable<void> Viewer::close() {
     if (ending_ && stream_.is_open()) co_await stream_.async_close(*ending_, kAwaitTuple);
     deadline_.cancel();
-    beast::get_lowest_layer(stream_).close(); // what is still being read ends, too
+    stream_.next_layer().close(); // what is still being read ends, too
 }
 
 void Viewer::end(Close why) {
@@ -241,7 +239,7 @@ void Viewer::cut_off_after(std::chrono::milliseconds time) {
     deadline_.expires_after(time);
     deadline_.async_wait([weak = weak_from_this()](boost::system::error_code cancelled) {
         const auto self = weak.lock();
-        if (!cancelled && self) beast::get_lowest_layer(self->stream_).close();
+        if (!cancelled && self) self->stream_.next_layer().close();
     });
 }
 

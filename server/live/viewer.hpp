@@ -1,6 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/net/link_stream.hpp"
+#include "common/net/websocket_teardown.hpp"
 #include "server/live/core/narrator.hpp"
 #include "server/live/invitation.hpp"
 #include "server/live/live_config.hpp"
@@ -9,10 +11,8 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
@@ -49,8 +49,7 @@ public:
     };
 
     /// `seat` is kept as long as this.
-    Viewer(boost::asio::ip::tcp::socket socket, Invitation invitation, std::shared_ptr<const void> seat,
-           Services services);
+    Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services);
 
     /// Answers the upgrade, tells what happens, returns when the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
@@ -86,8 +85,8 @@ private:
     void wake();
     void cut_off_after(std::chrono::milliseconds time);
 
-    boost::beast::websocket::stream<boost::beast::tcp_stream, false> stream_; // false: nothing is ever compressed
-    boost::beast::flat_buffer buffer_;                                        // as long as a message may be
+    boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: nothing is ever compressed
+    boost::beast::flat_buffer buffer_;                               // as long as a message may be
     Invitation invitation_;
     std::shared_ptr<const void> seat_;
     Services services_;

@@ -1,5 +1,8 @@
 #include "tests/integration/ingest_fixture.hpp"
 #include "tests/support/http_client.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/support/test_certificate.hpp"
+#include "tests/support/tls_http_client.hpp"
 
 #include <boost/asio/post.hpp>
 #include <spdlog/sinks/ostream_sink.h>
@@ -25,6 +28,36 @@ TEST_F(IngestTest, ARobotThatSaysNoHelloInTimeIsTold) {
     RobotSocket slow(port());
     slow.send_bytes(frame_of(hello("r")).substr(0, 10));
     expect_refused(slow, Errc::kTimeout, true, "no hello was received in time");
+}
+
+/// Nothing can be told there.
+TEST_F(IngestTest, WhoDoesNotFinishTheHandshakeOfTlsInTimeIsCutOffAndHoldsUpNobody) {
+    const TemporaryDirectory directory;
+    const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
+    IngestConfig config;
+    config.tls = sockets::PortTls::open({files.certificate, files.key, {}}).value();
+    config.link.hello_deadline = config.link.farewell_deadline = 50ms;
+    start(config);
+    RobotSocket silent(port());
+    RobotSocket slow(port());
+    slow.send_bytes(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
+    const testing_support::TlsHttpClient quick(port(), {.trusted = files.certificate});
+    EXPECT_TRUE(quick.is_trusted());
+    EXPECT_FALSE(silent.receive());
+    EXPECT_FALSE(slow.receive());
+}
+
+/// A handshake is no hello.
+TEST_F(IngestTest, WhoSaysNoHelloOverTlsIsTold) {
+    const TemporaryDirectory directory;
+    const auto files = testing_support::write_certificate(directory.path(), "127.0.0.1");
+    IngestConfig config;
+    config.tls = sockets::PortTls::open({files.certificate, files.key, {}}).value();
+    config.link.hello_deadline = 50ms;
+    start(config);
+    testing_support::TlsHttpClient robot(port(), {.trusted = files.certificate});
+    ASSERT_TRUE(robot.is_trusted());
+    EXPECT_THAT(robot.read_all(), testing::HasSubstr("no hello was received in time"));
 }
 
 TEST_F(IngestTest, ARobotThatFallsSilentIsTold) {

@@ -33,11 +33,14 @@ public:
         ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &deadline, sizeof(deadline));
         ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_SNDTIMEO, &deadline, sizeof(deadline));
     }
+    virtual ~HttpClient() = default;
+    HttpClient(const HttpClient&) = delete;
+    HttpClient& operator=(const HttpClient&) = delete;
 
     /// What does not get through is not sent: the server may hang up at any time.
     void send(std::string_view bytes) {
         while (!bytes.empty()) {
-            const auto sent = ::send(socket_.native_handle(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+            const auto sent = put(bytes);
             if (sent <= 0) return;
             bytes.remove_prefix(static_cast<std::size_t>(sent));
         }
@@ -74,11 +77,18 @@ public:
         return last_size_ == 0;
     }
 
+    /// All that comes until the stream ends.
+    [[nodiscard]] std::string read_all() {
+        while (receive()) {
+        }
+        return buffer_;
+    }
+
     /// Reads a few bytes at a time until the stream ends; how many there were. Steady, but slow: some 10 MB a second.
     [[nodiscard]] std::size_t read_slowly() {
         std::size_t count = 0;
         char bytes[16];
-        for (ssize_t size = 0; (size = ::recv(socket_.native_handle(), bytes, sizeof(bytes), 0)) > 0;) {
+        for (ssize_t size = 0; (size = take(bytes, sizeof(bytes))) > 0;) {
             count += static_cast<std::size_t>(size);
         }
         return count;
@@ -86,11 +96,20 @@ public:
 
     void shutdown_send() { ::shutdown(socket_.native_handle(), SHUT_WR); }
 
+protected:
+    /// As send(2) and recv(2) do.
+    virtual ssize_t put(std::string_view bytes) {
+        return ::send(socket_.native_handle(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    }
+    virtual ssize_t take(char* into, std::size_t size) { return ::recv(socket_.native_handle(), into, size, 0); }
+
+    [[nodiscard]] int descriptor() { return socket_.native_handle(); }
+
 private:
     /// @return false at the end of the stream.
     bool receive() {
         char bytes[4096];
-        const auto size = ::recv(socket_.native_handle(), bytes, sizeof(bytes), 0);
+        const auto size = take(bytes, sizeof(bytes));
         last_size_ = size;
         timed_out_ = size < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
         if (size <= 0) return false;

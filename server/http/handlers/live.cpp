@@ -35,7 +35,7 @@ Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& wa
     if (!is_websocket_key(upgrade->key)) {
         return Error{Errc::kInvalidField, "Sec-WebSocket-Key is not 16 bytes in base64; send a new one each time"};
     }
-    if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, call.request.host)) {
+    if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, call.request.host, call.request.is_secure)) {
         return problem(Status::forbidden,
                        fmt::format("pages of {} may not watch this server; open the viewer that it serves",
                                    in_quotes(upgrade->origin)),

@@ -51,7 +51,7 @@ Result<Response> post_login(const Doorman& doorman, const Call& call) {
 Result<Response> delete_login(const Doorman& doorman, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     if (const auto cookie = cookie_of(call.request.cookie, kLoginCookie)) {
-        if (!is_own_page(call.request.origin, call.request.host)) {
+        if (!is_own_page(call.request.origin, call.request.host, call.request.is_secure)) {
             return doorman.refuse(
                 call.request,
                 {access::Reason::kForeignPage, "", {Errc::kUnauthorized, "only a page of this server signs out"}});

@@ -2,6 +2,7 @@
 #include "tests/integration/load/lying_front.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
+#include "tests/support/test_certificate.hpp"
 
 #include <boost/json/parse.hpp>
 #include <gmock/gmock.h>
@@ -96,6 +97,37 @@ TEST_F(LoadProgram, EveryScanIsThereOnceThoughLinksFailAllTheTime) {
     EXPECT_GT(outcome.report.at("links").at("faults").at("half-open").to_number<int>(), 5);
     EXPECT_GT(outcome.report.at("links").at("faults").at("stall").to_number<int>(), 1);
     EXPECT_EQ(sessions(), 0U); // they are deleted again
+}
+
+TEST_F(LoadProgram, OneCertificateOpensBothPortsToIt) {
+    const auto server = testing_support::write_certificate(place_.path(), "127.0.0.1");
+    const auto own = testing_support::write_certificate(place_.path(), "load.example");
+    const auto& chain = server.certificate.native();
+    server_.reset();
+    server_ = std::make_unique<RunningServer>(place_.path() / "store", place_.path() / "log", 0, 0,
+                                              Words{"--http-tls-cert", chain, "--http-tls-key", server.key.native(),
+                                                    "--http-client-ca", own.certificate.native(), "--robot-tls-cert",
+                                                    chain, "--robot-tls-key", server.key.native(), "--robot-client-ca",
+                                                    own.certificate.native()});
+    const auto load = [&](const Words& further) {
+        std::filesystem::remove(errors());
+        ChildProcess running(program("scanloom-load"),
+                             kSmallLoad +
+                                 Words{"--server", server_->robot_address(), "--http",
+                                       "https://127.0.0.1:" + std::to_string(server_->http_port()), "--json", "-",
+                                       "--tls-ca", chain, "--viewers", "3", "--tile-readers", "2"} +
+                                 further,
+                             errors());
+        return finish(running);
+    };
+    const auto known = load({"--tls-cert", own.certificate.native(), "--tls-key", own.key.native()});
+    EXPECT_EQ(known.code, 0) << known.errors;
+    ASSERT_TRUE(known.report.is_object()) << known.errors;
+    EXPECT_THAT(known.verdict(), StartsWith("nothing lost: 2,400 of 2,400 scans acknowledged"));
+    EXPECT_EQ(known.report.at("audience").at("viewers_let_in").to_number<int>(), 3);
+    const auto stranger = load({});
+    EXPECT_EQ(stranger.code, 1);
+    EXPECT_THAT(stranger.errors, HasSubstr("--tls-cert and --tls-key"));
 }
 
 TEST_F(LoadProgram, OneTokenOpensBothPortsToIt) {

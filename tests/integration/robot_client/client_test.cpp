@@ -119,6 +119,7 @@ TEST_F(ClientTest, OptionsThatCannotBeAreRefusedAtTheStart) {
     EXPECT_THAT(refusal([](auto& made) { made.robot = ""; }), HasSubstr("'' is no name"));
     EXPECT_THAT(refusal([](auto& made) { made.body_radius = -1.0; }), HasSubstr("body_radius"));
     EXPECT_THAT(refusal([](auto& made) { made.tls_ca_file = "/nowhere"; }), HasSubstr("/nowhere"));
+    EXPECT_THAT(refusal([](auto& made) { made.tls_cert_file = "/nobody"; }), HasSubstr("/nobody"));
     EXPECT_THAT(refusal([](auto& made) { made.spool = "/proc/spool"; }), HasSubstr("/proc/spool"));
     EXPECT_THAT(refusal([](auto& made) { made.cell_size = 0.0; }), HasSubstr("a cell_size of 0 m cannot be"));
     EXPECT_THAT(refusal([](auto& made) { made.memory_bytes_max = 0; }), HasSubstr("memory_bytes_max of 0 MiB"));

@@ -10,6 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 /// Links that are encrypted, compressed, or both.
 namespace scanloom::robot {
 namespace {
@@ -38,7 +40,7 @@ protected:
         server_.emplace(io_, std::vector{script});
         if (host.empty()) return;
         files_ = write_certificate(directory_.path(), host);
-        server_->encrypt_with(net::server_tls(files_.certificate, files_.key).value());
+        server_->encrypt_with(net::server_tls({files_.certificate, files_.key}).value());
     }
 
     UplinkOptions options() {
@@ -119,11 +121,33 @@ TEST_F(LinkKinds, ACertificateThatNobodyTrustsIsRefused) {
 TEST_F(LinkKinds, ACertificateThatHasExpiredIsToldAsThat) {
     serve("127.0.0.1");
     const auto expired = write_certificate(directory_.path(), "127.0.0.1", -3600);
-    server_->encrypt_with(net::server_tls(expired.certificate, expired.key).value());
+    server_->encrypt_with(net::server_tls({expired.certificate, expired.key}).value());
     auto made = options();
     made.tls = net::client_tls(expired.certificate).value();
     EXPECT_FALSE(run(made));
     EXPECT_THAT(troubles_.at(0), HasSubstr("its certificate has expired; have the server given a new one"));
+}
+
+TEST_F(LinkKinds, TheServerMayWantToKnowWhomItSpeaksTo) {
+    serve("127.0.0.1");
+    const auto robot = write_certificate(directory_.path(), "localhost");
+    server_->encrypt_with(net::server_tls({files_.certificate, files_.key}, robot.certificate).value());
+    auto made = options();
+    made.tls = net::client_tls(files_.certificate, {robot.certificate, robot.key}).value();
+    const auto outcome = run(made);
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    expect_all_stored();
+}
+
+TEST_F(LinkKinds, WhoShowsNoCertificateWhereOneIsWantedIsToldWhatToDo) {
+    serve("127.0.0.1");
+    const auto robot = write_certificate(directory_.path(), "localhost");
+    server_->encrypt_with(net::server_tls({files_.certificate, files_.key}, robot.certificate).value());
+    auto made = options();
+    made.tls = net::client_tls(files_.certificate).value();
+    EXPECT_FALSE(run(made));
+    EXPECT_THAT(troubles_.at(0), HasSubstr("name yours with --tls-cert and --tls-key"));
+    EXPECT_THAT(server_->hellos(), IsEmpty());
 }
 
 TEST_F(LinkKinds, WhereOnlyOneSideEncryptsEachIsToldWhatToDo) {
@@ -144,10 +168,18 @@ TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
     serve("127.0.0.1");
     EXPECT_THAT(net::client_tls(files_.key).error().message, HasSubstr("127.0.0.1.key: no certificate"));
     EXPECT_THAT(net::client_tls("/nowhere").error().message, HasSubstr("/nowhere"));
-    EXPECT_THAT(net::server_tls(files_.key, files_.key).error().message, HasSubstr("no certificate"));
-    EXPECT_THAT(net::server_tls(files_.certificate, files_.certificate).error().message, HasSubstr("no private key"));
+    EXPECT_THAT(net::server_tls({files_.key, files_.key}).error().message, HasSubstr("no certificate"));
+    EXPECT_THAT(net::server_tls({files_.certificate, files_.certificate}).error().message, HasSubstr("no private key"));
+    EXPECT_THAT(net::client_tls(files_.certificate, {files_.certificate}).error().message, HasSubstr("no private key"));
+    const auto both = directory_.path() / "both.pem";
+    for (const auto& file : {files_.certificate, files_.key}) {
+        std::ofstream(both, std::ios::app) << std::ifstream(file).rdbuf();
+    }
+    EXPECT_TRUE(net::client_tls(files_.certificate, {both})) << "the key is in the same file";
+    EXPECT_THAT(net::server_tls({files_.certificate, files_.key}, files_.key).error().message,
+                HasSubstr("127.0.0.1.key: no certificate"));
     const auto other = write_certificate(directory_.path(), "localhost");
-    EXPECT_EQ(net::server_tls(files_.certificate, other.key).error().code, Errc::kConflict);
+    EXPECT_EQ(net::server_tls({files_.certificate, other.key}).error().code, Errc::kConflict);
 }
 
 TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {

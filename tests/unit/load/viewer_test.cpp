@@ -62,7 +62,8 @@ protected:
     RunClock clock_;
     AudienceFigures figures_;
     AudienceFigures after_refusal_;
-    OnlookerShared shared_{clock_, {"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())}, "", figures_};
+    OnlookerShared shared_{
+        clock_, {{"127.0.0.1", std::to_string(acceptor_.local_endpoint().port())}, nullptr, ""}, figures_};
     std::string target_;
 };
 

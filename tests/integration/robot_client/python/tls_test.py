@@ -50,6 +50,20 @@ class Tls(LinkTest):
                 robot.send(laser, [1.0] * 4000, pose=(0.0, 0.0, 0.0), stamp=float(i))
         self.assert_stored(30)
 
+    def test_a_robot_that_shows_its_certificate_where_one_is_wanted_is_let_in(self):
+        certificate, _ = self.make_certificate("robot", "DNS:robot.example")
+        _, server_side = self.make_certificate("mutual", "IP:127.0.0.1")
+        server_side.verify_mode = ssl.CERT_REQUIRED
+        server_side.load_verify_locations(certificate)
+        self.start(tls=server_side)
+        context = ssl.create_default_context(cafile=pathlib.Path(self.directory.name) / "mutual.pem")
+        robot = self.client(tls=context, timing={"give_up_after": 0.05})
+        self.assertIn("load_cert_chain", self.assert_fails("TIMEOUT", robot.close).message)
+        context.load_cert_chain(certificate, pathlib.Path(self.directory.name) / "robot.key")
+        with self.client(tls=context) as robot:
+            robot.send(self.laser(robot), [1.0] * 4, pose=(0.0, 0.0, 0.0), stamp=0.0)
+        self.assert_stored(1)
+
     def test_a_certificate_that_nobody_vouches_for_is_refused(self):
         self.start(tls=self.server_side)
         error = self.assert_fails("UNAUTHORIZED", self.client(tls=ssl.create_default_context()).close)

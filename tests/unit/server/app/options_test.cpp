@@ -119,8 +119,9 @@ TEST_F(ServerOptionsTest, BeyondLoopbackEachPortNeedsAGuard) {
     const std::vector<std::string> people = {"--http", "[::]:8080"};
     EXPECT_THAT(refusal(robots),
                 AllOf(HasSubstr("--listen 0.0.0.0"), HasSubstr("--robot-tls-cert"), HasSubstr("--insecure")));
-    EXPECT_THAT(refusal(people), AllOf(HasSubstr("--http ::"), HasSubstr("--tokens"), HasSubstr("--insecure")));
+    EXPECT_THAT(refusal(people), AllOf(HasSubstr("--http ::"), HasSubstr("--http-tls-cert"), HasSubstr("--insecure")));
     EXPECT_THAT(refusal(with(people, tls)), HasSubstr("--http ::")) << "robots' TLS does not guard it";
+    EXPECT_EQ(refusal(with(people, {"--http-tls-cert", "c", "--http-tls-key", "k"})), "taken");
     for (const auto& port : {robots, people}) {
         EXPECT_EQ(refusal(with(port, {"--tokens", "t"})), "taken");
         EXPECT_EQ(refusal(with(port, {"--insecure"})), "taken");
@@ -137,6 +138,12 @@ TEST_F(ServerOptionsTest, WhatAGuardDoesNotKeepOutIsSaid) {
                 ElementsAre(AllOf(HasSubstr("--listen"), HasSubstr("no token is asked for"))));
     EXPECT_THAT(warnings({"--listen", "0.0.0.0:1", "--tokens", "t", "--robot-tls-cert", "c", "--robot-tls-key", "k"}),
                 testing::IsEmpty());
+    EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--tokens", "t", "--http-tls-cert", "c", "--http-tls-key", "k"}),
+                testing::IsEmpty());
+    EXPECT_THAT(
+        warnings({"--http", "0.0.0.0:1", "--http-tls-cert", "c", "--http-tls-key", "k", "--http-client-ca", "a.pem"}),
+        ElementsAre(HasSubstr("whoever shows a certificate that a.pem signed can")));
+    EXPECT_THAT(refusal({"--robot-client-ca", "a.pem"}), HasSubstr("--robot-tls-cert"));
     EXPECT_THAT(warnings({"--http", "0.0.0.0:1", "--insecure"}), ElementsAre(HasSubstr("--http: no token")));
 }
 

@@ -25,10 +25,10 @@ TEST(KnownHost, ConfiguredNamesAreKnown) {
 }
 
 TEST(OwnPage, IsOfTheHostThatWasAskedOrOfThisMachine) {
-    EXPECT_TRUE(is_own_page("http://10.0.0.7:8080", "10.0.0.7:8080"));
-    EXPECT_TRUE(is_own_page("https://Maps.example", "maps.example:8443")) << "a proxy has ports of its own";
+    EXPECT_TRUE(is_own_page("http://10.0.0.7:8080", "10.0.0.7:8080", false));
+    EXPECT_TRUE(is_own_page("https://Maps.example", "maps.example:8443", false)) << "a proxy has ports of its own";
     for (const auto* origin : {"http://localhost:5173", "http://LOCALHOST", "http://127.0.0.1:1", "https://[::1]:80"}) {
-        EXPECT_TRUE(is_own_page(origin, "maps.example")) << origin;
+        EXPECT_TRUE(is_own_page(origin, "maps.example", false)) << origin;
     }
 }
 
@@ -37,8 +37,14 @@ TEST(OwnPage, IsNoneOfAStrangersPages) {
          {"http://evil.example", "http://maps.example.evil.example", "http://localhost.evil.example", "null", "",
           "maps.example", "file://", "http://", "http://:80", "ftp://maps.example", "http://evil@localhost",
           "chrome-extension://localhost", "http://10.0.0.7", "http://maps.example http://evil.example"}) {
-        EXPECT_FALSE(is_own_page(origin, "maps.example:8080")) << origin;
+        EXPECT_FALSE(is_own_page(origin, "maps.example:8080", false)) << origin;
     }
+}
+
+TEST(OwnPage, OverTlsIsNoneThatCameWithout) {
+    EXPECT_TRUE(is_own_page("https://maps.example", "maps.example", true));
+    EXPECT_FALSE(is_own_page("http://maps.example", "maps.example", true)) << "anybody on the way may have made it";
+    EXPECT_TRUE(is_own_page("http://localhost:5173", "maps.example", true)) << "nobody is on the way there";
 }
 
 TEST(WebSocketKey, IsSixteenBytesInBase64) {

@@ -75,6 +75,13 @@ TEST(ResponseHead, SaysWhatEveryAnswerSays) {
     EXPECT_THAT(head_text(ok("text/plain", Body("")), false, ""), HasSubstr("Connection: close\r\n"));
 }
 
+TEST(ResponseHead, OverTlsAloneItAsksForTls) {
+    const auto answer = ok("text/plain", Body(""));
+    EXPECT_THAT(head_text(answer, true, "", Framing::kLength, true),
+                HasSubstr("Strict-Transport-Security: max-age=31536000\r\n"));
+    EXPECT_THAT(head_text(answer, true, ""), Not(HasSubstr("Strict-Transport-Security")));
+}
+
 TEST(ResponseHead, NoOriginIsLetIn) {
     EXPECT_THAT(head_text(ok(boost::json::value(1)), true, ""), Not(HasSubstr("Access-Control")));
 }

@@ -1,8 +1,8 @@
 #include "server/http/server.hpp"
 
 #include "tests/support/http_client.hpp"
+#include "tests/unit/server/http/running_http.hpp"
 
-#include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,72 +22,14 @@ using testing::HasSubstr;
 using testing_support::HttpAnswer;
 using testing_support::HttpClient;
 
-/// Says what it was asked; fails when asked to.
-Response echo(const Request& request) {
-    if (request.target == "/throw") throw std::runtime_error("asked to");
-    return ok("text/plain", Body(request.method + " " + request.target + " " + request.body));
-}
-
-class RunningServer {
-public:
-    explicit RunningServer(ServerConfig config = {}, Answer answer = echo) {
-        config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
-        server_ = Server::listen(io_, executors(), config, {std::move(answer)}, counters_).value();
-        server_->start();
-        for (auto& thread : threads_) thread = std::thread([this] { io_.run(); });
-    }
-
-    ~RunningServer() {
-        stop();
-        for (auto& thread : threads_) thread.join();
-    }
-
-    void stop() {
-        if (stopped_) return;
-        stopped_ = true;
-        std::promise<void> done;
-        server_->stop([&done] { done.set_value(); });
-        done.get_future().wait();
-    }
-
-    /// For tests that stop the server themselves.
-    void set_stopped() { stopped_ = true; }
-
-    [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-    [[nodiscard]] Server& server() { return *server_; }
-    [[nodiscard]] boost::asio::io_context& io() { return io_; }
-    [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(),  serving_.get_executor(),  survey_.get_executor(), weaving_.get_executor(),
-                planning_.get_executor(), changing_.get_executor(), showing_.get_executor()};
-    }
-    [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
-
-private:
-    prometheus::Registry registry_;
-    metrics::HttpCounters counters_{registry_};
-    boost::asio::thread_pool telling_{1};
-    boost::asio::thread_pool serving_{1};
-    boost::asio::thread_pool survey_{1};
-    boost::asio::thread_pool weaving_{1};
-    boost::asio::thread_pool planning_{1};
-    boost::asio::thread_pool changing_{1};
-    boost::asio::thread_pool showing_{1};
-    boost::asio::io_context io_;
-    std::shared_ptr<Server> server_;
-    std::array<std::thread, 2> threads_;
-    bool stopped_ = false;
-};
-
-std::string get(std::string_view target) { return fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\n\r\n", target); }
-
-HttpAnswer answer_to(RunningServer& server, std::string_view bytes) {
+HttpAnswer answer_to(RunningHttp& server, std::string_view bytes) {
     HttpClient client(server.port());
     client.send(bytes);
     return client.read();
 }
 
 TEST(HttpServer, AnswersRequestsOnOneConnectionInOrder) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     for (int i = 0; i < 3; ++i) {
         client.send(get(fmt::format("/{}", i)));
@@ -99,7 +41,7 @@ TEST(HttpServer, AnswersRequestsOnOneConnectionInOrder) {
 }
 
 TEST(HttpServer, PipelinedRequestsAreAllAnsweredInOrder) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     std::string bytes;
     for (int i = 0; i < 300; ++i) bytes += get(fmt::format("/{}", i)); // more than the buffer holds at once
@@ -108,7 +50,7 @@ TEST(HttpServer, PipelinedRequestsAreAllAnsweredInOrder) {
 }
 
 TEST(HttpServer, RequestsSplitAtEveryByteAreUnderstood) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     const std::string request = "POST /a HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhello";
     for (const char c : request + get("/b")) client.send(std::string_view(&c, 1));
@@ -117,7 +59,7 @@ TEST(HttpServer, RequestsSplitAtEveryByteAreUnderstood) {
 }
 
 TEST(HttpServer, HeadHasTheLengthButNotTheBody) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     client.send("HEAD /a HTTP/1.1\r\nHost: localhost\r\n\r\n" + get("/b"));
     const auto head = client.read(false);
@@ -127,7 +69,7 @@ TEST(HttpServer, HeadHasTheLengthButNotTheBody) {
 }
 
 TEST(HttpServer, ConnectionIsClosedWhenAskedFor) {
-    RunningServer server;
+    RunningHttp server;
     for (const auto* request :
          {"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", "GET / HTTP/1.0\r\n\r\n"}) {
         HttpClient client(server.port());
@@ -140,11 +82,11 @@ TEST(HttpServer, ConnectionIsClosedWhenAskedFor) {
 }
 
 TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
-    RunningServer server;
-    for (const auto* bytes : {"\x16\x03\x01\x02\x01garbage\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n",
-                              "GET / HTTP/1.1\r\nno colon\r\n\r\n", "GET / HTTP/1.1\r\nHost : x\r\n\r\n",
-                              "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n",
-                              "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n"}) {
+    RunningHttp server;
+    for (const auto* bytes :
+         {"\x16\x02garbage\r\n\r\n", "GET\r\n\r\n", "GET / HTTP/9.9\r\n\r\n", "GET / HTTP/1.1\r\nno colon\r\n\r\n",
+          "GET / HTTP/1.1\r\nHost : x\r\n\r\n", "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: x\r\n\r\n",
+          "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n"}) {
         HttpClient client(server.port());
         client.send(bytes);
         const auto answer = client.read();
@@ -156,8 +98,16 @@ TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
 }
 
+TEST(HttpServer, WhoGreetsInTlsWhereThereIsNoneIsLeftInOrder) {
+    RunningHttp server;
+    HttpClient client(server.port());
+    client.send(std::string_view("\x16\x03\x01\x02\x01garbage\r\n\r\n", 18));
+    EXPECT_EQ(client.read().status, 0) << "whatever were said could not be read there";
+    EXPECT_TRUE(client.ends_in_order());
+}
+
 TEST(HttpServer, RobotsAreSentToTheirPort) {
-    RunningServer server;
+    RunningHttp server;
     const std::string_view frame("\0\0\0\x08\x12\x06robot1", 12);
     const auto answer = answer_to(server, frame);
     EXPECT_EQ(answer.status, 400);
@@ -165,19 +115,19 @@ TEST(HttpServer, RobotsAreSentToTheirPort) {
 }
 
 TEST(HttpServer, OneHostFieldIsNeeded) {
-    RunningServer server;
+    RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\n\r\n").status, 400);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n").status, 400);
 }
 
 TEST(HttpServer, HostsOfStrangersAreMisdirected) {
-    RunningServer server;
+    RunningHttp server;
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
 }
 
 TEST(HttpServer, OversizedHeadersAreRefused) {
-    RunningServer server;
+    RunningHttp server;
     const std::string one_field = "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100'000, 'a') + "\r\n\r\n";
     EXPECT_EQ(answer_to(server, one_field).status, 431);
     std::string many_fields = "GET / HTTP/1.1\r\nHost: localhost\r\n";
@@ -187,13 +137,13 @@ TEST(HttpServer, OversizedHeadersAreRefused) {
 }
 
 TEST(HttpServer, HeadersUpToTheLimitAreRead) {
-    RunningServer server;
+    RunningHttp server;
     EXPECT_EQ(answer_to(server, get("/" + std::string(8'200, 'a'))).status, 431);
     EXPECT_EQ(answer_to(server, get("/" + std::string(7'000, 'a'))).status, 200);
 }
 
 TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262145\r\n\r\n");
     const auto refused = client.read();
@@ -206,7 +156,7 @@ TEST(HttpServer, OversizedBodiesAreRefusedBeforeTheyAreRead) {
 }
 
 TEST(HttpServer, BodiesUpToTheLimitAreRead) {
-    RunningServer server;
+    RunningHttp server;
     const std::string body(262'144, 'a');
     const auto answer =
         answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 262144\r\n\r\n" + body);
@@ -214,7 +164,7 @@ TEST(HttpServer, BodiesUpToTheLimitAreRead) {
 }
 
 TEST(HttpServer, ChunkedRequestsAreRefusedTrailersAndAll) {
-    RunningServer server;
+    RunningHttp server;
     const std::string start = "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n";
     EXPECT_EQ(answer_to(server, start + "5\r\nhello\r\n0\r\n\r\n").status, 411);
     EXPECT_EQ(answer_to(server, start + "0\r\nX: " + std::string(70'000, 'a') + "\r\n\r\n").status, 411);
@@ -223,7 +173,7 @@ TEST(HttpServer, ChunkedRequestsAreRefusedTrailersAndAll) {
 }
 
 TEST(HttpServer, AWaitingBodyIsAskedFor) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
     EXPECT_EQ(client.read().status, 100);
@@ -232,14 +182,14 @@ TEST(HttpServer, AWaitingBodyIsAskedFor) {
 }
 
 TEST(HttpServer, SlowHeadersAreCutOff) {
-    RunningServer server(ServerConfig{.header = 50ms});
+    RunningHttp server(ServerConfig{.header = 50ms});
     HttpClient client(server.port());
     client.send("GET / HTTP/1.1\r\nHost: loc");
     EXPECT_TRUE(client.is_closed());
 }
 
 TEST(HttpServer, DrippingBytesDoNotPostponeTheDeadline) {
-    RunningServer server(ServerConfig{.header_bytes_max = 1U << 30, .header = 50ms}); // so that only time can end it
+    RunningHttp server(ServerConfig{.header_bytes_max = 1U << 30, .header = 50ms}); // so that only time can end it
     HttpClient client(server.port());
     client.send("GET /");
     const std::jthread dripping([&](const std::stop_token& stop) {
@@ -249,21 +199,28 @@ TEST(HttpServer, DrippingBytesDoNotPostponeTheDeadline) {
 }
 
 TEST(HttpServer, SlowBodiesAreCutOff) {
-    RunningServer server(ServerConfig{.body = 50ms});
+    RunningHttp server(ServerConfig{.body = 50ms});
+    HttpClient client(server.port());
+    client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhel");
+    EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, ABodyThatStopsComingIsCutOffThoughItsTimeIsNotOver) {
+    RunningHttp server(ServerConfig{.body = 1h, .body_pause = 50ms});
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n\r\nhel");
     EXPECT_TRUE(client.is_closed());
 }
 
 TEST(HttpServer, AnAnnouncedLengthGivesNoTimeBeforeItIsSent) {
-    RunningServer server(ServerConfig{.body = 50ms, .body_pause = 1h, .read_rate_min = 100});
+    RunningHttp server(ServerConfig{.body = 50ms, .body_pause = 1h, .read_rate_min = 100});
     HttpClient client(server.port());
     client.send("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 200000\r\n\r\nhello");
     EXPECT_TRUE(client.is_closed()); // after 0.1 s, not after more than half an hour
 }
 
 TEST(HttpServer, IdleConnectionsAreClosed) {
-    RunningServer server(ServerConfig{.idle = 50ms});
+    RunningHttp server(ServerConfig{.idle = 50ms});
     HttpClient fresh(server.port());
     EXPECT_TRUE(fresh.is_closed());
     HttpClient used(server.port());
@@ -274,7 +231,7 @@ TEST(HttpServer, IdleConnectionsAreClosed) {
 
 TEST(HttpServer, WhoDoesNotReadIsCutOff) {
     std::promise<void> entered;
-    RunningServer server(ServerConfig{.write = 50ms, .drain = 1h}, [&](const Request&) {
+    RunningHttp server(ServerConfig{.write = 50ms, .drain = 1h}, [&](const Request&) {
         entered.set_value();
         return ok("text/plain", Body(std::string(64 << 20, 'a'))); // more than the sockets' buffers hold
     });
@@ -284,22 +241,41 @@ TEST(HttpServer, WhoDoesNotReadIsCutOff) {
     server.stop(); // returns when the connection is closed, though nobody read a byte
 }
 
+TEST(HttpServer, WhoDoesNotHangUpAfterTheLastAnswerIsHungUpOn) {
+    RunningHttp server(ServerConfig{.linger = 50ms, .drain = 1h});
+    HttpClient client(server.port());
+    client.send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    EXPECT_EQ(client.read().status, 200);
+    server.stop(); // returns when the connection is closed
+}
+
+TEST(HttpServer, WhoIsNotReadyWhenDrainingIsOverIsCutOff) {
+    RunningHttp server(ServerConfig{.header = 1h, .drain = 50ms});
+    HttpClient client(server.port());
+    client.send("GET / HTTP/1.1\r\nHost: loc");
+    HttpClient other(server.port());
+    other.send(get("/"));
+    EXPECT_EQ(other.read().status, 200); // so the first has been accepted
+    server.stop();                       // returns when the connection is closed
+    EXPECT_TRUE(client.is_closed());
+}
+
 TEST(HttpServer, WhoReadsTooSlowlyIsCutOff) {
     constexpr std::size_t kSize = 64 << 20; // seconds of slow reading
-    RunningServer server(ServerConfig{.write = 50ms, .write_rate_min = std::uint64_t{1} << 40},
-                         [](const Request&) { return ok("text/plain", Body(std::string(kSize, 'a'))); });
+    RunningHttp server(ServerConfig{.write = 50ms, .write_rate_min = std::uint64_t{1} << 40},
+                       [](const Request&) { return ok("text/plain", Body(std::string(kSize, 'a'))); });
     HttpClient client(server.port());
     client.send(get("/"));
     EXPECT_LT(client.read_slowly(), kSize);
 }
 
 TEST(HttpServer, LargeAnswersArriveWhole) {
-    RunningServer server({}, [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
+    RunningHttp server({}, [](const Request&) { return ok("text/plain", Body(std::string(8 << 20, 'b'))); });
     EXPECT_EQ(answer_to(server, get("/")).body, std::string(8 << 20, 'b'));
 }
 
 TEST(HttpServer, AFaultCostsOneAnswerOnly) {
-    RunningServer server;
+    RunningHttp server;
     HttpClient client(server.port());
     client.send(get("/throw"));
     const auto answer = client.read();
@@ -310,7 +286,7 @@ TEST(HttpServer, AFaultCostsOneAnswerOnly) {
 }
 
 TEST(HttpServer, OneConnectionTooManyIsTold) {
-    RunningServer server(ServerConfig{.connections_max = 1});
+    RunningHttp server(ServerConfig{.connections_max = 1});
     HttpClient first(server.port());
     first.send(get("/"));
     EXPECT_EQ(first.read().status, 200);
@@ -324,7 +300,7 @@ TEST(HttpServer, OneConnectionTooManyIsTold) {
 TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {
     std::promise<void> entered;
     std::promise<void> go_on;
-    RunningServer server({}, [&](const Request& request) {
+    RunningHttp server({}, [&](const Request& request) {
         entered.set_value();
         go_on.get_future().wait();
         return echo(request);
@@ -371,7 +347,7 @@ std::string post(std::string_view target) {
 
 TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
     Gate gate(3);
-    RunningServer server({}, [&](const Request& request) {
+    RunningHttp server({}, [&](const Request& request) {
         if (request.target.starts_with("/api") || request.target == "/metrics") gate.pass_slowly();
         return echo(request);
     });
@@ -390,7 +366,7 @@ TEST(HttpServer, HealthAndTheViewerAreAnsweredWhateverElseIsBusy) {
 
 TEST(HttpServer, ChangesHoldUpNeitherTilesNorMetrics) {
     Gate gate(1);
-    RunningServer server({}, [&](const Request& request) {
+    RunningHttp server({}, [&](const Request& request) {
         if (request.method == "DELETE") gate.pass_slowly();
         return echo(request);
     });
@@ -406,7 +382,7 @@ TEST(HttpServer, ChangesHoldUpNeitherTilesNorMetrics) {
 
 TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
     Gate gate(1);
-    RunningServer server(ServerConfig{.changes_max = 1}, [&](const Request& request) {
+    RunningHttp server(ServerConfig{.changes_max = 1}, [&](const Request& request) {
         gate.pass_slowly();
         return echo(request);
     });
@@ -423,7 +399,7 @@ TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
 
 TEST(HttpServer, OneSearchTooManyIsToldToComeBackAndTilesAreNotHeldUp) {
     Gate gate(1);
-    RunningServer server(ServerConfig{.plans_max = 1}, [&](const Request& request) {
+    RunningHttp server(ServerConfig{.plans_max = 1}, [&](const Request& request) {
         if (request.target.ends_with("/plan")) gate.pass_slowly();
         return echo(request);
     });
@@ -439,13 +415,13 @@ TEST(HttpServer, OneSearchTooManyIsToldToComeBackAndTilesAreNotHeldUp) {
 }
 
 TEST(HttpServer, AfterStoppingNobodyIsAccepted) {
-    RunningServer server;
+    RunningHttp server;
     server.stop();
     EXPECT_THROW(HttpClient(server.port()), boost::system::system_error);
 }
 
 TEST(HttpServer, APortInUseIsAClearError) {
-    RunningServer server;
+    RunningHttp server;
     ServerConfig config;
     config.endpoint = {boost::asio::ip::address_v4::loopback(), server.port()};
     const auto second = Server::listen(server.io(), server.executors(), config, {echo}, server.counters());
@@ -455,7 +431,7 @@ TEST(HttpServer, APortInUseIsAClearError) {
 }
 
 TEST(HttpServer, CountsAnswersByClass) {
-    RunningServer server;
+    RunningHttp server;
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
     EXPECT_EQ(answer_to(server, "garbage\r\n\r\n").status, 400);
     EXPECT_EQ(answer_to(server, get("/throw")).status, 500);

@@ -44,6 +44,9 @@ TEST_F(WebFilesTest, ThePageMayOpenWebSocketsOfThisServerAlone) {
     };
     EXPECT_THAT(policy_for("localhost:8080"),
                 HasSubstr("connect-src 'self' ws://localhost:8080 wss://localhost:8080;"));
+    const auto over_tls = serve_web_file(load(), "index.html", "", "localhost:8080", true).value();
+    EXPECT_THAT(std::string(over_tls.get("Content-Security-Policy")),
+                HasSubstr("connect-src 'self' wss://localhost:8080;"));
     for (const auto* hostile : {"", "a;script-src *", "a b", "[::1]:80", "*", "a/b"}) {
         EXPECT_THAT(policy_for(hostile), HasSubstr("connect-src 'self';")) << hostile;
     }

@@ -63,12 +63,14 @@ private:
 /// Sessions in memory, behind the HTTP server: real sockets on the loopback, real threads.
 class LiveServer {
 public:
-    explicit LiveServer(const LiveConfig& live = {.interval = std::chrono::milliseconds(0)}) {
+    explicit LiveServer(const LiveConfig& live = {.interval = std::chrono::milliseconds(0)},
+                        std::shared_ptr<const sockets::PortTls> tls = nullptr) {
         api_.set_recovered();
         create("lab");
         http::ServerConfig config;
         config.endpoint = {boost::asio::ip::address_v4::loopback(), 0};
         config.live = live;
+        config.tls = std::move(tls);
         config.drain = std::chrono::hours(1); // so that viewers end by themselves
         const auto pool = pool_.get_executor();
         server_ = http::Server::listen(io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,

@@ -3,8 +3,12 @@
 #include "tests/support/http_client.hpp"
 #include "tests/support/live_client.hpp"
 #include "tests/support/live_replay.hpp"
+#include "tests/support/temporary_directory.hpp"
+#include "tests/support/test_certificate.hpp"
 #include "tests/unit/server/live/live_server.hpp"
 
+#include <boost/asio/ssl/context.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -61,6 +65,51 @@ TEST(LiveViewer, EndsWhenTokensNoLongerAllowIt) {
     EXPECT_EQ(client.code(), 4401U);
     EXPECT_THAT(client.reason(), HasSubstr("sign in"));
     EXPECT_EQ(server.refusals().of(access::Port::kHttp, access::Reason::kRevoked).Value(), 1.0);
+}
+
+/// A session watched over TLS, to an end that the viewer or the server makes.
+class LiveViewerOverTls : public testing::Test {
+protected:
+    using Stream = boost::beast::websocket::stream<boost::asio::ssl::stream<boost::asio::ip::tcp::socket>>;
+
+    LiveViewerOverTls() {
+        server_.stream("r1", 1, 3);
+        stream_.next_layer().next_layer().connect({boost::asio::ip::address_v4::loopback(), server_.port()});
+        stream_.next_layer().handshake(boost::asio::ssl::stream_base::client);
+        stream_.handshake("127.0.0.1", "/api/v1/sessions/lab/live");
+    }
+
+    std::string read(boost::system::error_code& failed) {
+        boost::beast::flat_buffer buffer;
+        stream_.read(buffer, failed);
+        return {static_cast<const char*>(buffer.data().data()), buffer.size()};
+    }
+
+    TemporaryDirectory directory_;
+    testing_support::CertificateFiles files_ = testing_support::write_certificate(directory_.path(), "127.0.0.1");
+    LiveServer server_{{.interval = 0ms}, sockets::PortTls::open({files_.certificate, files_.key}).value()};
+    boost::asio::io_context io_;
+    boost::asio::ssl::context tls_{boost::asio::ssl::context::tls_client};
+    Stream stream_{io_, tls_};
+    boost::system::error_code failed_;
+};
+
+TEST_F(LiveViewerOverTls, IsToldTheSameAndMayLeave) {
+    LiveReplay viewer;
+    while (viewer.events == 0 || viewer.last.revision() < server_.session().snapshot()->revision) {
+        viewer.take(read(failed_));
+        ASSERT_FALSE(failed_) << failed_.message();
+    }
+    viewer.expect_equal_to(*server_.session().snapshot(), server_.session().connected());
+    stream_.close(boost::beast::websocket::close_code::normal, failed_);
+    EXPECT_FALSE(failed_) << failed_.message();
+}
+
+TEST_F(LiveViewerOverTls, HearsWhyTheServerEnds) {
+    server_.sessions().drain();
+    std::jthread stopping([this] { server_.stop(); }); // returns when the connection is closed
+    while (!failed_) read(failed_);
+    EXPECT_EQ(stream_.reason().code, 1001) << failed_.message();
 }
 
 TEST(LiveViewer, TheFirstEventTellsAllAndTheNextWhatChanged) {
