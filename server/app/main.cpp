@@ -1,5 +1,6 @@
 #include "common/app/standard_error.hpp"
 #include "common/app/standard_streams.hpp"
+#include "server/app/check_command.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
@@ -21,6 +22,7 @@ int run(const app::ServerOptions& options) {
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
+    if (options.task == app::Task::kCheck || options.task == app::Task::kCheckMaps) return app::check_store(options);
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
     for (const auto& warning : app::guard_warnings(options)) spdlog::warn("{}", warning);
     auto server = app::Server::open(options, app::limits_within(descriptors));

@@ -38,6 +38,7 @@ struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
+    std::string check;  ///< empty: serve
     std::string tokens; ///< empty: not given, as the next
     std::string web;
     double tile_cache_mib = 64.0;
@@ -57,6 +58,10 @@ std::filesystem::path default_web() {
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
         ->capture_default_str();
+    app.add_flag("--check{log}", raw.check,
+                 "Read all of the store, say what is damaged, and end; changes nothing. No server may have it open. "
+                 "--check=deep also weaves every log anew and compares the maps")
+        ->check(CLI::IsMember({"log", "deep"}));
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
     app.add_option(
@@ -137,6 +142,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
                      fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
     }
     options.store = raw.store;
+    if (!raw.check.empty()) options.task = raw.check == "deep" ? Task::kCheckMaps : Task::kCheck;
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
     options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));

@@ -15,8 +15,16 @@
 
 namespace scanloom::app {
 
+/// What the program is started for.
+enum class Task {
+    kServe,
+    kCheck,     ///< reads all of a store that no server has open
+    kCheckMaps, ///< and weaves every log anew
+};
+
 /// What scanloom-server can be told, by flag, SCANLOOM_* variable or TOML file, in that order.
 struct ServerOptions {
+    Task task = Task::kServe;
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;

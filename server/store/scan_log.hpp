@@ -140,7 +140,7 @@ struct StoreOptions {
 
 /// Opens the store in a directory, creating both if there is nothing yet.
 ///
-/// Errors  kStoreFailed: the directory cannot be used, is in use by another process, holds something
+/// Errors  kConflict: it is in use by another process; kStoreFailed: the directory cannot be used, holds something
 ///         else, or the store in it is damaged; the message names the file. kUnsupportedVersion: it
 ///         was written by a newer program. A write that a crash cut short is no damage: it was never
 ///         acknowledged and is dropped.
