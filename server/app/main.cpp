@@ -3,6 +3,7 @@
 #include "server/app/check_command.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
+#include "server/app/restore_command.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
 
@@ -22,7 +23,12 @@ int run(const app::ServerOptions& options) {
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
-    if (options.task == app::Task::kCheck || options.task == app::Task::kCheckMaps) return app::check_store(options);
+    switch (options.task) {
+    case app::Task::kCheck:
+    case app::Task::kCheckMaps: return app::check_store(options);
+    case app::Task::kRestore: return app::restore_store(options);
+    case app::Task::kServe: break;
+    }
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
     for (const auto& warning : app::guard_warnings(options)) spdlog::warn("{}", warning);
     auto server = app::Server::open(options, app::limits_within(descriptors));

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,6 +21,7 @@ enum class Task {
     kServe,
     kCheck,     ///< reads all of a store that no server has open
     kCheckMaps, ///< and weaves every log anew
+    kRestore,   ///< writes a store as a backup has it
 };
 
 /// What scanloom-server can be told, by flag, SCANLOOM_* variable or TOML file, in that order.
@@ -28,6 +30,9 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
+    std::filesystem::path backups;         ///< where backups are made; empty: nowhere
+    std::size_t backups_kept = 7;          ///< the newest
+    std::optional<std::uint32_t> backup;   ///< to restore; nothing: the newest
     std::filesystem::path web;             ///< the viewer's files
     std::filesystem::path tls_certificate; ///< of the robot port; empty: robots speak plainly
     std::filesystem::path tls_key;

@@ -106,6 +106,12 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     }
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
+    if (!options.backups.empty()) {
+        auto backups = store::Backups::open(options.backups, options.backups_kept);
+        if (!backups) return prefixed("--backups: ", backups.error());
+        server->backups_ = std::move(*backups);
+        server->api_.set_backups(*server->backups_);
+    }
     if (auto listening = server->listen(); !listening) return listening.error();
     return server;
 }
@@ -232,6 +238,7 @@ void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
     ingest_->stop();
     weaves_.stop();
+    if (backups_) backups_->stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });
     patience_.expires_after(kPatience);
     patience_.async_wait([this](const boost::system::error_code& error) {

@@ -12,6 +12,7 @@
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/reopening_log.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -39,7 +40,7 @@ using OpenLog =
 ///   reweaving      maps woven once more, with other settings: with a lower priority than all else
 ///   awaiting       answers that wait for such maps
 ///   planning       ways through maps, for robots and people: one search at a time
-///   changing       creating and deleting sessions: waits for the disk and for strands
+///   changing       creating and deleting sessions, making backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   reading        sessions that come back to memory: reads them from the store
 ///   telling        metrics
@@ -76,6 +77,7 @@ private:
     ServerOptions options_;
     ConnectionLimits limits_;
     std::unique_ptr<store::ReopeningLog> log_;
+    std::unique_ptr<store::Backups> backups_; // null: none are kept
     metrics::Metrics metrics_;
     guard::Gate gate_;
     guard::Audit audit_;

@@ -12,6 +12,7 @@
 #include "server/metrics/metrics.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_maker.hpp"
 
@@ -42,6 +43,9 @@ public:
     /// Pre  nobody asks yet.
     void set_robot_port(RobotPort robots) { robots_ = std::move(robots); }
 
+    /// Where backups are made; without, there are none. Pre  nobody asks yet.
+    void set_backups(store::Backups& backups) { backups_ = &backups; }
+
     /// Every failure is an answer too: application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
@@ -71,6 +75,7 @@ private:
     const WebFiles web_;
     const AnswerSlots slots_;
     RobotPort robots_;
+    store::Backups* backups_ = nullptr;
     std::atomic<bool> recovered_ = false;
 };
 

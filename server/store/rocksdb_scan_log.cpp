@@ -283,6 +283,11 @@ Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& vis
     return {};
 }
 
+Result<> RocksdbScanLog::copy_with(const CopyDatabase& copy) {
+    if (const auto failed = stats().last_error) return Error{Errc::kStoreFailed, *failed};
+    return copy(*database_);
+}
+
 StoreStats RocksdbScanLog::stats() const {
     StoreStats stats = committer_.stats();
     stats.torn_bytes_dropped = torn_bytes_dropped_;
