@@ -3,6 +3,7 @@
 #include "server/app/check_command.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
+#include "server/app/repair_command.hpp"
 #include "server/app/restore_command.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
@@ -26,6 +27,7 @@ int run(const app::ServerOptions& options) {
     switch (options.task) {
     case app::Task::kCheck:
     case app::Task::kCheckMaps: return app::check_store(options);
+    case app::Task::kRepair: return app::repair_store(options);
     case app::Task::kRestore: return app::restore_store(options);
     case app::Task::kServe: break;
     }

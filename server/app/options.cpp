@@ -69,10 +69,15 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--backups-kept", options.backups_kept, "How many are kept, the newest")
         ->check(CLI::Range(1, 10'000))
         ->capture_default_str();
+    auto* repair = app.add_option("--repair", options.repaired,
+                                  "Write whatever is intact of a damaged store into a new one, and end; --store is the "
+                                  "damaged one, of which nothing is changed")
+                       ->excludes("--check");
     app.add_option("--restore", raw.restore,
                    "Write the store as a backup has it, by its number or 'newest', and end; --store must be empty")
         ->needs(backups)
-        ->excludes("--check");
+        ->excludes("--check")
+        ->excludes(repair);
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
     app.add_option(
@@ -143,6 +148,7 @@ Result<> check_host_names(const std::vector<std::string>& names) {
 
 Result<> settle_task(const Raw& raw, ServerOptions& options) {
     if (!raw.check.empty()) options.task = raw.check == "deep" ? Task::kCheckMaps : Task::kCheck;
+    if (!options.repaired.empty()) options.task = Task::kRepair;
     if (raw.restore.empty()) return {};
     options.task = Task::kRestore;
     if (raw.restore == "newest") return {};

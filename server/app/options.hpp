@@ -21,6 +21,7 @@ enum class Task {
     kServe,
     kCheck,     ///< reads all of a store that no server has open
     kCheckMaps, ///< and weaves every log anew
+    kRepair,    ///< writes what is intact of a store into another
     kRestore,   ///< writes a store as a backup has it
 };
 
@@ -30,6 +31,7 @@ struct ServerOptions {
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
+    std::filesystem::path repaired;        ///< the store that --repair makes
     std::filesystem::path backups;         ///< where backups are made; empty: nowhere
     std::size_t backups_kept = 7;          ///< the newest
     std::optional<std::uint32_t> backup;   ///< to restore; nothing: the newest

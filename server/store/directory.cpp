@@ -121,23 +121,23 @@ Result<LockedDirectory> LockedDirectory::open(const fs::path& directory) {
     if (auto created = create(directory); !created) return created.error();
     const int file = ::open((directory / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0) return failure("cannot write in the store {}: {}", directory.native(), last_system_error());
-    return locked(directory, file, LOCK_EX);
+    return locked(directory, file, LOCK_EX, Files::kAll);
 }
 
-Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory) {
+Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory, Files files) {
     std::error_code problem;
     if (!fs::is_directory(directory, problem)) {
         return Error{Errc::kNotFound, fmt::format("there is no store {}; name its directory", directory.native())};
     }
     const int file = ::open((directory / kLockFile).c_str(), O_RDONLY | O_CLOEXEC);
     // A copy of a store may come without: then no server has ever had it open.
-    if (file < 0 && errno == ENOENT) return locked(directory, -1, LOCK_SH);
+    if (file < 0 && errno == ENOENT) return locked(directory, -1, LOCK_SH, files);
     if (file < 0) return failure("cannot read in the store {}: {}", directory.native(), last_system_error());
-    return locked(directory, file, LOCK_SH);
+    return locked(directory, file, LOCK_SH, files);
 }
 
 /// @param lock_file  open, or -1: there is none.
-Result<LockedDirectory> LockedDirectory::locked(const fs::path& directory, int lock_file, int kind) {
+Result<LockedDirectory> LockedDirectory::locked(const fs::path& directory, int lock_file, int kind, Files files) {
     if (lock_file >= 0) {
         if (const auto held = lock(directory, lock_file, kind); !held) return held.error();
     }
@@ -147,6 +147,7 @@ Result<LockedDirectory> LockedDirectory::locked(const fs::path& directory, int l
                      fmt::format("the store {} is in use by another program; stop it or name another directory",
                                  directory.native())};
     }
+    if (files == Files::kAny) return result;
     if (auto checked = check_files(directory); !checked) return checked.error();
     return result;
 }

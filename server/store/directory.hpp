@@ -16,9 +16,13 @@ public:
     ///         cannot be written, holds other files than a store, or a store that lost files.
     [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory);
 
+    /// Whether its files have to be those of a store that lost none.
+    enum class Files { kAll, kAny };
+
     /// The same for who only reads: makes and changes nothing, and keeps no other reader out.
     /// Errors  kNotFound: there is no such directory; else as above.
-    [[nodiscard]] static Result<LockedDirectory> open_to_read(const std::filesystem::path& directory);
+    [[nodiscard]] static Result<LockedDirectory> open_to_read(const std::filesystem::path& directory,
+                                                              Files files = Files::kAll);
 
     LockedDirectory(LockedDirectory&& other) noexcept
         : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
@@ -28,8 +32,8 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
-    [[nodiscard]] static Result<LockedDirectory> locked(const std::filesystem::path& directory, int lock_file,
-                                                        int kind);
+    [[nodiscard]] static Result<LockedDirectory> locked(const std::filesystem::path& directory, int lock_file, int kind,
+                                                        Files files);
 
     LockedDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
 
