@@ -10,6 +10,7 @@
 #include "server/http/server.hpp"
 #include "server/ingest/ingest_server.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/store/backups.hpp"
@@ -43,6 +44,7 @@ using OpenLog =
 ///   changing       creating and deleting sessions, making backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   reading        sessions that come back to memory: reads them from the store
+///   checking       reads the sessions that the start left in the store: behind all others, at a bounded rate
 ///   telling        metrics
 ///   showing        what viewers are told live: one event at a time, as snapshots are read for it
 ///
@@ -92,10 +94,12 @@ private:
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool reading_{2};
+    boost::asio::thread_pool checking_{1};
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool showing_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
+    session::BackgroundCheck check_;
     session::Weaves weaves_;
     guide::GoalBook goals_;
     ingest::RequestDesk desk_;

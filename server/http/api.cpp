@@ -172,8 +172,8 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kViewer: return get_viewer(web_, call);
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);
     case Operation::kLivez: return get_livez(call);
-    case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, robots_, call);
-    case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, tiles_.stats(), call);
+    case Operation::kReadyz: return get_readyz(sessions_, check_, log_, recovered_, robots_, call);
+    case Operation::kMetrics: return get_metrics(metrics_, sessions_, check_, log_, tiles_.stats(), call);
     case Operation::kOpenapi: return get_openapi(call);
     case Operation::kGetLogin: return get_login(doorman_, call);
     case Operation::kLogin: return post_login(doorman_, call);

@@ -10,6 +10,7 @@
 #include "server/http/response.hpp"
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/store/backups.hpp"
@@ -46,6 +47,9 @@ public:
     /// Where backups are made; without, there are none. Pre  nobody asks yet.
     void set_backups(store::Backups& backups) { backups_ = &backups; }
 
+    /// What it finds is told, too. Pre  nobody asks yet.
+    void set_background_check(const session::BackgroundCheck& check) { check_ = &check; }
+
     /// Every failure is an answer too: application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
@@ -76,6 +80,7 @@ private:
     const AnswerSlots slots_;
     RobotPort robots_;
     store::Backups* backups_ = nullptr;
+    const session::BackgroundCheck* check_ = nullptr;
     std::atomic<bool> recovered_ = false;
 };
 
