@@ -175,10 +175,10 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
 }
 
 /// Drops the tables that hold nothing else at once; the rest goes as tables are merged, which drops nothing as long as
-/// the removal is in memory alone: so it is written to a table first. A failure costs space and no more: whatever is
-/// left belongs to no session.
+/// the removal is in memory alone: so it is written to a table first, where there is room for one. A failure costs
+/// space and no more: whatever is left belongs to no session.
 void RocksdbScanLog::free_disk(SessionId session) {
-    database_->Flush({}).PermitUncheckedError();
+    if (!committer_.stats().no_room) database_->Flush({}).PermitUncheckedError();
     for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
         const rocksdb::Slice begin(range.begin);
         const rocksdb::Slice end(range.end);
