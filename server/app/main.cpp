@@ -1,7 +1,10 @@
 #include "common/app/standard_error.hpp"
 #include "common/app/standard_streams.hpp"
+#include "server/app/check_command.hpp"
 #include "server/app/descriptors.hpp"
 #include "server/app/options.hpp"
+#include "server/app/repair_command.hpp"
+#include "server/app/restore_command.hpp"
 #include "server/app/server.hpp"
 #include "server/app/standard_error_sink.hpp"
 #include "server/log/json_formatter.hpp"
@@ -26,6 +29,13 @@ int run(const app::ServerOptions& options) {
     }
     spdlog::set_level(spdlog::level::from_str(options.log_level));
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
+    switch (options.task) {
+    case app::Task::kCheck:
+    case app::Task::kCheckMaps: return app::check_store(options);
+    case app::Task::kRepair: return app::repair_store(options);
+    case app::Task::kRestore: return app::restore_store(options);
+    case app::Task::kServe: break;
+    }
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
     for (const auto& warning : app::guard_warnings(options)) spdlog::warn("{}", warning);
     auto server = app::Server::open(options, app::limits_within(descriptors));

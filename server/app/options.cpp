@@ -38,7 +38,9 @@ struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
-    std::string tokens; ///< empty: not given, as the next
+    std::string check;   ///< empty: serve, as the next
+    std::string restore; ///< "newest", or an id
+    std::string tokens;  ///< empty: not given, as the next
     std::string web;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;
@@ -74,6 +76,25 @@ void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string&
 void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
     app.add_option("--listen", raw.listen, "Address and port for robots; port 0 picks a free one")
         ->capture_default_str();
+    app.add_flag("--check{log}", raw.check,
+                 "Read all of the store, say what is damaged, and end; changes nothing. No server may have it open. "
+                 "--check=deep also weaves every log anew and compares the maps")
+        ->check(CLI::IsMember({"log", "deep"}));
+    auto* backups = app.add_option("--backups", options.backups,
+                                   "Directory for backups of the store, best on another disk; POST /api/v1/backups "
+                                   "makes one while the server runs");
+    app.add_option("--backups-kept", options.backups_kept, "How many are kept, the newest")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+    auto* repair = app.add_option("--repair", options.repaired,
+                                  "Write whatever is intact of a damaged store into a new one, and end; --store is the "
+                                  "damaged one, of which nothing is changed")
+                       ->excludes("--check");
+    app.add_option("--restore", raw.restore,
+                   "Write the store as a backup has it, by its number or 'newest', and end; --store must be empty")
+        ->needs(backups)
+        ->excludes("--check")
+        ->excludes(repair);
     app.add_option("--http", raw.http, "Address and port for people and programs")->capture_default_str();
     app.add_option("--store", raw.store, "Directory of the log; made if it does not exist")->required();
     app.add_option(
@@ -142,6 +163,23 @@ Result<> check_host_names(const std::vector<std::string>& names) {
     return {};
 }
 
+Result<> settle_task(const Raw& raw, ServerOptions& options) {
+    if (!raw.check.empty()) options.task = raw.check == "deep" ? Task::kCheckMaps : Task::kCheck;
+    if (!options.repaired.empty()) options.task = Task::kRepair;
+    if (raw.restore.empty()) return {};
+    options.task = Task::kRestore;
+    if (raw.restore == "newest") return {};
+    std::uint32_t id = 0;
+    const char* end = raw.restore.data() + raw.restore.size();
+    const auto [stopped, error] = std::from_chars(raw.restore.data(), end, id);
+    if (error == std::errc{} && stopped == end && id > 0) {
+        options.backup = id;
+        return {};
+    }
+    return Error{Errc::kInvalidField,
+                 fmt::format("--restore '{}' is no backup; give its number, or 'newest'", raw.restore)};
+}
+
 Result<> settle(const Raw& raw, ServerOptions& options) {
     const auto listen = parse_endpoint(raw.listen);
     if (!listen) return prefixed("--listen ", listen.error());
@@ -154,6 +192,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
                      fmt::format("--store {}: this version keeps its log in a directory; give a path", raw.store)};
     }
     options.store = raw.store;
+    if (auto task = settle_task(raw, options); !task) return task;
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
     options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));

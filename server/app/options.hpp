@@ -10,19 +10,34 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace scanloom::app {
 
+/// What the program is started for.
+enum class Task {
+    kServe,
+    kCheck,     ///< reads all of a store that no server has open
+    kCheckMaps, ///< and weaves every log anew
+    kRepair,    ///< writes what is intact of a store into another
+    kRestore,   ///< writes a store as a backup has it
+};
+
 /// What scanloom-server can be told, by flag, SCANLOOM_* variable or TOML file, in that order.
 struct ServerOptions {
+    Task task = Task::kServe;
     boost::asio::ip::tcp::endpoint listen; ///< robots
     boost::asio::ip::tcp::endpoint http;   ///< people and programs
     std::filesystem::path store;
-    std::filesystem::path web;    ///< the viewer's files
-    std::filesystem::path tokens; ///< who may do what; empty: everybody may do everything
+    std::filesystem::path repaired;      ///< the store that --repair makes
+    std::filesystem::path backups;       ///< where backups are made; empty: nowhere
+    std::size_t backups_kept = 7;        ///< the newest
+    std::optional<std::uint32_t> backup; ///< to restore; nothing: the newest
+    std::filesystem::path web;           ///< the viewer's files
+    std::filesystem::path tokens;        ///< who may do what; empty: everybody may do everything
     sockets::TlsFiles robot_tls;
     sockets::TlsFiles http_tls;
     std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost

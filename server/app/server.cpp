@@ -63,7 +63,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                         .reading = reading_.get_executor(),
                         .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                         .idle_after = options.idle_after}),
-      weaves_(*log_, reweaving_.get_executor()), desk_(planning_.get_executor(), goals_, sessions_),
+      check_(*log_, sessions_, checking_.get_executor()), weaves_(*log_, reweaving_.get_executor()),
+      desk_(planning_.get_executor(), goals_, sessions_),
       api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
            options.tile_cache_bytes),
       patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
@@ -75,6 +76,8 @@ Server::~Server() {
 }
 
 void Server::join_pools() {
+    check_.stop();
+    checking_.join();
     weaves_.stop(); // nobody waits for them any more
     telling_.join();
     showing_.join();
@@ -113,6 +116,13 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     }
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
+    server->api_.set_background_check(server->check_);
+    if (!options.backups.empty()) {
+        auto backups = store::Backups::open(options.backups, options.backups_kept);
+        if (!backups) return prefixed("--backups: ", backups.error());
+        server->backups_ = std::move(*backups);
+        server->api_.set_backups(*server->backups_);
+    }
     if (auto listening = server->listen(); !listening) return listening.error();
     return server;
 }
@@ -174,6 +184,7 @@ Result<> Server::run() {
         api_.set_recovered();
         ingest_->start();
         asio::post(tidying_.get_executor(), [this] { tidy_up(); });
+        check_.start();
         announce();
     }
     threads.clear(); // joins: until drain() has let everything come to its end
@@ -259,7 +270,9 @@ void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
     tell_service_manager("STOPPING=1");
     ingest_->stop();
+    check_.stop();
     weaves_.stop();
+    if (backups_) backups_->stop();
     asio::post(tidying_.get_executor(), [this] { tidying_.cancel(); });
     patience_.expires_after(kPatience);
     patience_.async_wait([this](const boost::system::error_code& error) {

@@ -10,8 +10,10 @@
 #include "server/http/server.hpp"
 #include "server/ingest/ingest_server.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/reopening_log.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -39,9 +41,10 @@ using OpenLog =
 ///   reweaving      maps woven once more, with other settings: with a lower priority than all else
 ///   awaiting       answers that wait for such maps
 ///   planning       ways through maps, for robots and people: one search at a time
-///   changing       creating and deleting sessions: waits for the disk and for strands
+///   changing       creating and deleting sessions, making backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   reading        sessions that come back to memory: reads them from the store
+///   checking       reads the sessions that the start left in the store: behind all others, at a bounded rate
 ///   telling        metrics
 ///   showing        what viewers are told live: one event at a time, as snapshots are read for it
 ///
@@ -77,6 +80,7 @@ private:
     ServerOptions options_;
     ConnectionLimits limits_;
     std::unique_ptr<store::ReopeningLog> log_;
+    std::unique_ptr<store::Backups> backups_; // null: none are kept
     metrics::Metrics metrics_;
     guard::Gate gate_;
     guard::Audit audit_;
@@ -91,10 +95,12 @@ private:
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool reading_{2};
+    boost::asio::thread_pool checking_{1};
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool showing_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
+    session::BackgroundCheck check_;
     session::Weaves weaves_;
     guide::GoalBook goals_;
     ingest::RequestDesk desk_;

@@ -1,5 +1,6 @@
 #include "server/http/api.hpp"
 
+#include "server/http/handlers/backups.hpp"
 #include "server/http/handlers/changes.hpp"
 #include "server/http/handlers/coverage.hpp"
 #include "server/http/handlers/difference.hpp"
@@ -49,6 +50,8 @@ bool needs_sessions(Operation operation) {
     case Operation::kLogin:
     case Operation::kLogout:
     case Operation::kMetrics:
+    case Operation::kListBackups:
+    case Operation::kMakeBackup:
     case Operation::kOpenapi: return false;
     default: return true;
     }
@@ -169,12 +172,14 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kViewer: return get_viewer(web_, call);
     case Operation::kViewerAsset: return get_viewer_asset(web_, call);
     case Operation::kLivez: return get_livez(call);
-    case Operation::kReadyz: return get_readyz(sessions_, log_, recovered_, robots_, call);
-    case Operation::kMetrics: return get_metrics(metrics_, sessions_, log_, tiles_.stats(), call);
+    case Operation::kReadyz: return get_readyz(sessions_, check_, log_, recovered_, robots_, call);
+    case Operation::kMetrics: return get_metrics(metrics_, sessions_, check_, log_, tiles_.stats(), call);
     case Operation::kOpenapi: return get_openapi(call);
     case Operation::kGetLogin: return get_login(doorman_, call);
     case Operation::kLogin: return post_login(doorman_, call);
     case Operation::kLogout: return delete_login(doorman_, call);
+    case Operation::kListBackups: return list_backups(backups_, call);
+    case Operation::kMakeBackup: return make_backup(backups_, log_, call);
     case Operation::kListSessions: return list_sessions(sessions_, call);
     case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
     case Operation::kGetSession: return get_session(sessions_, call);

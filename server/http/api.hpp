@@ -10,8 +10,10 @@
 #include "server/http/response.hpp"
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/store/backups.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_maker.hpp"
 
@@ -42,6 +44,12 @@ public:
     /// Pre  nobody asks yet.
     void set_robot_port(RobotPort robots) { robots_ = std::move(robots); }
 
+    /// Where backups are made; without, there are none. Pre  nobody asks yet.
+    void set_backups(store::Backups& backups) { backups_ = &backups; }
+
+    /// What it finds is told, too. Pre  nobody asks yet.
+    void set_background_check(const session::BackgroundCheck& check) { check_ = &check; }
+
     /// Every failure is an answer too: application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
@@ -71,6 +79,8 @@ private:
     const WebFiles web_;
     const AnswerSlots slots_;
     RobotPort robots_;
+    store::Backups* backups_ = nullptr;
+    const session::BackgroundCheck* check_ = nullptr;
     std::atomic<bool> recovered_ = false;
 };
 

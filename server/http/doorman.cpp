@@ -30,7 +30,7 @@ bool needs_own_page(const Request& request) {
 }
 
 bool has_role(const Token& token, Need need) {
-    if (need == Need::kCreate || need == Need::kChange) return may_change(token.role);
+    if (need == Need::kCreate || need == Need::kChange || need == Need::kKeep) return may_change(token.role);
     return need == Need::kAll || may_look(token.role);
 }
 
@@ -41,10 +41,10 @@ std::optional<Denied> objection_to(const Token& token, const Match& match) {
                       fmt::format("the token '{}' has the role {}, which may not do this; use one of another role",
                                   token.name, name_of(token.role)));
     }
-    if (need == Need::kAll && !is_for_all(token)) {
+    if ((need == Need::kAll || need == Need::kKeep) && !is_for_all(token)) {
         return denied(
             Reason::kWrongSession, token,
-            fmt::format("this tells of all sessions, and the token '{}' is not for all; use one whose sessions "
+            fmt::format("this is about all sessions, and the token '{}' is not for all; use one whose sessions "
                         "are *",
                         token.name));
     }

@@ -33,6 +33,7 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kPlan:
     case Operation::kCoverage:
     case Operation::kGoal: return Lane::kPlanning;
+    case Operation::kMakeBackup:
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;
     default: return Lane::kServing;

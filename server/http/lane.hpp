@@ -21,7 +21,7 @@ enum class Lane {
     kWeaving,   ///< maps that are to be woven first
     kImporting, ///< as kChanging, with a large body
     kPlanning,  ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time
-    kChanging,  ///< the disk, or a session's strand: creating and deleting sessions
+    kChanging,  ///< the disk, or a session's strand: creating and deleting sessions, making backups
 };
 
 [[nodiscard]] Lane lane_of(const Request& request);

@@ -13,6 +13,8 @@ Need need_of(Operation operation) noexcept {
     case Operation::kLogin:
     case Operation::kLogout: return Need::kNothing;
     case Operation::kMetrics: return Need::kAll;
+    case Operation::kListBackups:
+    case Operation::kMakeBackup: return Need::kKeep;
     case Operation::kListSessions: return Need::kList;
     case Operation::kCreateSession: return Need::kCreate;
     case Operation::kDeleteSession:

@@ -8,6 +8,7 @@ namespace scanloom::http {
 enum class Need {
     kNothing, ///< anybody may; some are told more when they show a token
     kAll,     ///< it is for all sessions
+    kKeep,    ///< to keep the whole store: it is for all sessions, and may change them
     kList,    ///< to look at sessions; only those that it is for are shown
     kLook,    ///< to look at this session
     kCreate,  ///< to change sessions; the handler knows which

@@ -18,6 +18,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/login", Operation::kGetLogin},
     Route{"POST", "/api/v1/login", Operation::kLogin},
     Route{"DELETE", "/api/v1/login", Operation::kLogout},
+    Route{"GET", "/api/v1/backups", Operation::kListBackups},
+    Route{"POST", "/api/v1/backups", Operation::kMakeBackup},
     Route{"GET", "/api/v1/sessions", Operation::kListSessions},
     Route{"POST", "/api/v1/sessions", Operation::kCreateSession},
     Route{"GET", "/api/v1/sessions/{session}", Operation::kGetSession},

@@ -49,6 +49,8 @@ enum class Operation {
     kListWeaves,
     kGetWeave,
     kDeleteWeave,
+    kListBackups,
+    kMakeBackup,
 };
 
 /// A method and a path that one operation answers. A segment of the pattern is literal, or "{name}"

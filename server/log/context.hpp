@@ -34,7 +34,8 @@ private:
 };
 
 template <class... Args>
-void write(spdlog::level::level_enum level, const Context& context, fmt::format_string<Args...> format, Args&&... args) {
+void write(spdlog::level::level_enum level, const Context& context, fmt::format_string<Args...> format,
+           Args&&... args) {
     const Scope scope(context);
     spdlog::default_logger_raw()->log(level, format, std::forward<Args>(args)...);
 }

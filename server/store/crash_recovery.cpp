@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -44,11 +45,10 @@ Result<LogFileCheck> checked(const fs::path& file) {
     return check;
 }
 
-/// The write-ahead log that was written last. Older ones were synced as a whole, and RocksDB
-/// recorded their sizes in its manifest.
-std::optional<fs::path> newest_write_ahead_log(const fs::path& directory) {
-    std::optional<fs::path> newest;
-    std::uint64_t newest_number = 0;
+/// By rising number: the last was written last. The others were synced as a whole, and RocksDB recorded their sizes in
+/// its manifest.
+std::map<std::uint64_t, fs::path> write_ahead_logs(const fs::path& directory) {
+    std::map<std::uint64_t, fs::path> logs;
     std::error_code problem;
     for (fs::directory_iterator file(directory, problem); !problem && file != fs::directory_iterator();
          file.increment(problem)) {
@@ -56,11 +56,9 @@ std::optional<fs::path> newest_write_ahead_log(const fs::path& directory) {
         const std::string stem = file->path().stem().native();
         std::uint64_t number = 0;
         const auto [end, unread] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
-        if (unread != std::errc() || end != stem.data() + stem.size() || (newest && number < newest_number)) continue;
-        newest = file->path();
-        newest_number = number;
+        if (unread == std::errc() && end == stem.data() + stem.size()) logs.emplace(number, file->path());
     }
-    return newest;
+    return logs;
 }
 
 Result<> cut_off(const fs::path& file, std::size_t bytes) {
@@ -101,18 +99,30 @@ Result<> check_manifest(const fs::path& directory) {
 
 } // namespace
 
-Result<std::uint64_t> mend_after_crash(const LockedDirectory& directory) {
+Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory) {
     if (auto manifest = check_manifest(directory.path()); !manifest) return manifest.error();
-    const auto log = newest_write_ahead_log(directory.path());
-    if (!log) return std::uint64_t{0};
-    const auto check = checked(*log);
-    if (!check) return check.error();
-    std::error_code problem;
-    const auto size = fs::file_size(*log, problem);
-    if (problem) return failure(fmt::format("cannot read {} of the store: {}", log->native(), problem.message()));
-    if (check->whole_bytes == size) return std::uint64_t{0};
-    if (auto cut = cut_off(*log, check->whole_bytes); !cut) return cut.error();
-    return size - check->whole_bytes;
+    std::optional<UnfinishedWrite> unfinished;
+    for (const auto& [number, log] : write_ahead_logs(directory.path())) {
+        if (unfinished) {
+            return failure(fmt::format("{} of the store is damaged at byte {}; restore the store from a backup",
+                                       unfinished->file.native(), unfinished->whole_bytes));
+        }
+        const auto check = checked(log);
+        if (!check) return check.error();
+        std::error_code problem;
+        const auto size = fs::file_size(log, problem);
+        if (problem) return failure(fmt::format("cannot read {} of the store: {}", log.native(), problem.message()));
+        if (check->whole_bytes < size) unfinished = {log, check->whole_bytes, size - check->whole_bytes};
+    }
+    return unfinished;
+}
+
+Result<std::uint64_t> mend_after_crash(const LockedDirectory& directory) {
+    const auto unfinished = find_unfinished_write(directory);
+    if (!unfinished) return unfinished.error();
+    if (!*unfinished) return std::uint64_t{0};
+    if (auto cut = cut_off((*unfinished)->file, (*unfinished)->whole_bytes); !cut) return cut.error();
+    return (*unfinished)->bytes;
 }
 
 } // namespace scanloom::store

@@ -4,8 +4,21 @@
 #include "server/store/directory.hpp"
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 
 namespace scanloom::store {
+
+/// What a crash left of a write, at the end of RocksDB's newest write-ahead log: it was never acknowledged.
+struct UnfinishedWrite {
+    std::filesystem::path file;
+    std::uint64_t whole_bytes = 0; ///< of the writes before it
+    std::uint64_t bytes = 0;       ///< that are to be cut off
+};
+
+/// Reads manifest and write-ahead log and changes nothing.
+/// Pre, Errors  as of mend_after_crash().
+[[nodiscard]] Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory);
 
 /// Cuts off the write that a crash left unfinished at the end of RocksDB's write-ahead log, and
 /// makes that durable. What remains must be perfect, so that RocksDB can open it with

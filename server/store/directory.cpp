@@ -52,16 +52,16 @@ Result<> create(const fs::path& directory) {
     return {};
 }
 
-Result<int> lock(const fs::path& directory) {
-    const int file = ::open((directory / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0) return failure("cannot write in the store {}: {}", directory.native(), last_system_error());
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
+/// @param kind  LOCK_EX or LOCK_SH.
+Result<int> lock(const fs::path& directory, int file, int kind) {
+    if (::flock(file, kind | LOCK_NB) == 0) return file;
     const bool in_use = errno == EWOULDBLOCK;
     const std::string problem = last_system_error();
     ::close(file);
     if (in_use) {
-        return failure("the store {} is in use by another scanloom-server; stop it or name another directory",
-                       directory.native());
+        return Error{Errc::kConflict,
+                     fmt::format("the store {} is in use by another scanloom-server; stop it or name another directory",
+                                 directory.native())};
     }
     return failure("cannot lock the store {}: {}", directory.native(), problem);
 }
@@ -119,13 +119,35 @@ Result<> check_files(const fs::path& directory) {
 
 Result<LockedDirectory> LockedDirectory::open(const fs::path& directory) {
     if (auto created = create(directory); !created) return created.error();
-    const auto locked = lock(directory);
-    if (!locked) return locked.error();
-    LockedDirectory result(directory, *locked);
-    if (rocksdb_is_open(directory)) {
-        return failure("the store {} is in use by another program; stop it or name another directory",
-                       directory.native());
+    const int file = ::open((directory / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0) return failure("cannot write in the store {}: {}", directory.native(), last_system_error());
+    return locked(directory, file, LOCK_EX, Files::kAll);
+}
+
+Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory, Files files) {
+    std::error_code problem;
+    if (!fs::is_directory(directory, problem)) {
+        return Error{Errc::kNotFound, fmt::format("there is no store {}; name its directory", directory.native())};
     }
+    const int file = ::open((directory / kLockFile).c_str(), O_RDONLY | O_CLOEXEC);
+    // A copy of a store may come without: then no server has ever had it open.
+    if (file < 0 && errno == ENOENT) return locked(directory, -1, LOCK_SH, files);
+    if (file < 0) return failure("cannot read in the store {}: {}", directory.native(), last_system_error());
+    return locked(directory, file, LOCK_SH, files);
+}
+
+/// @param lock_file  open, or -1: there is none.
+Result<LockedDirectory> LockedDirectory::locked(const fs::path& directory, int lock_file, int kind, Files files) {
+    if (lock_file >= 0) {
+        if (const auto held = lock(directory, lock_file, kind); !held) return held.error();
+    }
+    LockedDirectory result(directory, lock_file);
+    if (rocksdb_is_open(directory)) {
+        return Error{Errc::kConflict,
+                     fmt::format("the store {} is in use by another program; stop it or name another directory",
+                                 directory.native())};
+    }
+    if (files == Files::kAny) return result;
     if (auto checked = check_files(directory); !checked) return checked.error();
     return result;
 }

@@ -12,9 +12,17 @@ namespace scanloom::store {
 class LockedDirectory {
 public:
     /// Creates the directory if need be.
-    /// Errors  kStoreFailed: it cannot be created, is no directory, cannot be written, is in use by
-    ///         another server, holds other files than a store, or a store that lost files.
+    /// Errors  kConflict: in use by another server or program; kStoreFailed: it cannot be created, is no directory,
+    ///         cannot be written, holds other files than a store, or a store that lost files.
     [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory);
+
+    /// Whether its files have to be those of a store that lost none.
+    enum class Files { kAll, kAny };
+
+    /// The same for who only reads: makes and changes nothing, and keeps no other reader out.
+    /// Errors  kNotFound: there is no such directory; else as above.
+    [[nodiscard]] static Result<LockedDirectory> open_to_read(const std::filesystem::path& directory,
+                                                              Files files = Files::kAll);
 
     LockedDirectory(LockedDirectory&& other) noexcept
         : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
@@ -24,10 +32,13 @@ public:
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
+    [[nodiscard]] static Result<LockedDirectory> locked(const std::filesystem::path& directory, int lock_file, int kind,
+                                                        Files files);
+
     LockedDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
 
     std::filesystem::path path_;
-    int lock_; // file descriptor; the system lets the lock go with it, also after a crash
+    int lock_; // file descriptor, or -1; the system lets the lock go with it, also after a crash
 };
 
 /// Bytes of all files in a directory.

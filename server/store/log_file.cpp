@@ -108,4 +108,33 @@ LogFileCheck check_log_file(std::string_view bytes) {
     return check;
 }
 
+std::vector<std::string> whole_writes_of(std::string_view bytes) {
+    std::vector<std::string> writes;
+    std::string write; // of which the first records are in
+    bool inside_write = false;
+    std::size_t at = 0;
+    while (at < bytes.size()) {
+        if (left_in_block(at) < kHeaderBytes) {
+            at += left_in_block(at);
+            continue;
+        }
+        const auto record = record_at(bytes, at);
+        if (!record) {
+            inside_write = false;
+            ++at; // a damaged length hides the next record
+            continue;
+        }
+        if (is_start(record->type)) write.clear();
+        inside_write = is_start(record->type) || inside_write;
+        if (inside_write) write.append(bytes.substr(at + kHeaderBytes, record->length));
+        if (inside_write && is_end(record->type)) {
+            writes.push_back(std::move(write));
+            write.clear();
+            inside_write = false;
+        }
+        at += kHeaderBytes + record->length;
+    }
+    return writes;
+}
+
 } // namespace scanloom::store

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 /// RocksDB's log file format, as far as telling a torn end from damage needs it. Its write-ahead logs
 /// and manifests are written in it.
@@ -25,5 +27,8 @@ struct LogFileCheck {
 ///         and does not cross blocks; a write is a kFull record or kFirst, kMiddle..., kLast.
 /// Source  RocksDB 7.8, db/log_format.h; its wiki, "Write Ahead Log File Format".
 [[nodiscard]] LogFileCheck check_log_file(std::string_view bytes);
+
+/// Every write of a log file that is whole, also those behind damage: of a write that has any, nothing is kept.
+[[nodiscard]] std::vector<std::string> whole_writes_of(std::string_view bytes);
 
 } // namespace scanloom::store

@@ -1,14 +1,12 @@
 #include "server/store/compaction_watch.hpp"
 #include "server/store/crash_recovery.hpp"
-#include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
-
-#include <fmt/format.h>
+#include "server/store/store_facts.hpp"
 
 #include <memory>
-#include <optional>
+#include <string>
 #include <utility>
 
 namespace scanloom::store {
@@ -16,80 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error failure(const fs::path& directory, std::string_view what) {
-    return {Errc::kStoreFailed, fmt::format("the store {} cannot be opened: {}", directory.native(), what)};
-}
-
-Error failure(const fs::path& directory, const rocksdb::Status& status) {
-    if (status.IsCorruption()) {
-        return failure(directory, fmt::format("it is damaged ({}); restore it from a backup", status.ToString()));
-    }
-    if (status.IsNoSpace()) return failure(directory, fmt::format("the disk is full ({})", status.ToString()));
-    return failure(directory, status.ToString());
-}
-
-/// A number the store keeps about itself; nothing if it was never written.
-Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs::path& directory,
-                                                 std::string_view key) {
-    std::string sealed_value;
-    const auto status = database.Get({}, rocksdb::Slice(key.data(), key.size()), &sealed_value);
-    if (status.IsNotFound()) return std::optional<std::uint64_t>{};
-    if (!status.ok()) return failure(directory, status);
-    const auto value = unsealed(key, sealed_value);
-    const auto number = value ? number_of(*value) : std::nullopt;
-    if (!number) return failure(directory, fmt::format("its record '{}' is damaged; restore it from a backup", key));
-    return number;
-}
-
-bool is_empty(rocksdb::DB& database) {
-    const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
-    iterator->SeekToFirst();
-    return !iterator->Valid() && iterator->status().ok();
-}
-
 Result<> write_format(rocksdb::DB& database, const fs::path& directory) {
     rocksdb::WriteOptions options;
     options.sync = true;
     const std::string key(kFormatKey);
     const auto status = database.Put(options, key, sealed(key, number_bytes(kFormatVersion)));
-    if (!status.ok()) return failure(directory, status);
+    if (!status.ok()) return cannot_open(directory, status);
     return {};
-}
-
-Result<> check_format(rocksdb::DB& database, const fs::path& directory) {
-    const auto version = read_number(database, directory, kFormatKey);
-    if (!version) return version.error();
-    if (!*version) {
-        if (is_empty(database)) return write_format(database, directory);
-        return failure(directory,
-                       "it holds a RocksDB database without the format record of scanloom-server; name another "
-                       "directory if it is another program's, restore it from a backup if it is not");
-    }
-    if (**version < kFormatVersion) return write_format(database, directory);
-    if (**version == kFormatVersion) return {};
-    return Error{Errc::kUnsupportedVersion,
-                 fmt::format("the store {} was written by a newer scanloom-server (format {}, this one knows up to "
-                             "{}); update the server",
-                             directory.native(), **version, kFormatVersion)};
-}
-
-Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
-    LogEnds ends;
-    const auto next = read_number(database, directory, kNextSessionKey);
-    if (!next) return next.error();
-    ends.next_session = next->value_or(1);
-
-    const std::unique_ptr<rocksdb::Iterator> sessions(database.NewIterator({}));
-    for (sessions->Seek(std::string(kSessionsBegin)); sessions->Valid(); sessions->Next()) {
-        const auto session = session_of(sessions->key().ToStringView());
-        if (!session) break;
-        if (*session >= ends.next_session) return failure(directory, "its count of sessions is damaged");
-        const auto end = end_of_log(database, directory.native(), *session); // damage of one holds up no other
-        ends.revisions.emplace(*session, end ? *end : 0);
-        if (!end) ends.damaged.emplace(*session, end.error());
-    }
-    if (!sessions->status().ok()) return failure(directory, sessions->status());
-    return ends;
 }
 
 } // namespace
@@ -104,9 +35,13 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
     rocksdb::DB* opened = nullptr;
     const auto status = rocksdb::DB::Open(rocksdb_options(options, watch), directory.native(), &opened);
     std::unique_ptr<rocksdb::DB> database(opened);
-    if (!status.ok()) return failure(directory, status);
+    if (!status.ok()) return cannot_open(directory, status);
 
-    if (auto format = check_format(*database, directory); !format) return format.error();
+    const auto must_write = must_write_format(*database, directory);
+    if (!must_write) return must_write.error();
+    if (*must_write) {
+        if (auto written = write_format(*database, directory); !written) return written.error();
+    }
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
     return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped, watch,

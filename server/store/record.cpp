@@ -53,6 +53,11 @@ std::optional<std::string_view> part_of(std::string_view part_key) {
     return part_key.substr(1 + kNumberBytes);
 }
 
+std::optional<SessionId> owner_of(std::string_view key) {
+    if (key.empty() || (key[0] != kSession && key[0] != kEntry && key[0] != kPart)) return std::nullopt;
+    return number_of(key.substr(1, kNumberBytes));
+}
+
 std::string sealed(std::string_view key, std::string value) {
     unsigned char checksum[kChecksumBytes];
     boost::endian::store_little_u32(checksum, crc32c(key, value));

@@ -49,6 +49,9 @@ struct KeyRange {
 [[nodiscard]] std::optional<Revision> revision_of(std::string_view entry_key);
 [[nodiscard]] std::optional<std::string_view> part_of(std::string_view part_key);
 
+/// The session that a record, an entry or a part belongs to.
+[[nodiscard]] std::optional<SessionId> owner_of(std::string_view key);
+
 /// A value with its checksum behind it.
 [[nodiscard]] std::string sealed(std::string_view key, std::string value);
 

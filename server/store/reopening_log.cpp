@@ -98,6 +98,10 @@ Result<> ReopeningLog::read_checkpoint(SessionId session, const VisitPart& visit
     return use([&](ScanLog& log) { return log.read_checkpoint(session, visit); });
 }
 
+Result<> ReopeningLog::copy_with(const CopyDatabase& copy) {
+    return use([&](ScanLog& log) { return log.copy_with(copy); });
+}
+
 StoreStats ReopeningLog::stats() const {
     const std::shared_lock lock(mutex_);
     StoreStats stats = log_ ? log_->stats() : StoreStats{};

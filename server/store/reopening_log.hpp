@@ -38,6 +38,8 @@ public:
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
 
+    [[nodiscard]] Result<> copy_with(const CopyDatabase& copy) override;
+
     /// Of all times that it was open.
     [[nodiscard]] StoreStats stats() const override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;

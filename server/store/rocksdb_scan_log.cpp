@@ -174,9 +174,11 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
     return {};
 }
 
-/// Drops the tables that hold nothing else at once; the rest goes with the next compactions. A failure
-/// costs space and no more: whatever is left belongs to no session.
+/// Drops the tables that hold nothing else at once; the rest goes as tables are merged, which drops nothing as long as
+/// the removal is in memory alone: so it is written to a table first, where there is room for one. A failure costs
+/// space and no more: whatever is left belongs to no session.
 void RocksdbScanLog::free_disk(SessionId session) {
+    if (!committer_.stats().no_room) database_->Flush({}).PermitUncheckedError();
     for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
         const rocksdb::Slice begin(range.begin);
         const rocksdb::Slice end(range.end);
@@ -281,6 +283,11 @@ Result<> RocksdbScanLog::read_checkpoint(SessionId session, const VisitPart& vis
     }
     if (const auto status = scan.iterator->status(); !status.ok()) return unreadable(name(), session, status);
     return {};
+}
+
+Result<> RocksdbScanLog::copy_with(const CopyDatabase& copy) {
+    if (const auto failed = stats().last_error) return Error{Errc::kStoreFailed, *failed};
+    return copy(*database_);
 }
 
 StoreStats RocksdbScanLog::stats() const {

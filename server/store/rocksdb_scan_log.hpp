@@ -39,6 +39,7 @@ public:
     [[nodiscard]] Result<> clear_checkpoint(SessionId session) override;
     [[nodiscard]] Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) override;
     [[nodiscard]] Result<> read_checkpoint(SessionId session, const VisitPart& visit) override;
+    [[nodiscard]] Result<> copy_with(const CopyDatabase& copy) override;
     [[nodiscard]] StoreStats stats() const override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 

@@ -14,8 +14,9 @@
 #include <vector>
 
 namespace rocksdb {
+class DB;
 class Env;
-}
+} // namespace rocksdb
 
 namespace scanloom::store {
 
@@ -64,6 +65,7 @@ class ScanLog {
 public:
     using Done = std::function<void(Result<>)>;
     using VisitEntry = std::function<Result<>(Revision, std::string_view)>;
+    using CopyDatabase = std::function<Result<>(rocksdb::DB&)>;
     using VisitPart = std::function<Result<>(std::string_view key, std::string_view value)>;
 
     ScanLog() = default;
@@ -117,6 +119,10 @@ public:
 
     [[nodiscard]] virtual StoreStats stats() const = 0;
 
+    /// Lets `copy` make a copy of the database behind the log, as Backups does, while everything else goes on.
+    /// Errors  those of `copy`; kStoreFailed: the store has failed; kInvalidField: there is no database.
+    [[nodiscard]] virtual Result<> copy_with(const CopyDatabase& copy);
+
     /// All files of the store.
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
 };
@@ -140,7 +146,7 @@ struct StoreOptions {
 
 /// Opens the store in a directory, creating both if there is nothing yet.
 ///
-/// Errors  kStoreFailed: the directory cannot be used, is in use by another process, holds something
+/// Errors  kConflict: it is in use by another process; kStoreFailed: the directory cannot be used, holds something
 ///         else, or the store in it is damaged; the message names the file. kUnsupportedVersion: it
 ///         was written by a newer program. A write that a crash cut short is no damage: it was never
 ///         acknowledged and is dropped.

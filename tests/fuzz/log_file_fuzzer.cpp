@@ -1,6 +1,7 @@
 #include "server/store/log_file.hpp"
 #include "tests/fuzz/check.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -15,5 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
     const auto kept = store::check_log_file(bytes.substr(0, found.whole_bytes));
     fuzz::check(!kept.damage && kept.whole_bytes == found.whole_bytes, "the whole writes alone are a whole file");
+
+    const auto writes = store::whole_writes_of(bytes);
+    const auto first = store::whole_writes_of(bytes.substr(0, found.whole_bytes));
+    fuzz::check(first.size() <= writes.size() && std::equal(first.begin(), first.end(), writes.begin()),
+                "what comes behind takes nothing from the whole writes");
     return 0;
 }

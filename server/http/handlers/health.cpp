@@ -10,11 +10,13 @@ namespace scanloom::http {
 namespace {
 
 /// Damaged and failed sessions keep nobody from using the others.
-boost::json::object readiness(const session::SessionRegistry& sessions, const RobotPort& robots,
-                              const access::TokenRef& seen_by) {
+boost::json::object readiness(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
+                              const RobotPort& robots, const access::TokenRef& seen_by) {
     const auto is_seen = [&](std::string_view session) { return seen_by && is_for(*seen_by, session); };
     boost::json::array damaged;
-    for (const auto& [name, reason] : sessions.damaged()) {
+    auto found = sessions.damaged();
+    if (check != nullptr) found.merge(check->damaged());
+    for (const auto& [name, reason] : found) {
         if (is_seen(name)) damaged.push_back(damaged_json(name, reason));
     }
     boost::json::array failed;
@@ -37,8 +39,8 @@ Result<Response> get_livez(const Call& call) {
     return ok("text/plain; charset=utf-8", Body("ok\n")).set("Cache-Control", kNotKept);
 }
 
-Result<Response> get_readyz(const session::SessionRegistry& sessions, const store::ScanLog& log, bool recovered,
-                            const RobotPort& robots, const Call& call) {
+Result<Response> get_readyz(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
+                            const store::ScanLog& log, bool recovered, const RobotPort& robots, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     boost::json::array reasons;
     if (!recovered) reasons.emplace_back("the sessions are still being recovered from the store");
@@ -46,7 +48,7 @@ Result<Response> get_readyz(const session::SessionRegistry& sessions, const stor
     const auto store = log.stats();
     if (store.last_error) reasons.emplace_back("the store failed: " + *store.last_error);
     if (store.no_room) reasons.emplace_back(*store.no_room);
-    if (reasons.empty()) return ok(readiness(sessions, robots, call.token));
+    if (reasons.empty()) return ok(readiness(sessions, check, robots, call.token));
     return problem(Status::service_unavailable, "the server is not ready", "/readyz", {{"reasons", reasons}});
 }
 

@@ -35,7 +35,7 @@ Families store_families(const store::ScanLog& log) {
 
 double bytes_of(std::int64_t pages) { return static_cast<double>(pages) * static_cast<double>(mapping::kPageBytes); }
 
-Families session_families(const session::SessionRegistry& sessions) {
+Families session_families(const session::SessionRegistry& sessions, const session::BackgroundCheck* check) {
     const auto served = sessions.list();
     std::size_t backlog = 0;
     for (const auto& session : served) backlog += session->backlog_size();
@@ -49,8 +49,10 @@ Families session_families(const session::SessionRegistry& sessions) {
                   bytes_of(sessions.pages().pages_max())),
         gauge_now("scanloom_sessions_failed", "Sessions that take no scans until they are read from the store again.",
                   static_cast<double>(failed)),
-        gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered.",
-                  static_cast<double>(sessions.damaged().size())),
+        gauge_now("scanloom_sessions_damaged", "Sessions that could not be recovered, or were found damaged since.",
+                  static_cast<double>(sessions.damaged().size() + (check == nullptr ? 0 : check->damaged().size()))),
+        counter_now("scanloom_sessions_checked_total", "Sessions left in the store at the start that were read since.",
+                    check == nullptr ? 0.0 : static_cast<double>(check->checked())),
         gauge_now("scanloom_backlog_entries", "Log entries of all sessions that wait to be appended.",
                   static_cast<double>(backlog)),
         counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
@@ -81,10 +83,11 @@ void append(Families& to, Families from) {
 } // namespace
 
 Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                             const store::ScanLog& log, const tiles::TileCache::Stats& tiles, const Call& call) {
+                             const session::BackgroundCheck* check, const store::ScanLog& log,
+                             const tiles::TileCache::Stats& tiles, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     Families families = counted.collect();
-    append(families, session_families(sessions));
+    append(families, session_families(sessions, check));
     append(families, store_families(log));
     append(families, tile_families(tiles));
     append(families, metrics::process_families());

@@ -3,6 +3,7 @@
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/metrics/metrics.hpp"
+#include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_cache.hpp"
@@ -10,8 +11,9 @@
 namespace scanloom::http {
 
 /// GET /metrics: what was counted, and what the process, the store and the sessions say of themselves.
+/// @param check  null: none is made.
 [[nodiscard]] Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                                           const store::ScanLog& log, const tiles::TileCache::Stats& tiles,
-                                           const Call& call);
+                                           const session::BackgroundCheck* check, const store::ScanLog& log,
+                                           const tiles::TileCache::Stats& tiles, const Call& call);
 
 } // namespace scanloom::http

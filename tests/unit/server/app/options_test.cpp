@@ -105,6 +105,31 @@ TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     }
 }
 
+TEST_F(ServerOptionsTest, AStoreCanBeCheckedRepairedAndRestoredInPlaceOfServed) {
+    const auto options = [](std::vector<std::string> arguments) {
+        return std::get<ServerOptions>(read(std::move(arguments)));
+    };
+    EXPECT_EQ(options({}).task, Task::kServe);
+    EXPECT_EQ(options({"--check"}).task, Task::kCheck);
+    EXPECT_EQ(options({"--check=deep"}).task, Task::kCheckMaps);
+    EXPECT_EQ(options({"--repair", "new"}).task, Task::kRepair);
+    EXPECT_EQ(options({"--repair", "new"}).repaired, "new");
+    EXPECT_EQ(options({"--backups", "b"}).task, Task::kServe);
+    EXPECT_EQ(options({"--backups", "b"}).backups_kept, 7U);
+    const auto newest = options({"--restore", "newest", "--backups", "b"});
+    EXPECT_EQ(newest.task, Task::kRestore);
+    EXPECT_EQ(newest.backup, std::nullopt);
+    EXPECT_EQ(options({"--restore", "12", "--backups", "b"}).backup, 12U);
+
+    EXPECT_THAT(refusal({"--check=all"}), HasSubstr("--check"));
+    EXPECT_THAT(refusal({"--check", "--repair", "new"}), HasSubstr("--repair"));
+    EXPECT_THAT(refusal({"--restore", "newest"}), HasSubstr("--backups"));
+    EXPECT_THAT(refusal({"--backups", "b", "--backups-kept", "0"}), HasSubstr("--backups-kept"));
+    for (const auto* wrong : {"0", "-1", "12x", "latest", "99999999999"}) {
+        EXPECT_THAT(refusal({"--restore", wrong, "--backups", "b"}), HasSubstr("--restore")) << wrong;
+    }
+}
+
 std::vector<std::string> warnings(std::vector<std::string> arguments) {
     return guard_warnings(std::get<ServerOptions>(read(std::move(arguments))));
 }

@@ -96,13 +96,14 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
                 return is_let_in(ask_as(who, method, target, method == "POST" ? "[]" : ""));
             };
             const bool is_metrics = route.pattern == "/metrics";
+            const bool is_store = route.pattern == "/api/v1/backups";
             EXPECT_FALSE(allowed("")) << method << " " << target;
             EXPECT_FALSE(allowed("stranger")) << method << " " << target;
             EXPECT_EQ(allowed("robot"), is_metrics) << method << " " << target;
-            EXPECT_EQ(allowed("viewer"), looks && matches && !is_metrics) << method << " " << target;
-            EXPECT_EQ(allowed("viewer-all"), looks) << method << " " << target;
+            EXPECT_EQ(allowed("viewer"), looks && matches && !is_metrics && !is_store) << method << " " << target;
+            EXPECT_EQ(allowed("viewer-all"), looks && !is_store) << method << " " << target;
             if (method == "DELETE" && name != "none" && name != "depot-none") continue; // they are needed on
-            EXPECT_EQ(allowed("operator"), matches && !is_metrics) << method << " " << target;
+            EXPECT_EQ(allowed("operator"), matches && !is_metrics && !is_store) << method << " " << target;
             EXPECT_TRUE(allowed("operator-all")) << method << " " << target;
         }
     }

@@ -49,6 +49,8 @@ TEST(Lane, SearchesHoldUpNothingElse) {
 TEST(Lane, WhatWaitsForTheDiskOrTheSystemHasItsOwn) {
     EXPECT_EQ(lane("POST", "/api/v1/sessions"), Lane::kChanging);
     EXPECT_EQ(lane("DELETE", "/api/v1/sessions/s"), Lane::kChanging);
+    EXPECT_EQ(lane("POST", "/api/v1/backups"), Lane::kChanging);
+    EXPECT_EQ(lane("GET", "/api/v1/backups"), Lane::kServing);
     EXPECT_EQ(lane("GET", "/api/v1/sessions"), Lane::kServing);
     EXPECT_EQ(lane("GET", "/metrics"), Lane::kTelling);
 }

@@ -1,0 +1,125 @@
+#include "server/app/check_command.hpp"
+
+#include "common/app/standard_error.hpp"
+#include "server/session/session_check.hpp"
+#include "server/store/at_rest.hpp"
+
+#include <boost/json/array.hpp>
+#include <boost/json/object.hpp>
+#include <boost/json/serialize.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+
+namespace scanloom::app {
+namespace {
+
+/// Told on standard error each time so many entries and parts have been read.
+constexpr std::uint64_t kTellEvery = 100'000;
+
+/// What has been found so far.
+class Findings {
+public:
+    void whole(const session::SessionCheck& session) {
+        count(session);
+        std::cout << fmt::format("{}: {} entries, whole\n", session.name, session.entries) << std::flush;
+    }
+
+    void damaged(const session::SessionCheck& session) {
+        count(session);
+        std::cout << fmt::format("{}: {} entries, then DAMAGED: {}\n", session.name, session.entries,
+                                 session.damage->message)
+                  << std::flush;
+        damaged_.push_back(boost::json::object{{"session", session.name}, {"reason", session.damage->message}});
+    }
+
+    void store_damaged(const Error& why) {
+        std::cout << fmt::format("DAMAGED: {}\n", why.message) << std::flush;
+        damaged_.push_back(boost::json::object{{"reason", why.message}});
+    }
+
+    /// The last line.
+    [[nodiscard]] ExitCode conclude(double seconds) const {
+        const boost::json::object summary{{"event", "checked"},
+                                          {"sessions", sessions_},
+                                          {"entries", entries_},
+                                          {"damaged", damaged_},
+                                          {"seconds", seconds}};
+        std::cout << boost::json::serialize(summary) << std::endl;
+        return damaged_.empty() ? kExitDone : kExitFailed;
+    }
+
+private:
+    void count(const session::SessionCheck& session) {
+        ++sessions_;
+        entries_ += session.entries;
+    }
+
+    std::uint64_t sessions_ = 0;
+    std::uint64_t entries_ = 0;
+    boost::json::array damaged_;
+};
+
+/// Says how far the check is.
+class Progress {
+public:
+    Result<> operator()(std::size_t bytes) {
+        bytes_ += bytes;
+        if (++read_ % kTellEvery == 0) {
+            standard_error().write(
+                fmt::format("scanloom-server: {} entries and parts read, {} MiB\n", read_, bytes_ >> 20));
+        }
+        return {};
+    }
+
+private:
+    std::uint64_t read_ = 0;
+    std::uint64_t bytes_ = 0;
+};
+
+void check_sessions(store::AtRest& store, session::CheckDepth depth, Findings& findings) {
+    const auto sessions = store.log->sessions();
+    if (!sessions) return findings.store_damaged(sessions.error());
+    Progress progress;
+    for (const auto& stored : *sessions) {
+        const auto checked = session::check_session(*store.log, stored, depth, std::ref(progress));
+        if (checked->damage) {
+            findings.damaged(*checked);
+        } else {
+            findings.whole(*checked);
+        }
+    }
+    for (const auto id : store.without_record) {
+        findings.damaged({fmt::format("#{}", id), 0,
+                          Error{Errc::kStoreFailed, "its record is missing: what it was called, and its settings"}});
+    }
+}
+
+} // namespace
+
+ExitCode check_store(const ServerOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto store = store::open_at_rest(options.store);
+    Findings findings;
+    if (!store) {
+        if (store.error().code != Errc::kStoreFailed) { // nothing could be looked at
+            standard_error().write(fmt::format("scanloom-server: {}\n", store.error().message));
+            return kExitFailed;
+        }
+        findings.store_damaged(store.error());
+    } else {
+        if (store->unfinished_bytes > 0) {
+            std::cout << fmt::format("{} bytes of an unfinished write are at the end of the write-ahead log: never "
+                                     "acknowledged, no damage; the next start drops them\n",
+                                     store->unfinished_bytes);
+        }
+        const auto depth =
+            options.task == Task::kCheckMaps ? session::CheckDepth::kMaps : session::CheckDepth::kCheckpoint;
+        check_sessions(*store, depth, findings);
+    }
+    return findings.conclude(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+} // namespace scanloom::app

@@ -1,0 +1,107 @@
+#include "server/session/background_check.hpp"
+
+#include "server/session/session_check.hpp"
+
+#include <boost/asio/post.hpp>
+#include <spdlog/spdlog.h>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+constexpr int kNiceness = 19;
+
+/// Of this thread: whoever weaves or answers comes first.
+void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
+
+} // namespace
+
+BackgroundCheck::BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions,
+                                 boost::asio::any_io_executor checking, double bytes_per_second)
+    : log_(log), sessions_(sessions), checking_(std::move(checking)), rate_(bytes_per_second) {}
+
+void BackgroundCheck::start() {
+    boost::asio::post(checking_, [this] {
+        step_back();
+        run();
+        const std::lock_guard lock(mutex_);
+        done_ = true;
+        changed_.notify_all();
+    });
+}
+
+void BackgroundCheck::stop() {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+}
+
+void BackgroundCheck::run() {
+    std::map<store::SessionId, std::string> asleep;
+    for (const auto& listed : sessions_.all()) {
+        if (!listed.session) asleep.emplace(listed.info.id, listed.info.name);
+    }
+    const auto stored = log_.sessions();
+    if (!stored) return;
+    for (const auto& session : *stored) {
+        const auto name = asleep.find(session.id);
+        if (name != asleep.end()) check(session, name->second);
+    }
+}
+
+void BackgroundCheck::check(const store::StoredSession& stored, const std::string& name) {
+    const auto found =
+        check_session(log_, stored, CheckDepth::kLog, [this](std::size_t bytes) { return go_on_after(bytes); });
+    if (!found) return; // stopped
+    // Deleted meanwhile, or the store failed: then it cannot be read, and may be whole.
+    const bool is_damage = found->damage && is_still_there(name, stored.id) && !log_.stats().last_error;
+    if (is_damage) spdlog::error("session '{}' is damaged: {}", name, found->damage->message);
+    const std::lock_guard lock(mutex_);
+    ++checked_;
+    if (is_damage) damaged_[name] = {stored.id, *found->damage};
+}
+
+Result<> BackgroundCheck::go_on_after(std::size_t bytes) {
+    const auto due = rate_.after(bytes, std::chrono::steady_clock::now());
+    std::unique_lock lock(mutex_);
+    constexpr auto kWorthAWait = std::chrono::milliseconds(10); // waking up costs more than a few entries
+    if (!stopped_ && due > std::chrono::steady_clock::now() + kWorthAWait) {
+        changed_.wait_until(lock, due, [this] { return stopped_; });
+    }
+    if (!stopped_) return {};
+    return Error{Errc::kShuttingDown, "stopped before the log's end"};
+}
+
+bool BackgroundCheck::is_still_there(const std::string& name, store::SessionId id) const {
+    const auto info = sessions_.info(name);
+    return info && info->id == id;
+}
+
+std::map<std::string, Error> BackgroundCheck::damaged() const {
+    std::map<std::string, Damaged> found;
+    {
+        const std::lock_guard lock(mutex_);
+        found = damaged_;
+    }
+    std::map<std::string, Error> reasons;
+    for (const auto& [name, damaged] : found) {
+        if (is_still_there(name, damaged.id)) reasons.emplace(name, damaged.why);
+    }
+    return reasons;
+}
+
+std::uint64_t BackgroundCheck::checked() const {
+    const std::lock_guard lock(mutex_);
+    return checked_;
+}
+
+void BackgroundCheck::wait() const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return done_; });
+}
+
+} // namespace scanloom::session

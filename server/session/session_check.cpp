@@ -1,0 +1,118 @@
+#include "server/session/session_check.hpp"
+
+#include "common/wire/log_codec.hpp"
+#include "server/mapping/digest.hpp"
+#include "server/session/checkpoint.hpp"
+#include "server/session/entry_order.hpp"
+#include "server/session/recovery.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::session {
+namespace {
+
+/// One session on its way through the checks. `stopped` is the pace's error.
+struct Checking {
+    store::ScanLog& log;
+    const store::SessionId id;
+    const CheckPace& pace;
+    std::optional<Error> stopped{};
+
+    Result<> go_on(std::size_t bytes) {
+        auto may = pace(bytes);
+        if (!may) stopped = may.error();
+        return may;
+    }
+};
+
+Result<> check_log(Checking& checking, Revision& entries) {
+    EntryOrder order;
+    return checking.log.read(checking.id, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
+        const auto entry = wire::decode_entry(bytes);
+        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+        if (auto follows = order.add(*entry); !follows) return follows;
+        entries = revision;
+        return checking.go_on(bytes.size());
+    });
+}
+
+Result<> check_sums_of_checkpoint(Checking& checking) {
+    return checking.log.read_checkpoint(checking.id, [&](std::string_view key, std::string_view value) -> Result<> {
+        return checking.go_on(key.size() + value.size());
+    });
+}
+
+/// Pre  the log is whole and has so many entries.
+Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, Revision entries) {
+    CheckpointReader reader(config);
+    auto read = checking.log.read_checkpoint(checking.id, [&](std::string_view key, std::string_view value) {
+        auto added = reader.add(key, value);
+        return added ? checking.go_on(key.size() + value.size()) : added;
+    });
+    if (!read && read.error().code == Errc::kUnsupportedVersion) return {}; // woven anew
+    if (!read) return read;
+    const auto restored = std::move(reader).finish();
+    if (!restored) return restored.error();
+    const auto newest = std::max(restored->revision(), restored->newest_restored());
+    if (newest <= entries) return {};
+    return Error{Errc::kMalformed,
+                 fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already", entries, newest)};
+}
+
+/// Pre  log and checkpoint are whole.
+Result<> compare_maps(Checking& checking, const mapping::MapConfig& config) {
+    auto recovered = recover(checking.log, checking.id, config, false);
+    if (!recovered) return recovered.error();
+    mapping::Projection woven(config);
+    auto folded = checking.log.read(checking.id, 0, [&](Revision, std::string_view bytes) -> Result<> {
+        const auto entry = wire::decode_entry(bytes);
+        if (!entry) return entry.error();
+        if (auto added = woven.fold(*entry); !added) return added;
+        return checking.go_on(bytes.size());
+    });
+    if (!folded) return folded;
+    const auto left = recovered->projection.snapshot();
+    const auto right = woven.snapshot();
+    for (const auto layer : mapping::kLayers) {
+        if (mapping::digest_of(left, layer) == mapping::digest_of(right, layer)) continue;
+        return Error{Errc::kMalformed, fmt::format("layer {} woven from the whole log differs from that of the "
+                                                   "checkpoint and the rest of the log",
+                                                   mapping::name_of(layer))};
+    }
+    return {};
+}
+
+Result<> check_checkpoint_and_maps(Checking& checking, const mapping::MapConfig& config, Revision entries,
+                                   CheckDepth depth) {
+    if (auto checkpoint = check_checkpoint(checking, config, entries); !checkpoint) {
+        return prefixed("its log is whole and is woven anew, but ", checkpoint.error());
+    }
+    return depth == CheckDepth::kMaps ? compare_maps(checking, config) : Result<>{};
+}
+
+Result<> check(Checking& checking, const store::StoredSession& stored, CheckDepth depth, SessionCheck& found) {
+    if (!stored.record) return stored.record.error();
+    const auto record = wire::decode_session(*stored.record);
+    if (!record) return record.error();
+    found.name = record->name;
+    const auto config = mapping::resolve(record->options);
+    if (!config) return config.error();
+    if (auto log = check_log(checking, found.entries); !log) return log;
+    if (stored.damage) return *stored.damage;
+    if (depth == CheckDepth::kLog) return check_sums_of_checkpoint(checking);
+    return check_checkpoint_and_maps(checking, *config, found.entries, depth);
+}
+
+} // namespace
+
+Result<SessionCheck> check_session(store::ScanLog& log, const store::StoredSession& stored, CheckDepth depth,
+                                   const CheckPace& pace) {
+    SessionCheck found{fmt::format("#{}", stored.id), 0, std::nullopt};
+    Checking checking{log, stored.id, pace};
+    const auto whole = check(checking, stored, depth, found);
+    if (checking.stopped) return *checking.stopped;
+    if (!whole) found.damage = whole.error();
+    return found;
+}
+
+} // namespace scanloom::session

@@ -1,0 +1,65 @@
+#include "server/store/table_walk.hpp"
+
+#include <rocksdb/options.h>
+
+namespace scanloom::store {
+namespace {
+
+/// So many numbers are asked for one by one, more than a block of 32 KiB has of common scans; then further and further.
+constexpr Revision kOneByOne = 1024;
+constexpr Revision kFarthest = Revision{1} << 40; // no log is as long
+
+} // namespace
+
+TableWalk::TableWalk(const std::filesystem::path& table, SessionId session)
+    : session_(session), range_(entries_of(session)), end_(range_.end),
+      reader_(std::make_unique<rocksdb::SstFileReader>(rocksdb::Options())) {
+    if (!reader_->Open(table.native()).ok()) {
+        met_damage_ = true;
+        return;
+    }
+    rocksdb::ReadOptions read;
+    read.iterate_upper_bound = &end_;
+    read.fill_cache = false;
+    iterator_.reset(reader_->NewIterator(read));
+    iterator_->Seek(range_.begin);
+    settle(0);
+}
+
+void TableWalk::next() {
+    const Revision at = revision();
+    iterator_->Next();
+    settle(at);
+}
+
+/// Pre  `at` is the last revision that was read.
+void TableWalk::settle(Revision at) {
+    if (!iterator_->Valid() && !iterator_->status().ok()) go_on_behind(at + 1);
+}
+
+/// @return whether what is there can be read, or nothing more is.
+bool TableWalk::seek(Revision revision) {
+    iterator_->Seek(entry_key(session_, revision));
+    return iterator_->Valid() || iterator_->status().ok();
+}
+
+void TableWalk::go_on_behind(Revision unreadable) {
+    met_damage_ = true;
+    for (Revision tried = 0; tried < kOneByOne; ++tried) {
+        if (seek(unreadable + tried)) return;
+    }
+    Revision last_unreadable = unreadable + kOneByOne - 1;
+    Revision readable = last_unreadable + kOneByOne;
+    while (!seek(readable)) {
+        if (readable > kFarthest) return; // all the rest of the table
+        last_unreadable = readable;
+        readable *= 2;
+    }
+    while (last_unreadable + 1 < readable) { // where the readable part begins
+        const Revision middle = last_unreadable + (readable - last_unreadable) / 2;
+        (seek(middle) ? readable : last_unreadable) = middle;
+    }
+    static_cast<void>(seek(readable));
+}
+
+} // namespace scanloom::store

@@ -1,0 +1,69 @@
+#include "tests/support/running_server.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+/// A server that finds, while it runs, that a session it left in the store is damaged.
+namespace scanloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+class BackgroundCheckTest : public testing::Test {
+protected:
+    [[nodiscard]] std::filesystem::path store() const { return place_.path() / "store"; }
+
+    /// Starts it, lets `use` use it, stops it.
+    template <class Use>
+    void with_server(Use&& use) {
+        RunningServer server(store(), place_.path() / "log");
+        use(server);
+        server.process().signal(SIGTERM);
+        ASSERT_EQ(server.process().wait(), 0);
+    }
+
+    /// In the middle of the largest table: of the log's entries.
+    void damage_a_table() {
+        const auto tables = store::files_like(store(), ".sst");
+        const auto table = *std::max_element(tables.begin(), tables.end(), [](const auto& a, const auto& b) {
+            return std::filesystem::file_size(a) < std::filesystem::file_size(b);
+        });
+        store::flip_bit(table, std::filesystem::file_size(table) / 2, 1);
+    }
+
+    TemporaryDirectory place_;
+};
+
+TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
+    with_server([&](const RunningServer& server) {
+        ChildProcess robot(program("scanloom-robot"),
+                           {"--server", server.robot_address(), "--session", "one", "--robot", "r", "--cell-size",
+                            "0.2", "simulate", "--world", "office", "--seed", "5", "--speed", "0", "--scans", "600"},
+                           place_.path() / "robot");
+        while (robot.read_line()) {
+        }
+        ASSERT_EQ(robot.wait(), 0);
+    });
+    with_server([](const RunningServer&) {}); // moves the write-ahead log into a table
+    damage_a_table();
+    with_server([](const RunningServer& server) {
+        while (server.get_json("/readyz").at("damaged").as_array().empty()) { // answers 200 all the while
+        }
+        const auto damaged = server.get_json("/readyz").at("damaged");
+        ASSERT_EQ(damaged.as_array().size(), 1U);
+        EXPECT_EQ(damaged.at(0).at("name"), "one");
+        const auto metrics = server.get("/metrics").body;
+        EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_damaged 1\n"));
+        EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_checked_total 1\n"));
+        EXPECT_EQ(server.get("/api/v1/sessions/one").status, 200U) << "what its checkpoint tells is served";
+    });
+    EXPECT_THAT(store::bytes_of(place_.path() / "log"), HasSubstr("session 'one' is damaged: "));
+}
+
+} // namespace
+} // namespace scanloom::test

@@ -1,0 +1,95 @@
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <boost/json/parse.hpp>
+#include <boost/json/serialize.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+/// Backups of a server under a streaming robot, and stores restored from them, as people make them.
+namespace scanloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+class BackupTest : public testing::Test {
+protected:
+    static constexpr const char* kSession = "/api/v1/sessions/one";
+
+    HttpAnswer make(const RunningServer& server) const {
+        return http_request(server.http_port(), "POST", "/api/v1/backups", "{}");
+    }
+
+    int restore(const std::string& id, const std::filesystem::path& store) const {
+        ChildProcess restorer(program("scanloom-server"),
+                              {"--restore", id, "--backups", backups_.native(), "--store", store.native()},
+                              place_.path() / "restorer");
+        while (restorer.read_line()) {
+        }
+        return restorer.wait();
+    }
+
+    static std::int64_t revision(const RunningServer& server) {
+        return server.get_json(kSession).at("revision").to_number<std::int64_t>();
+    }
+
+    /// Of all layers, as of an entry of the log.
+    static std::string digests(const RunningServer& server, std::int64_t until) {
+        const auto query = std::string(kSession) + "/digest?until=" + std::to_string(until);
+        return boost::json::serialize(server.get_json(query).at("layers"));
+    }
+
+    TemporaryDirectory place_;
+    std::filesystem::path store_ = place_.path() / "store";
+    std::filesystem::path backups_ = place_.path() / "backups";
+};
+
+TEST_F(BackupTest, HasAllThatWasAcknowledgedBeforeAndItsMapsAreThoseOfThatPartOfTheLog) {
+    RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native(), "--backups-kept", "2"});
+    ChildProcess robot(program("scanloom-robot"),
+                       {"--server", server.robot_address(), "--session", "one", "--robot", "r", "--cell-size", "0.1",
+                        "simulate", "--world", "office", "--seed", "5", "--speed", "20", "--noise", "gaussian"},
+                       place_.path() / "robot");
+    const auto has_scans = [&] { return server.get(kSession).status == 200 && revision(server) > 20; };
+    while (!has_scans()) {
+    }
+    const auto acknowledged = revision(server);
+    const auto made = make(server);
+    ASSERT_EQ(made.status, 201U) << made.body;
+    robot.signal(SIGTERM);
+    robot.wait();
+
+    ASSERT_EQ(restore("newest", place_.path() / "restored"), 0);
+    RunningServer restored(place_.path() / "restored", place_.path() / "log");
+    const auto kept = revision(restored);
+    EXPECT_GE(kept, acknowledged);
+    EXPECT_LE(kept, revision(server));
+    EXPECT_EQ(digests(restored, kept), digests(server, kept));
+}
+
+TEST_F(BackupTest, TheyAreListedAndOldOnesGo) {
+    RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native(), "--backups-kept", "2"});
+    EXPECT_EQ(server.get_json("/api/v1/backups").at("backups").as_array().size(), 0U);
+    for (int n = 0; n < 3; ++n) EXPECT_EQ(make(server).status, 201U);
+    const auto listed = server.get_json("/api/v1/backups");
+    ASSERT_EQ(listed.at("backups").as_array().size(), 2U);
+    EXPECT_EQ(listed.at("backups").at(0).at("id").to_number<int>(), 2);
+    EXPECT_EQ(listed.at("kept").to_number<int>(), 2);
+    EXPECT_EQ(restore("1", place_.path() / "restored"), 1) << "it is gone";
+    EXPECT_EQ(restore("2", place_.path() / "restored"), 0);
+    EXPECT_EQ(restore("3", place_.path() / "restored"), 1) << "there is a store now";
+    EXPECT_EQ(restore("x", place_.path() / "other"), 2);
+}
+
+TEST_F(BackupTest, AServerThatKeepsNoneSaysSo) {
+    const RunningServer server(store_, place_.path() / "log");
+    for (const auto& answer : {make(server), server.get("/api/v1/backups")}) {
+        EXPECT_EQ(answer.status, 404U);
+        EXPECT_THAT(answer.body, HasSubstr("--backups DIR"));
+    }
+}
+
+} // namespace
+} // namespace scanloom::test

@@ -1,0 +1,92 @@
+#include "tests/integration/server/programs_fixture.hpp"
+#include "tests/support/store_files.hpp"
+
+#include <boost/json/parse.hpp>
+#include <boost/json/serialize.hpp>
+#include <gmock/gmock.h>
+
+#include <csignal>
+
+/// `scanloom-server --repair`, as people run it.
+namespace scanloom::test {
+namespace {
+
+using testing::HasSubstr;
+
+class RepairTest : public ProgramsTest {
+protected:
+    [[nodiscard]] std::filesystem::path store() const { return place_.path() / "store"; }
+    [[nodiscard]] std::filesystem::path repaired() const { return place_.path() / "repaired"; }
+
+    void kill_server() {
+        server_.process().signal(SIGKILL);
+        server_.process().wait();
+    }
+
+    struct Answer {
+        int code = 0;
+        std::string text;
+        boost::json::object summary;
+    };
+
+    [[nodiscard]] Answer run(const std::vector<std::string>& arguments) const {
+        ChildProcess program_run(program("scanloom-server"), arguments, place_.path() / "said");
+        Answer answer;
+        std::string last;
+        while (const auto line = program_run.read_line()) answer.text += (last = *line) + "\n";
+        answer.code = program_run.wait();
+        if (last.starts_with("{")) answer.summary = boost::json::parse(last).as_object();
+        return answer;
+    }
+
+    [[nodiscard]] Answer repair() const { return run({"--repair", repaired().native(), "--store", store().native()}); }
+};
+
+TEST_F(RepairTest, AWholeStoreIsRepairedIntoOneWithTheSameMaps) {
+    simulate("one", "0.1");
+    const auto before = boost::json::serialize(layers("one"));
+    kill_server();
+    const auto answer = repair();
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_THAT(answer.text, HasSubstr("one: 302 entries kept\n"));
+    EXPECT_EQ(answer.summary.at("event"), "repaired");
+    EXPECT_EQ(answer.summary.at("lost").to_number<int>(), 0);
+    const RunningServer server(repaired(), place_.path() / "log");
+    const auto after = server.get_json("/api/v1/sessions/one/digest").at("layers");
+    EXPECT_EQ(boost::json::serialize(after), before);
+    EXPECT_EQ(repair().code, 1) << "it is not empty any more";
+}
+
+TEST_F(RepairTest, WhatIsLostOfADamagedOneIsToldAndTheRobotGoesOn) {
+    simulate("one", "0.1");
+    kill_server();
+    const auto log = store::only_file_like(store(), ".log");
+    store::flip_bit(log, std::filesystem::file_size(log) / 2, 1);
+    EXPECT_EQ(run({"--check", "--store", store().native()}).code, 1);
+    const auto answer = repair();
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_GT(answer.summary.at("lost").to_number<int>(), 0);
+    EXPECT_EQ(answer.summary.at("lost"), answer.summary.at("stood_in")) << "all of them scans";
+    EXPECT_EQ(answer.summary.at("kept").to_number<int>() + answer.summary.at("lost").to_number<int>(), 302);
+    EXPECT_EQ(run({"--check=deep", "--store", repaired().native()}).code, 0);
+    const RunningServer server(repaired(), place_.path() / "log");
+    const auto session = server.get_json("/api/v1/sessions/one");
+    EXPECT_EQ(session.at("robots").at(0).at("last_seq").to_number<int>(), 300) << boost::json::serialize(session);
+}
+
+TEST_F(RepairTest, WithoutTheEntryOfItsRobotALogIsSetAside) {
+    simulate("one", "0.1");
+    kill_server();
+    const auto log = store::only_file_like(store(), ".log");
+    const auto joined = store::bytes_of(log).find("simulation:"); // its source
+    ASSERT_NE(joined, std::string::npos);
+    store::flip_bit(log, joined, 0);
+    const auto answer = repair();
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_EQ(answer.summary.at("kept").to_number<int>(), 0);
+    EXPECT_GE(answer.summary.at("set_aside").to_number<int>(), 300);
+    EXPECT_GT(std::filesystem::file_size(place_.path() / "repaired.lost" / "one.scanlog"), 300U * 100U);
+}
+
+} // namespace
+} // namespace scanloom::test

@@ -1,0 +1,174 @@
+#include "server/store/backups.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/memory_scan_log.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::uint64_t bytes_below(const fs::path& directory) {
+    std::uint64_t bytes = 0;
+    for (const auto& file : fs::recursive_directory_iterator(directory)) {
+        if (file.is_regular_file()) bytes += file.file_size();
+    }
+    return bytes;
+}
+
+class BackupsTest : public testing::Test {
+protected:
+    void append(Revision first, std::size_t count) {
+        append_and_wait(*log_, session_, first, distinct_entries(session_, first, count)).value();
+    }
+
+    [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
+
+    /// What a restored store holds.
+    [[nodiscard]] std::vector<std::string> entries_of(const fs::path& store) const {
+        const auto log = open_rocksdb(store).value();
+        return entries_after(*log, session_, 0).value();
+    }
+
+    TemporaryDirectory directory_;
+    std::unique_ptr<ScanLog> log_ = open_rocksdb(at("store")).value();
+    SessionId session_ = log_->create_session("a session").value();
+    std::unique_ptr<Backups> backups_ = Backups::open(at("backups"), 3).value();
+};
+
+TEST_F(BackupsTest, EachRestoresItsMoment) {
+    append(1, 100);
+    const auto first = backups_->make(*log_).value();
+    append(101, 50);
+    const auto second = backups_->make(*log_).value();
+    append(151, 10);
+    EXPECT_EQ(first.sessions, 1U);
+    EXPECT_GT(first.time, 1.7e9);
+    EXPECT_LT(first.id, second.id);
+    EXPECT_EQ(backups_->list(), (std::vector<Backup>{first, second}));
+
+    EXPECT_EQ(restore_backup(at("backups"), first.id, at("one")).value(), first);
+    EXPECT_EQ(entries_of(at("one")), distinct_entries(session_, 1, 100));
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("two")).value(), second);
+    EXPECT_EQ(entries_of(at("two")), distinct_entries(session_, 1, 150));
+}
+
+TEST_F(BackupsTest, TablesAreCopiedOnce) {
+    append(1, 1000);
+    static_cast<void>(backups_->make(*log_).value());
+    const auto before = bytes_below(at("backups"));
+    append(1001, 1);
+    const auto second = backups_->make(*log_).value();
+    EXPECT_LT(bytes_below(at("backups")) - before, before / 10);
+    EXPECT_GT(second.bytes, before * 9 / 10) << "of the whole store";
+}
+
+TEST_F(BackupsTest, OnlyTheNewestAreKept) {
+    for (Revision revision = 1; revision <= 5; ++revision) {
+        append(revision, 1);
+        static_cast<void>(backups_->make(*log_).value());
+    }
+    EXPECT_THAT(backups_->list(), SizeIs(3));
+    EXPECT_EQ(backups_->list().front().id, 3U);
+    EXPECT_THAT(restore_backup(at("backups"), 1, at("one")).error().message, HasSubstr("there are 3 to 5"));
+    backups_.reset();
+    EXPECT_THAT(Backups::open(at("backups"), 3).value()->list(), SizeIs(3)) << "also after a restart";
+}
+
+TEST_F(BackupsTest, OneOfAStoreThatWritesNothingRestores) {
+    append(1, 3);
+    static_cast<void>(backups_->make(*log_).value());
+    static_cast<void>(backups_->make(*log_).value());
+    ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
+    EXPECT_EQ(entries_of(at("one")), distinct_entries(session_, 1, 3));
+}
+
+TEST_F(BackupsTest, OneMadeWhileEntriesComeHasAllBeforeItAndNoneTwice) {
+    append(1, 100);
+    std::atomic<bool> stop = false;
+    Revision end = 100;
+    std::thread robot([&] {
+        while (!stop) {
+            append(end + 1, 20);
+            end += 20;
+        }
+    });
+    const auto made = backups_->make(*log_);
+    stop = true;
+    robot.join();
+    ASSERT_TRUE(made) << made.error().message;
+    ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
+    const auto restored = entries_of(at("one"));
+    EXPECT_GE(restored.size(), 100U);
+    EXPECT_EQ(restored, distinct_entries(session_, 1, restored.size()));
+}
+
+TEST_F(BackupsTest, AFileOfABackupThatWasDamagedIsNotRestored) {
+    append(1, 100);
+    static_cast<void>(backups_->make(*log_).value());
+    const auto table = only_file_like(at("backups") / "shared_checksum", ".sst");
+    flip_bit(table, fs::file_size(table) / 2, 1);
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).error().code, Errc::kStoreFailed);
+}
+
+TEST_F(BackupsTest, NothingIsWrittenOver) {
+    static_cast<void>(backups_->make(*log_).value());
+    fs::create_directory(at("mine"));
+    write_bytes(at("mine") / "file", "mine");
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("mine")).error().code, Errc::kConflict);
+    EXPECT_EQ(bytes_of(at("mine") / "file"), "mine");
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("store")).error().code, Errc::kConflict);
+}
+
+TEST_F(BackupsTest, WhereThereIsNoneThatIsSaid) {
+    EXPECT_THAT(restore_backup(at("backups"), {}, at("one")).error().message, HasSubstr("there is no backup"));
+    EXPECT_EQ(restore_backup(at("nowhere"), {}, at("one")).error().code, Errc::kNotFound);
+    EXPECT_FALSE(fs::exists(at("nowhere")));
+    EXPECT_FALSE(fs::exists(at("one")));
+}
+
+/// Asks for a backup while one is being made of it.
+class AskingAgain final : public MemoryScanLog {
+public:
+    explicit AskingAgain(Backups& backups) : backups_(backups) {}
+    Result<> copy_with(const CopyDatabase&) override {
+        std::thread([this] { answer_ = backups_.make(*this).error(); }).join();
+        return answer_;
+    }
+
+private:
+    Backups& backups_;
+    Error answer_{};
+};
+
+TEST_F(BackupsTest, OneIsMadeAtATime) {
+    AskingAgain log(*backups_);
+    EXPECT_EQ(backups_->make(log).error().code, Errc::kConflict);
+}
+
+TEST_F(BackupsTest, ALogWithoutADiskHasNone) {
+    MemoryScanLog log;
+    EXPECT_EQ(backups_->make(log).error().code, Errc::kInvalidField);
+    EXPECT_THAT(backups_->list(), IsEmpty());
+}
+
+TEST_F(BackupsTest, OnceStoppedNoneIsMade) {
+    append(1, 3);
+    backups_->stop();
+    EXPECT_EQ(backups_->make(*log_).error().code, Errc::kShuttingDown);
+    EXPECT_THAT(backups_->list(), IsEmpty());
+}
+
+} // namespace
+} // namespace scanloom::store

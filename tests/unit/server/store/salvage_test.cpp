@@ -1,0 +1,157 @@
+#include "server/store/salvage.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+/// Damaged stores, of which everything intact is read.
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr Revision kInTable = 1000;
+constexpr Revision kInLog = 40;
+
+std::map<std::string, std::string> files_in(const fs::path& directory) {
+    std::map<std::string, std::string> files;
+    for (const auto& file : fs::directory_iterator(directory)) {
+        files.emplace(file.path().filename().native(), bytes_of(file.path()));
+    }
+    return files;
+}
+
+/// Two sessions, each with entries in a table, and one with some in the write-ahead log.
+class SalvageTest : public testing::Test {
+protected:
+    SalvageTest() {
+        {
+            auto log = open_rocksdb(at("original")).value();
+            for (const auto* record : {"one", "two", "removed"}) {
+                const auto id = log->create_session(record).value();
+                append_and_wait(*log, id, 1, distinct_entries(id, 1, kInTable)).value();
+            }
+        }
+        auto log = open_rocksdb(at("original")).value();
+        log->remove_session(3).value(); // of which a table still has the record
+        for (Revision revision = kInTable + 1; revision <= kInTable + kInLog; ++revision) {
+            append_and_wait(*log, 1, revision, {distinct_entry(1, revision)}).value();
+        }
+        copy_store(at("original"), store());
+    }
+
+    [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
+    [[nodiscard]] fs::path store() const { return at("store"); }
+
+    /// What is found; each entry is the one that was stored, and they rise.
+    std::set<Revision> found(const Salvage& salvage, SessionId session) {
+        std::set<Revision> revisions;
+        const auto read = salvage.read(session, [&](Revision revision, std::string_view entry) -> Result<> {
+            EXPECT_EQ(entry, distinct_entry(session, revision));
+            EXPECT_TRUE(revisions.empty() || *revisions.rbegin() < revision);
+            revisions.insert(revision);
+            return {};
+        });
+        EXPECT_TRUE(read);
+        return revisions;
+    }
+
+    std::unique_ptr<Salvage> salvaged() {
+        const auto before = files_in(store());
+        auto salvage = Salvage::open(store(), at("copy"));
+        EXPECT_EQ(files_in(store()), before) << "nothing of the old one is changed";
+        if (!salvage) throw std::runtime_error(salvage.error().message);
+        return std::move(*salvage);
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(SalvageTest, OfAStoreThatIsWholeEverythingIsFoundAndNothingIsLeftBehind) {
+    {
+        const auto salvage = salvaged();
+        EXPECT_THAT(salvage->notes(), IsEmpty());
+        ASSERT_THAT(salvage->sessions(), SizeIs(2)) << "the third was removed";
+        EXPECT_EQ(salvage->sessions().at(1), "one");
+        EXPECT_EQ(salvage->sessions().at(2), "two");
+        EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog));
+        EXPECT_THAT(found(*salvage, 2), SizeIs(kInTable));
+    }
+    EXPECT_FALSE(fs::exists(at("copy")));
+}
+
+TEST_F(SalvageTest, BehindABadBlockItGoesOn) {
+    std::mt19937 random(3);
+    for (int round = 0; round < 12; ++round) {
+        copy_store(at("original"), store());
+        const auto tables = files_like(store(), ".sst");
+        const auto table = *std::max_element(tables.begin(), tables.end(), [](const auto& a, const auto& b) {
+            return fs::file_size(a) < fs::file_size(b);
+        });
+        for (int bits = 0; bits < 3; ++bits) { // in its blocks of entries
+            flip_bit(table, random() % (fs::file_size(table) * 9 / 10), 1);
+        }
+        const auto salvage = salvaged();
+        const auto kept = found(*salvage, 1).size() + found(*salvage, 2).size();
+        EXPECT_GE(kept, 2 * kInTable + kInLog - 3 * 45) << "blocks of 32 KiB have about 22 entries of 1.5 KB";
+        EXPECT_LT(kept, 2 * kInTable + kInLog);
+    }
+}
+
+TEST_F(SalvageTest, OfTheWriteAheadLogEachWholeWriteIsTaken) {
+    const auto log = only_file_like(store(), ".log");
+    flip_bit(log, fs::file_size(log) / 2, 1);
+    const auto salvage = salvaged();
+    EXPECT_THAT(salvage->notes(), testing::ElementsAre(HasSubstr("is damaged at byte")));
+    EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog - 1));
+}
+
+TEST_F(SalvageTest, AManifestThatIsDamagedOrGoneIsMadeAgain) {
+    flip_bit(only_file_like(store(), "MANIFEST-"), 60, 1);
+    const auto expect_all = [&] {
+        const auto salvage = salvaged();
+        EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog));
+        EXPECT_THAT(found(*salvage, 2), SizeIs(kInTable));
+    };
+    expect_all();
+    fs::remove(only_file_like(store(), "MANIFEST-"));
+    expect_all();
+    fs::remove(store() / "CURRENT");
+    expect_all();
+}
+
+TEST_F(SalvageTest, ATableThatIsGoneTakesItsEntriesAlong) {
+    const auto tables = files_like(store(), ".sst");
+    for (const auto& table : tables) fs::remove(table);
+    const auto salvage = salvaged();
+    EXPECT_THAT(found(*salvage, 1), SizeIs(kInLog));
+    EXPECT_EQ(salvage->sessions().at(1), std::nullopt) << "its record was in a table";
+}
+
+TEST_F(SalvageTest, ATableWithABadBlockAndAManifestThatIsGoneAreBothOvercome) {
+    const auto tables = files_like(store(), ".sst");
+    const auto table = *std::max_element(
+        tables.begin(), tables.end(), [](const auto& a, const auto& b) { return fs::file_size(a) < fs::file_size(b); });
+    flip_bit(table, fs::file_size(table) / 4, 1);
+    fs::remove(only_file_like(store(), "MANIFEST-"));
+    const auto salvage = salvaged();
+    EXPECT_EQ(salvage->sessions().at(1), "one");
+    EXPECT_GE(found(*salvage, 1).size() + found(*salvage, 2).size(), 2 * kInTable + kInLog - 45);
+}
+
+TEST_F(SalvageTest, AServerKeepsItOutAndWhereThereIsNoStoreThatIsSaid) {
+    const auto server = open_rocksdb(store()).value();
+    EXPECT_EQ(Salvage::open(store(), at("copy")).error().code, Errc::kConflict);
+    EXPECT_EQ(Salvage::open(at("nowhere"), at("copy")).error().code, Errc::kNotFound);
+}
+
+} // namespace
+} // namespace scanloom::store
