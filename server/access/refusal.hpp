@@ -17,15 +17,17 @@ enum class Reason {
     kWrongRole,          ///< it is not for that
     kWrongSession,       ///< it is not for that session
     kForeignPage,        ///< a browser that is signed in asks for somebody else's page
+    kForeignHost,        ///< a name by which this server does not go, as when a page rebinds its own
     kLimit,              ///< it has all that it may have
     kRevoked,            ///< its token is no longer in force, while it was in use
     kNoCertificate,      ///< none was shown where one is needed
     kForeignCertificate, ///< what was shown, nobody who is trusted here signed, or it is not valid now
 };
 
-inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownToken,  Reason::kWrongRole,
-                                        Reason::kWrongSession, Reason::kForeignPage,   Reason::kLimit,
-                                        Reason::kRevoked,      Reason::kNoCertificate, Reason::kForeignCertificate};
+inline constexpr std::array kReasons = {
+    Reason::kNoToken,       Reason::kUnknownToken,      Reason::kWrongRole, Reason::kWrongSession,
+    Reason::kForeignPage,   Reason::kForeignHost,       Reason::kLimit,     Reason::kRevoked,
+    Reason::kNoCertificate, Reason::kForeignCertificate};
 
 [[nodiscard]] constexpr std::string_view name_of(Port port) noexcept { return port == Port::kRobot ? "robot" : "http"; }
 
@@ -36,6 +38,7 @@ inline constexpr std::array kReasons = {Reason::kNoToken,      Reason::kUnknownT
     case Reason::kWrongRole: return "wrong_role";
     case Reason::kWrongSession: return "wrong_session";
     case Reason::kForeignPage: return "foreign_page";
+    case Reason::kForeignHost: return "foreign_host";
     case Reason::kLimit: return "limit";
     case Reason::kRevoked: return "revoked";
     case Reason::kNoCertificate: return "no_certificate";

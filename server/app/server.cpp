@@ -101,6 +101,9 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
         [open_log, store, directory = options.store] { return open_log(directory, store); },
         [store, directory = options.store] { return store::can_be_written(directory, store.disk_reserve_bytes); });
     if (!log) return log.error();
+    if (const auto torn = (*log)->stats().torn_bytes_dropped; torn > 0)
+        spdlog::info("the last crash cut a write short: its {} bytes are dropped; nothing of it was acknowledged",
+                     torn);
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
     if (!web->contains("index.html")) {
@@ -162,7 +165,10 @@ Result<> Server::listen() {
          [this](const http::Request& request) { return api_.look(request); },
          [this](const http::Request& request) { return api_.refuse(request); },
          [this](const http::Asleep& asleep, std::function<void()> told) { api_.wake(asleep, std::move(told)); },
-         [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); }},
+         [this](const std::string& who, net::ClientFault fault) { audit_.note(access::Port::kHttp, who, fault); },
+         [this](const std::string& who) {
+             audit_.note({access::Port::kHttp, access::Reason::kForeignHost, who, "", ""});
+         }},
         metrics_.http());
     if (!http) return http.error();
     http_ = std::move(*http);

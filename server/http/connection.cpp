@@ -260,6 +260,7 @@ std::optional<Response> Connection::refusal_of(const Parser& parser) const {
     }
     const auto host = view(message[field::host]);
     if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
+        service_->answering.foreign_host(peer_);
         return problem(Status::misdirected_request,
                        fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(host)),
                        path());

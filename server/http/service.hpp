@@ -34,6 +34,8 @@ struct Answering {
     std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; tells when, on any
     std::function<void(const std::string&, net::ClientFault)> turned_away = [](const std::string&, net::ClientFault) {
     }; ///< on I/O threads: at that address, in the handshake
+    std::function<void(const std::string&)> foreign_host = [](const std::string&) {
+    }; ///< on I/O threads: that address asked for a host that this server is not
 };
 
 /// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:

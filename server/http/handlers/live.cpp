@@ -36,6 +36,8 @@ Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& wa
         return Error{Errc::kInvalidField, "Sec-WebSocket-Key is not 16 bytes in base64; send a new one each time"};
     }
     if (!upgrade->origin.empty() && !is_own_page(upgrade->origin, call.request.host, call.request.is_secure)) {
+        doorman.note({access::Port::kHttp, access::Reason::kForeignPage, call.request.peer, call.token->name,
+                      (*session)->info().name});
         return problem(Status::forbidden,
                        fmt::format("pages of {} may not watch this server; open the viewer that it serves",
                                    in_quotes(upgrade->origin)),

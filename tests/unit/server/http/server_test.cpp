@@ -120,10 +120,14 @@ TEST(HttpServer, OneHostFieldIsNeeded) {
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n\r\n").status, 400);
 }
 
-TEST(HttpServer, HostsOfStrangersAreMisdirected) {
-    RunningHttp server;
+TEST(HttpServer, HostsOfStrangersAreMisdirectedAndTold) {
+    std::atomic<int> told = 0;
+    Answering answering{echo};
+    answering.foreign_host = [&](const std::string& who) { told += who == "127.0.0.1" ? 1 : 100; };
+    RunningHttp server({}, answering);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 421);
     EXPECT_EQ(answer_to(server, "GET / HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\n").status, 200);
+    EXPECT_EQ(told, 1);
 }
 
 TEST(HttpServer, OversizedHeadersAreRefused) {
