@@ -87,6 +87,8 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
     ServerProcess server(run.server, place.path(), {"--disk-reserve", std::to_string(kReserveMib)});
     Fleet fleet(half_sharing(kRobots, seed, fillings * kScansPerFilling), server.robot_port());
     server.start_and_wait();
+    fleet.release(1);
+    (void)fleet.wait_for_acknowledged(kRobots); // on a full disk no session can be made
     Outcome outcome;
     for (std::uint64_t filling = 1; filling <= fillings && !fleet.has_given_up(); ++filling) {
         fleet.release(filling * kScansPerFilling - kScansPerFilling / 2);

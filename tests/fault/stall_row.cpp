@@ -38,6 +38,8 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
     ServerProcess server(run.server, place.path(), {"--disk-reserve", "16"});
     Fleet fleet(half_sharing(kRobots, seed, stalls * kScansPerStall), server.robot_port(), kPatience);
     server.start_and_wait();
+    fleet.release(1);
+    (void)fleet.wait_for_acknowledged(kRobots); // all sessions are there
     Outcome outcome;
     for (std::uint64_t stall = 1; stall <= stalls && !fleet.has_given_up(); ++stall) {
         const auto before = stall * kScansPerStall - kScansPerStall / 2;
