@@ -7,6 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+Error gone() { return {Errc::kStoreFailed, "the program that had the store open is gone"}; }
 Error full() { return {Errc::kOverloaded, "the disk has no room"}; }
 
 } // namespace
@@ -14,33 +15,34 @@ Error full() { return {Errc::kOverloaded, "the disk has no room"}; }
 /// The store while a program has it open.
 class Disk::OpenLog final : public store::ScanLog {
 public:
-    explicit OpenLog(Disk& disk) : disk_(disk) {}
+    explicit OpenLog(Disk& disk) : disk_(disk), program_(disk.programs_) {}
     ~OpenLog() override {
-        if (!disk_.waiting_.empty()) disk_.commit();
+        if (is_alive() && !disk_.waiting_.empty()) disk_.commit();
     }
 
     Result<store::SessionId> create_session(std::string_view record) override {
-        if (auto settled = disk_.settle(true); !settled) return settled.error();
+        if (auto settled = settle(true); !settled) return settled.error();
         return disk_.durable_.create_session(record);
     }
     Result<std::vector<store::StoredSession>> sessions() override { return disk_.durable_.sessions(); }
     Result<Revision> end_of(store::SessionId session) override { return disk_.durable_.end_of(session); }
     Result<> remove_session(store::SessionId session) override {
-        if (auto settled = disk_.settle(false); !settled) return settled;
+        if (auto settled = settle(false); !settled) return settled;
         return disk_.durable_.remove_session(session);
     }
     void append(store::SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        if (!is_alive()) return done(gone());
         disk_.add({session, first, std::move(entries), std::move(done)});
     }
     Result<> read(store::SessionId session, Revision after, const VisitEntry& visit) override {
         return disk_.durable_.read(session, after, visit);
     }
     Result<> clear_checkpoint(store::SessionId session) override {
-        if (auto settled = disk_.settle(false); !settled) return settled;
+        if (auto settled = settle(false); !settled) return settled;
         return disk_.durable_.clear_checkpoint(session);
     }
     Result<> write_checkpoint(store::SessionId session, std::vector<store::CheckpointPart> parts) override {
-        if (auto settled = disk_.settle(true); !settled) return settled;
+        if (auto settled = settle(true); !settled) return settled;
         return disk_.durable_.write_checkpoint(session, std::move(parts));
     }
     Result<> read_checkpoint(store::SessionId session, const VisitPart& visit) override {
@@ -54,21 +56,30 @@ public:
     std::uint64_t bytes_on_disk() const override { return 0; }
 
 private:
+    [[nodiscard]] bool is_alive() const { return program_ == disk_.programs_; }
+    [[nodiscard]] Result<> settle(bool adds) { return is_alive() ? disk_.settle(adds) : Result<>(gone()); }
+
     Disk& disk_;
+    const std::uint64_t program_;
 };
 
 Result<std::unique_ptr<store::ScanLog>> Disk::open() {
     if (world_.chance(trouble_.failing)) return Error{Errc::kStoreFailed, "the disk cannot be read"};
     failed_.reset();
+    ++programs_;
     return std::make_unique<OpenLog>(*this);
 }
 
 void Disk::crash() {
-    const std::uint64_t reached = trouble_.hasty ? 0 : world_.draw(waiting_.size() + 1);
-    for (std::uint64_t n = 0; n < reached; ++n) waiting_[n].done = [](const Result<>&) {};
-    for (std::uint64_t n = 0; n < reached && !failed_; ++n) store(waiting_[n]);
-    waiting_.clear();
+    ++programs_;
     committing_ = 0;
+    const std::uint64_t reached = trouble_.hasty || failed_ ? 0 : world_.draw(waiting_.size() + 1);
+    auto waiting = std::exchange(waiting_, {});
+    for (std::uint64_t n = 0; n < waiting.size(); ++n) {
+        const auto done = std::exchange(waiting[n].done, [](const Result<>&) {});
+        if (n < reached) store(waiting[n]);
+        done(gone());
+    }
     failed_.reset();
 }
 

@@ -30,7 +30,7 @@ public:
     /// The store, for one program. Errors  kStoreFailed: now and then.
     [[nodiscard]] Result<std::unique_ptr<store::ScanLog>> open();
 
-    /// The program that has it open is killed: of what it handed over last nothing more is heard.
+    /// The program that has it open is killed: whatever it still tries fails.
     void crash();
 
     /// From now on everything works, and takes no time where `at_once`.
@@ -58,6 +58,7 @@ private:
     DiskTrouble trouble_;
     store::MemoryScanLog durable_;
     std::vector<Append> waiting_;
+    std::uint64_t programs_ = 0; // that had it open; the last one has it now
     std::optional<Error> failed_;
     Time full_until_{};
     std::uint64_t committing_ = 0; // number of the commit that is planned; 0: none is

@@ -25,7 +25,7 @@ public:
     Link(Server& server, std::shared_ptr<Connection> connection)
         : server_(server), connection_(std::move(connection)), strand_(server.machine_->executor()),
           outbox_([this] { write_soon(); }),
-          dialogue_(std::in_place, server.metrics_.ingest(), outbox_, server.options_.credit_bytes) {}
+          dialogue_(server.metrics_.ingest(), outbox_, server.options_.credit_bytes) {}
 
     void start() {
         const std::weak_ptr<Link> weak = weak_from_this();
@@ -41,7 +41,7 @@ public:
 
     void on_durable(std::uint64_t durable_seq, std::size_t bytes) override {
         later([durable_seq, bytes](Link& self) {
-            if (!self.parted_) self.dialogue_->on_durable(durable_seq, bytes);
+            if (!self.parted_) self.dialogue_.on_durable(durable_seq, bytes);
             self.part_when_settled();
         });
     }
@@ -55,7 +55,6 @@ public:
     void vanish() {
         if (!parted_) connection_->vanish(Side::kServer);
         parted_ = true;
-        dialogue_.reset();
     }
 
 private:
@@ -72,7 +71,7 @@ private:
     }
 
     void take_frames() {
-        while (!parted_ && !ending_ && !entering_ && !dialogue_->said_goodbye()) {
+        while (!parted_ && !ending_ && !entering_ && !dialogue_.said_goodbye()) {
             const auto body = decoder_.next();
             if (!body) return end(body.error());
             if (!*body) return;
@@ -85,20 +84,20 @@ private:
     }
 
     Result<> take(wire::Message message, std::size_t bytes) {
-        if (auto* hello = std::get_if<wire::Hello>(&message); hello != nullptr && !dialogue_->is_welcome()) {
+        if (auto* hello = std::get_if<wire::Hello>(&message); hello != nullptr && !dialogue_.is_welcome()) {
             entering_ = true;
             asio::co_spawn(strand_, enter(shared_from_this(), std::move(*hello)), asio::detached);
             return {};
         }
-        if (!dialogue_->is_welcome()) return Error{Errc::kMalformed, "a hello is expected"};
+        if (!dialogue_.is_welcome()) return Error{Errc::kMalformed, "a hello is expected"};
         if (const auto* compressed = std::get_if<wire::CompressedScanBatch>(&message)) {
             auto batch = wire::decompress(*compressed);
             if (!batch) return batch.error();
             bytes = wire::bytes_under_way(*compressed);
             message = std::move(*batch);
         }
-        auto handled = dialogue_->handle(std::move(message), bytes, server_.world_.now(), shared_from_this());
-        if (dialogue_->said_goodbye()) part_when_settled();
+        auto handled = dialogue_.handle(std::move(message), bytes, server_.world_.now(), shared_from_this());
+        if (dialogue_.said_goodbye()) part_when_settled();
         return handled;
     }
 
@@ -118,7 +117,7 @@ private:
             (*entered)->leave(self);
         } else {
             self->decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
-            self->dialogue_->welcome(std::move(*entered), *joined);
+            self->dialogue_.welcome(std::move(*entered), *joined);
             self->take_frames();
         }
     }
@@ -132,7 +131,7 @@ private:
         writing_ = false;
         if (parted_) return;
         while (auto piece = outbox_.next()) {
-            if (piece->durable_seq) dialogue_->acknowledged(*piece->durable_seq, server_.world_.now());
+            if (piece->durable_seq) dialogue_.acknowledged(*piece->durable_seq, server_.world_.now());
             connection_->send(Side::kServer, std::move(piece->bytes));
         }
         if (ending_) part();
@@ -146,13 +145,12 @@ private:
     }
 
     void part_when_settled() {
-        if (!parted_ && dialogue_->said_goodbye() && !dialogue_->has_under_way())
-            later([](Link& self) { self.part(); });
+        if (!parted_ && dialogue_.said_goodbye() && !dialogue_.has_under_way()) later([](Link& self) { self.part(); });
     }
 
     void part() {
         if (std::exchange(parted_, true)) return;
-        if (dialogue_->is_welcome()) dialogue_->session()->leave(shared_from_this());
+        if (dialogue_.is_welcome()) dialogue_.session()->leave(shared_from_this());
         connection_->close(Side::kServer);
     }
 
@@ -170,7 +168,7 @@ private:
     asio::strand<asio::any_io_executor> strand_;
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
     ingest::Outbox outbox_;
-    std::optional<ingest::Dialogue> dialogue_; // until the program is gone: it and the session hold each other
+    ingest::Dialogue dialogue_;
     Time heard_{};
     bool entering_ = false;
     bool writing_ = false;
@@ -199,10 +197,12 @@ Server::Server(World& world, Disk& disk, const ServerOptions& options)
 
 Server::~Server() {
     world_.note("server ends");
-    disk_.crash();
-    machine_->kill();
     for (const auto& link : links_) link->vanish();
+    disk_.crash();
+    machine_->hasten();
+    sessions_->drain(); // or sessions, links and those who wait for them would hold each other for ever
     links_.clear();
+    machine_->kill();
     sessions_.reset();
     log_.reset();
 }

@@ -28,7 +28,7 @@ public:
     /// Recovers what is on the disk.
     Server(World& world, Disk& disk, const ServerOptions& options);
 
-    /// Killed, unless it was stopped: see Disk::crash().
+    /// Killed, unless it was stopped: what is still done changes nothing that others see.
     ~Server();
 
     void accept(std::shared_ptr<Connection> connection);
