@@ -55,7 +55,7 @@ TEST(KillRow, SaysNothingOfADiskThatDoesNotSync) {
 std::unique_ptr<store::ScanLog> memory_log() { return std::make_unique<store::MemoryScanLog>(); }
 
 TEST(LinkRow, FindsAServerThatAppliesTwice) {
-    const Outcome outcome = run_link_row({.seed = 1, .count = 5}, {[] { return forgetful_log(memory_log()); }});
+    const Outcome outcome = run_link_row({.seed = 1, .count = 60}, {[] { return forgetful_log(memory_log()); }});
     EXPECT_GT(outcome.twice, 0U);
     EXPECT_TRUE(outcome.repeat);
 }
