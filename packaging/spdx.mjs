@@ -34,7 +34,7 @@ export function debianPackage(told, copyright) {
     name: told.Package,
     versionInfo: told.Version,
     supplier: `Organization: ${told.Maintainer}`,
-    downloadLocation: `https://snapshot.debian.org/package/${told['source:Package']}/${encodeURIComponent(told['source:Version'])}/`,
+    downloadLocation: NONE, // whatever mirror serves it: the purl says what it is, sourceInfo from what
     sourceInfo: `built from the Debian source package ${told['source:Package']} ${told['source:Version']}`,
     filesAnalyzed: false,
     ...(/^https?:\/\/\S+$/.test(told.Homepage) ? { homepage: told.Homepage } : {}),
@@ -60,13 +60,12 @@ export function npmPackages(lock) {
     .filter(([path, entry]) => path !== '' && !entry.dev && !entry.devOptional && !entry.optional && !entry.peer)
     .map(([path, entry]) => {
       const name = path.split('node_modules/').at(-1);
-      const address = `https://registry.npmjs.org/${name}/-/${name.split('/').at(-1)}-${entry.version}.tgz`;
       return {
         SPDXID: idOf('npm', name, entry.version),
         name,
         versionInfo: entry.version,
         supplier: NONE,
-        downloadLocation: entry.resolved ?? address,
+        downloadLocation: NONE, // whatever registry serves it: purl and checksum say what it is
         filesAnalyzed: false,
         ...(entry.integrity?.startsWith('sha512-')
           ? { checksums: [{ algorithm: 'SHA512', checksumValue: Buffer.from(entry.integrity.slice(7), 'base64').toString('hex') }] }

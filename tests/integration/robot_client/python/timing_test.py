@@ -82,10 +82,10 @@ class Patience(unittest.TestCase):
         self.assertEqual(self.conversation.patience_ends(), math.inf)
 
     def test_it_ends_when_links_are_replaced_again_and_again(self):
-        for now, may_pass in [(5.0, True), (70.0, True), (71.0, True), (72.0, False)]:
-            self.welcome(now)
+        for time, may_pass in [(5.0, True), (70.0, True), (71.0, True), (72.0, False)]:
+            self.welcome(time)
             with self.assertRaises(scanloom_client.ScanloomError) as raised:
-                self.hear(now, "error", code=10, message="connected again")
+                self.hear(time, "error", code=10, message="connected again")
             self.assertEqual((raised.exception.code, raised.exception.retryable), ("REPLACED", may_pass))
             self.conversation.close()
 
