@@ -43,8 +43,8 @@ Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const W
         weave = std::make_shared<Weave>(session, request, target);
         weaves_.push_front(weave);
     }
-    evict();
     launch(weave);
+    evict();
     return weave;
 }
 
@@ -57,21 +57,25 @@ Result<> Weaves::check_room() const {
     return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
 }
 
-void Weaves::launch(std::shared_ptr<Weave> weave) {
+/// It begins here and not on the executor, so that of two that are asked for, or wait, the one behind sees where the
+/// one before begins. Pre: mutex_ is held.
+void Weaves::launch(const std::shared_ptr<Weave>& weave) {
+    if (weave->has_begun() || begin(weave)) post(weave);
+}
+
+void Weaves::post(std::shared_ptr<Weave> weave) {
     boost::asio::post(executor_, [this, weave = std::move(weave)] { run(weave); });
 }
 
 void Weaves::run(const std::shared_ptr<Weave>& weave) {
-    if (!weave->has_begun() && !begin(weave)) return;
-    if (weave->run(log_, budget_)) return launch(weave); // behind the others that wait
+    if (weave->run(log_, budget_)) return post(weave); // behind the others that wait
     const std::lock_guard lock(mutex_);
-    evict();
     launch_those_behind(*weave);
+    evict();
 }
 
-/// @return false: later, when another is there from which this one begins.
+/// Pre: mutex_ is held. @return false: later, when another is there from which this one begins.
 bool Weaves::begin(const std::shared_ptr<Weave>& weave) {
-    const std::lock_guard lock(mutex_); // so that two that begin at once see each other
     try {
         while (const auto start = furthest_before(*weave)) {
             if (start->is_on_its_way) {
@@ -104,11 +108,11 @@ std::optional<Weaves::Start> Weaves::furthest_before(const Weave& weave) const {
 
 /// Pre: mutex_ is held.
 void Weaves::launch_those_behind(const Weave& ended) {
-    std::erase_if(behind_, [&](auto& behind) {
-        if (behind.ahead.get() != &ended) return false;
-        launch(std::move(behind.weave));
-        return true;
-    });
+    const auto waited =
+        std::ranges::stable_partition(behind_, [&](const Behind& behind) { return behind.ahead.get() != &ended; });
+    const std::vector<Behind> next(waited.begin(), waited.end());
+    behind_.erase(waited.begin(), waited.end());
+    for (const Behind& behind : next) launch(behind.weave); // the first that waited first
 }
 
 std::shared_ptr<Weave> Weaves::find(store::SessionId session, std::string_view id) {

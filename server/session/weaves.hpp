@@ -71,7 +71,8 @@ private:
 
     [[nodiscard]] std::shared_ptr<Weave> touch(store::SessionId session, std::string_view id);
     [[nodiscard]] Result<> check_room() const;
-    void launch(std::shared_ptr<Weave> weave);
+    void launch(const std::shared_ptr<Weave>& weave);
+    void post(std::shared_ptr<Weave> weave);
     void run(const std::shared_ptr<Weave>& weave);
     [[nodiscard]] bool begin(const std::shared_ptr<Weave>& weave);
     [[nodiscard]] std::optional<Start> furthest_before(const Weave& weave) const;
