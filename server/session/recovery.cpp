@@ -2,6 +2,7 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/session/checkpoint.hpp"
+#include "server/store/advice.hpp"
 
 #include <fmt/format.h>
 
@@ -54,8 +55,9 @@ Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId sessio
     if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {
         return Error{Errc::kStoreFailed,
                      fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already; the store is "
-                                 "damaged, restore it from a backup or remove the session",
-                                 recovered.projection.revision(), recovered.projection.newest_restored())};
+                                 "damaged; {}",
+                                 recovered.projection.revision(), recovered.projection.newest_restored(),
+                                 store::kBringBackOrRemove)};
     }
     return recovered;
 }

@@ -49,6 +49,13 @@ Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::s
     std::error_code problem;
     fs::create_directories(directory, problem);
     if (problem) return failure("cannot create the directory of backups {}: {}", directory.native(), problem.message());
+    auto lock = FileLock::alone(directory / "scanloom.lock");
+    if (!lock && lock.error().code == Errc::kConflict) {
+        return Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
+                                                  "name another directory",
+                                                  directory.native())};
+    }
+    if (!lock) return failure("the backups in {} cannot be used: {}", directory.native(), lock.error().message);
     rocksdb::BackupEngine* opened = nullptr;
     const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
     std::unique_ptr<rocksdb::BackupEngine> engine(opened);
@@ -57,11 +64,12 @@ Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::s
                        status.ToString());
     }
     engine->GarbageCollect().PermitUncheckedError(); // what a crash left of one; if it stays, it takes disk and no more
-    return std::unique_ptr<Backups>(new Backups(directory, kept, std::move(engine)));
+    return std::unique_ptr<Backups>(new Backups(directory, kept, *std::move(lock), std::move(engine)));
 }
 
-Backups::Backups(fs::path directory, std::size_t kept, std::unique_ptr<rocksdb::BackupEngine> engine)
-    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), engine_(std::move(engine)) {
+Backups::Backups(fs::path directory, std::size_t kept, FileLock lock, std::unique_ptr<rocksdb::BackupEngine> engine)
+    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), lock_(std::move(lock)),
+      engine_(std::move(engine)) {
     look();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/store/file_lock.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <cstddef>
@@ -36,8 +37,9 @@ class Backups {
 public:
     static constexpr std::uint64_t kBytesPerSecond = std::uint64_t{100} << 20; ///< copied, so that robots do not wait
 
-    /// Creates the directory if need be; keeps the newest `kept` backups, at least 1.
-    /// Errors  kStoreFailed: the directory cannot be used.
+    /// Creates the directory if need be; keeps the newest `kept` backups, at least 1. No other server can use it for
+    /// as long as this lives; whoever restores can.
+    /// Errors  kConflict: another server uses the directory; kStoreFailed: it cannot be used.
     [[nodiscard]] static Result<std::unique_ptr<Backups>> open(const std::filesystem::path& directory,
                                                                std::size_t kept);
     ~Backups();
@@ -58,11 +60,13 @@ public:
     void stop();
 
 private:
-    Backups(std::filesystem::path directory, std::size_t kept, std::unique_ptr<rocksdb::BackupEngine> engine);
+    Backups(std::filesystem::path directory, std::size_t kept, FileLock lock,
+            std::unique_ptr<rocksdb::BackupEngine> engine);
     void look();
 
     const std::filesystem::path directory_;
     const std::size_t kept_;
+    const FileLock lock_;
     const std::unique_ptr<rocksdb::BackupEngine> engine_;
     std::mutex making_; // held by who makes one
     mutable std::mutex list_mutex_;

@@ -1,5 +1,6 @@
 #include "server/store/crash_recovery.hpp"
 
+#include "server/store/advice.hpp"
 #include "server/store/log_file.hpp"
 
 #include <fmt/format.h>
@@ -39,8 +40,8 @@ Result<LogFileCheck> checked(const fs::path& file) {
     if (!bytes) return bytes.error();
     auto check = check_log_file(*bytes);
     if (check.damage) {
-        return failure(fmt::format("{} of the store is damaged at byte {}; restore the store from a backup",
-                                   file.native(), *check.damage));
+        return failure(
+            fmt::format("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kBringBack));
     }
     return check;
 }
@@ -80,19 +81,17 @@ Result<> check_manifest(const fs::path& directory) {
     if (!name) return name.error();
     if (!name->starts_with("MANIFEST-") || name->find_first_not_of("0123456789", 9) != name->size() - 1 ||
         !name->ends_with('\n')) {
-        return failure(fmt::format("{} of the store is damaged: it does not name a manifest; restore the store from a "
-                                   "backup",
-                                   current.native()));
+        return failure(
+            fmt::format("{} of the store is damaged: it does not name a manifest; {}", current.native(), kBringBack));
     }
     const fs::path manifest = directory / name->substr(0, name->size() - 1);
     if (!fs::exists(manifest, problem)) {
-        return failure(fmt::format("{} of the store is missing; restore the store from a backup", manifest.native()));
+        return failure(fmt::format("{} of the store is missing; {}", manifest.native(), kBringBack));
     }
     const auto check = checked(manifest);
     if (!check) return check.error();
     if (check->whole_bytes == 0) {
-        return failure(
-            fmt::format("{} of the store has lost its contents; restore the store from a backup", manifest.native()));
+        return failure(fmt::format("{} of the store has lost its contents; {}", manifest.native(), kBringBack));
     }
     return {};
 }
@@ -104,8 +103,8 @@ Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirecto
     std::optional<UnfinishedWrite> unfinished;
     for (const auto& [number, log] : write_ahead_logs(directory.path())) {
         if (unfinished) {
-            return failure(fmt::format("{} of the store is damaged at byte {}; restore the store from a backup",
-                                       unfinished->file.native(), unfinished->whole_bytes));
+            return failure(fmt::format("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
+                                       unfinished->whole_bytes, kBringBack));
         }
         const auto check = checked(log);
         if (!check) return check.error();

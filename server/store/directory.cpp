@@ -1,5 +1,7 @@
 #include "server/store/directory.hpp"
 
+#include "server/store/advice.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -7,7 +9,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 namespace scanloom::store {
@@ -52,18 +53,13 @@ Result<> create(const fs::path& directory) {
     return {};
 }
 
-/// @param kind  LOCK_EX or LOCK_SH.
-Result<int> lock(const fs::path& directory, int file, int kind) {
-    if (::flock(file, kind | LOCK_NB) == 0) return file;
-    const bool in_use = errno == EWOULDBLOCK;
-    const std::string problem = last_system_error();
-    ::close(file);
-    if (in_use) {
-        return Error{Errc::kConflict,
-                     fmt::format("the store {} is in use by another scanloom-server; stop it or name another directory",
-                                 directory.native())};
+Error not_locked(const fs::path& directory, const Error& why) {
+    if (why.code == Errc::kConflict) {
+        return {why.code, fmt::format("the store {} is in use by another scanloom-server; stop it or name another "
+                                      "directory",
+                                      directory.native())};
     }
-    return failure("cannot lock the store {}: {}", directory.native(), problem);
+    return failure("the store {} cannot be used: {}", directory.native(), why.message);
 }
 
 /// Whether a program without a lock of ours has RocksDB open here: its files must not be mended below it.
@@ -101,16 +97,15 @@ Result<> check_files(const fs::path& directory) {
     if (problem) return failure("cannot list the store {}: {}", directory.native(), problem.message());
     const bool has_current = fs::exists(directory / "CURRENT", problem);
     if (!has_current && (tables || write_ahead_logs)) {
-        return failure("the store {} is damaged: its file CURRENT is missing; restore it from a backup",
-                       directory.native());
+        return failure("the store {} is damaged: its file CURRENT is missing; {}", directory.native(), kBringBack);
     }
     if (!has_current && !foreign.empty()) {
         return failure("the directory {} holds other files ({}) and no store; name a directory of its own",
                        directory.native(), foreign);
     }
     if (tables && !write_ahead_logs) {
-        return failure("the store {} is damaged: its write-ahead log (*.log) is missing; restore it from a backup",
-                       directory.native());
+        return failure("the store {} is damaged: its write-ahead log (*.log) is missing; {}", directory.native(),
+                       kBringBack);
     }
     return {};
 }
@@ -119,9 +114,9 @@ Result<> check_files(const fs::path& directory) {
 
 Result<LockedDirectory> LockedDirectory::open(const fs::path& directory) {
     if (auto created = create(directory); !created) return created.error();
-    const int file = ::open((directory / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0) return failure("cannot write in the store {}: {}", directory.native(), last_system_error());
-    return locked(directory, file, LOCK_EX, Files::kAll);
+    auto lock = FileLock::alone(directory / kLockFile);
+    if (!lock) return not_locked(directory, lock.error());
+    return checked({directory, *std::move(lock)}, Files::kAll);
 }
 
 Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory, Files files) {
@@ -129,31 +124,20 @@ Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory,
     if (!fs::is_directory(directory, problem)) {
         return Error{Errc::kNotFound, fmt::format("there is no store {}; name its directory", directory.native())};
     }
-    const int file = ::open((directory / kLockFile).c_str(), O_RDONLY | O_CLOEXEC);
-    // A copy of a store may come without: then no server has ever had it open.
-    if (file < 0 && errno == ENOENT) return locked(directory, -1, LOCK_SH, files);
-    if (file < 0) return failure("cannot read in the store {}: {}", directory.native(), last_system_error());
-    return locked(directory, file, LOCK_SH, files);
+    auto lock = FileLock::beside_others(directory / kLockFile); // a copy of a store may come without
+    if (!lock) return not_locked(directory, lock.error());
+    return checked({directory, *std::move(lock)}, files);
 }
 
-/// @param lock_file  open, or -1: there is none.
-Result<LockedDirectory> LockedDirectory::locked(const fs::path& directory, int lock_file, int kind, Files files) {
-    if (lock_file >= 0) {
-        if (const auto held = lock(directory, lock_file, kind); !held) return held.error();
-    }
-    LockedDirectory result(directory, lock_file);
-    if (rocksdb_is_open(directory)) {
+Result<LockedDirectory> LockedDirectory::checked(LockedDirectory directory, Files files) {
+    if (rocksdb_is_open(directory.path())) {
         return Error{Errc::kConflict,
                      fmt::format("the store {} is in use by another program; stop it or name another directory",
-                                 directory.native())};
+                                 directory.path().native())};
     }
-    if (files == Files::kAny) return result;
-    if (auto checked = check_files(directory); !checked) return checked.error();
-    return result;
-}
-
-LockedDirectory::~LockedDirectory() {
-    if (lock_ >= 0) ::close(lock_);
+    if (files == Files::kAny) return directory;
+    if (auto checked = check_files(directory.path()); !checked) return checked.error();
+    return directory;
 }
 
 std::uint64_t bytes_in(const fs::path& directory) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/store/file_lock.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 
@@ -24,21 +26,15 @@ public:
     [[nodiscard]] static Result<LockedDirectory> open_to_read(const std::filesystem::path& directory,
                                                               Files files = Files::kAll);
 
-    LockedDirectory(LockedDirectory&& other) noexcept
-        : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
-    LockedDirectory& operator=(LockedDirectory&&) = delete;
-    ~LockedDirectory();
-
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
-    [[nodiscard]] static Result<LockedDirectory> locked(const std::filesystem::path& directory, int lock_file, int kind,
-                                                        Files files);
+    [[nodiscard]] static Result<LockedDirectory> checked(LockedDirectory directory, Files files);
 
-    LockedDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+    LockedDirectory(std::filesystem::path path, FileLock lock) : path_(std::move(path)), lock_(std::move(lock)) {}
 
     std::filesystem::path path_;
-    int lock_; // file descriptor, or -1; the system lets the lock go with it, also after a crash
+    FileLock lock_;
 };
 
 /// Bytes of all files in a directory.

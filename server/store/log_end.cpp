@@ -1,5 +1,6 @@
 #include "server/store/log_end.hpp"
 
+#include "server/store/advice.hpp"
 #include "server/store/record.hpp"
 
 #include <fmt/format.h>
@@ -11,9 +12,9 @@ namespace scanloom::store {
 
 Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session) {
     const auto damaged = [&](std::string_view what) {
-        return Error{Errc::kStoreFailed, fmt::format("the store {} is damaged: the end of the log of session {} ({}); "
-                                                     "restore it from a backup or remove the session",
-                                                     store, session, what)};
+        return Error{Errc::kStoreFailed,
+                     fmt::format("the store {} is damaged: the end of the log of session {} ({}); {}", store, session,
+                                 what, kBringBackOrRemove)};
     };
     const KeyRange range = entries_of(session);
     const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));

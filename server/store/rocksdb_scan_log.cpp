@@ -1,5 +1,6 @@
 #include "server/store/rocksdb_scan_log.hpp"
 
+#include "server/store/advice.hpp"
 #include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
 
@@ -47,15 +48,13 @@ Error no_such_session(SessionId session) {
 }
 
 Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
-    return {Errc::kStoreFailed, fmt::format("the store {} cannot read session {}: {}; restore it from a backup or "
-                                            "remove the session",
-                                            store, session, status.ToString())};
+    return {Errc::kStoreFailed, fmt::format("the store {} cannot read session {}: {}; {}", store, session,
+                                            status.ToString(), kBringBackOrRemove)};
 }
 
 Error damaged(const std::string& store, SessionId session, std::string_view what) {
-    return {Errc::kStoreFailed, fmt::format("the store {} is damaged: {} of session {}; restore it from a backup or "
-                                            "remove the session",
-                                            store, what, session)};
+    return {Errc::kStoreFailed,
+            fmt::format("the store {} is damaged: {} of session {}; {}", store, what, session, kBringBackOrRemove)};
 }
 
 std::string_view view(const rocksdb::Slice& slice) { return {slice.data(), slice.size()}; }
@@ -94,8 +93,8 @@ RocksdbScanLog::~RocksdbScanLog() { watch_->set_tell(nullptr); }
 void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
     Error damage{Errc::kStoreFailed,
                  fmt::format("the store {} is damaged: {}; what is stored from now on is whole, but its files are no "
-                             "longer merged and use more disk; restore it from a backup when you can",
-                             name(), reason.ToString())};
+                             "longer merged and use more disk; when you can, {}",
+                             name(), reason.ToString(), kBringBack)};
     if (on_damage_) on_damage_(damage);
     {
         const std::lock_guard lock(damage_mutex_);

@@ -1,5 +1,6 @@
 #include "server/store/store_facts.hpp"
 
+#include "server/store/advice.hpp"
 #include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
 
@@ -26,7 +27,7 @@ Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs
     if (!status.ok()) return cannot_open(directory, status);
     const auto value = unsealed(key, sealed_value);
     const auto number = value ? number_of(*value) : std::nullopt;
-    if (!number) return failure(directory, fmt::format("its record '{}' is damaged; restore it from a backup", key));
+    if (!number) return failure(directory, fmt::format("its record '{}' is damaged; {}", key, kBringBack));
     return number;
 }
 
@@ -40,7 +41,7 @@ bool is_empty(rocksdb::DB& database) {
 
 Error cannot_open(const fs::path& directory, const rocksdb::Status& status) {
     if (status.IsCorruption()) {
-        return failure(directory, fmt::format("it is damaged ({}); restore it from a backup", status.ToString()));
+        return failure(directory, fmt::format("it is damaged ({}); {}", status.ToString(), kBringBack));
     }
     if (status.IsNoSpace()) return failure(directory, fmt::format("the disk is full ({})", status.ToString()));
     return failure(directory, status.ToString());
@@ -52,8 +53,9 @@ Result<bool> must_write_format(rocksdb::DB& database, const fs::path& directory)
     if (!*version) {
         if (is_empty(database)) return true;
         return failure(directory,
-                       "it holds a RocksDB database without the format record of scanloom-server; name another "
-                       "directory if it is another program's, restore it from a backup if it is not");
+                       fmt::format("it holds a RocksDB database without the format record of scanloom-server; name "
+                                   "another directory if it is another program's; if it is not, {}",
+                                   kBringBack));
     }
     if (**version <= kFormatVersion) return **version < kFormatVersion;
     return Error{Errc::kUnsupportedVersion,
@@ -72,7 +74,8 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
     for (sessions->Seek(std::string(kSessionsBegin)); sessions->Valid(); sessions->Next()) {
         const auto session = session_of(sessions->key().ToStringView());
         if (!session) break;
-        if (*session >= ends.next_session) return failure(directory, "its count of sessions is damaged");
+        if (*session >= ends.next_session)
+            return failure(directory, fmt::format("its count of sessions is damaged; {}", kBringBack));
         const auto end = end_of_log(database, directory.native(), *session); // damage of one holds up no other
         ends.revisions.emplace(*session, end ? *end : 0);
         if (!end) ends.damaged.emplace(*session, end.error());

@@ -5,6 +5,7 @@
 #include "tests/support/store_files.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -120,6 +121,18 @@ TEST_F(BackupsTest, AFileOfABackupThatWasDamagedIsNotRestored) {
     const auto table = only_file_like(at("backups") / "shared_checksum", ".sst");
     flip_bit(table, fs::file_size(table) / 2, 1);
     EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).error().code, Errc::kStoreFailed);
+}
+
+TEST_F(BackupsTest, OneServerAtATimeHasTheDirectory) {
+    append(1, 3);
+    const auto made = backups_->make(*log_).value();
+    EXPECT_EQ(Backups::open(at("backups"), 3).error(),
+              (Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
+                                                  "name another directory",
+                                                  at("backups").native())}));
+    EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).value(), made) << "who restores keeps nobody out";
+    backups_.reset();
+    EXPECT_TRUE(Backups::open(at("backups"), 3));
 }
 
 TEST_F(BackupsTest, NothingIsWrittenOver) {

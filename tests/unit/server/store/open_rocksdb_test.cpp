@@ -177,7 +177,8 @@ TEST_F(OpenRocksdb, AFileIsNoDirectory) {
 TEST_F(OpenRocksdb, ADirectoryThatCannotBeMadeOrWrittenIsNamed) {
     // /proc takes no files from anybody, not even from root.
     EXPECT_THAT(problem_of("/proc/scanloom"), HasSubstr("cannot create the store /proc/scanloom"));
-    EXPECT_THAT(problem_of("/proc/self/fd"), HasSubstr("cannot write in the store /proc/self/fd"));
+    EXPECT_THAT(problem_of("/proc/self/fd"),
+                HasSubstr("the store /proc/self/fd cannot be used: cannot write /proc/self/fd/scanloom.lock"));
 }
 
 TEST_F(OpenRocksdb, AMissingEntryIsReportedWithItsRevision) {
