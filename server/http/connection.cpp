@@ -1,7 +1,6 @@
 #include "server/http/connection.hpp"
 
 #include "server/http/date.hpp"
-#include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
@@ -11,14 +10,11 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/buffers_suffix.hpp>
-#include <boost/beast/http/error.hpp>
 #include <boost/beast/http/read.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <utility>
 #include <variant>
@@ -31,33 +27,6 @@ namespace beast = boost::beast;
 
 constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 4096;
-constexpr std::size_t kLingerBytesMax = 256 * 1024;
-
-/// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
-bool is_frame(const beast::flat_buffer& unread) {
-    return unread.size() > 0 && *static_cast<const char*>(unread.data().data()) == '\0';
-}
-
-/// Whether they begin as TLS does: with a record of a handshake (RFC 8446, section 5.1).
-bool is_tls_hello(const beast::flat_buffer& unread) {
-    const std::string_view bytes(static_cast<const char*>(unread.data().data()), unread.size());
-    return bytes.starts_with("\x16\x03");
-}
-
-/// The answer to bytes that are no request we read; nothing when there is nobody to answer.
-std::optional<Response> refusal_of(beast::error_code reason) {
-    using beast::http::error;
-    if (reason == error::header_limit || reason == error::buffer_overflow) {
-        return problem(Status::request_header_fields_too_large, "the header is too large; send fewer or shorter fields",
-                       "");
-    }
-    if (reason == error::body_limit) {
-        return problem(Status::payload_too_large, "the body is too large; send less", "");
-    }
-    const bool is_protocol = reason.category() == beast::http::make_error_code(error::end_of_stream).category();
-    if (!is_protocol || reason == error::end_of_stream || reason == error::partial_message) return std::nullopt;
-    return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
-}
 
 /// The boundary at which a fault of ours costs one answer and nothing else. `use` is one of Answering.
 template <class Use>
@@ -68,15 +37,6 @@ auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
         spdlog::error("{} {} failed: {}", in_quotes(request.method), in_quotes(request.target), failure.what());
         return problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
                        instance_of(request.target));
-    }
-}
-
-/// The same for a piece of an answer.
-Result<std::string> next_guarded(BodyStream& stream) {
-    try {
-        return stream.next();
-    } catch (const std::exception& failure) {
-        return Error{Errc::kInternal, failure.what()};
     }
 }
 
@@ -170,7 +130,7 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await refuse(error);
         co_return false;
     }
-    if (const auto refusal = refusal_of(parser)) {
+    if (const auto refusal = refusal_of(parser, *service_, peer_)) {
         co_await write(*refusal, {});
         co_return false;
     }
@@ -238,34 +198,6 @@ asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
     const auto [failed, size] = co_await beast::http::async_read_header(stream_, buffer_, parser, kAwaitTuple);
     deadline_.clear();
     co_return failed;
-}
-
-/// What is wrong with a request whose body is therefore not read.
-std::optional<Response> Connection::refusal_of(const Parser& parser) const {
-    using beast::http::field;
-    const auto& message = parser.get();
-    const auto path = [&] { return instance_of(view(message.target())); };
-    if (message.count(field::transfer_encoding) > 0) {
-        return problem(Status::length_required, "a Transfer-Encoding is not accepted; send a Content-Length", path());
-    }
-    if (message.count(field::host) > 1 || (message.count(field::host) == 0 && message.version() >= 11)) {
-        return problem(Status::bad_request, "a request has exactly one Host field", path());
-    }
-    const bool is_large = parser.content_length().value_or(0) > service_->config.body_bytes_max;
-    if (is_large && lane_of(head_of(message)) != Lane::kImporting) {
-        return problem(
-            Status::payload_too_large,
-            fmt::format("the body is too large; at most {} bytes are taken here", service_->config.body_bytes_max),
-            path());
-    }
-    const auto host = view(message[field::host]);
-    if (service_->check_host && !host.empty() && !is_known_host(host, service_->config.host_names)) {
-        service_->answering.foreign_host(peer_);
-        return problem(Status::misdirected_request,
-                       fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(host)),
-                       path());
-    }
-    return std::nullopt;
 }
 
 /// @return false when the connection cannot be used any more.
@@ -345,91 +277,8 @@ asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::s
 asio::awaitable<void> Connection::refuse(beast::error_code reason) {
     if (is_tls_hello(buffer_)) {
         must_linger_ = true; // no words of ours could be read there
-    } else if (is_frame(buffer_)) {
-        co_await write(problem(Status::bad_request,
-                               "this is no HTTP but what robots send; they connect to the robot port (--listen)", ""),
-                       {});
-    } else if (const auto refusal = http::refusal_of(reason)) {
+    } else if (const auto refusal = refusal_of(buffer_, reason)) {
         co_await write(*refusal, {});
-    }
-}
-
-/// @return whether the connection can take another request.
-asio::awaitable<bool> Connection::write(const Response& response, Manner manner) {
-    service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
-    const bool is_streamed = response.stream != nullptr;
-    const Framing framing = !is_streamed          ? Framing::kLength
-                            : manner.takes_chunks ? Framing::kChunked
-                                                  : Framing::kUntilClosed;
-    if (framing == Framing::kUntilClosed) manner.keep_alive = false;
-    const std::string head = head_text(response, manner.keep_alive, date_now(), framing, stream_.is_encrypted());
-    const bool with_body = manner.with_body && !is_streamed;
-    bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
-    const bool with_stream = written && manner.with_body && is_streamed;
-    if (with_stream) written = co_await write_stream(*response.stream, framing);
-    must_linger_ = written && !manner.keep_alive;
-    const bool can_go_on = written && manner.keep_alive;
-    co_return can_go_on;
-}
-
-/// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
-asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
-    for (;;) {
-        auto make = [&stream]() -> asio::awaitable<Result<std::string>> { co_return next_guarded(stream); };
-        const Result<std::string> piece =
-            co_await asio::co_spawn(service_->executors.survey, std::move(make), asio::use_awaitable);
-        if (!piece) {
-            spdlog::error("an answer broke off: {}", piece.error().message);
-            co_return false;
-        }
-        if (framing == Framing::kUntilClosed) {
-            if (piece->empty()) co_return true;
-            const bool sent = co_await write_all(*piece, {});
-            if (!sent) co_return false;
-            continue;
-        }
-        const std::string chunk = fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty one is the last
-        const bool sent = co_await write_all(chunk, {});
-        if (!sent || piece->empty()) co_return sent;
-    }
-}
-
-/// What the socket takes at once, goes at once. For the rest a deadline for each piece, so that a large answer may take
-/// its time as long as somebody reads it; and one for all, so that nobody holds one in memory by reading a byte now and
-/// then.
-asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
-    const std::array<asio::const_buffer, 2> whole = {asio::buffer(head), asio::buffer(body)};
-    beast::buffers_suffix<std::array<asio::const_buffer, 2>> rest(whole);
-    beast::error_code failed;
-    rest.consume(stream_.try_write(whole, failed));
-    if (failed && failed != asio::error::would_block) co_return false;
-    if (beast::buffer_bytes(rest) == 0) co_return true;
-    const auto& config = service_->config;
-    const auto size_seconds =
-        static_cast<double>(head.size() + body.size()) / static_cast<double>(config.write_rate_min);
-    const auto end = std::chrono::steady_clock::now() + config.write +
-                     std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
-    while (beast::buffer_bytes(rest) > 0) {
-        deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.write));
-        const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
-        deadline_.clear();
-        if (error) co_return false;
-        rest.consume(size);
-    }
-    co_return true;
-}
-
-/// Closing a socket with unread bytes resets it, and a peer still sending would never see the answer.
-/// So: say that nothing more comes, and read on for a while.
-asio::awaitable<void> Connection::linger() {
-    deadline_.set_after(service_->config.linger);
-    co_await stream_.async_farewell(kAwaitTuple);
-    stream_.shutdown_send();
-    std::array<char, kReadBytes> rubbish;
-    for (std::size_t total = 0; total < kLingerBytesMax;) {
-        const auto [error, size] = co_await stream_.socket().async_read_some(asio::buffer(rubbish), kAwaitTuple);
-        if (error) break;
-        total += size;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/lane.hpp"
+#include "server/http/refusals.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/service.hpp"
@@ -12,11 +13,8 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/core/error.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 
 #include <memory>
-#include <optional>
 #include <string_view>
 
 namespace scanloom::http {
@@ -41,14 +39,11 @@ public:
     void abort();
 
 private:
-    using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
-
     [[nodiscard]] boost::asio::awaitable<bool> shake_hands();
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
     [[nodiscard]] boost::asio::awaitable<boost::beast::error_code> read_header(Parser& parser);
     [[nodiscard]] boost::asio::awaitable<bool> read_body(Parser& parser);
-    [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser) const;
     [[nodiscard]] boost::asio::awaitable<bool> take_body(Parser& parser, std::shared_ptr<const void>& slot);
     [[nodiscard]] boost::asio::awaitable<void> show(const live::Invitation& invitation, const Incoming& upgrade);
     [[nodiscard]] boost::asio::awaitable<void> wake(Asleep asleep);

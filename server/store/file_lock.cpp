@@ -36,7 +36,8 @@ Result<FileLock> FileLock::locked(const std::filesystem::path& file, int descrip
     FileLock held(descriptor);
     if (::flock(descriptor, operation | LOCK_NB) == 0) return held;
     const int error = errno;
-    if (error == EWOULDBLOCK) return Error{Errc::kConflict, fmt::format("{} is held by another process", file.native())};
+    if (error == EWOULDBLOCK)
+        return Error{Errc::kConflict, fmt::format("{} is held by another process", file.native())};
     return failure("lock", file, error);
 }
 

@@ -1,0 +1,116 @@
+#include "server/http/connection.hpp"
+#include "server/http/date.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/buffers_suffix.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+/// How answers leave, and how a connection is left.
+namespace scanloom::http {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+
+constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t kLingerReadBytes = 4096;
+constexpr std::size_t kLingerBytesMax = 256 * 1024;
+
+/// A fault of ours costs this answer and nothing else.
+Result<std::string> next_guarded(BodyStream& stream) {
+    try {
+        return stream.next();
+    } catch (const std::exception& failure) {
+        return Error{Errc::kInternal, failure.what()};
+    }
+}
+
+} // namespace
+
+/// @return whether the connection can take another request.
+asio::awaitable<bool> Connection::write(const Response& response, Manner manner) {
+    service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
+    const bool is_streamed = response.stream != nullptr;
+    const Framing framing = !is_streamed          ? Framing::kLength
+                            : manner.takes_chunks ? Framing::kChunked
+                                                  : Framing::kUntilClosed;
+    if (framing == Framing::kUntilClosed) manner.keep_alive = false;
+    const std::string head = head_text(response, manner.keep_alive, date_now(), framing, stream_.is_encrypted());
+    const bool with_body = manner.with_body && !is_streamed;
+    bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
+    const bool with_stream = written && manner.with_body && is_streamed;
+    if (with_stream) written = co_await write_stream(*response.stream, framing);
+    must_linger_ = written && !manner.keep_alive;
+    const bool can_go_on = written && manner.keep_alive;
+    co_return can_go_on;
+}
+
+/// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
+asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
+    for (;;) {
+        auto make = [&stream]() -> asio::awaitable<Result<std::string>> { co_return next_guarded(stream); };
+        const Result<std::string> piece =
+            co_await asio::co_spawn(service_->executors.survey, std::move(make), asio::use_awaitable);
+        if (!piece) {
+            spdlog::error("an answer broke off: {}", piece.error().message);
+            co_return false;
+        }
+        if (framing == Framing::kUntilClosed) {
+            if (piece->empty()) co_return true;
+            const bool sent = co_await write_all(*piece, {});
+            if (!sent) co_return false;
+            continue;
+        }
+        const std::string chunk = fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty one is the last
+        const bool sent = co_await write_all(chunk, {});
+        if (!sent || piece->empty()) co_return sent;
+    }
+}
+
+/// What the socket takes at once, goes at once. For the rest a deadline for each piece, so that a large answer may take
+/// its time as long as somebody reads it; and one for all, so that nobody holds one in memory by reading a byte now and
+/// then.
+asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
+    const std::array<asio::const_buffer, 2> whole = {asio::buffer(head), asio::buffer(body)};
+    beast::buffers_suffix<std::array<asio::const_buffer, 2>> rest(whole);
+    beast::error_code failed;
+    rest.consume(stream_.try_write(whole, failed));
+    if (failed && failed != asio::error::would_block) co_return false;
+    if (beast::buffer_bytes(rest) == 0) co_return true;
+    const auto& config = service_->config;
+    const auto size_seconds =
+        static_cast<double>(head.size() + body.size()) / static_cast<double>(config.write_rate_min);
+    const auto end = std::chrono::steady_clock::now() + config.write +
+                     std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
+    while (beast::buffer_bytes(rest) > 0) {
+        deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.write));
+        const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
+        deadline_.clear();
+        if (error) co_return false;
+        rest.consume(size);
+    }
+    co_return true;
+}
+
+/// Closing a socket with unread bytes resets it, and a peer still sending would never see the answer.
+/// So: say that nothing more comes, and read on for a while.
+asio::awaitable<void> Connection::linger() {
+    deadline_.set_after(service_->config.linger);
+    co_await stream_.async_farewell(kAwaitTuple);
+    stream_.shutdown_send();
+    std::array<char, kLingerReadBytes> rubbish;
+    for (std::size_t total = 0; total < kLingerBytesMax;) {
+        const auto [error, size] = co_await stream_.socket().async_read_some(asio::buffer(rubbish), kAwaitTuple);
+        if (error) break;
+        total += size;
+    }
+}
+
+} // namespace scanloom::http
