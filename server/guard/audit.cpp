@@ -8,9 +8,12 @@
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace scanloom::guard {
 namespace {
+
+constexpr double kBetweenStrangers = 1.0; // seconds
 
 /// What a stranger may have written is told only where it is a name, which holds neither spaces nor lines.
 std::string_view name_or(std::string_view text, std::string_view otherwise) {
@@ -43,6 +46,17 @@ void Audit::note(access::Refusal refusal) {
         lines = table_.note(std::move(refusal), now_());
     }
     for (const auto& line : lines) tell(line);
+}
+
+std::optional<std::uint64_t> Audit::take_line_of_stranger() {
+    const std::lock_guard lock(mutex_);
+    const double now = now_();
+    if (stranger_told_ && now < *stranger_told_ + kBetweenStrangers) {
+        ++strangers_untold_;
+        return std::nullopt;
+    }
+    stranger_told_ = now;
+    return std::exchange(strangers_untold_, 0);
 }
 
 void Audit::note(access::Port port, const std::string& who, net::ClientFault fault) {

@@ -4,8 +4,10 @@
 #include "server/access/refusal_table.hpp"
 #include "server/metrics/metrics.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace scanloom::guard {
@@ -32,11 +34,18 @@ public:
     /// Of who comes without a certificate that is asked for.
     void note(access::Port port, const std::string& who, net::ClientFault fault);
 
+    /// Of a link that ended before anybody was let in: whether the log is told. A line a second at most, so that nobody
+    /// fills a disk by knocking.
+    /// @return how many have not been told since the last one; nothing: nor is this one.
+    [[nodiscard]] std::optional<std::uint64_t> take_line_of_stranger();
+
 private:
     metrics::RefusalCounters& counters_;
     std::function<double()> now_;
-    std::mutex mutex_; // guards the table
+    std::mutex mutex_; // guards what follows
     access::RefusalTable table_;
+    std::optional<double> stranger_told_; // when
+    std::uint64_t strangers_untold_ = 0;  // since
 };
 
 } // namespace scanloom::guard

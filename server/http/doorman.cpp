@@ -23,10 +23,19 @@ Denied denied(Reason reason, const Token& token, std::string why) {
     return {reason, token.name, {Errc::kUnauthorized, std::move(why)}};
 }
 
-/// Browsers add the cookie to whatever they send here, on behalf of any page. What only reads, no other page gets to
-/// see; all else has to come from a page of ours.
-bool needs_own_page(const Request& request) {
-    return request.upgrade.has_value() || (request.method != "GET" && request.method != "HEAD");
+/// Browsers send here what any page tells them to, with the cookie, from machines that only they reach. What only
+/// reads, no other page gets to see; all else has to come from a page of ours.
+bool is_of_foreign_page(const Request& request) {
+    const bool only_reads = !request.upgrade && (request.method == "GET" || request.method == "HEAD");
+    return !only_reads && !is_own_page(request.origin, request.host, request.is_secure);
+}
+
+Denied foreign_page(const Request& request, std::string token) {
+    return {Reason::kForeignPage,
+            std::move(token),
+            {Errc::kUnauthorized,
+             fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
+                         in_quotes(request.origin))}};
 }
 
 bool has_role(const Token& token, Need need) {
@@ -61,6 +70,10 @@ std::string_view session_in(const Match& match) {
 } // namespace
 
 std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Match& match) const {
+    // A token in a field of its own is shown by nobody but who knows it; where there is none, the origin has to do.
+    const bool is_told_to = request.authorization.empty() && !request.origin.empty() && is_of_foreign_page(request);
+    const bool asks_no_token = gate_.is_open() || need_of(match.operation) == Need::kNothing;
+    if (is_told_to && asks_no_token) return refuse(request, foreign_page(request, ""), session_in(match));
     if (gate_.is_open()) return access::anybody();
     auto who = identify(request);
     if (need_of(match.operation) == Need::kNothing) return who ? *who : nullptr;
@@ -89,10 +102,8 @@ guard::Admitted<TokenRef> Doorman::identify_browser(const Request& request, std:
         return Denied{
             Reason::kUnknownToken, "", {Errc::kUnauthorized, "you are signed in no more; sign in again with a token"}};
     }
-    if (!needs_own_page(request) || is_own_page(request.origin, request.host, request.is_secure)) return token;
-    return denied(Reason::kForeignPage, *token,
-                  fmt::format("pages of {} may not do this in your name; use the viewer that this server serves",
-                              in_quotes(request.origin)));
+    if (is_of_foreign_page(request)) return foreign_page(request, token->name);
+    return token;
 }
 
 /// Source  RFC 6750, section 3.

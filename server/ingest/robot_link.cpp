@@ -66,13 +66,23 @@ asio::awaitable<void> RobotLink::run() {
         served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
     if (dialogue_.is_welcome()) dialogue_.session()->leave(self);
+    const bool was_let_in = pass_ != nullptr;
     pass_.reset();
     if (ended_by_) served = *ended_by_;
     if (!served) services_.counters.failed(served.error().code).Increment();
     if (served) co_await part();
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
-    log::info(about(), "{} {}", who_ended(), served ? "goodbye" : served.error().message);
+    tell_end(served ? "goodbye" : served.error().message, was_let_in);
+}
+
+void RobotLink::tell_end(std::string_view how, bool was_let_in) const {
+    if (was_let_in) return log::info(about(), "{} {}", who_ended(), how);
+    const auto untold = services_.audit.take_line_of_stranger();
+    if (!untold) return;
+    const auto others =
+        *untold > 0 ? fmt::format(" ({} others were not let in since the last line like this)", *untold) : "";
+    log::info(about(), "{} {}{}", who_ended(), how, others);
 }
 
 std::string RobotLink::who_ended() const {

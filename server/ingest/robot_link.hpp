@@ -26,6 +26,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace scanloom::ingest {
 
@@ -91,6 +92,7 @@ private:
     boost::asio::awaitable<void> farewell(wire::LinkError why);
     boost::asio::awaitable<void> part();
     boost::asio::awaitable<void> let_hang_up();
+    void tell_end(std::string_view how, bool was_let_in) const;
     [[nodiscard]] std::string who_ended() const;
     [[nodiscard]] log::Context about() const;
     void start_watch();

@@ -198,6 +198,24 @@ TEST_F(IngestTest, TheLogTellsRobotsFromThoseThatNeverSaidHello) {
     EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("robot ''")));
 }
 
+TEST_F(IngestTest, StrangersDoNotFillTheLog) {
+    constexpr int kStrangers = 300;
+    CapturedLog log;
+    start();
+    const auto begin = std::chrono::steady_clock::now();
+    for (int n = 0; n < kStrangers; ++n) {
+        testing_support::HttpClient stranger(port());
+        stranger.send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+        EXPECT_EQ(stranger.read().status, 400);
+    }
+    running_.reset();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = log.text().find("never said", at)) != std::string::npos; ++at) ++lines;
+    EXPECT_GE(lines, 1U);
+    EXPECT_LE(lines, static_cast<std::size_t>(took.count()) + 1);
+}
+
 TEST_F(IngestTest, PingsWithoutReadingThePongsAreBounded) {
     start();
     const auto robot = welcomed(port(), hello("r"));

@@ -63,6 +63,18 @@ TEST_F(AuditTest, WhatComesInAFloodIsCountedAndToldOnceAMinuteAndInTheEnd) {
     EXPECT_EQ(counters_.of(Port::kRobot, Reason::kNoToken).Value(), 0.0);
 }
 
+TEST_F(AuditTest, OfStrangersALineASecondIsToldWithHowManyWereNot) {
+    Audit audit(counters_, [&] { return now_; });
+    EXPECT_EQ(audit.take_line_of_stranger(), 0U);
+    for (int n = 0; n < 3000; ++n) EXPECT_FALSE(audit.take_line_of_stranger());
+    now_ += 0.99;
+    EXPECT_FALSE(audit.take_line_of_stranger());
+    now_ += 0.02;
+    EXPECT_EQ(audit.take_line_of_stranger(), 3001U);
+    now_ += 1.0;
+    EXPECT_EQ(audit.take_line_of_stranger(), 0U);
+}
+
 TEST_F(AuditTest, NobodyForgesALine) {
     Audit audit(counters_, [this] { return now_; });
     audit.note({Port::kHttp, Reason::kWrongSession, "192.0.2.7", "depot", "a\nwarning event=refused who=somebody"});

@@ -289,6 +289,37 @@ TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
     EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::ok);
 }
 
+TEST_F(ApiTest, WithoutTokensToo) {
+    const auto create = [&](std::string_view origin, std::string_view type, std::string_view target) {
+        Request asked;
+        asked.method = "POST";
+        asked.target = target;
+        asked.host = kHost;
+        asked.content_type = type;
+        asked.origin = origin;
+        asked.body = R"({"name":"new"})";
+        return answer(api_, asked);
+    };
+    for (const auto* foreign : {"null", "http://elsewhere", "https://maps.lab.elsewhere:8080"}) {
+        const auto answered = create(foreign, "application/json", "/api/v1/sessions");
+        EXPECT_EQ(answered.status, Status::forbidden) << foreign;
+        EXPECT_THAT(answered.body.bytes(), HasSubstr(foreign));
+        EXPECT_EQ(create(foreign, "multipart/form-data; boundary=b", "/api/v1/sessions/new/import").status,
+                  Status::forbidden)
+            << "which browsers send without asking first";
+    }
+    EXPECT_EQ(metrics_.refusals().of(access::Port::kHttp, access::Reason::kForeignPage).Value(), 6.0);
+    EXPECT_EQ(registry_.find("new"), nullptr);
+    EXPECT_EQ(create(kOwnPage, "application/json", "/api/v1/sessions").status, Status::created);
+    EXPECT_EQ(create("", "application/json", "/api/v1/sessions").status, Status::conflict) << "a program";
+    Request look;
+    look.method = "GET";
+    look.target = "/api/v1/sessions";
+    look.host = kHost;
+    look.origin = "http://elsewhere";
+    EXPECT_EQ(answer(api_, look).status, Status::ok) << "its page does not get to see it";
+}
+
 TEST_F(ApiLoginTest, ATokenInTheHeaderNeedsNoPage) {
     auto asked = request("POST", "/api/v1/sessions", "operator-all", R"({"name":"new"})");
     asked.origin = "http://elsewhere"; // no page can send that header without being allowed to
