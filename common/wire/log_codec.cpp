@@ -49,6 +49,7 @@ struct ToProto {
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
+    if (!is_valid_name(proto.name())) return damaged("a log entry"); // names are written into logs and files' names
     RobotJoined joined{proto.robot(), proto.name(), proto.source()};
     if (proto.has_body_radius()) {
         if (!is_body_radius(proto.body_radius())) return damaged("a log entry");
@@ -135,6 +136,7 @@ std::string encode_session(const SessionRecord& record) {
 Result<SessionRecord> decode_session(std::string_view bytes) {
     v1::SessionRecord proto;
     if (!proto.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a session");
+    if (!is_valid_name(proto.name())) return damaged("a session"); // a path, or lines of a log, are nobody's name
     auto options = from_proto(proto.config());
     if (!options) return options.error();
     return SessionRecord{proto.name(),        proto.created(),    *options,

@@ -130,6 +130,15 @@ TEST(LogCodec, ASessionFromBeforeThereWereTokensIsNobodysInParticular) {
     EXPECT_EQ(decoded->chunks_max, 0U);
 }
 
+TEST(LogCodec, WhatIsNoNameIsTakenForDamage) {
+    for (const auto* name : {"", "../../tmp/other", "a/b", "a b", "a\nfake line", "\xff"}) {
+        SessionRecord record;
+        record.name = name;
+        EXPECT_EQ(decode_session(encode_session(record)).error().code, Errc::kMalformed) << name;
+        EXPECT_EQ(decode_entry(encode_entry(RobotJoined{0, name})).error().code, Errc::kMalformed) << name;
+    }
+}
+
 TEST(LogCodec, ADamagedSessionIsReported) {
     std::string bytes = encode_session({"Intel_Lab", 1.75e9, {.cell_size = 0.1}});
     bytes.pop_back();
