@@ -46,8 +46,7 @@ public:
         std::istringstream lines(*text);
         auto settings = CLI::ConfigTOML::from_config(lines);
         std::erase_if(settings, [](const CLI::ConfigItem& item) {
-            const char* value = std::getenv(environment_name(item.name).c_str());
-            return value != nullptr && *value != '\0';
+            return std::getenv(environment_name(item.name).c_str()) != nullptr;
         });
         return settings;
     }
@@ -56,13 +55,27 @@ private:
     const CLI::App& app_;
 };
 
+/// A variable of a script that was never set must not switch off what it was to name.
+[[nodiscard]] inline std::string check_not_empty(const std::string& text) {
+    return text.empty() ? "it is given but empty; give it a value, or leave it out" : "";
+}
+
+/// The same of the environment, whose empty settings CLI11 would not look at.
+inline void refuse_empty_setting(const CLI::Option& option) {
+    const auto name = environment_name(option.get_lnames().front());
+    const char* value = std::getenv(name.c_str());
+    if (value != nullptr && *value == '\0') throw CLI::ValidationError(name, check_not_empty(value));
+}
+
 /// Call it after all options and subcommands were added. Unknown settings in the file are errors of app.parse().
-/// Throws CLI::ParseError when SCANLOOM_CONFIG names no file.
+/// Throws CLI::ParseError when SCANLOOM_CONFIG names no file, or a setting in the environment is empty.
 inline void read_settings_from_environment_and_file(CLI::App& app) {
     const auto name_options = [](CLI::App& level) {
         for (CLI::Option* option : level.get_options()) {
             if (!option->get_lnames().empty() && option->get_configurable()) {
                 option->envname(environment_name(option->get_lnames().front()));
+                option->check(&check_not_empty);
+                refuse_empty_setting(*option);
             }
         }
     };

@@ -48,7 +48,8 @@ int run(const app::ServerOptions& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
+    std::signal(SIGPIPE, SIG_IGN);                    // whoever reads what is printed may go
+    const auto hangup = std::signal(SIGHUP, SIG_IGN); // until the server listens for it
     try {
         open_missing_standard_streams();
         const auto options = app::read_options(argc, argv);
@@ -56,7 +57,9 @@ int main(int argc, char** argv) {
             (leave->code == kExitDone ? std::cout : std::cerr) << leave->text;
             return leave->code;
         }
-        return run(std::get<app::ServerOptions>(options));
+        const auto& told = std::get<app::ServerOptions>(options);
+        if (told.task != app::Task::kServe) std::signal(SIGHUP, hangup);
+        return run(told);
     } catch (const std::exception& failure) {
         standard_error().write(fmt::format("scanloom-server: {}\n", failure.what()));
         return kExitFailed;

@@ -67,7 +67,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
       desk_(planning_.get_executor(), goals_, sessions_),
       api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
            options.tile_cache_bytes),
-      patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
+      hangup_(io_, SIGHUP), patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
     // Nothing may run any more when the parts go, last part first.
@@ -177,7 +177,7 @@ Result<> Server::listen() {
 
 Result<> Server::run() {
     wait_for_signal();
-    wait_for_hangup(); // even where nothing is read again: it would end the program
+    wait_for_hangup();
     http_->start();
     std::vector<std::jthread> threads;
     for (std::size_t n = 0; n < io_threads_for(options_.threads); ++n)
@@ -234,8 +234,7 @@ void Server::tidy_up() {
 }
 
 void Server::wait_for_hangup() {
-    if (!hangup_) hangup_.emplace(io_, SIGHUP);
-    hangup_->async_wait([this](const boost::system::error_code& error, int) {
+    hangup_.async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
         const bool has_tokens = !options_.tokens.empty();
         if (has_tokens) read_tokens_again();
@@ -294,7 +293,7 @@ void Server::drain() {
         http_->stop([this] {
             patience_.cancel();
             signals_->cancel();
-            if (hangup_) hangup_->cancel();
+            hangup_.cancel();
         });
     });
 }

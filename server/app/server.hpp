@@ -110,7 +110,7 @@ private:
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;
     std::optional<boost::asio::signal_set> signals_;
-    std::optional<boost::asio::signal_set> hangup_;
+    boost::asio::signal_set hangup_;
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
     boost::asio::steady_timer tidying_;

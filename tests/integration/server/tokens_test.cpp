@@ -17,6 +17,8 @@
 #include <thread>
 #include <vector>
 
+#include <sys/stat.h>
+
 namespace scanloom::test {
 namespace {
 
@@ -154,6 +156,23 @@ TEST_F(TokensTest, TheFileIsReadAgainAtAHangupAndABadOneChangesNothing) {
     EXPECT_FALSE(std::get<wire::LinkError>(*end).retryable);
     EXPECT_EQ(status("GET", "/api/v1/sessions/depot-1", bearer(viewer_)), 401);
     EXPECT_EQ(status("GET", "/api/v1/sessions/depot-1", bearer(later)), 200);
+}
+
+/// Whoever rotates what a server reads does not know how far it is with its start.
+TEST_F(TokensTest, AHangupWhileItStartsDoesNotEndIt) {
+    const auto settings = place_.path() / "settings";
+    ASSERT_EQ(::mkfifo(settings.c_str(), 0600), 0);
+    ChildProcess server(program("scanloom-server"),
+                        {"--store", place_.path() / "another", "--listen", "127.0.0.1:0", "--http", "127.0.0.1:0",
+                         "--config", settings},
+                        place_.path() / "another.log");
+    std::ofstream file(settings); // opens when the server has begun to read
+    server.signal(SIGHUP);
+    file << "threads = 1\n";
+    file.close();
+    EXPECT_THAT(server.read_line().value_or("nothing"), HasSubstr("ready"));
+    server.signal(SIGTERM);
+    EXPECT_EQ(server.wait(), 0);
 }
 
 TEST_F(TokensTest, ASecretIsNowhereInTheLogWhereverItIsSent) {

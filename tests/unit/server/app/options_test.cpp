@@ -77,6 +77,18 @@ TEST_F(ServerOptionsTest, ANamedDirectoryWithoutAViewerIsRefused) {
     EXPECT_EQ(std::get<ServerOptions>(read({"--web", path})).web, path);
 }
 
+/// A script's variable that was never set would switch off what it was to name, or serve in place of a task.
+TEST_F(ServerOptionsTest, WhatIsGivenIsNotEmpty) {
+    for (const auto* option : {"--tokens", "--robot-client-ca", "--http-client-ca", "--robot-tls-cert", "--restore",
+                               "--repair", "--backups", "--store", "--web", "--listen", "--http-host"}) {
+        EXPECT_THAT(refusal({option, ""}), AllOf(HasSubstr(option), HasSubstr("empty"))) << option;
+    }
+    EXPECT_THAT(refusal({"--config", file("a.toml", "tokens = \"\"\n")}), HasSubstr("empty"));
+    setenv("SCANLOOM_TOKENS", "", 1);
+    EXPECT_THAT(refusal({}), AllOf(HasSubstr("SCANLOOM_TOKENS"), HasSubstr("empty")));
+    unsetenv("SCANLOOM_TOKENS");
+}
+
 TEST_F(ServerOptionsTest, WithoutAWordTheViewerMayBeMissing) {
     EXPECT_TRUE(std::holds_alternative<ServerOptions>(read({})));
 }
