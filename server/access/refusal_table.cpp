@@ -23,6 +23,12 @@ std::vector<RefusalTable::Line> RefusalTable::note(Refusal refusal, double now) 
     return lines;
 }
 
+std::vector<RefusalTable::Line> RefusalTable::due(double now) {
+    std::vector<Line> lines;
+    sweep(now, lines);
+    return lines;
+}
+
 /// Once a second at most: tells what has waited long enough, and forgets who was not refused meanwhile.
 void RefusalTable::sweep(double now, std::vector<Line>& lines) {
     if (now - swept_ < 1.0) return;

@@ -33,6 +33,9 @@ public:
     /// Takes a refusal in. @return what is to be told now.
     [[nodiscard]] std::vector<Line> note(Refusal refusal, double now);
 
+    /// What has waited long enough to be told, also where nobody is refused any more. Call it now and then.
+    [[nodiscard]] std::vector<Line> due(double now);
+
     /// What is not told yet, at the end.
     [[nodiscard]] std::vector<Line> rest();
 

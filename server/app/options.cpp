@@ -44,6 +44,7 @@ struct Raw {
     std::string web;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;
+    double weave_memory_mib = 0.0;
     double disk_reserve_mib = 256.0;
     double idle_after = 600.0;
 };
@@ -126,6 +127,11 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
            "is used up. Default: half of the memory there is")
         ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
         ->capture_default_str();
+    app.add_option("--weave-memory", raw.weave_memory_mib,
+                   "MiB that maps woven anew, of other settings or earlier moments, may take together: half for those "
+                   "under way, half for those that are kept. Default: a quarter of the memory there is")
+        ->check(check_within(kMapMemoryMibMin, kMapMemoryMibMax))
+        ->capture_default_str();
     app.add_option("--idle-after", raw.idle_after,
                    "Seconds after which a session that nobody uses leaves memory; it comes back when it is asked for")
         ->check(check_within(1.0, kIdleAfterMax))
@@ -195,6 +201,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     if (auto task = settle_task(raw, options); !task) return task;
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
+    options.weave_memory_bytes = static_cast<std::size_t>(raw.weave_memory_mib * 1024 * 1024);
     options.idle_after = std::chrono::milliseconds(static_cast<std::int64_t>(raw.idle_after * 1000));
     options.tokens = raw.tokens;
     options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
@@ -210,7 +217,9 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     Raw raw;
-    raw.map_memory_mib = std::max(kMapMemoryMibMin, std::floor(static_cast<double>(memory_limit() >> 20) / 2));
+    const auto memory_mib = static_cast<double>(memory_limit() >> 20);
+    raw.map_memory_mib = std::max(kMapMemoryMibMin, std::floor(memory_mib / 2));
+    raw.weave_memory_mib = std::max(kMapMemoryMibMin, std::floor(memory_mib / 4));
 
     CLI::App app(kAbout, "scanloom-server");
     app.footer(kFooter);

@@ -44,8 +44,9 @@ struct ServerOptions {
     std::size_t threads = 1;             ///< that weave, and as many that answer requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
     std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
-    std::size_t map_memory_bytes = std::size_t{1} << 30; ///< of the maps of all sessions that are in memory
-    std::chrono::milliseconds idle_after{600'000};       ///< without use, a session leaves memory
+    std::size_t map_memory_bytes = std::size_t{1} << 30;   ///< of the maps of all sessions that are in memory
+    std::size_t weave_memory_bytes = std::size_t{1} << 29; ///< of the maps woven anew from all logs
+    std::chrono::milliseconds idle_after{600'000};         ///< without use, a session leaves memory
     std::string log_level = "info";
     std::string log_format = "text"; ///< or "json"
     bool insecure = false;           ///< listen beyond loopback without a guard

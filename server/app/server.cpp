@@ -53,6 +53,15 @@ Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files)
 
 } // namespace
 
+namespace {
+
+session::WeavesLimits weaves_within(std::size_t bytes) {
+    const std::size_t chunks = bytes / 2 / mapping::kPageBytes; // a chunk is a page
+    return {.chunks_max = chunks, .chunks_kept_max = chunks};
+}
+
+} // namespace
+
 Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std::unique_ptr<store::ReopeningLog> log,
                http::WebFiles web)
     : options_(options), limits_(limits), log_(std::move(log)), metrics_(kVersion), audit_(metrics_.refusals()),
@@ -63,7 +72,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                         .reading = reading_.get_executor(),
                         .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                         .idle_after = options.idle_after}),
-      check_(*log_, sessions_, checking_.get_executor()), weaves_(*log_, reweaving_.get_executor()),
+      check_(*log_, sessions_, checking_.get_executor()),
+      weaves_(*log_, reweaving_.get_executor(), weaves_within(options.weave_memory_bytes)),
       desk_(planning_.get_executor(), goals_, sessions_),
       api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
            options.tile_cache_bytes),
@@ -226,6 +236,7 @@ void Server::tidy_up() {
     asio::post(changing_, [this] {
         if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
+        audit_.tell_what_is_due();
     });
     tidying_.expires_after(kTidyEvery);
     tidying_.async_wait([this](const boost::system::error_code& error) {

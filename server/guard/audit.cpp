@@ -48,6 +48,15 @@ void Audit::note(access::Refusal refusal) {
     for (const auto& line : lines) tell(line);
 }
 
+void Audit::tell_what_is_due() {
+    std::vector<access::RefusalTable::Line> lines;
+    {
+        const std::lock_guard lock(mutex_);
+        lines = table_.due(now_());
+    }
+    for (const auto& line : lines) tell(line);
+}
+
 std::optional<std::uint64_t> Audit::take_line_of_stranger() {
     const std::lock_guard lock(mutex_);
     const double now = now_();

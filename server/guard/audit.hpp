@@ -34,6 +34,9 @@ public:
     /// Of who comes without a certificate that is asked for.
     void note(access::Port port, const std::string& who, net::ClientFault fault);
 
+    /// Tells what has waited long enough. Call it now and then.
+    void tell_what_is_due();
+
     /// Of a link that ended before anybody was let in: whether the log is told. A line a second at most, so that nobody
     /// fills a disk by knocking.
     /// @return how many have not been told since the last one; nothing: nor is this one.

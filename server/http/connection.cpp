@@ -54,14 +54,40 @@ asio::awaitable<void> Connection::run() {
     beast::error_code ignored;
     stream_.socket().non_blocking(true, ignored);
     deadline_.watch(weak_from_this(), [this] { close(); });
+    begin_to_wait();
     bool open = co_await shake_hands();
     while (open && !stopping_) {
+        begin_to_wait();
         open = co_await wait_for_request();
         if (open) open = co_await serve_request();
     }
+    end_waiting();
     if (must_linger_) co_await linger();
     deadline_.stop();
     close();
+}
+
+void Connection::begin_to_wait() {
+    if (waits_) return;
+    waits_ = true;
+    waits_since_ = std::chrono::steady_clock::now();
+}
+
+void Connection::end_waiting() {
+    waits_ = false;
+    waits_since_ = kNever;
+}
+
+std::optional<std::chrono::steady_clock::time_point> Connection::waits_since() const noexcept {
+    const auto since = waits_since_.load();
+    return since == kNever ? std::nullopt : std::optional(since);
+}
+
+void Connection::make_room() {
+    waits_since_ = kNever;
+    asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
+        if (self->waits_) self->close();
+    });
 }
 
 void Connection::close() { stream_.close(); }
@@ -126,6 +152,7 @@ asio::awaitable<bool> Connection::serve_request() {
     parser.header_limit(service_->config.header_bytes_max);
     parser.body_limit(service_->config.import_bytes_max); // of what it asks for, once that is known: refusal_of()
     const auto error = co_await read_header(parser);
+    end_waiting();
     if (error) {
         co_await refuse(error);
         co_return false;

@@ -14,7 +14,10 @@
 #include <boost/beast/core/error.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 
+#include <atomic>
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 namespace scanloom::http {
@@ -38,7 +41,16 @@ public:
     /// Closes at once.
     void abort();
 
+    /// Since when it waits for a whole header of a request; nothing while one is answered or watched, and once it was
+    /// asked to make room.
+    [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> waits_since() const noexcept;
+
+    /// Closes if it still waits for a header, as somebody else needs the place.
+    void make_room();
+
 private:
+    static constexpr auto kNever = std::chrono::steady_clock::time_point::max();
+
     [[nodiscard]] boost::asio::awaitable<bool> shake_hands();
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
@@ -61,6 +73,8 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> write_stream(BodyStream& stream, Framing framing);
     [[nodiscard]] boost::asio::awaitable<bool> write_all(std::string_view head, std::string_view body);
     [[nodiscard]] boost::asio::awaitable<void> linger();
+    void begin_to_wait();
+    void end_waiting();
     void close();
     [[nodiscard]] boost::asio::awaitable<void> tell_plainly(std::string_view sentence);
 
@@ -71,6 +85,8 @@ private:
     std::shared_ptr<const Service> service_;
     std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
     bool idle_ = false;                    // between requests, or before the first
+    bool waits_ = false;                   // until the header of the next request is there
+    std::atomic<std::chrono::steady_clock::time_point> waits_since_ = kNever;
     bool stopping_ = false;
     bool must_linger_ = false; // the peer may still have the last answer to read
 };

@@ -11,12 +11,19 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <utility>
 
 namespace scanloom::http {
 
 namespace net = boost::asio;
 using net::ip::tcp;
+
+namespace {
+
+constexpr std::size_t kOnTheirWayOutMax = 64; // connections that were asked to go and have not gone yet
+
+} // namespace
 
 Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, ServerConfig config,
                                                Answering answering, metrics::HttpCounters& counters) {
@@ -80,7 +87,7 @@ net::awaitable<void> Server::accept_loop() {
 }
 
 void Server::take(tcp::socket socket) {
-    if (connections_.size() >= service_->config.connections_max) return refuse(std::move(socket));
+    if (connections_.size() >= service_->config.connections_max && !make_room()) return refuse(std::move(socket));
     boost::system::error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const auto executor = socket.get_executor();
@@ -94,6 +101,22 @@ void Server::take(tcp::socket socket) {
         forget(connection);
         throw;
     }
+}
+
+/// Nobody keeps a place by saying nothing: who came to say something gets that of the longest silent one.
+/// @return false: all have said something, or more are on their way out already than places are lent.
+bool Server::make_room() {
+    if (connections_.size() >= service_->config.connections_max + kOnTheirWayOutMax) return false;
+    std::shared_ptr<Connection> longest;
+    auto since = std::chrono::steady_clock::time_point::max();
+    for (const auto& connection : connections_) {
+        const auto waits = connection->waits_since();
+        if (!waits || *waits >= since) continue;
+        since = *waits;
+        longest = connection;
+    }
+    if (longest) longest->make_room();
+    return longest != nullptr;
 }
 
 /// Says why, as far as that is possible without waiting: nothing may pile up here.

@@ -22,7 +22,8 @@ namespace scanloom::http {
 /// Listens, and runs one coroutine per connection.
 ///
 /// Queue   "connections": at most config.connections_max, each with one request at a time, which
-///         also bounds what waits for the executors. One more connection is answered 503.
+///         also bounds what waits for the executors. For one more the longest silent one makes room; where each of
+///         them has sent a request, it is answered 503.
 ///         "changes": at most config.changes_max requests create or delete sessions; one more is answered 503.
 ///         "imports": at most config.imports_max maps are read and imported; one more is answered 503.
 ///         "weaves": at most config.weaves_max requests wait for maps to be woven; one more is answered 503.
@@ -55,6 +56,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> accept_loop();
     [[nodiscard]] boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
     void take(boost::asio::ip::tcp::socket socket);
+    [[nodiscard]] bool make_room();
     void refuse(boost::asio::ip::tcp::socket socket);
     void forget(const std::shared_ptr<Connection>& connection);
     void call_done_when_empty();

@@ -17,7 +17,7 @@ namespace scanloom::http {
 /// What bounds one peer: sizes, deadlines, numbers.
 struct ServerConfig {
     boost::asio::ip::tcp::endpoint endpoint; ///< port 0 picks a free one
-    std::size_t connections_max = 1024;      ///< one more is answered 503 and closed
+    std::size_t connections_max = 1024;      ///< for one more the longest silent one goes; see Server
 
     std::size_t changes_max = 16; ///< requests that create or delete sessions; one more is answered 503
     std::size_t weaves_max = 16;  ///< requests that wait for maps to be woven; one more is answered 503

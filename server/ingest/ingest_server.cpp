@@ -47,7 +47,8 @@ void IngestServer::stop() {
 
 void IngestServer::take(asio::ip::tcp::socket socket) {
     const bool full = count(Standing::kServed) >= config_.links_max;
-    if (full) spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
+    if (full && services_.audit.take_line_of_stranger())
+        spdlog::warn("a robot was turned away: {} links are open, the most allowed", config_.links_max);
     if (full && count(Standing::kLeaving) >= kTurnedAwayMax) return;
     if (!full) make_room_for_greeting();
     auto link =
@@ -84,7 +85,9 @@ void IngestServer::begin(const std::shared_ptr<Guest>& guest) {
 void IngestServer::make_room_for_greeting() {
     if (count(Standing::kGreeting) < config_.greeting_max) return;
     const auto oldest = greeting_.front();
-    spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed", config_.greeting_max);
+    if (services_.audit.take_line_of_stranger())
+        spdlog::warn("a connection was cut off: it said no hello, and {} do not, the most allowed",
+                     config_.greeting_max);
     change(*oldest, Standing::kLeaving);
     oldest->link->cut_off();
 }

@@ -108,10 +108,10 @@ std::optional<Weaves::Start> Weaves::furthest_before(const Weave& weave) const {
 
 /// Pre: mutex_ is held.
 void Weaves::launch_those_behind(const Weave& ended) {
-    const auto waited =
-        std::ranges::stable_partition(behind_, [&](const Behind& behind) { return behind.ahead.get() != &ended; });
-    const std::vector<Behind> next(waited.begin(), waited.end());
-    behind_.erase(waited.begin(), waited.end());
+    const auto waited = std::stable_partition(behind_.begin(), behind_.end(),
+                                              [&](const Behind& behind) { return behind.ahead.get() != &ended; });
+    const std::vector<Behind> next(waited, behind_.end());
+    behind_.erase(waited, behind_.end());
     for (const Behind& behind : next) launch(behind.weave); // the first that waited first
 }
 
@@ -154,6 +154,15 @@ void Weaves::remove_all(store::SessionId session) {
         weave->cancel(session_was_deleted(weave->session()));
         return true;
     });
+}
+
+std::int64_t Weaves::chunks() const {
+    const std::lock_guard lock(mutex_);
+    std::size_t kept = 0;
+    for (const auto& weave : weaves_) {
+        if (has_ended(weave->progress().state)) kept += chunks_of(*weave);
+    }
+    return budget_.used() + static_cast<std::int64_t>(kept);
 }
 
 void Weaves::stop() {

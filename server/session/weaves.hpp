@@ -7,6 +7,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -57,6 +58,9 @@ public:
 
     /// The session is deleted: cancels and forgets all of its weaves.
     void remove_all(store::SessionId session);
+
+    /// Of all that are under way or kept, whatever they share.
+    [[nodiscard]] std::int64_t chunks() const;
 
     /// Starts nothing more, cancels all.
     void stop();

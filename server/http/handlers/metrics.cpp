@@ -83,11 +83,13 @@ void append(Families& to, Families from) {
 } // namespace
 
 Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                             const session::BackgroundCheck* check, const store::ScanLog& log,
-                             const tiles::TileCache::Stats& tiles, const Call& call) {
+                             const session::BackgroundCheck* check, const session::Weaves& weaves,
+                             const store::ScanLog& log, const tiles::TileCache::Stats& tiles, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     Families families = counted.collect();
     append(families, session_families(sessions, check));
+    append(families, {gauge_now("scanloom_weave_memory_bytes", "Memory of the maps woven anew, at most.",
+                                bytes_of(weaves.chunks()))});
     append(families, store_families(log));
     append(families, tile_families(tiles));
     append(families, metrics::process_families());

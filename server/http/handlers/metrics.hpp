@@ -5,6 +5,7 @@
 #include "server/metrics/metrics.hpp"
 #include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
+#include "server/session/weaves.hpp"
 #include "server/store/scan_log.hpp"
 #include "server/tiles/tile_cache.hpp"
 
@@ -13,7 +14,8 @@ namespace scanloom::http {
 /// GET /metrics: what was counted, and what the process, the store and the sessions say of themselves.
 /// @param check  null: none is made.
 [[nodiscard]] Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
-                                           const session::BackgroundCheck* check, const store::ScanLog& log,
-                                           const tiles::TileCache::Stats& tiles, const Call& call);
+                                           const session::BackgroundCheck* check, const session::Weaves& weaves,
+                                           const store::ScanLog& log, const tiles::TileCache::Stats& tiles,
+                                           const Call& call);
 
 } // namespace scanloom::http

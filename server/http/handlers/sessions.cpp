@@ -63,21 +63,35 @@ std::map<std::string, Listed, std::less<>> sessions_by_name(const session::Sessi
     return listed;
 }
 
-boost::json::object to_json(const Listed& listed, std::string_view name) {
-    return listed ? http::to_json(*listed) : damaged_json(name, listed.error());
+/// What was found since the start, of sessions that are served as far as they can be.
+std::map<std::string, Error> found_by(const session::BackgroundCheck* check) {
+    return check == nullptr ? std::map<std::string, Error>() : check->damaged();
+}
+
+boost::json::object to_json(const session::Listed& listed, const std::map<std::string, Error>& found) {
+    auto json = http::to_json(listed);
+    const auto damage = found.find(listed.info.name);
+    if (damage != found.end()) json["damage"] = damage->second.message;
+    return json;
+}
+
+boost::json::object to_json(const Listed& listed, std::string_view name, const std::map<std::string, Error>& found) {
+    return listed ? to_json(*listed, found) : damaged_json(name, listed.error());
 }
 
 } // namespace
 
-Result<Response> list_sessions(const session::SessionRegistry& sessions, const Call& call) {
+Result<Response> list_sessions(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
+                               const Call& call) {
     const auto page = parse_page(call.query);
     if (!page) return page.error();
+    const auto found = found_by(check);
     const auto listed = sessions_by_name(sessions, *call.token);
     boost::json::array shown;
     boost::json::value next = nullptr;
     auto entry = listed.upper_bound(page->after);
     for (; entry != listed.end() && shown.size() < page->limit; ++entry) {
-        shown.push_back(to_json(entry->second, entry->first));
+        shown.push_back(to_json(entry->second, entry->first, found));
         if (shown.size() == page->limit && std::next(entry) != listed.end()) next = boost::json::string(entry->first);
     }
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
@@ -96,10 +110,11 @@ Result<Response> create_session(session::SessionRegistry& sessions, const Doorma
     return response;
 }
 
-Result<Response> get_session(const session::SessionRegistry& sessions, const Call& call) {
+Result<Response> get_session(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
+                             const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto& name = call.arguments["session"];
-    if (const auto listed = sessions.listed(name)) return ok(to_json(*listed));
+    if (const auto listed = sessions.listed(name)) return ok(to_json(*listed, found_by(check)));
     const auto damage = damage_of(sessions, name);
     return damage ? *damage : session::no_such_session(name);
 }

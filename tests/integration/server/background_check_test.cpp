@@ -60,7 +60,10 @@ TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
         const auto metrics = server.get("/metrics").body;
         EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_damaged 1\n"));
         EXPECT_THAT(metrics, HasSubstr("scanloom_sessions_checked_total 1\n"));
-        EXPECT_EQ(server.get("/api/v1/sessions/one").status, 200U) << "what its checkpoint tells is served";
+        const auto session = server.get_json("/api/v1/sessions/one"); // what its checkpoint tells is served
+        EXPECT_EQ(session.at("state"), "ok");
+        EXPECT_EQ(session.at("damage"), damaged.at(0).at("reason"));
+        EXPECT_EQ(server.get_json("/api/v1/sessions").at("sessions").at(0).at("damage"), session.at("damage"));
     });
     EXPECT_THAT(store::bytes_of(place_.path() / "log"), HasSubstr("session 'one' is damaged: "));
 }

@@ -105,6 +105,15 @@ TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
     }
 }
 
+TEST_F(ServerOptionsTest, TheMemoryOfMapsIsInMebibytes) {
+    const auto options = std::get<ServerOptions>(read({"--map-memory", "100", "--weave-memory", "64.5"}));
+    EXPECT_EQ(options.map_memory_bytes, std::size_t{100} << 20);
+    EXPECT_EQ(options.weave_memory_bytes, std::size_t{129} << 19);
+    for (const auto* wrong : {"63", "-1", "nan"}) {
+        EXPECT_THAT(refusal({"--weave-memory", wrong}), HasSubstr("--weave-memory")) << wrong;
+    }
+}
+
 TEST_F(ServerOptionsTest, TheServerMayHaveSeveralNames) {
     EXPECT_THAT(std::get<ServerOptions>(read({"--http-host", "maps.lab", "--http-host", "maps"})).http_hosts,
                 ElementsAre("maps.lab", "maps"));

@@ -63,6 +63,17 @@ TEST_F(AuditTest, WhatComesInAFloodIsCountedAndToldOnceAMinuteAndInTheEnd) {
     EXPECT_EQ(counters_.of(Port::kRobot, Reason::kNoToken).Value(), 0.0);
 }
 
+TEST_F(AuditTest, TheRestOfAFloodIsToldWithoutAnotherRefusal) {
+    Audit audit(counters_, [this] { return now_; });
+    for (int n = 0; n < 1000; ++n) audit.note({Port::kHttp, Reason::kNoToken, "192.0.2.7", "", ""});
+    now_ += 59.0;
+    audit.tell_what_is_due();
+    EXPECT_THAT(logged_.text(), testing::EndsWith("count=1\n"));
+    now_ += 1.0;
+    audit.tell_what_is_due();
+    EXPECT_THAT(logged_.text(), testing::EndsWith("count=999\n"));
+}
+
 TEST_F(AuditTest, OfStrangersALineASecondIsToldWithHowManyWereNot) {
     Audit audit(counters_, [&] { return now_; });
     EXPECT_EQ(audit.take_line_of_stranger(), 0U);

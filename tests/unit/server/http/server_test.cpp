@@ -290,15 +290,43 @@ TEST(HttpServer, AFaultCostsOneAnswerOnly) {
 }
 
 TEST(HttpServer, OneConnectionTooManyIsTold) {
-    RunningHttp server(ServerConfig{.connections_max = 1});
+    std::promise<void> entered;
+    std::promise<void> go_on;
+    RunningHttp server(ServerConfig{.connections_max = 1}, [&](const Request& request) {
+        entered.set_value();
+        go_on.get_future().wait();
+        return echo(request);
+    });
     HttpClient first(server.port());
-    first.send(get("/"));
-    EXPECT_EQ(first.read().status, 200);
+    first.send(get("/api/v1/sessions"));
+    entered.get_future().wait();
     HttpClient second(server.port());
     EXPECT_EQ(second.read().status, 503);
     EXPECT_EQ(server.counters().connections_refused.Value(), 1.0);
-    first.send(get("/"));
+    go_on.set_value();
     EXPECT_EQ(first.read().status, 200);
+}
+
+TEST(HttpServer, NobodyKeepsAPlaceBySayingNothing) {
+    RunningHttp server(ServerConfig{.connections_max = 3});
+    HttpClient asked(server.port());
+    asked.send(get("/"));
+    EXPECT_EQ(asked.read().status, 200); // and says nothing more
+    HttpClient silent(server.port());
+    HttpClient stammering(server.port());
+    stammering.send("GET / HT");
+    std::vector<std::unique_ptr<HttpClient>> guests;
+    for (int n = 0; n < 3; ++n) {
+        guests.push_back(std::make_unique<HttpClient>(server.port()));
+        guests.back()->send(get("/"));
+        EXPECT_EQ(guests.back()->read().status, 200);
+    }
+    for (const auto& earlier : {&asked, &silent, &stammering}) EXPECT_TRUE(earlier->is_closed());
+    for (const auto& guest : guests) {
+        guest->send(get("/"));
+        EXPECT_EQ(guest->read().status, 200);
+    }
+    EXPECT_EQ(server.counters().connections_refused.Value(), 0.0);
 }
 
 TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {

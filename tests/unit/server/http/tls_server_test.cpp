@@ -234,12 +234,31 @@ TEST_F(TlsServerTest, WhoIsTurnedAwayHearsWhy) {
 TEST_F(TlsServerTest, OneConnectionTooManyIsClosedWithoutAWord) {
     auto small = config();
     small.connections_max = 1;
-    RunningHttp server(small);
+    std::promise<void> entered;
+    std::promise<void> go_on;
+    RunningHttp server(small, [&](const Request& request) {
+        entered.set_value();
+        go_on.get_future().wait();
+        return echo(request);
+    });
     TlsHttpClient first(server.port(), manner());
-    first.send(get("/"));
-    EXPECT_EQ(first.read().status, 200);
+    first.send(get("/api/v1/sessions"));
+    entered.get_future().wait();
     HttpClient second(server.port());
     EXPECT_TRUE(second.is_closed());
+    go_on.set_value();
+    EXPECT_EQ(first.read().status, 200);
+}
+
+TEST_F(TlsServerTest, WhoDoesNotShakeHandsMakesRoom) {
+    auto small = config();
+    small.connections_max = 1;
+    RunningHttp server(small);
+    HttpClient silent(server.port());
+    TlsHttpClient second(server.port(), manner());
+    second.send(get("/"));
+    EXPECT_EQ(second.read().status, 200);
+    EXPECT_TRUE(silent.is_closed());
 }
 
 } // namespace

@@ -208,6 +208,17 @@ TEST_F(WeaveTest, MapsBeyondTheBudgetFailAndHoldNothing) {
     EXPECT_TRUE(budget.take(3));
 }
 
+TEST_F(WeaveTest, ItIsKnownHowMuchTheyTake) {
+    EXPECT_EQ(weaves_.chunks(), 0);
+    const auto weave = woven(request({}));
+    const auto chunks = static_cast<std::int64_t>(weave->maps()->chunk_count);
+    EXPECT_EQ(weaves_.chunks(), chunks);
+    static_cast<void>(woven(request({.danger_radius = 0.2})));
+    EXPECT_EQ(weaves_.chunks(), 2 * chunks);
+    EXPECT_TRUE(weaves_.remove(session_.id, weave->id()));
+    EXPECT_EQ(weaves_.chunks(), chunks);
+}
+
 TEST_F(WeaveTest, TheLeastRecentlyUsedGoWhenTheirChunksAreTooMany) {
     const auto chunks = woven(request({}))->maps()->chunk_count;
     Weaves few(log_, pool_.get_executor(), {.chunks_kept_max = 3 * chunks});
