@@ -36,8 +36,12 @@ cd "$source"
 install -D --mode 644 packaging/scanloom-server.service "$root/lib/systemd/system/scanloom-server.service"
 install -D --mode 644 packaging/scanloom-server.toml "$root/etc/scanloom/scanloom-server.toml"
 install -D --mode 644 packaging/sysusers.conf "$root/usr/lib/sysusers.d/scanloom.conf"
-install -D --mode 644 -t "$docs" README.md ARCHITECTURE.md CHANGELOG.md LICENSE packaging/debian/copyright
-install -D --mode 644 -t "$docs/docs" docs/*.md
+install -D --mode 644 -t "$docs" packaging/debian/copyright
+# The documents, and all that their links lead to, where it is in the source.
+for file in README.md ARCHITECTURE.md CHANGELOG.md LICENSE packages.txt docs/*.md docs/observability/* docs/performance/* docs/pictures/*.png \
+    docker/* proto/scanloom/v1/*.proto robot_client/examples/send_scan/send_scan.cpp robot_client/python/scanloom_client.py; do
+    install -D --mode 644 "$file" "$docs/$file"
+done
 node packaging/sbom.mjs "$version" "$architecture" web/package-lock.json "$root"/usr/bin/* >"$output/$name.spdx.json"
 install -D --mode 644 "$output/$name.spdx.json" "$docs/scanloom.spdx.json"
 

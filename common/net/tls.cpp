@@ -6,6 +6,9 @@
 #include <openssl/ssl.h>
 #include <openssl/x509_vfy.h>
 
+#include <filesystem>
+#include <system_error>
+
 namespace scanloom::net {
 
 namespace ssl = boost::asio::ssl;
@@ -25,13 +28,17 @@ Error unusable(const std::string& file, std::string_view what, const boost::syst
     return {Errc::kNotFound, fmt::format("{}: no {} in PEM can be read: {}", file, what, failed.message())};
 }
 
+const std::string& key_file_of(const CertificateFiles& files) {
+    return files.key_file.empty() ? files.certificate_file : files.key_file;
+}
+
 Result<> show(ssl::context& context, const CertificateFiles& files) {
     if (files.certificate_file.empty()) return {};
     boost::system::error_code failed;
     context.use_certificate_chain_file(files.certificate_file, failed);
     if (failed) return unusable(files.certificate_file, "certificate", failed);
     context.set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, failed);
-    const std::string& key_file = files.key_file.empty() ? files.certificate_file : files.key_file;
+    const std::string& key_file = key_file_of(files);
     context.use_private_key_file(key_file, ssl::context::pem, failed);
     if (failed && ERR_GET_REASON(static_cast<unsigned long>(failed.value())) == X509_R_KEY_VALUES_MISMATCH) {
         return Error{Errc::kConflict,
@@ -73,6 +80,18 @@ void harden(SSL_CTX* context) {
     SSL_CTX_set_cipher_list(context, kCiphers);
 }
 
+/// Whoever can read it can pass for the server. A group may, as Debian's ssl-cert does.
+Result<> check_guarded(const std::string& key_file) {
+    using std::filesystem::perms;
+    std::error_code failed;
+    const auto allowed = std::filesystem::status(key_file, failed).permissions();
+    if (failed || (allowed & (perms::others_all | perms::group_write)) == perms::none) return {};
+    return Error{Errc::kInvalidField,
+                 fmt::format("{0}: this private key may be read by everybody or changed by others than its owner, who "
+                             "can then pass for the server; chmod g-w,o= {0}",
+                             key_file)};
+}
+
 /// Names who signed, too: a browser that has several certificates asks for one of theirs.
 Result<> ask_clients(ssl::context& context, const std::string& ca_file) {
     boost::system::error_code failed;
@@ -89,6 +108,7 @@ Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& 
     auto context = context_for(ssl::context::tls_server);
     harden(context->native_handle());
     if (auto is_shown = show(*context, shown); !is_shown) return is_shown.error();
+    if (auto guarded = check_guarded(key_file_of(shown)); !guarded) return guarded.error();
     if (client_ca_file.empty()) return context;
     if (auto asked = ask_clients(*context, client_ca_file); !asked) return asked.error();
     return context;

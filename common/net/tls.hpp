@@ -27,7 +27,8 @@ struct CertificateFiles {
 /// For a server. TLS 1.2 at least, with keys that are of no use to whoever gets hold of the server's later. Every
 /// handshake is a whole one, and each connection has one: there are no tickets, and nobody may ask for another.
 /// @param client_ca_file  PEM: clients must show a certificate that one of these signed; empty: they need none.
-/// Errors  as client_tls().
+/// Errors  as client_tls(); kInvalidField: others than the owner of the key's file may write to it, or others than he
+///         and its group may read it.
 [[nodiscard]] Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& client_ca_file = {});
 
 /// What is wrong with a client's certificate.

@@ -1,12 +1,12 @@
 #include "server/app/check_command.hpp"
 
 #include "common/app/standard_error.hpp"
+#include "common/json/json_text.hpp"
 #include "server/session/session_check.hpp"
 #include "server/store/at_rest.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
-#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -47,7 +47,7 @@ public:
                                           {"entries", entries_},
                                           {"damaged", damaged_},
                                           {"seconds", seconds}};
-        std::cout << boost::json::serialize(summary) << std::endl;
+        std::cout << json_text(summary) << std::endl;
         return damaged_.empty() ? kExitDone : kExitFailed;
     }
 

@@ -1,10 +1,10 @@
 #include "server/app/repair_command.hpp"
 
 #include "common/app/standard_error.hpp"
+#include "common/json/json_text.hpp"
 #include "server/session/repair.hpp"
 
 #include <boost/json/object.hpp>
-#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -91,7 +91,7 @@ ExitCode repair_store(const ServerOptions& options) {
     const boost::json::object summary{
         {"event", "repaired"},       {"sessions", sum->sessions},   {"kept", sum->kept},         {"lost", sum->missing},
         {"stood_in", sum->stood_in}, {"set_aside", sum->set_aside}, {"seconds", seconds.count()}};
-    std::cout << boost::json::serialize(summary) << std::endl;
+    std::cout << json_text(summary) << std::endl;
     return kExitDone;
 }
 

@@ -1,10 +1,10 @@
 #include "server/app/restore_command.hpp"
 
 #include "common/app/standard_error.hpp"
+#include "common/json/json_text.hpp"
 #include "server/store/backups.hpp"
 
 #include <boost/json/object.hpp>
-#include <boost/json/serialize.hpp>
 #include <fmt/format.h>
 
 #include <iostream>
@@ -22,7 +22,7 @@ ExitCode restore_store(const ServerOptions& options) {
                                       {"time", restored->time},
                                       {"bytes", restored->bytes},
                                       {"sessions", restored->sessions}};
-    std::cout << boost::json::serialize(summary) << std::endl;
+    std::cout << json_text(summary) << std::endl;
     return kExitDone;
 }
 

@@ -15,6 +15,8 @@ using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
 using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
+constexpr auto kOwnerOnly = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+
 Certificate make_certificate(EVP_PKEY* key, const std::string& host, long valid_for_s) {
     Certificate made(X509_new(), X509_free);
     X509_set_version(made.get(), 2); // that is, 3
@@ -44,6 +46,7 @@ CertificateFiles write_certificate(const std::filesystem::path& directory, const
     const File certificate_file(std::fopen(files.certificate.c_str(), "w"), std::fclose);
     PEM_write_X509(certificate_file.get(), certificate.get());
     const File key_file(std::fopen(files.key.c_str(), "w"), std::fclose);
+    std::filesystem::permissions(files.key, kOwnerOnly);
     PEM_write_PrivateKey(key_file.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr);
     return files;
 }

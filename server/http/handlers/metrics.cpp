@@ -22,7 +22,9 @@ Families store_families(const store::ScanLog& log) {
         gauge_now("scanloom_store_queued_bytes", "Bytes that wait to be written.", number(stats.queued_bytes)),
         gauge_now("scanloom_store_failed", "1 when the store takes no changes any more.", stats.last_error ? 1.0 : 0.0),
         gauge_now("scanloom_store_full", "1 when the disk has no room for more scans.", stats.no_room ? 1.0 : 0.0),
-        gauge_now("scanloom_store_damaged", "1 when a file of the store was found damaged while running.",
+        gauge_now("scanloom_store_damaged",
+                  "1 when the store's tables are merged no more, as one of them is damaged. Damage that is met where "
+                  "sessions are read is in scanloom_sessions_damaged.",
                   stats.damage ? 1.0 : 0.0),
         counter_now("scanloom_store_appends_total", "Appends that became durable.", number(stats.appends)),
         counter_now("scanloom_store_entries_total", "Log entries that became durable.", number(stats.entries)),

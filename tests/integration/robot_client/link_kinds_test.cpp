@@ -182,6 +182,32 @@ TEST_F(LinkKinds, FilesThatAreNoCertificatesAreNamed) {
     EXPECT_EQ(net::server_tls({files_.certificate, other.key}).error().code, Errc::kConflict);
 }
 
+TEST_F(LinkKinds, AServersKeyIsRefusedWhereOthersMayReadOrChangeIt) {
+    using std::filesystem::perms;
+    serve("127.0.0.1");
+    const auto read_with = [&](unsigned mode) {
+        std::filesystem::permissions(files_.key, perms{mode});
+        return net::server_tls({files_.certificate, files_.key});
+    };
+    for (const unsigned mode : {0400U, 0600U, 0440U, 0640U, 0700U, 0750U}) {
+        EXPECT_TRUE(read_with(mode)) << std::oct << mode;
+    }
+    for (const unsigned mode : {0644U, 0444U, 0604U, 0602U, 0620U, 0660U, 0601U}) {
+        const auto refused = read_with(mode);
+        ASSERT_FALSE(refused) << std::oct << mode;
+        EXPECT_EQ(refused.error().code, Errc::kInvalidField) << std::oct << mode;
+        EXPECT_THAT(refused.error().message, HasSubstr("chmod g-w,o= " + files_.key.string()));
+    }
+    const auto both = directory_.path() / "both.pem"; // of the modes that the system gives
+    for (const auto& file : {files_.certificate, files_.key}) {
+        std::ofstream(both, std::ios::app) << std::ifstream(file).rdbuf();
+    }
+    std::filesystem::permissions(both, perms{0644U});
+    EXPECT_FALSE(net::server_tls({both})) << "the key is in the same file";
+    std::filesystem::permissions(both, perms{0600U});
+    EXPECT_TRUE(net::server_tls({both}));
+}
+
 TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {
     serve("", {.zstd = true});
     auto made = options();

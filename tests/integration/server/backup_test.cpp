@@ -22,11 +22,13 @@ protected:
         return http_request(server.http_port(), "POST", "/api/v1/backups", "{}");
     }
 
-    int restore(const std::string& id, const std::filesystem::path& store) const {
+    /// @param said  its last line
+    int restore(const std::string& id, const std::filesystem::path& store, std::string* said = nullptr) const {
         ChildProcess restorer(program("scanloom-server"),
                               {"--restore", id, "--backups", backups_.native(), "--store", store.native()},
                               place_.path() / "restorer");
-        while (restorer.read_line()) {
+        while (const auto line = restorer.read_line()) {
+            if (said != nullptr) *said = *line;
         }
         return restorer.wait();
     }
@@ -81,6 +83,14 @@ TEST_F(BackupTest, TheyAreListedAndOldOnesGo) {
     EXPECT_EQ(restore("2", place_.path() / "restored"), 0);
     EXPECT_EQ(restore("3", place_.path() / "restored"), 1) << "there is a store now";
     EXPECT_EQ(restore("x", place_.path() / "other"), 2);
+}
+
+TEST_F(BackupTest, ARestoredOneIsToldInTheWordsInWhichItWasListed) {
+    const RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
+    const auto made = make(server).body; // {"id":1,...
+    std::string said;
+    ASSERT_EQ(restore("newest", place_.path() / "restored", &said), 0);
+    EXPECT_EQ(said, R"({"event":"restored",)" + made.substr(1));
 }
 
 TEST_F(BackupTest, AServerThatKeepsNoneSaysSo) {

@@ -142,5 +142,23 @@ TEST_F(CertificatesTest, ThatCannotBeReadAreNamedBeforeAnythingIsServed) {
     EXPECT_THAT(log(), HasSubstr("--http-tls-cert: " + missing));
 }
 
+TEST_F(CertificatesTest, AKeyThatOthersMayReadIsRefusedAtTheStartAndAtAHangup) {
+    using std::filesystem::perms;
+    start();
+    std::filesystem::permissions(files_.key, perms::others_read, std::filesystem::perm_options::add);
+    server_->process().signal(SIGHUP);
+    wait_for_log("--http-tls-cert: "); // what came of it
+    EXPECT_THAT(log(), HasSubstr("chmod g-w,o= " + files_.key.string()));
+    EXPECT_TRUE(TlsHttpClient(server_->http_port(), {.trusted = files_.certificate}).is_trusted());
+
+    ChildProcess other(program("scanloom-server"),
+                       {"--store", (place_.path() / "other").string(), "--listen", "127.0.0.1:0", "--http",
+                        "127.0.0.1:0", "--http-tls-cert", files_.certificate.string(), "--http-tls-key",
+                        files_.key.string()},
+                       log_);
+    ASSERT_FALSE(other.read_line());
+    EXPECT_EQ(other.wait(), 1);
+}
+
 } // namespace
 } // namespace scanloom::test

@@ -11,6 +11,7 @@
 namespace scanloom::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 class RepairTest : public ProgramsTest {
@@ -51,6 +52,7 @@ TEST_F(RepairTest, AWholeStoreIsRepairedIntoOneWithTheSameMaps) {
     EXPECT_THAT(answer.text, HasSubstr("one: 302 entries kept\n"));
     EXPECT_EQ(answer.summary.at("event"), "repaired");
     EXPECT_EQ(answer.summary.at("lost").to_number<int>(), 0);
+    EXPECT_THAT(answer.text, ContainsRegex("\"seconds\":[0-9.]+\\}\n$"));
     const RunningServer server(repaired(), place_.path() / "log");
     const auto after = server.get_json("/api/v1/sessions/one/digest").at("layers");
     EXPECT_EQ(boost::json::serialize(after), before);

@@ -1,0 +1,59 @@
+// What ./scanloom says by itself: of a copy that has nothing to build beside it, so that building fails.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { chmodSync, copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { after, before, test } from 'node:test';
+
+const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
+
+let place;
+
+before(() => {
+  place = mkdtempSync(join(tmpdir(), 'scanloom-script-test.'));
+  copyFileSync(join(source, 'scanloom'), join(place, 'scanloom'));
+});
+after(() => rmSync(place, { recursive: true, force: true }));
+
+const scanloom = (...words) => spawnSync(join(place, 'scanloom'), words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+const commandsIn = (text) => [...text.matchAll(/^ {2}([a-z]+) /gm)].map((match) => match[1]);
+
+test('every command of the usage tells its part of it, and nothing of the others', () => {
+  const usage = scanloom('help').stdout;
+  const commands = commandsIn(usage).filter((command) => command !== 'help');
+  assert.ok(commands.length > 10);
+  for (const command of commands) {
+    for (const words of [['--help'], ['-h'], ['--seed', '1', '--help']]) {
+      const told = scanloom(command, ...words);
+      assert.equal(told.status, 0, `${command}: ${told.stderr}`);
+      assert.deepEqual(commandsIn(told.stdout), [command]);
+      assert.ok(usage.includes(told.stdout.split('\n').slice(2).join('\n')));
+    }
+  }
+  assert.match(scanloom('fault', '--help').stdout, /--count N {8}how often/);
+});
+
+test('the usage has every command that the script knows', () => {
+  const known = readFileSync(join(source, 'scanloom'), 'utf8').match(/^ {8}(build \|.*)\) ;;$/m)[1].split(' | ');
+  assert.deepEqual(commandsIn(scanloom('help').stdout).sort(), [...known, 'help'].sort());
+});
+
+test('a command that there is not is refused, also where help is asked of it', () => {
+  for (const words of [['paint'], ['paint', '--help']]) {
+    const told = scanloom(...words);
+    assert.equal(told.status, 2);
+    assert.match(told.stderr, /there is no command 'paint'/);
+  }
+});
+
+test('the list of faults is that of the program that is there', () => {
+  mkdirSync(join(place, 'build/tests'), { recursive: true });
+  const program = join(place, 'build/tests/scanloom-fault');
+  writeFileSync(program, '#!/bin/sh\necho "  kill     one row, $# words"\n');
+  chmodSync(program, 0o755);
+  const told = scanloom('fault');
+  assert.equal(told.status, 0, told.stderr);
+  assert.match(told.stdout, /^ {2}kill {5}one row, 0 words\n {2}fuzz /);
+  assert.notEqual(scanloom('fault', 'kill').status, 0, 'a row is that of the sources, which are built first');
+});
