@@ -47,6 +47,7 @@ Connection::Connection(net::LinkStream stream, std::shared_ptr<const Service> se
       buffer_(service->config.header_bytes_max + kReadBytes), service_(std::move(service)) {
     beast::error_code ignored;
     peer_ = stream_.socket().remote_endpoint(ignored).address().to_string();
+    begin_to_wait();
 }
 
 asio::awaitable<void> Connection::run() {
@@ -54,7 +55,6 @@ asio::awaitable<void> Connection::run() {
     beast::error_code ignored;
     stream_.socket().non_blocking(true, ignored);
     deadline_.watch(weak_from_this(), [this] { close(); });
-    begin_to_wait();
     bool open = co_await shake_hands();
     while (open && !stopping_) {
         begin_to_wait();
