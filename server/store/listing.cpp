@@ -80,9 +80,10 @@ Result<> check_listing(const fs::path& directory, const Listing& listing) {
                        directory.native(), listing.foreign);
     }
     if (!listing.has_current && !listing.trace.empty() && !listing.is_new) {
-        return failure("the store {} has lost all its entries: of its files only such as {} are left; restore it from a "
-                       "backup (--restore) into another directory, or delete what is left to begin with an empty one",
-                       directory.native(), listing.trace);
+        return failure(
+            "the store {} has lost all its entries: of its files only such as {} are left; restore it from a "
+            "backup (--restore) into another directory, or delete what is left to begin with an empty one",
+            directory.native(), listing.trace);
     }
     if (listing.has_tables && !listing.has_write_ahead_logs) {
         return failure("the store {} is damaged: its write-ahead log (*.log) is missing; {}", directory.native(),

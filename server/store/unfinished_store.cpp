@@ -111,9 +111,10 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
     if (auto created = create_store_directory(directory); !created) return created.error();
     auto lock = FileLock::alone(mark);
     if (!lock && lock.error().code == Errc::kConflict) {
-        return Error{Errc::kConflict, fmt::format("--repair {}: another --repair writes it at this moment; wait for its "
-                                                  "end, or name another directory",
-                                                  directory.native())};
+        return Error{Errc::kConflict,
+                     fmt::format("--repair {}: another --repair writes it at this moment; wait for its "
+                                 "end, or name another directory",
+                                 directory.native())};
     }
     if (!lock) return lock.error();
     // Only now nobody else writes or finishes it; and only the sentence says that what is there is a repair's.
@@ -133,8 +134,7 @@ Result<> UnfinishedStore::finish() {
     std::error_code problem;
     fs::remove_all(salvage(), problem);
     if (problem) {
-        return Error{Errc::kStoreFailed,
-                     fmt::format("cannot remove {}: {}", salvage().native(), problem.message())};
+        return Error{Errc::kStoreFailed, fmt::format("cannot remove {}: {}", salvage().native(), problem.message())};
     }
     if (auto synced = sync_logs(lost_); !synced) return synced;
     if (auto synced = sync_directory(directory_); !synced) return synced;

@@ -40,8 +40,8 @@ TEST_F(PlacesTest, NoneIsWithinAnother) {
     for (const auto task : {Task::kServe, Task::kRestore, Task::kRepair}) {
         for (const auto* inside : {"store/in", "store/a/b", "store/./in", "x/../store/in", "link/in", "link/a/b/"}) {
             EXPECT_THAT(refusal(task, at(inside), at("store")), HasSubstr("is inside of --store")) << inside;
-            EXPECT_THAT(refusal(task, at("store"), at(inside)), HasSubstr("--store " + at(inside).native() +
-                                                                          " is inside of --"))
+            EXPECT_THAT(refusal(task, at("store"), at(inside)),
+                        HasSubstr("--store " + at(inside).native() + " is inside of --"))
                 << inside;
             EXPECT_THAT(refusal(task, at(inside), at("link")), HasSubstr("is inside of --store")) << inside;
         }
