@@ -18,7 +18,8 @@ using testing::HasSubstr;
 class PlacesTest : public testing::Test {
 protected:
     PlacesTest() {
-        fs::create_directories(at("store"));
+        fs::create_directories(at("store") / "sub");
+        fs::create_directory_symlink(at("store") / "sub", at("deep"));
         fs::create_directory_symlink(at("store"), at("link"));
     }
 
@@ -38,7 +39,8 @@ protected:
 
 TEST_F(PlacesTest, NoneIsWithinAnother) {
     for (const auto task : {Task::kServe, Task::kRestore, Task::kRepair}) {
-        for (const auto* inside : {"store/in", "store/a/b", "store/./in", "x/../store/in", "link/in", "link/a/b/"}) {
+        for (const auto* inside :
+             {"store/in", "store/a/b", "store/./in", "x/../store/in", "link/in", "link/a/b/", "deep", "deep/in"}) {
             EXPECT_THAT(refusal(task, at(inside), at("store")), HasSubstr("is inside of --store")) << inside;
             EXPECT_THAT(refusal(task, at("store"), at(inside)),
                         HasSubstr("--store " + at(inside).native() + " is inside of --"))
