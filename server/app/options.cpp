@@ -4,6 +4,7 @@
 #include "common/app/machine.hpp"
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
+#include "server/app/places.hpp"
 #include "server/app/token_command.hpp"
 
 #include <CLI/CLI.hpp>
@@ -199,6 +200,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     }
     options.store = raw.store;
     if (auto task = settle_task(raw, options); !task) return task;
+    if (auto apart = check_places(options); !apart) return apart;
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
     options.weave_memory_bytes = static_cast<std::size_t>(raw.weave_memory_mib * 1024 * 1024);

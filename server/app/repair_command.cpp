@@ -3,13 +3,13 @@
 #include "common/app/standard_error.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/repair.hpp"
+#include "server/store/unfinished_store.hpp"
 
 #include <boost/json/object.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
 #include <iostream>
-#include <system_error>
 
 namespace scanloom::app {
 namespace {
@@ -21,14 +21,6 @@ fs::path beside(const fs::path& directory, const char* ending) {
     const auto absolute = fs::absolute(directory).lexically_normal();
     auto path = absolute.has_filename() ? absolute : absolute.parent_path();
     return path += ending;
-}
-
-Result<> check_empty(const fs::path& directory) {
-    std::error_code problem;
-    if (!fs::exists(directory, problem)) return {};
-    if (fs::is_directory(directory, problem) && fs::is_empty(directory, problem)) return {};
-    return Error{Errc::kConflict, fmt::format("--repair {}: it is not empty; name a directory that does not exist yet",
-                                              directory.native())};
 }
 
 std::string line_of(const session::RepairedSession& session) {
@@ -58,23 +50,31 @@ struct Sum {
     }
 };
 
-Result<Sum> repair(const ServerOptions& options) {
-    for (const auto& made : {options.repaired, beside(options.repaired, ".lost")}) {
-        if (auto empty = check_empty(made); !empty) return empty.error();
-    }
-    const auto salvage = store::Salvage::open(options.store, beside(options.repaired, ".salvage"));
-    if (!salvage) return salvage.error();
-    for (const auto& note : (*salvage)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
-    const auto repaired = store::open_rocksdb(options.repaired);
+/// What is left of the sessions, into a store that is closed in the end.
+Result<Sum> save(const store::Salvage& salvage, const store::UnfinishedStore& to, const fs::path& lost) {
+    const auto repaired = to.open_log();
     if (!repaired) return repaired.error();
     Sum sum;
-    for (const auto& [id, record] : (*salvage)->sessions()) {
-        const auto session =
-            session::repair_session(**salvage, id, record, **repaired, beside(options.repaired, ".lost"));
+    for (const auto& [id, record] : salvage.sessions()) {
+        const auto session = session::repair_session(salvage, id, record, **repaired, lost);
         if (!session) return session.error();
         std::cout << line_of(*session) << std::flush;
         sum.add(*session);
     }
+    return sum;
+}
+
+Result<Sum> repair(const ServerOptions& options) {
+    const auto lost = beside(options.repaired, ".lost");
+    auto unfinished = store::UnfinishedStore::begin(options.repaired, lost);
+    if (!unfinished) return unfinished.error();
+    auto salvage = store::Salvage::open(options.store, unfinished->salvage());
+    if (!salvage) return salvage.error();
+    for (const auto& note : (*salvage)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
+    auto sum = save(**salvage, *unfinished, lost);
+    if (!sum) return sum;
+    salvage->reset();
+    if (auto finished = unfinished->finish(); !finished) return finished.error();
     return sum;
 }
 

@@ -131,7 +131,8 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
     server->api_.set_background_check(server->check_);
     if (!options.backups.empty()) {
-        auto backups = store::Backups::open(options.backups, options.backups_kept);
+        auto backups = store::Backups::open(options.backups, options.backups_kept, *server->log_,
+                                            [](const std::string& what) { spdlog::warn("{}", what); });
         if (!backups) return prefixed("--backups: ", backups.error());
         server->backups_ = std::move(*backups);
         server->api_.set_backups(*server->backups_);

@@ -1,17 +1,16 @@
 #include "server/store/backups.hpp"
 
-#include "server/store/compaction_watch.hpp"
-#include "server/store/rocksdb_options.hpp"
+#include "server/store/backup_engine.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/db.h>
-#include <rocksdb/utilities/backup_engine.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <system_error>
 #include <utility>
+
+#include <sys/stat.h>
 
 namespace scanloom::store {
 namespace {
@@ -23,157 +22,213 @@ Error failure(fmt::format_string<Args...> text, Args&&... args) {
     return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
 }
 
-rocksdb::BackupEngineOptions engine_options(const fs::path& directory) {
-    rocksdb::BackupEngineOptions options(directory.native());
-    options.sync = true;
-    options.share_table_files = true;
-    options.share_files_with_checksum = true; // two stores may have tables of one name
-    options.backup_rate_limit = Backups::kBytesPerSecond;
-    return options;
+Result<std::string> identity_of(rocksdb::DB& database) {
+    std::string identity;
+    if (const auto status = database.GetDbIdentity(identity); !status.ok()) {
+        return failure("the identity of the store cannot be read: {}", status.ToString());
+    }
+    return identity;
 }
 
-/// How many sessions there are is kept beside each backup.
-std::size_t sessions_in(const std::string& metadata) {
-    std::size_t sessions = 0;
-    std::from_chars(metadata.data(), metadata.data() + metadata.size(), sessions);
-    return sessions;
+Result<std::string> identity_of(ScanLog& log) {
+    std::string identity;
+    const auto read = log.copy_with([&](rocksdb::DB& database) -> Result<> {
+        auto found = identity_of(database);
+        if (!found) return found.error();
+        identity = std::move(*found);
+        return {};
+    });
+    if (!read) return read.error();
+    return identity;
 }
 
-Backup backup_of(const rocksdb::BackupInfo& info) {
-    return {info.backup_id, static_cast<double>(info.timestamp), info.size, sessions_in(info.app_metadata)};
+/// Or `--restore newest` would give the other store's.
+Result<> check_owner(const rocksdb::BackupEngine& engine, const fs::path& directory, const std::string& identity) {
+    for (const auto& info : infos_of(engine)) {
+        const auto owner = metadata_of(info).store;
+        if (owner.empty() || owner == identity) continue;
+        return Error{Errc::kConflict,
+                     fmt::format("the directory of backups {} has backups of another store (backup {}); "
+                                 "name another directory, one for each store",
+                                 directory.native(), info.backup_id)};
+    }
+    return {};
 }
 
 } // namespace
 
-Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::size_t kept) {
+Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::size_t kept, ScanLog& log, Tell tell) {
+    const auto identity = identity_of(log);
+    if (!identity) return identity.error();
+    std::unique_ptr<Backups> backups(new Backups(directory, kept, std::move(tell)));
+    if (auto taken = backups->take_directory(); !taken) return taken.error();
+    backups->disk_ = disk_of(directory);
+    const auto engine = backups->open_engine();
+    if (!engine) return engine.error();
+    if (auto owned = check_owner(**engine, directory, *identity); !owned) return owned.error();
+    (*engine)->GarbageCollect().PermitUncheckedError(); // what a crash left of one; if it stays, it takes disk alone
+    backups->last_ = backups_of(**engine);
+    return backups;
+}
+
+Backups::Backups(fs::path directory, std::size_t kept, Tell tell)
+    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), tell_(std::move(tell)) {}
+
+Backups::~Backups() = default;
+
+std::optional<Backups::FileId> Backups::id_of(const fs::path& file) {
+    struct stat found = {};
+    if (::stat(file.c_str(), &found) != 0) return {};
+    return FileId{found.st_dev, found.st_ino};
+}
+
+/// On which it is, or would be made.
+std::uint64_t Backups::disk_of(const fs::path& directory) {
+    std::error_code none;
+    auto place = fs::absolute(directory, none);
+    auto found = id_of(place);
+    for (; !found && place.has_relative_path(); found = id_of(place)) place = place.parent_path();
+    return found ? found->disk : 0;
+}
+
+/// A lock whose file was removed keeps nobody out.
+Result<> Backups::take_directory() {
     std::error_code problem;
-    fs::create_directories(directory, problem);
-    if (problem) return failure("cannot create the directory of backups {}: {}", directory.native(), problem.message());
-    auto lock = FileLock::alone(directory / "scanloom.lock");
+    fs::create_directories(directory_, problem);
+    if (problem)
+        return failure("cannot create the directory of backups {}: {}", directory_.native(), problem.message());
+    const auto file = directory_ / "scanloom.lock";
+    if (lock_ && id_of(file) == locked_) return {};
+    auto lock = FileLock::alone(file);
     if (!lock && lock.error().code == Errc::kConflict) {
         return Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
                                                   "name another directory",
-                                                  directory.native())};
+                                                  directory_.native())};
     }
-    if (!lock) return failure("the backups in {} cannot be used: {}", directory.native(), lock.error().message);
+    if (!lock) return failure("the backups in {} cannot be used: {}", directory_.native(), lock.error().message);
+    lock_.emplace(*std::move(lock));
+    locked_ = id_of(file);
+    return {};
+}
+
+/// What is made below a mount point would fill the wrong disk, and be out of sight when the right one is back. A disk
+/// may have another number when it is back, but has backups.
+Result<> Backups::check_disk() const {
+    std::error_code none;
+    if (disk_of(directory_) == disk_ || fs::is_directory(directory_ / "meta", none)) return {};
+    return failure("the directory of backups {} is on another disk than when the server started; mount the right one "
+                   "again, or restart the server to take this one",
+                   directory_.native());
+}
+
+Result<std::shared_ptr<rocksdb::BackupEngine>> Backups::open_engine() {
     rocksdb::BackupEngine* opened = nullptr;
-    const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
-    std::unique_ptr<rocksdb::BackupEngine> engine(opened);
-    if (!status.ok()) {
-        return failure("the backups in {} cannot be used: {}; name another directory", directory.native(),
-                       status.ToString());
-    }
-    engine->GarbageCollect().PermitUncheckedError(); // what a crash left of one; if it stays, it takes disk and no more
-    return std::unique_ptr<Backups>(new Backups(directory, kept, *std::move(lock), std::move(engine)));
+    const auto status = rocksdb::BackupEngine::Open(rocksdb::Env::Default(), engine_options(directory_), &opened);
+    std::shared_ptr<rocksdb::BackupEngine> engine(opened);
+    if (status.ok()) return engine;
+    return failure("the backups in {} cannot be used: {}; name another directory", directory_.native(),
+                   status.ToString());
 }
-
-Backups::Backups(fs::path directory, std::size_t kept, FileLock lock, std::unique_ptr<rocksdb::BackupEngine> engine)
-    : directory_(std::move(directory)), kept_(std::max<std::size_t>(kept, 1)), lock_(std::move(lock)),
-      engine_(std::move(engine)) {
-    look();
-}
-
-Backups::~Backups() = default;
 
 Result<Backup> Backups::make(ScanLog& log) {
     const std::unique_lock making(making_, std::try_to_lock);
     if (!making) return Error{Errc::kConflict, "a backup is being made at this moment; wait for its end"};
     const auto sessions = log.sessions();
     if (!sessions) return sessions.error();
+    if (auto there = check_disk(); !there) return there.error();
+    if (auto taken = take_directory(); !taken) return taken.error();
+    const auto engine = open_engine();
+    if (!engine) return engine.error();
+    begin_with(*engine);
+    auto made = make_with(**engine, log, sessions->size());
+    end_with(backups_of(**engine));
+    return made;
+}
+
+void Backups::begin_with(std::shared_ptr<rocksdb::BackupEngine> engine) {
+    const std::lock_guard lock(state_mutex_);
+    tell_lost(backups_of(*engine)); // before make() drops any
+    engine_ = std::move(engine);
+    ++changes_;
+    if (stopped_) engine_->StopBackup();
+}
+
+void Backups::end_with(std::vector<Backup> found) {
+    const std::lock_guard lock(state_mutex_);
+    last_ = std::move(found);
+    engine_.reset();
+    ++changes_;
+}
+
+Result<Backup> Backups::make_with(rocksdb::BackupEngine& engine, ScanLog& log, std::size_t sessions) {
     rocksdb::BackupID id = 0;
     auto made = log.copy_with([&](rocksdb::DB& database) -> Result<> {
+        const auto identity = identity_of(database);
+        if (!identity) return identity.error();
+        if (auto owned = check_owner(engine, directory_, *identity); !owned) return owned;
         rocksdb::CreateBackupOptions options;
         options.flush_before_backup = true; // what is only in the write-ahead log would be copied again each time
-        auto status = engine_->CreateNewBackupWithMetadata(options, &database, std::to_string(sessions->size()), &id);
-        if (status.ok()) status = engine_->VerifyBackup(id, true);
+        auto status =
+            engine.CreateNewBackupWithMetadata(options, &database, fmt::format("{} {}", sessions, *identity), &id);
+        if (status.ok()) status = engine.VerifyBackup(id, true);
         if (status.ok()) return {};
-        if (id != 0) engine_->DeleteBackup(id).PermitUncheckedError();
+        if (id != 0) engine.DeleteBackup(id).PermitUncheckedError();
         if (status.IsIncomplete()) return Error{Errc::kShuttingDown, "the server is shutting down: no backup was made"};
         return failure("no backup could be made in {}: {}", directory_.native(), status.ToString());
     });
     if (!made) return made.error();
-    engine_->PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError(); // again with the next one
-    look();
-    return list().back();
+    engine.PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError(); // again with the next one
+    return backups_of(engine).back();
 }
 
-void Backups::look() {
-    std::vector<rocksdb::BackupInfo> infos;
-    engine_->GetBackupInfo(&infos);
-    std::vector<Backup> found;
-    for (const auto& info : infos) found.push_back(backup_of(info));
-    std::ranges::sort(found, {}, &Backup::id);
-    const std::lock_guard lock(list_mutex_);
-    list_ = std::move(found);
+void Backups::tell_lost(const std::vector<Backup>& found) const {
+    std::string lost;
+    for (const auto& backup : last_) {
+        if (std::ranges::find(found, backup.id, &Backup::id) != found.end()) continue;
+        lost += fmt::format("{}{}", lost.empty() ? "" : ", ", backup.id);
+    }
+    if (lost.empty() || !tell_) return;
+    tell_(fmt::format("the directory of backups {} has lost the backups {}: they were removed, or are damaged",
+                      directory_.native(), lost));
 }
-
-std::vector<Backup> Backups::list() const {
-    const std::lock_guard lock(list_mutex_);
-    return list_;
-}
-
-void Backups::stop() { engine_->StopBackup(); }
 
 namespace {
 
-Result<Backup> find(rocksdb::BackupEngineReadOnly& engine, const fs::path& directory, std::optional<std::uint32_t> id) {
-    std::vector<rocksdb::BackupInfo> infos;
-    engine.GetBackupInfo(&infos);
-    if (infos.empty()) return Error{Errc::kNotFound, fmt::format("there is no backup in {}", directory.native())};
-    std::ranges::sort(infos, {}, &rocksdb::BackupInfo::backup_id);
-    if (!id) return backup_of(infos.back());
-    const auto found = std::ranges::find(infos, *id, &rocksdb::BackupInfo::backup_id);
-    if (found != infos.end()) return backup_of(*found);
-    return Error{Errc::kNotFound, fmt::format("there is no backup {} in {}; there are {} to {}", *id,
-                                              directory.native(), infos.front().backup_id, infos.back().backup_id)};
-}
-
-Result<> check_empty(const fs::path& store) {
-    std::error_code problem;
-    if (!fs::exists(store, problem) || (fs::is_directory(store, problem) && fs::is_empty(store, problem))) return {};
-    return Error{Errc::kConflict,
-                 fmt::format("{} is not empty; name a directory that does not exist yet", store.native())};
-}
-
-/// A store that had written nothing since its last table has no write-ahead log to copy, and one without is taken for
-/// damaged.
-Result<> complete(const fs::path& store, const StoreOptions& options) {
-    for (const auto& file : fs::directory_iterator(store)) {
-        if (file.path().extension() == ".log") return {};
-    }
-    rocksdb::DB* opened = nullptr;
-    const auto status =
-        rocksdb::DB::Open(rocksdb_options(options, std::make_shared<CompactionWatch>()), store.native(), &opened);
-    const std::unique_ptr<rocksdb::DB> database(opened);
-    if (!status.ok()) return failure("the restored store {} cannot be opened: {}", store.native(), status.ToString());
-    return {};
-}
-
-} // namespace
-
-Result<Backup> restore_backup(const fs::path& directory, std::optional<std::uint32_t> id, const fs::path& store,
-                              const StoreOptions& options) {
-    if (auto empty = check_empty(store); !empty) return empty.error();
+/// As whoever restores sees them.
+Result<std::vector<Backup>> read_backups(const fs::path& directory) {
+    std::error_code none;
+    if (!fs::exists(directory / "meta", none)) return std::vector<Backup>{};
     rocksdb::BackupEngineReadOnly* opened = nullptr;
     const auto status =
         rocksdb::BackupEngineReadOnly::Open(rocksdb::Env::Default(), engine_options(directory), &opened);
     const std::unique_ptr<rocksdb::BackupEngineReadOnly> engine(opened);
-    if (!status.ok()) {
-        return Error{Errc::kNotFound,
-                     fmt::format("there are no backups in {}: {}", directory.native(), status.ToString())};
+    if (!status.ok()) return failure("the backups in {} cannot be read: {}", directory.native(), status.ToString());
+    return backups_of(*engine);
+}
+
+} // namespace
+
+Result<std::vector<Backup>> Backups::list() {
+    if (auto there = check_disk(); !there) return there.error();
+    std::uint64_t changes = 0;
+    {
+        const std::lock_guard lock(state_mutex_);
+        if (engine_ != nullptr) return last_;
+        changes = changes_;
     }
-    const auto backup = find(*engine, directory, id);
-    if (!backup) return backup.error();
-    std::error_code problem;
-    fs::create_directories(store, problem);
-    if (problem) return failure("cannot create the store {}: {}", store.native(), problem.message());
-    if (const auto restored = engine->RestoreDBFromBackup(backup->id, store.native(), store.native()); !restored.ok()) {
-        return failure("backup {} cannot be restored into {}: {}; delete what there is of it, and try another one",
-                       backup->id, store.native(), restored.ToString());
-    }
-    if (auto completed = complete(store, options); !completed) return completed.error();
-    if (auto log = open_rocksdb(store, options); !log) return log.error();
-    return *backup;
+    auto found = read_backups(directory_);
+    if (!found) return found;
+    const std::lock_guard lock(state_mutex_);
+    if (changes != changes_) return last_; // one was made meanwhile, or is being made
+    tell_lost(*found);
+    last_ = *found;
+    return found;
+}
+
+void Backups::stop() {
+    const std::lock_guard lock(state_mutex_);
+    stopped_ = true;
+    if (engine_ != nullptr) engine_->StopBackup();
 }
 
 } // namespace scanloom::store

@@ -13,13 +13,22 @@ namespace scanloom::store {
 /// A lock of our own beside RocksDB's, as the directory is looked at and mended before RocksDB opens it.
 class LockedDirectory {
 public:
-    /// Creates the directory if need be.
-    /// Errors  kConflict: in use by another server or program; kStoreFailed: it cannot be created, is no directory,
-    ///         cannot be written, holds other files than a store, or a store that lost files.
-    [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory);
+    /// What its files have to be.
+    enum class Files {
+        kAll,       ///< those of a store that lost none
+        kAny,       ///< of a store that is finished, whatever it lost
+        kBeingMade, ///< whatever is there: for whoever makes an UnfinishedStore
+    };
 
-    /// Whether its files have to be those of a store that lost none.
-    enum class Files { kAll, kAny };
+    /// Creates the directory if need be. A new one is marked as such until holds_store(), so that what a kill leaves of
+    /// it is not taken for a store that lost its files.
+    /// Errors  kConflict: in use by another server or program; kStoreFailed: it cannot be created, is no directory,
+    ///         cannot be written, holds other files than a store, or a store that lost files or is unfinished.
+    [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory,
+                                                      Files files = Files::kAll);
+
+    /// Says that a store has been opened in it. Errors  kStoreFailed: it cannot be written.
+    [[nodiscard]] Result<> holds_store() const;
 
     /// The same for who only reads: makes and changes nothing, and keeps no other reader out.
     /// Errors  kNotFound: there is no such directory; else as above.

@@ -4,6 +4,7 @@
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/rocksdb_scan_log.hpp"
 #include "server/store/store_facts.hpp"
+#include "server/store/unfinished_store.hpp"
 
 #include <memory>
 #include <string>
@@ -23,11 +24,9 @@ Result<> write_format(rocksdb::DB& database, const fs::path& directory) {
     return {};
 }
 
-} // namespace
-
-Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const StoreOptions& options) {
-    auto locked = LockedDirectory::open(directory);
+Result<std::unique_ptr<ScanLog>> open_locked(Result<LockedDirectory> locked, const StoreOptions& options) {
     if (!locked) return locked.error();
+    const auto& directory = locked->path();
     const auto dropped = mend_after_crash(*locked);
     if (!dropped) return dropped.error();
 
@@ -42,10 +41,21 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
     if (*must_write) {
         if (auto written = write_format(*database, directory); !written) return written.error();
     }
+    if (auto told = locked->holds_store(); !told) return told.error();
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
     return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped, watch,
                                             options);
+}
+
+} // namespace
+
+Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const StoreOptions& options) {
+    return open_locked(LockedDirectory::open(directory), options);
+}
+
+Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
+    return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kBeingMade), {});
 }
 
 } // namespace scanloom::store

@@ -25,7 +25,8 @@ void set_durability(rocksdb::Options& rocksdb) {
     rocksdb.avoid_flush_during_recovery = false;
     rocksdb.enable_pipelined_write = false; // the memtable is filled after the sync, see Committer
     rocksdb.unordered_write = false;
-    rocksdb.max_bgerror_resume_count = 0; // a failed store stays failed until it is opened again
+    rocksdb.write_dbid_to_manifest = true; // a backup has no file IDENTITY, and what it restores is the same store
+    rocksdb.max_bgerror_resume_count = 0;  // a failed store stays failed until it is opened again
 }
 
 /// One column family for everything: one memtable and one write-ahead log, so that whatever is

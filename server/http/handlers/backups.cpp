@@ -16,11 +16,13 @@ boost::json::object to_json(const store::Backup& backup) {
 
 } // namespace
 
-Result<Response> list_backups(const store::Backups* backups, const Call& call) {
+Result<Response> list_backups(store::Backups* backups, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     if (backups == nullptr) return none_kept();
+    const auto there = backups->list();
+    if (!there) return there.error();
     boost::json::array listed;
-    for (const auto& backup : backups->list()) listed.push_back(to_json(backup));
+    for (const auto& backup : *there) listed.push_back(to_json(backup));
     return ok(boost::json::object{{"backups", std::move(listed)}, {"kept", backups->kept()}});
 }
 

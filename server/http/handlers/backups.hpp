@@ -8,8 +8,8 @@ namespace scanloom::http {
 
 /// GET /api/v1/backups: those there are, oldest first.
 /// @param backups  null: the server keeps none.
-/// Errors  kNotFound: it keeps none.
-[[nodiscard]] Result<Response> list_backups(const store::Backups* backups, const Call& call);
+/// Errors  kNotFound: it keeps none; those of Backups::list().
+[[nodiscard]] Result<Response> list_backups(store::Backups* backups, const Call& call);
 
 /// POST /api/v1/backups: makes one; it is there when this is answered, which takes as long as copying what is new.
 /// Errors  as above; those of Backups::make().

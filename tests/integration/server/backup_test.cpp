@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
+#include <exception>
+#include <thread>
 
 /// Backups of a server under a streaming robot, and stores restored from them, as people make them.
 namespace scanloom::test {
@@ -44,6 +47,7 @@ protected:
     }
 
     TemporaryDirectory place_;
+    int newest_ = 0; // backup
     std::filesystem::path store_ = place_.path() / "store";
     std::filesystem::path backups_ = place_.path() / "backups";
 };
@@ -91,6 +95,45 @@ TEST_F(BackupTest, ARestoredOneIsToldInTheWordsInWhichItWasListed) {
     std::string said;
     ASSERT_EQ(restore("newest", place_.path() / "restored", &said), 0);
     EXPECT_EQ(said, R"({"event":"restored",)" + made.substr(1));
+}
+
+TEST_F(BackupTest, AServerThatIsKilledWhileItMakesOneGoesOnAndAllThatAreListedRestore) {
+    for (int round = 1; round <= 4; ++round) {
+        RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
+        ChildProcess robot(program("scanloom-robot"),
+                           {"--server", server.robot_address(), "--session", "one", "--robot", std::to_string(round),
+                            "--cell-size", "0.1", "simulate", "--world", "office", "--seed", "5", "--speed", "20"},
+                           place_.path() / "robot");
+        while (server.get(kSession).status != 200) {
+        }
+        std::atomic<bool> answered = false;
+        std::thread asking([&] {
+            try {
+                static_cast<void>(make(server));
+            } catch (const std::exception&) { // it was killed
+            }
+            answered = true;
+        });
+        const auto being_made = backups_ / "private" / std::to_string(newest_ + 1);
+        while (!answered && !std::filesystem::exists(being_made)) {
+        }
+        server.process().signal(SIGKILL);
+        server.process().wait();
+        asking.join();
+        robot.signal(SIGKILL);
+        robot.wait();
+
+        const RunningServer next(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
+        EXPECT_EQ(make(next).status, 201U);
+        const auto listed = next.get_json("/api/v1/backups");
+        for (const auto& backup : listed.at("backups").as_array()) {
+            const auto id = std::to_string(newest_ = backup.at("id").to_number<int>());
+            std::filesystem::remove_all(place_.path() / "restored");
+            ASSERT_EQ(restore(id, place_.path() / "restored"), 0) << id;
+            const RunningServer restored(place_.path() / "restored", place_.path() / "log");
+            EXPECT_EQ(restored.get(kSession).status, 200U) << id;
+        }
+    }
 }
 
 TEST_F(BackupTest, AServerThatKeepsNoneSaysSo) {

@@ -90,5 +90,37 @@ TEST_F(RepairTest, WithoutTheEntryOfItsRobotALogIsSetAside) {
     EXPECT_GT(std::filesystem::file_size(place_.path() / "repaired.lost" / "one.scanlog"), 300U * 100U);
 }
 
+TEST_F(RepairTest, OneThatIsKilledLeavesNoStoreAndTheNextNeedsNoHandWork) {
+    for (const auto* name : {"one", "two", "three", "four"}) simulate(name, "0.1");
+    kill_server();
+    for (int lines = 0; lines < 5; ++lines) {
+        {
+            ChildProcess killed(program("scanloom-server"),
+                                {"--repair", repaired().native(), "--store", store().native()}, place_.path() / "said");
+            for (int n = 0; n < lines; ++n) static_cast<void>(killed.read_line());
+            killed.signal(SIGKILL);
+            killed.wait();
+        }
+        const auto check = run({"--check", "--store", repaired().native()});
+        if (check.code == 0) { // it had come to its end
+            EXPECT_EQ(check.summary.at("sessions").to_number<int>(), 4);
+            std::filesystem::remove_all(repaired());
+        } else {
+            EXPECT_EQ(check.text.find("whole"), std::string::npos) << check.text;
+        }
+    }
+    const auto answer = repair();
+    ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_EQ(answer.summary.at("sessions").to_number<int>(), 4);
+    EXPECT_EQ(run({"--check", "--store", repaired().native()}).code, 0);
+}
+
+TEST_F(RepairTest, IntoTheOldStoreOrAroundItIsRefused) {
+    for (const auto& into : {store(), store() / "in", place_.path()}) {
+        EXPECT_EQ(run({"--repair", into.native(), "--store", store().native()}).code, 2) << into;
+    }
+    EXPECT_FALSE(std::filesystem::exists(store() / "in"));
+}
+
 } // namespace
 } // namespace scanloom::test

@@ -9,7 +9,7 @@ class ApiBackupsTest : public ApiTest {
 protected:
     TemporaryDirectory directory_;
     std::unique_ptr<store::ScanLog> disk_ = store::open_rocksdb(directory_.path() / "store").value();
-    std::unique_ptr<store::Backups> backups_ = store::Backups::open(directory_.path() / "backups", 2).value();
+    std::unique_ptr<store::Backups> backups_ = store::Backups::open(directory_.path() / "backups", 2, *disk_).value();
     Api over_disk_{registry_, weaves_, goals_, *disk_, metrics_, {gate_, audit_, logins_}, {}};
 
     Response ask_disk(std::string method, std::string target = "/api/v1/backups") {

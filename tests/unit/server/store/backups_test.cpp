@@ -8,9 +8,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rocksdb/utilities/backup_engine.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <thread>
+
+#include <sys/stat.h>
 
 namespace scanloom::store {
 namespace {
@@ -45,7 +49,9 @@ protected:
     TemporaryDirectory directory_;
     std::unique_ptr<ScanLog> log_ = open_rocksdb(at("store")).value();
     SessionId session_ = log_->create_session("a session").value();
-    std::unique_ptr<Backups> backups_ = Backups::open(at("backups"), 3).value();
+    std::vector<std::string> told_;
+    std::unique_ptr<Backups> backups_ =
+        Backups::open(at("backups"), 3, *log_, [this](const std::string& what) { told_.push_back(what); }).value();
 };
 
 TEST_F(BackupsTest, EachRestoresItsMoment) {
@@ -57,7 +63,7 @@ TEST_F(BackupsTest, EachRestoresItsMoment) {
     EXPECT_EQ(first.sessions, 1U);
     EXPECT_GT(first.time, 1.7e9);
     EXPECT_LT(first.id, second.id);
-    EXPECT_EQ(backups_->list(), (std::vector<Backup>{first, second}));
+    EXPECT_EQ(backups_->list().value(), (std::vector<Backup>{first, second}));
 
     EXPECT_EQ(restore_backup(at("backups"), first.id, at("one")).value(), first);
     EXPECT_EQ(entries_of(at("one")), distinct_entries(session_, 1, 100));
@@ -80,11 +86,11 @@ TEST_F(BackupsTest, OnlyTheNewestAreKept) {
         append(revision, 1);
         static_cast<void>(backups_->make(*log_).value());
     }
-    EXPECT_THAT(backups_->list(), SizeIs(3));
-    EXPECT_EQ(backups_->list().front().id, 3U);
+    EXPECT_THAT(backups_->list().value(), SizeIs(3));
+    EXPECT_EQ(backups_->list().value().front().id, 3U);
     EXPECT_THAT(restore_backup(at("backups"), 1, at("one")).error().message, HasSubstr("there are 3 to 5"));
     backups_.reset();
-    EXPECT_THAT(Backups::open(at("backups"), 3).value()->list(), SizeIs(3)) << "also after a restart";
+    EXPECT_THAT(Backups::open(at("backups"), 3, *log_).value()->list().value(), SizeIs(3)) << "also after a restart";
 }
 
 TEST_F(BackupsTest, OneOfAStoreThatWritesNothingRestores) {
@@ -126,13 +132,13 @@ TEST_F(BackupsTest, AFileOfABackupThatWasDamagedIsNotRestored) {
 TEST_F(BackupsTest, OneServerAtATimeHasTheDirectory) {
     append(1, 3);
     const auto made = backups_->make(*log_).value();
-    EXPECT_EQ(Backups::open(at("backups"), 3).error(),
+    EXPECT_EQ(Backups::open(at("backups"), 3, *log_).error(),
               (Error{Errc::kConflict, fmt::format("the directory of backups {} is in use by another scanloom-server; "
                                                   "name another directory",
                                                   at("backups").native())}));
     EXPECT_EQ(restore_backup(at("backups"), {}, at("one")).value(), made) << "who restores keeps nobody out";
     backups_.reset();
-    EXPECT_TRUE(Backups::open(at("backups"), 3));
+    EXPECT_TRUE(Backups::open(at("backups"), 3, *log_));
 }
 
 TEST_F(BackupsTest, NothingIsWrittenOver) {
@@ -149,6 +155,104 @@ TEST_F(BackupsTest, WhereThereIsNoneThatIsSaid) {
     EXPECT_EQ(restore_backup(at("nowhere"), {}, at("one")).error().code, Errc::kNotFound);
     EXPECT_FALSE(fs::exists(at("nowhere")));
     EXPECT_FALSE(fs::exists(at("one")));
+}
+
+TEST_F(BackupsTest, ThoseOfAnotherStoreAreToldApart) {
+    static_cast<void>(backups_->make(*log_).value());
+    const auto other = open_rocksdb(at("other")).value();
+    EXPECT_EQ(backups_->make(*other).error().code, Errc::kConflict);
+    backups_.reset();
+    const auto refused = Backups::open(at("backups"), 3, *other);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kConflict);
+    EXPECT_THAT(refused.error().message, HasSubstr("has backups of another store (backup 1)"));
+    EXPECT_THAT(Backups::open(at("backups"), 3, *log_).value()->list().value(), SizeIs(1)) << "its own stay";
+}
+
+TEST_F(BackupsTest, ARestoredStoreGoesOnWithItsDirectory) {
+    append(1, 10);
+    static_cast<void>(backups_->make(*log_).value());
+    backups_.reset();
+    log_.reset();
+    ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
+    for (int turn = 0; turn < 2; ++turn) { // also once it has been opened anew
+        const auto restored = open_rocksdb(at("one")).value();
+        const auto opened = Backups::open(at("backups"), 9, *restored);
+        ASSERT_TRUE(opened) << opened.error().message;
+        EXPECT_TRUE((*opened)->make(*restored));
+    }
+}
+
+TEST_F(BackupsTest, ThoseThatDoNotSayOfWhichStoreTheyAreStayUsable) {
+    backups_.reset();
+    const auto made = log_->copy_with([&](rocksdb::DB& database) -> Result<> {
+        rocksdb::BackupEngine* opened = nullptr;
+        const rocksdb::BackupEngineOptions options(at("backups").native());
+        EXPECT_TRUE(rocksdb::BackupEngine::Open(rocksdb::Env::Default(), options, &opened).ok());
+        const std::unique_ptr<rocksdb::BackupEngine> engine(opened);
+        EXPECT_TRUE(engine->CreateNewBackupWithMetadata(&database, "1", true).ok()); // as earlier versions did
+        return {};
+    });
+    ASSERT_TRUE(made);
+    const auto backups = Backups::open(at("backups"), 3, *log_).value();
+    ASSERT_THAT(backups->list().value(), SizeIs(1));
+    EXPECT_EQ(backups->list().value().front().sessions, 1U);
+    EXPECT_TRUE(backups->make(*log_));
+    EXPECT_TRUE(restore_backup(at("backups"), 1, at("one")));
+}
+
+TEST_F(BackupsTest, ADirectoryThatIsEmptiedOrRemovedIsMadeAgain) {
+    append(1, 10);
+    for (const bool whole : {false, true}) {
+        static_cast<void>(backups_->make(*log_).value());
+        const auto before = backups_->list().value();
+        ASSERT_THAT(before, SizeIs(1));
+        for (const auto& file : fs::directory_iterator(at("backups"))) fs::remove_all(file.path());
+        if (whole) fs::remove(at("backups"));
+        told_.clear();
+        EXPECT_THAT(backups_->list().value(), IsEmpty());
+        EXPECT_THAT(backups_->list().value(), IsEmpty());
+        EXPECT_THAT(told_, testing::ElementsAre(HasSubstr("has lost the backups 1: ")));
+        ASSERT_TRUE(backups_->make(*log_));
+        EXPECT_THAT(told_, SizeIs(1)) << "it is told once";
+        EXPECT_EQ(Backups::open(at("backups"), 3, *log_).error().code, Errc::kConflict) << "the lock is taken again";
+        fs::remove_all(at("one"));
+        ASSERT_TRUE(restore_backup(at("backups"), {}, at("one")));
+        EXPECT_EQ(entries_of(at("one")), distinct_entries(session_, 1, 10));
+        fs::remove_all(at("backups"));
+        EXPECT_THAT(backups_->list().value(), IsEmpty());
+    }
+}
+
+TEST_F(BackupsTest, OnAnotherDiskNoneIsMade) {
+    std::string elsewhere = "/dev/shm/scanloom-test-XXXXXX";
+    if (::mkdtemp(elsewhere.data()) == nullptr) GTEST_SKIP() << "there is one disk";
+    struct stat here = {};
+    struct stat there = {};
+    ASSERT_EQ(::stat(directory_.path().c_str(), &here), 0);
+    ASSERT_EQ(::stat(elsewhere.c_str(), &there), 0);
+    if (here.st_dev == there.st_dev) {
+        fs::remove_all(elsewhere);
+        GTEST_SKIP() << "there is one disk";
+    }
+    fs::create_directory_symlink(at("backups"), at("mounted"));
+    backups_.reset();
+    backups_ = Backups::open(at("mounted"), 3, *log_).value();
+    static_cast<void>(backups_->make(*log_).value());
+    const auto mount = [&](const fs::path& disk) {
+        fs::remove(at("mounted"));
+        fs::create_directory_symlink(disk, at("mounted"));
+    };
+    mount(elsewhere);
+    for (const auto& error : {backups_->make(*log_).error(), backups_->list().error()}) {
+        EXPECT_EQ(error.code, Errc::kStoreFailed);
+        EXPECT_THAT(error.message, HasSubstr("is on another disk than when the server started"));
+    }
+    EXPECT_TRUE(fs::is_empty(elsewhere));
+    fs::remove_all(elsewhere);
+    mount(at("backups"));
+    EXPECT_THAT(backups_->list().value(), SizeIs(1));
+    EXPECT_TRUE(backups_->make(*log_));
 }
 
 /// Asks for a backup while one is being made of it.
@@ -173,14 +277,14 @@ TEST_F(BackupsTest, OneIsMadeAtATime) {
 TEST_F(BackupsTest, ALogWithoutADiskHasNone) {
     MemoryScanLog log;
     EXPECT_EQ(backups_->make(log).error().code, Errc::kInvalidField);
-    EXPECT_THAT(backups_->list(), IsEmpty());
+    EXPECT_THAT(backups_->list().value(), IsEmpty());
 }
 
 TEST_F(BackupsTest, OnceStoppedNoneIsMade) {
     append(1, 3);
     backups_->stop();
     EXPECT_EQ(backups_->make(*log_).error().code, Errc::kShuttingDown);
-    EXPECT_THAT(backups_->list(), IsEmpty());
+    EXPECT_THAT(backups_->list().value(), IsEmpty());
 }
 
 } // namespace

@@ -1,3 +1,5 @@
+#include "server/store/at_rest.hpp"
+#include "server/store/directory.hpp"
 #include "server/store/record.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -251,6 +253,31 @@ TEST_F(OpenRocksdb, ADamagedRecordIsReported) {
     write_raw(directory_,
               [&](rocksdb::DB& database) { return database.Put({}, std::string(kNextSessionKey), "nonsense"); });
     EXPECT_THAT(problem_of(directory_), HasSubstr("its record 'n' is damaged"));
+}
+
+TEST_F(OpenRocksdb, AStoreOfWhichOnlyTracesAreLeftIsNotBegunAnew) {
+    for (const auto* trace : {"LOG", "IDENTITY", "MANIFEST-", "OPTIONS-"}) {
+        static_cast<void>(open_rocksdb(directory_).value()->create_session("a").value());
+        for (const auto& file : fs::directory_iterator(directory_)) {
+            const auto name = file.path().filename().native();
+            if (!name.starts_with(trace) && !name.starts_with("scanloom.")) fs::remove(file.path());
+        }
+        ASSERT_FALSE(fs::is_empty(directory_));
+        EXPECT_THAT(problem_of(directory_), AllOf(HasSubstr("has lost all its entries"), HasSubstr(trace)));
+        EXPECT_THAT(problem_of(directory_), HasSubstr("has lost all its entries")) << "also the second time";
+        EXPECT_EQ(open_at_rest(directory_).error().code, Errc::kStoreFailed);
+        fs::remove_all(directory_);
+    }
+}
+
+TEST_F(OpenRocksdb, WhatAKillLeavesOfAFirstStartIsNoLostStore) {
+    static_cast<void>(LockedDirectory::open(directory_).value()); // and no store in it
+    write_bytes(directory_ / "LOG", "");
+    write_bytes(directory_ / "IDENTITY", "a-new-one");
+    write_bytes(directory_ / "MANIFEST-000001", "");
+    EXPECT_EQ(problem_of(directory_), "");
+    fs::remove(directory_ / "CURRENT");
+    EXPECT_NE(problem_of(directory_), "") << "it was one since";
 }
 
 } // namespace

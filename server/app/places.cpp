@@ -1,0 +1,66 @@
+#include "server/app/places.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace scanloom::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Without links, as far as it is there; without a slash at the end.
+fs::path place_of(const fs::path& directory) {
+    std::error_code problem;
+    auto place = fs::weakly_canonical(fs::absolute(directory), problem);
+    if (problem) place = fs::absolute(directory).lexically_normal();
+    return place.has_filename() ? place : place.parent_path();
+}
+
+bool is_same(const fs::path& one, const fs::path& other) {
+    std::error_code none;
+    return one == other || fs::equivalent(one, other, none); // by another way: mounted twice
+}
+
+bool is_at_or_in(const fs::path& inner, const fs::path& outer) {
+    for (auto place = inner; !is_same(place, outer); place = place.parent_path()) {
+        if (!place.has_relative_path()) return false;
+    }
+    return true;
+}
+
+struct Place {
+    std::string_view flag;
+    const fs::path& directory;
+};
+
+Result<> check_apart(const Place& one, const Place& other) {
+    const auto first = place_of(one.directory);
+    const auto second = place_of(other.directory);
+    const bool is_inside = is_at_or_in(first, second);
+    if (!is_inside && !is_at_or_in(second, first)) return {};
+    const auto& [inner, outer] = is_inside ? std::pair(one, other) : std::pair(other, one);
+    return Error{Errc::kInvalidField,
+                 fmt::format("{} {} is {} {} {}: name a directory apart from it", inner.flag, inner.directory.native(),
+                             is_same(first, second) ? "the same directory as" : "inside of", outer.flag,
+                             outer.directory.native())};
+}
+
+} // namespace
+
+Result<> check_places(const ServerOptions& options) {
+    const Place store{"--store", options.store};
+    switch (options.task) {
+    case Task::kCheck:
+    case Task::kCheckMaps: return {};
+    case Task::kRepair: return check_apart({"--repair", options.repaired}, store);
+    case Task::kServe:
+    case Task::kRestore: break;
+    }
+    if (options.backups.empty()) return {};
+    return check_apart({"--backups", options.backups}, store);
+}
+
+} // namespace scanloom::app

@@ -1,0 +1,144 @@
+#include "server/store/unfinished_store.hpp"
+
+#include "server/store/listing.hpp"
+#include "server/store/synced_files.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSentence = "A store is being repaired into this directory. It is none before this file is "
+                                       "gone.";
+constexpr std::string_view kSalvage = "salvage";
+constexpr std::string_view kLogEnding = ".scanlog";
+
+Error not_empty(const fs::path& directory, std::string_view file) {
+    return {Errc::kConflict, fmt::format("--repair {}: it is not empty ({}); name a directory that does not exist yet",
+                                         directory.native(), file)};
+}
+
+/// Whether a repair could have made it; the mark apart.
+bool is_ours(const fs::path& file) {
+    const auto name = file.filename().native();
+    std::error_code none;
+    if (name == kSalvage) return fs::is_directory(fs::symlink_status(file, none));
+    return name != kUnfinishedFile && is_store_file(name) && fs::is_regular_file(fs::symlink_status(file, none));
+}
+
+bool is_lost_log(const fs::path& file) {
+    std::error_code none;
+    return file.extension() == kLogEnding && fs::is_regular_file(fs::symlink_status(file, none));
+}
+
+/// What a killed repair may have left in a directory; nothing else may be there.
+Result<std::vector<fs::path>> leftovers_in(const fs::path& directory, bool (*may_be_left)(const fs::path&)) {
+    std::vector<fs::path> found;
+    std::error_code problem;
+    if (!fs::exists(directory, problem)) return found;
+    fs::directory_iterator file(directory, problem);
+    for (; !problem && file != fs::directory_iterator(); file.increment(problem)) {
+        const auto name = file->path().filename().native();
+        if (name == kUnfinishedFile) continue;
+        if (!may_be_left(file->path())) return not_empty(directory, name);
+        found.push_back(file->path());
+    }
+    if (problem) {
+        return Error{Errc::kConflict, fmt::format("--repair {}: it cannot be used: {}; name a directory that does not "
+                                                  "exist yet",
+                                                  directory.native(), problem.message())};
+    }
+    return found;
+}
+
+bool nothing(const fs::path&) { return false; }
+
+Result<> check_empty(const fs::path& directory, const fs::path& lost) {
+    for (const auto& made : {directory, lost}) {
+        if (auto found = leftovers_in(made, nothing); !found) return found.error();
+    }
+    return {};
+}
+
+bool says_unfinished(const fs::path& mark) {
+    std::ifstream in(mark);
+    std::string line;
+    return std::getline(in, line) && line == kSentence;
+}
+
+Result<> remove_leftovers(const fs::path& directory, const fs::path& lost) {
+    auto found = leftovers_in(directory, is_ours);
+    if (!found) return found.error();
+    const auto logs = leftovers_in(lost, is_lost_log);
+    if (!logs) return logs.error();
+    found->insert(found->end(), logs->begin(), logs->end());
+    for (const auto& file : *found) {
+        std::error_code problem;
+        fs::remove_all(file, problem);
+        if (problem) {
+            return Error{Errc::kStoreFailed, fmt::format("cannot remove {}, which a repair that was cut off left: {}",
+                                                         file.native(), problem.message())};
+        }
+    }
+    return {};
+}
+
+Result<> sync_logs(const fs::path& lost) {
+    std::error_code none;
+    if (!fs::is_directory(lost, none)) return {};
+    for (const auto& file : fs::directory_iterator(lost)) {
+        if (auto synced = sync_file(file.path()); !synced) return synced;
+    }
+    if (auto synced = sync_directory(lost); !synced) return synced;
+    return sync_directory(lost.parent_path());
+}
+
+} // namespace
+
+Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const fs::path& lost) {
+    const auto mark = directory / kUnfinishedFile;
+    std::error_code none;
+    if (!fs::exists(mark, none)) { // before anything is written there
+        if (auto empty = check_empty(directory, lost); !empty) return empty.error();
+    }
+    if (auto created = create_store_directory(directory); !created) return created.error();
+    auto lock = FileLock::alone(mark);
+    if (!lock && lock.error().code == Errc::kConflict) {
+        return Error{Errc::kConflict,
+                     fmt::format("--repair {}: another --repair writes it at this moment; wait for its "
+                                 "end, or name another directory",
+                                 directory.native())};
+    }
+    if (!lock) return lock.error();
+    // Only now nobody else writes or finishes it; and only the sentence says that what is there is a repair's.
+    if (says_unfinished(mark)) {
+        if (auto removed = remove_leftovers(directory, lost); !removed) return removed.error();
+    } else if (auto empty = check_empty(directory, lost); !empty) {
+        fs::remove(mark, none);
+        return empty.error();
+    }
+    if (auto marked = write_mark(mark, kSentence); !marked) return marked.error();
+    return UnfinishedStore(directory, lost, *std::move(lock));
+}
+
+fs::path UnfinishedStore::salvage() const { return directory_ / kSalvage; }
+
+Result<> UnfinishedStore::finish() {
+    std::error_code problem;
+    fs::remove_all(salvage(), problem);
+    if (problem) {
+        return Error{Errc::kStoreFailed, fmt::format("cannot remove {}: {}", salvage().native(), problem.message())};
+    }
+    if (auto synced = sync_logs(lost_); !synced) return synced;
+    if (auto synced = sync_directory(directory_); !synced) return synced;
+    return remove_mark(directory_ / kUnfinishedFile);
+}
+
+} // namespace scanloom::store

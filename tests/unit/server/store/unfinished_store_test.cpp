@@ -1,0 +1,105 @@
+#include "server/store/unfinished_store.hpp"
+
+#include "server/store/at_rest.hpp"
+#include "server/store/salvage.hpp"
+#include "tests/support/log_reading.hpp"
+#include "tests/support/store_files.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// Stores that are repaired, also by repairs that are killed.
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+class UnfinishedStoreTest : public testing::Test {
+protected:
+    [[nodiscard]] Result<UnfinishedStore> begin() const { return UnfinishedStore::begin(at("new"), at("new.lost")); }
+
+    [[nodiscard]] fs::path at(const char* name) const { return directory_.path() / name; }
+
+    /// As far as a repair may come before it is killed.
+    void write_most_of(const UnfinishedStore& unfinished) const {
+        const auto log = unfinished.open_log().value();
+        const auto session = log->create_session("one").value();
+        append_and_wait(*log, session, 1, distinct_entries(session, 1, 10)).value();
+        fs::create_directories(at("new") / "salvage" / "lost");
+        write_bytes(at("new") / "salvage" / "000001.sst", "a copy");
+        fs::create_directories(at("new.lost"));
+        write_bytes(at("new.lost") / "one.scanlog", "set aside");
+    }
+
+    TemporaryDirectory directory_;
+};
+
+TEST_F(UnfinishedStoreTest, IsNoneBeforeItIsFinished) {
+    auto unfinished = begin().value();
+    write_most_of(unfinished);
+    for (int turn = 0; turn < 2; ++turn) {
+        EXPECT_THAT(open_rocksdb(at("new")).error().message, HasSubstr("is unfinished"));
+        EXPECT_THAT(open_at_rest(at("new")).error().message, HasSubstr("is unfinished"));
+        EXPECT_THAT(Salvage::open(at("new"), at("copy")).error().message, HasSubstr("is unfinished"));
+    }
+    ASSERT_TRUE(unfinished.finish());
+    EXPECT_FALSE(fs::exists(at("new") / "salvage"));
+    EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside");
+    const auto log = open_rocksdb(at("new")).value();
+    EXPECT_THAT(entries_after(*log, 1, 0).value(), SizeIs(10));
+}
+
+TEST_F(UnfinishedStoreTest, WhatAKilledRepairLeftGoesWithTheNext) {
+    write_most_of(begin().value());
+    auto unfinished = begin();
+    ASSERT_TRUE(unfinished) << unfinished.error().message;
+    EXPECT_FALSE(fs::exists(at("new.lost") / "one.scanlog"));
+    EXPECT_THAT(files_like(at("new"), ""), SizeIs(1)) << "the mark alone";
+    ASSERT_TRUE(unfinished->finish());
+    EXPECT_TRUE(fs::is_empty(at("new")));
+}
+
+TEST_F(UnfinishedStoreTest, OneThatIsUnderWayIsLeftAlone) {
+    const auto unfinished = begin().value();
+    write_most_of(unfinished);
+    EXPECT_THAT(begin().error().message, HasSubstr("another --repair writes it at this moment"));
+    EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside");
+}
+
+TEST_F(UnfinishedStoreTest, OtherFilesStay) {
+    for (const auto* mine : {"new/mine", "new/salvage", "new.lost/mine", "new/000001.sst", "new.lost/one.scanlog"}) {
+        fs::create_directories(at(mine).parent_path());
+        write_bytes(at(mine), "mine");
+        EXPECT_EQ(begin().error().code, Errc::kConflict) << mine;
+        EXPECT_EQ(bytes_of(at(mine)), "mine");
+        EXPECT_THAT(files_like(at(mine).parent_path(), ""), SizeIs(1)) << "no mark is left there";
+        fs::remove_all(at("new"));
+        fs::remove_all(at("new.lost"));
+    }
+}
+
+TEST_F(UnfinishedStoreTest, OtherFilesStayAlsoAmongWhatAKilledOneLeft) {
+    for (const auto* mine : {"new/mine", "new.lost/mine"}) {
+        write_most_of(begin().value());
+        write_bytes(at(mine), "mine");
+        EXPECT_THAT(begin().error().message, HasSubstr("(mine)"));
+        EXPECT_EQ(bytes_of(at(mine)), "mine");
+        EXPECT_EQ(bytes_of(at("new.lost") / "one.scanlog"), "set aside") << "nor is anything else removed";
+        fs::remove(at(mine));
+    }
+}
+
+TEST_F(UnfinishedStoreTest, AFinishedOneIsNotTakenForALeftover) {
+    auto unfinished = begin().value();
+    write_most_of(unfinished);
+    ASSERT_TRUE(unfinished.finish());
+    write_bytes(at("new") / "scanloom.unfinished", ""); // as one that came at that very moment would make it
+    EXPECT_EQ(begin().error().code, Errc::kConflict);
+    EXPECT_TRUE(open_rocksdb(at("new")));
+}
+
+} // namespace
+} // namespace scanloom::store
