@@ -112,8 +112,10 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
         [store, directory = options.store] { return store::can_be_written(directory, store.disk_reserve_bytes); });
     if (!log) return log.error();
     if (const auto torn = (*log)->stats().torn_bytes_dropped; torn > 0)
-        spdlog::info("the last crash cut a write short: its {} bytes are dropped; nothing of it was acknowledged",
-                     torn);
+        spdlog::warn(
+            "the write-ahead log ended with {} bytes of a write that is not whole, and they are dropped: a crash "
+            "cut it short before it was acknowledged; where none did, the disk lost it",
+            torn);
     auto web = http::load_web_files(options.web);
     if (!web) return web.error();
     if (!web->contains("index.html")) {

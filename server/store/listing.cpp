@@ -85,7 +85,8 @@ Result<> check_listing(const fs::path& directory, const Listing& listing) {
             "backup (--restore) into another directory, or delete what is left to begin with an empty one",
             directory.native(), listing.trace);
     }
-    if (listing.has_tables && !listing.has_write_ahead_logs) {
+    const bool has_been_open = listing.has_tables || (listing.has_current && !listing.is_new);
+    if (has_been_open && !listing.has_write_ahead_logs) {
         return failure("the store {} is damaged: its write-ahead log (*.log) is missing; {}", directory.native(),
                        kBringBack);
     }

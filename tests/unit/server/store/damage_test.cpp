@@ -71,6 +71,13 @@ TEST_F(KilledStore, OpensWithEverything) {
     expect_prefix(ends_.back());
 }
 
+/// All that it held was in there.
+TEST_F(KilledStore, AMissingWriteAheadLogIsReported) {
+    copy_store(killed(), copy());
+    fs::remove(only_file_like(copy(), ".log"));
+    EXPECT_THAT(open_rocksdb(copy()).error().message, HasSubstr("write-ahead log (*.log) is missing"));
+}
+
 TEST_F(KilledStore, ItsWriteAheadLogIsAsTheFormatSays) {
     const auto check = check_log_file(bytes_of(only_file_like(killed(), ".log")));
     EXPECT_FALSE(check.damage);
