@@ -90,6 +90,14 @@ void compare_maps(const Held& held, const SessionOptions& options, Outcome& outc
     if (right && !outcome.digest_equal) outcome.amiss.emplace_back("the maps are not those of an undisturbed run");
 }
 
+std::map<std::string, std::string> digests_of(const mapping::Snapshot& maps) {
+    std::map<std::string, std::string> digests;
+    for (const auto layer : mapping::kLayers) {
+        digests.emplace(mapping::name_of(layer), mapping::digest_of(maps, layer));
+    }
+    return digests;
+}
+
 test::HttpAnswer must_get(std::uint16_t port, const std::string& target) {
     auto answer = test::http_request(port, "GET", target);
     if (answer.status == 200) return answer;
@@ -113,6 +121,12 @@ std::vector<LogEntry> parse_log(std::string_view bytes) {
 
 } // namespace
 
+Held held(const mapping::Snapshot& maps, const std::vector<std::string>& entries) {
+    Held held{.revision = maps.revision, .digests = digests_of(maps)};
+    for (const auto& bytes : entries) held.log.push_back(wire::decode_entry(bytes).value());
+    return held;
+}
+
 Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector<LogEntry>& log,
                                                                const SessionOptions& options) {
     const auto config = mapping::resolve(options);
@@ -121,19 +135,19 @@ Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector
     for (const LogEntry& entry : log) {
         if (auto folded = projection.fold(entry); !folded) return folded.error();
     }
-    const auto snapshot = projection.snapshot();
-    std::map<std::string, std::string> digests;
-    for (const auto layer : mapping::kLayers) {
-        digests.emplace(mapping::name_of(layer), mapping::digest_of(snapshot, layer));
-    }
-    return digests;
+    return digests_of(projection.snapshot());
+}
+
+Outcome verify_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots) {
+    Outcome outcome;
+    Told told;
+    read_log(log, robots, told, outcome);
+    for (const RobotStanding& robot : robots) count_scans(robot, told.times_held[robot.plan.name], outcome);
+    return outcome;
 }
 
 Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options) {
-    Outcome outcome;
-    Told told;
-    read_log(held.log, robots, told, outcome);
-    for (const RobotStanding& robot : robots) count_scans(robot, told.times_held[robot.plan.name], outcome);
+    Outcome outcome = verify_log(held.log, robots);
     compare_maps(held, options, outcome);
     return outcome;
 }

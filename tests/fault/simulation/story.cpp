@@ -1,7 +1,6 @@
 #include "tests/fault/simulation/story.hpp"
 
-#include "common/wire/log_codec.hpp"
-#include "server/mapping/digest.hpp"
+#include "tests/fault/simulation/promises.hpp"
 #include "tests/fault/simulation/robot.hpp"
 #include "tests/fault/simulation/server.hpp"
 #include "tests/fault/verification.hpp"
@@ -79,7 +78,10 @@ public:
     }
 
 private:
-    void start_server() { server_.emplace(world_, disk_, plot_.server); }
+    void start_server() {
+        server_.emplace(world_, disk_, plot_.server,
+                        [this](const std::string& robot, std::uint64_t seq) { promises_.say(robot, seq); });
+    }
 
     std::shared_ptr<Connection> connect() {
         if (!server_ || world_.chance(plot_.network.refuse)) return nullptr;
@@ -102,7 +104,14 @@ private:
         if (in_order) server_->stop();
         server_.reset();
         ++ends_;
+        check_promises();
         world_.after(world_.between(10ms, 5s), [this] { start_server(); });
+    }
+
+    /// While nothing but the disk is there.
+    void check_promises() {
+        ending_.outcome.add(promises_.check(disk_.durable(), plot_.robots));
+        ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
     }
 
     [[nodiscard]] bool all_done() const {
@@ -110,8 +119,7 @@ private:
     }
 
     Ending judge() {
-        Ending ending;
-        auto& outcome = ending.outcome;
+        auto& outcome = ending_.outcome;
         std::map<std::string, std::vector<fault::RobotStanding>> sessions;
         for (const auto& robot : robots_) {
             const auto& standing = robot->standing();
@@ -123,7 +131,7 @@ private:
             if (standing.outcome) continue;
             const Error& error = standing.outcome.error();
             ++outcome.figures[fmt::format("ended_{}", name_of(error.code))];
-            if (!is_forged_) {
+            if (!is_forged_ || error.code == Errc::kConflict) {
                 outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", standing.plan.name, error.message));
             }
         }
@@ -133,8 +141,9 @@ private:
             if (held) outcome.add(fault::verify(*held, members, fault::fleet_options()));
             if (!held) outcome.amiss.push_back(fmt::format("session '{}': {}", name, held.error().message));
         }
-        ending.fingerprint = world_.fingerprint();
-        return ending;
+        ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
+        ending_.fingerprint = world_.fingerprint();
+        return std::move(ending_);
     }
 
     /// Also where the server has to be started first, or its store to be opened again.
@@ -157,23 +166,16 @@ private:
     Result<fault::Held> hold(const std::string& name) {
         const auto woken = wake(name);
         if (!woken) return woken.error();
-        const auto& session = *woken;
-        const auto snapshot = session->snapshot();
-        fault::Held held;
-        held.revision = snapshot->revision;
-        for (const auto layer : mapping::kLayers) {
-            held.digests.emplace(mapping::name_of(layer), mapping::digest_of(*snapshot, layer));
-        }
-        for (const auto& bytes : store::entries_after(disk_.durable(), session->info().id, 0).value()) {
-            held.log.push_back(wire::decode_entry(bytes).value());
-        }
-        return held;
+        const auto entries = store::entries_after(disk_.durable(), (*woken)->info().id, 0);
+        return fault::held(*(*woken)->snapshot(), entries.value());
     }
 
     World world_;
     Plot plot_;
-    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then
+    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then, but not of lost scans
     Disk disk_;
+    Promises promises_;
+    Ending ending_;
     std::optional<Server> server_;
     std::vector<std::unique_ptr<Robot>> robots_;
     Time calm_{};
