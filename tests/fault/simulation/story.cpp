@@ -35,10 +35,25 @@ double some(World& world, double most) {
     return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0;
 }
 
+/// Partitions may be shorter than anybody's patience, and longer.
+NetworkTrouble network_of(World& world) {
+    NetworkTrouble network{.cut = some(world, 0.7),
+                           .silent = some(world, 0.3),
+                           .deaf = some(world, 0.3),
+                           .stall = some(world, 0.5),
+                           .refuse = some(world, 0.5),
+                           .forge = some(world, 0.3)};
+    for (auto more = world.draw(3); more > 0; --more) {
+        const Time from = world.now() + world.between(0s, kTroubled);
+        network.partitions.push_back({from, from + world.between(100ms, 20s)});
+    }
+    return network;
+}
+
 Plot plot_of(World& world, const Story& story) {
     Plot plot;
     plot.disk = {some(world, 0.05), some(world, 0.1), some(world, 0.1), story.hasty_disk, story.forgetful_disk};
-    plot.network = {some(world, 0.7), some(world, 0.3), some(world, 0.5), some(world, 0.5), some(world, 0.3)};
+    plot.network = network_of(world);
     plot.server.credit_bytes = world.chance(0.5) ? 4'000 + world.draw(8'000) : plot.server.credit_bytes;
     plot.server.idle_after = world.chance(0.5) ? Duration(3s) : plot.server.idle_after;
     if (world.chance(0.3)) plot.server.pages_max = 14 + world.draw(6); // one session takes 6, and a scan may touch 4
@@ -84,9 +99,9 @@ private:
     }
 
     std::shared_ptr<Connection> connect() {
-        if (!server_ || world_.chance(plot_.network.refuse)) return nullptr;
+        if (!server_) return nullptr;
         auto connection = Connection::make(world_, plot_.network);
-        server_->accept(connection);
+        if (connection) server_->accept(connection);
         return connection;
     }
 
