@@ -3,12 +3,10 @@
 #include "tests/fault/cases.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/loop_disk.hpp"
+#include "tests/fault/readiness.hpp"
 #include "tests/fault/server_process.hpp"
 #include "tests/fault/verification.hpp"
-#include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
-
-#include <fmt/format.h>
 
 #include <random>
 
@@ -23,12 +21,6 @@ constexpr unsigned kRobots = 4;
 /// They wait longer than a disk stalls.
 constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000),
                              .silence_max = std::chrono::milliseconds(15'000)};
-
-void check_that_maps_are_served(const ServerProcess& server, Outcome& outcome) {
-    const auto status = test::http_request(server.http_port(), "GET", "/api/v1/sessions/shared/digest").status;
-    if (status == 200) return;
-    outcome.amiss.push_back(fmt::format("a digest is answered with {} while the disk takes nothing", status));
-}
 
 Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t stalls) {
     const TemporaryDirectory place;
@@ -50,7 +42,7 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
         server.let_be(std::chrono::milliseconds(200 + random() % 2'000));
         if (fleet.acknowledged() > before * kRobots)
             outcome.amiss.emplace_back("scans are acknowledged that were sent while the disk took nothing");
-        check_that_maps_are_served(server, outcome);
+        check_that_maps_are_served(server, "while the disk takes nothing", outcome);
     }
     fleet.release_all();
     outcome.add(verify_server(server.http_port(), fleet.finish()));
