@@ -3,11 +3,15 @@
 #include "tests/fault/cases.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/loop_disk.hpp"
+#include "tests/fault/process_memory.hpp"
 #include "tests/fault/readiness.hpp"
 #include "tests/fault/server_process.hpp"
 #include "tests/fault/verification.hpp"
 #include "tests/support/temporary_directory.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <random>
 
 namespace scanloom::fault {
@@ -21,6 +25,17 @@ constexpr unsigned kRobots = 4;
 /// They wait longer than a disk stalls.
 constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000),
                              .silence_max = std::chrono::milliseconds(15'000)};
+
+/// Robots may have as much under way as their credits allow; they have little here.
+constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
+
+void check_memory(std::uint64_t before, std::uint64_t after, Outcome& outcome) {
+    const auto grown = after - std::min(before, after);
+    auto& most = outcome.figures["memory_grown_kib"];
+    most = std::max(most, grown >> 10);
+    if (grown <= kGrowthMax) return;
+    outcome.amiss.push_back(fmt::format("the server took {} MiB more while the disk took nothing", grown >> 20));
+}
 
 Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t stalls) {
     const TemporaryDirectory place;
@@ -37,12 +52,14 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
         const auto before = stall * kScansPerStall - kScansPerStall / 2;
         fleet.release(before);
         (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRobots * kScansPerStall / 2));
+        const auto memory = resident_bytes(server.id());
         const auto frozen = (*disk)->freeze();
         fleet.release(stall * kScansPerStall);
         server.let_be(std::chrono::milliseconds(200 + random() % 2'000));
         if (fleet.acknowledged() > before * kRobots)
             outcome.amiss.emplace_back("scans are acknowledged that were sent while the disk took nothing");
         check_that_maps_are_served(server, "while the disk takes nothing", outcome);
+        check_memory(memory, resident_bytes(server.id()), outcome);
     }
     fleet.release_all();
     outcome.add(verify_server(server.http_port(), fleet.finish()));

@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,7 @@ constexpr unsigned kRobots = 4;
 constexpr std::uint64_t kRoundsMax = 20;
 
 /// `fiu-run` and what it needs, in front of the server.
-ServerCommand with_failing_syncs(const ServerCommand& server) {
+Command with_failing_syncs(const Command& server) {
     const auto program = server.program.empty() ? test::program("scanloom-server") : server.program;
     std::vector<std::string> words{"-x", "-c", "enable_random name=posix/io/sync/*,probability=0.2", program.string()};
     words.insert(words.end(), server.words.begin(), server.words.end());
@@ -68,8 +69,13 @@ private:
     /// A new store syncs a dozen files, one of which may fail.
     void start() {
         constexpr std::uint64_t kStartsMax = 100;
-        auto& starts = outcome_.figures["starts"];
-        for (server_.start(); ++starts < kStartsMax && !server_.becomes_ready(); server_.start()) (void)server_.wait();
+        for (std::uint64_t starts = 1; starts <= kStartsMax; ++starts) {
+            ++outcome_.figures["starts"];
+            server_.start();
+            if (server_.becomes_ready()) return;
+            (void)server_.wait();
+        }
+        throw std::runtime_error("the server never starts: " + server_.last_words());
     }
 
     void stream(std::uint64_t round) {

@@ -34,6 +34,10 @@ struct Held {
 /// Pre  `robots` are all those of the session.
 [[nodiscard]] Outcome verify_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots);
 
+/// Every scan up to this number is in the log of the robot, once, whatever it shows.
+[[nodiscard]] Outcome verify_numbers(const std::vector<LogEntry>& log, const std::string& robot,
+                                     std::uint64_t acknowledged);
+
 /// The absolute check of one session: verify_log(), in order, and the maps are those of an undisturbed run.
 [[nodiscard]] Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options);
 
