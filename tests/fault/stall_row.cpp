@@ -31,10 +31,8 @@ constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
 
 void check_memory(std::uint64_t before, std::uint64_t after, Outcome& outcome) {
     const auto grown = after - std::min(before, after);
-    auto& most = outcome.figures["memory_grown_kib"];
-    most = std::max(most, grown >> 10);
     if (grown <= kGrowthMax) return;
-    outcome.amiss.push_back(fmt::format("the server took {} MiB more while the disk took nothing", grown >> 20));
+    outcome.amiss.push_back(fmt::format("the server took {} KiB more while the disk took nothing", grown >> 10));
 }
 
 Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t stalls) {
