@@ -113,8 +113,7 @@ Outcome run_flood_row(const Run& run) {
             {robots, noise, noise, 50ms, true, kHelloDeadline},       // nonsense, of a length that is too large
             {http, header, "X: y\r\n", 500ms, true, kHeaderDeadline}, // a header that takes for ever
             {http, body, "{", 500ms, true, kBodyDeadline},            // likewise
-            {http, map, map, 100ms,
-             false}, // asks for more and more, and reads none of it: the system takes it, for long
+            {http, map, map, 100ms, false},                           // asks for more and more, and reads none of it
         };
         std::vector<Manner> crowd;
         for (unsigned n = 0; n < run.count; ++n) crowd.push_back(manners[n % manners.size()]);

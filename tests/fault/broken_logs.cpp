@@ -98,7 +98,7 @@ public:
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
         const std::lock_guard lock(mutex_); // also over what follows: appends keep their order
         std::uint64_t& ahead = ahead_[session];
-        if (++appends_ % kForgetsEvery != 0 || !are_scans(entries)) {
+        if (!are_scans(entries) || ++appends_ % kForgetsEvery != 0) {
             return under().append(session, first + ahead, std::move(entries), std::move(done));
         }
         const Revision again = first + ahead + entries.size();
@@ -117,8 +117,8 @@ private:
         });
     }
 
-    std::mutex mutex_; // guards what follows
-    std::uint64_t appends_ = 0;
+    std::mutex mutex_;                         // guards what follows
+    std::uint64_t appends_ = 0;                // of scans
     std::map<SessionId, std::uint64_t> ahead_; // entries that the session does not know of
 };
 
