@@ -4,6 +4,7 @@
 #include "tests/fault/paced_load.hpp"
 #include "tests/fault/row.hpp"
 
+#include <chrono>
 #include <functional>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Beside {
     std::uint64_t size = 0;            ///< of the crowd
     std::size_t bytes_of_each_max = 0; ///< of the server's memory, of each of the crowd
     bool must_keep_up = false;         ///< acknowledgements may take twice as long at most
+    std::chrono::seconds deadline{0};  ///< whose own is no later than this one has to be hung up on
     std::function<std::vector<Manner>(const ServerProcess&, const PacedLoad&)> crowd;
 };
 

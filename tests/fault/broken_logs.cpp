@@ -3,6 +3,7 @@
 #include "common/wire/log_codec.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -97,7 +98,7 @@ public:
     void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
         const std::lock_guard lock(mutex_); // also over what follows: appends keep their order
         std::uint64_t& ahead = ahead_[session];
-        if (++appends_ % kForgetsEvery != 0 || !are_scans(entries)) {
+        if (!are_scans(entries) || ++appends_ % kForgetsEvery != 0) {
             return under().append(session, first + ahead, std::move(entries), std::move(done));
         }
         const Revision again = first + ahead + entries.size();
@@ -116,8 +117,8 @@ private:
         });
     }
 
-    std::mutex mutex_; // guards what follows
-    std::uint64_t appends_ = 0;
+    std::mutex mutex_;                         // guards what follows
+    std::uint64_t appends_ = 0;                // of scans
     std::map<SessionId, std::uint64_t> ahead_; // entries that the session does not know of
 };
 
@@ -140,6 +141,39 @@ private:
     static constexpr Revision kSpoilsEvery = 50;
 };
 
+class MisledLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        if (Clock::now() < opened_) return done({});
+        PassingLog::append(session, first, std::move(entries), std::move(done));
+    }
+
+private:
+    using Clock = std::chrono::system_clock;
+    const Clock::time_point opened_ = Clock::now();
+};
+
+class LeakyLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        {
+            const std::lock_guard lock(mutex_);
+            leaked_.emplace_back(entries.size() * kBytesOfEntry, 'x');
+        }
+        PassingLog::append(session, first, std::move(entries), std::move(done));
+    }
+
+private:
+    static constexpr std::size_t kBytesOfEntry = 65'536;
+
+    std::mutex mutex_;
+    std::vector<std::string> leaked_; // guarded by mutex_
+};
+
 } // namespace
 
 std::unique_ptr<ScanLog> hasty_log(std::unique_ptr<ScanLog> log) { return std::make_unique<HastyLog>(std::move(log)); }
@@ -150,11 +184,19 @@ std::unique_ptr<ScanLog> forgetful_log(std::unique_ptr<ScanLog> log) {
 
 std::unique_ptr<ScanLog> blind_log(std::unique_ptr<ScanLog> log) { return std::make_unique<BlindLog>(std::move(log)); }
 
+std::unique_ptr<ScanLog> misled_log(std::unique_ptr<ScanLog> log) {
+    return std::make_unique<MisledLog>(std::move(log));
+}
+
+std::unique_ptr<ScanLog> leaky_log(std::unique_ptr<ScanLog> log) { return std::make_unique<LeakyLog>(std::move(log)); }
+
 std::unique_ptr<ScanLog> broken_log(std::string_view kind, std::unique_ptr<ScanLog> log) {
     if (kind == "hasty") return hasty_log(std::move(log));
     if (kind == "forgetful") return forgetful_log(std::move(log));
     if (kind == "blind") return blind_log(std::move(log));
-    return nullptr;
+    if (kind == "misled") return misled_log(std::move(log));
+    if (kind == "leaky") return leaky_log(std::move(log));
+    return log;
 }
 
 } // namespace scanloom::fault

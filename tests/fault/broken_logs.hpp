@@ -17,7 +17,13 @@ namespace scanloom::fault {
 /// Reads other scans than were written and does not notice, as a store without checksums may.
 [[nodiscard]] std::unique_ptr<store::ScanLog> blind_log(std::unique_ptr<store::ScanLog> log);
 
-/// One of them by its name: "hasty", "forgetful" or "blind"; nothing for another name.
+/// Takes entries for old ones, and drops them, while the wall clock shows less than when it was opened.
+[[nodiscard]] std::unique_ptr<store::ScanLog> misled_log(std::unique_ptr<store::ScanLog> log);
+
+/// Never lets go of the memory of what it was given, 64 KiB an entry.
+[[nodiscard]] std::unique_ptr<store::ScanLog> leaky_log(std::unique_ptr<store::ScanLog> log);
+
+/// One of them by its name: "hasty", "forgetful", "blind", "misled" or "leaky". Another name breaks nothing.
 [[nodiscard]] std::unique_ptr<store::ScanLog> broken_log(std::string_view kind, std::unique_ptr<store::ScanLog> log);
 
 } // namespace scanloom::fault

@@ -1,9 +1,12 @@
-// scanloom-server with a log or a disk that breaks its promises: what the rows of faults are tried on.
-// Usage: broken_server hasty|forgetful|blind|unsynced, and the options of scanloom-server
+// scanloom-server with a log, a disk or sockets that break their promises: what the rows of faults are tried on.
+// Usage: broken_server hasty|forgetful|blind|misled|leaky|unsynced|trusting|hoarding|clinging, and the options of
+// scanloom-server
 #include "server/app/options.hpp"
 #include "server/app/server.hpp"
+#include "server/app/standard_error_sink.hpp"
+#include "tests/fault/broken_files.hpp"
 #include "tests/fault/broken_logs.hpp"
-#include "tests/fault/unsynced_files.hpp"
+#include "tests/fault/broken_sockets.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -17,13 +20,16 @@ int main(int argc, char** argv) {
     const std::string kind = argv[1];
     const auto options = app::read_options(argc - 1, argv + 1);
     if (!std::holds_alternative<app::ServerOptions>(options)) return kExitUsage;
-    spdlog::set_level(spdlog::level::err);
-    const auto unsynced = fault::unsynced_files();
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("broken_server", app::standard_error_sink()));
+    fault::break_sockets(kind);
+    const auto files = kind == "unsynced"   ? fault::unsynced_files()
+                       : kind == "trusting" ? fault::trusting_files()
+                                            : nullptr;
     const auto open_log = [&](const std::filesystem::path& directory,
                               store::StoreOptions store) -> Result<std::unique_ptr<store::ScanLog>> {
-        if (kind == "unsynced") store.env = unsynced.get();
+        store.env = files.get();
         auto log = store::open_rocksdb(directory, store);
-        if (!log || kind == "unsynced") return log;
+        if (!log) return log;
         return fault::broken_log(kind, std::move(*log));
     };
     auto server = app::Server::open(std::get<app::ServerOptions>(options), {}, open_log);

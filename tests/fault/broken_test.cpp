@@ -1,18 +1,37 @@
+#include "tests/fault/beside.hpp"
 #include "tests/fault/broken_logs.hpp"
+#include "tests/fault/clock_row.hpp"
 #include "tests/fault/corrupt_row.hpp"
+#include "tests/fault/disk_row.hpp"
 #include "tests/fault/kill_row.hpp"
 #include "tests/fault/link_row.hpp"
 #include "tests/fault/power_row.hpp"
+#include "tests/fault/restart_row.hpp"
+#include "tests/fault/soak_row.hpp"
+#include "tests/fault/spool_row.hpp"
 #include "tests/fault/stall_row.hpp"
+#include "tests/fault/sync_row.hpp"
 #include "tests/support/memory_scan_log.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
 
 /// The rows of faults on what is broken: a row that passes here shows nothing.
 namespace scanloom::fault {
 namespace {
 
-ServerCommand broken_server(const std::string& kind) { return {SCANLOOM_BROKEN_SERVER, {kind}}; }
+Command broken_server(const std::string& kind) { return {SCANLOOM_BROKEN_SERVER, {kind}}; }
+
+/// For this reason, among others; empty: for any.
+void expect_found(const Outcome& outcome, const std::string& because = "") {
+    if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
+    EXPECT_FALSE(outcome.passed());
+    EXPECT_TRUE(std::ranges::any_of(outcome.amiss, [&](const std::string& sentence) {
+        return sentence.find(because) != sentence.npos;
+    })) << testing::PrintToString(outcome.amiss);
+}
 
 TEST(KillRow, FindsAServerThatAcknowledgesWhatIsNotDurable) {
     const Outcome outcome = run_kill_row({.seed = 1, .count = 10, .server = broken_server("hasty")});
@@ -50,6 +69,49 @@ TEST(StallRow, FindsAServerThatAcknowledgesTooEarly) {
 /// As no kill shows it: what the system was given, it has.
 TEST(KillRow, SaysNothingOfADiskThatDoesNotSync) {
     EXPECT_TRUE(run_kill_row({.seed = 1, .count = 5, .server = broken_server("unsynced")}).passed());
+}
+
+TEST(RestartRow, FindsAServerThatAcknowledgesWhatIsNotDurable) {
+    expect_found(run_restart_row({.seed = 1, .count = 3, .server = broken_server("hasty")}));
+}
+
+TEST(DiskRow, FindsAServerThatAppliesTwice) {
+    expect_found(run_disk_row({.seed = 1, .count = 5, .server = broken_server("forgetful")}));
+}
+
+/// It loses nothing here, as no power fails; but it never opens its store again.
+TEST(SyncRow, FindsAServerThatTrustsASyncThatFailed) {
+    expect_found(run_sync_row({.seed = 1, .count = 200, .server = broken_server("trusting")}), "no sync that failed");
+}
+
+TEST(SpoolRow, FindsARobotThatForgetsItsSpool) {
+    const Outcome outcome = run_spool_row({.seed = 1, .count = 4, .robot = {SCANLOOM_BROKEN_ROBOT}});
+    EXPECT_GT(outcome.lost, 0U);
+}
+
+TEST(ClockRow, FindsAServerThatIsMisledByTheWallClock) {
+    expect_found(run_clock_row({.seed = 1, .count = 10, .server = broken_server("misled")}));
+}
+
+TEST(ClockRow, FindsAServerThatAppliesTwice) {
+    expect_found(run_clock_row({.seed = 1, .count = 2, .server = broken_server("forgetful")}));
+}
+
+TEST(SoakRow, FindsAServerThatLeaks) {
+    expect_found(run_soak_row({.seed = 1, .count = 2'000, .server = broken_server("leaky")}), "memory grew");
+}
+
+TEST(ViewersRow, FindsAServerThatTakesMemoryForEachConnection) {
+    expect_found(run_viewers_row({.seed = 1, .count = 60, .server = broken_server("hoarding")}),
+                 "MiB more for a crowd");
+}
+
+TEST(FloodRow, FindsAServerThatTakesMemoryForEachConnection) {
+    expect_found(run_flood_row({.seed = 1, .count = 60, .server = broken_server("hoarding")}), "MiB more for a crowd");
+}
+
+TEST(FloodRow, FindsAServerThatNeverHangsUp) {
+    expect_found(run_flood_row({.seed = 1, .count = 12, .server = broken_server("clinging")}), "were not hung up on");
 }
 
 std::unique_ptr<store::ScanLog> memory_log() { return std::make_unique<store::MemoryScanLog>(); }

@@ -2,6 +2,7 @@
 
 #include "tests/fault/cases.hpp"
 #include "tests/fault/server_process.hpp"
+#include "tests/fault/verification.hpp"
 #include "tests/support/robot_socket.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -38,7 +39,7 @@ std::optional<fs::path> faketime_library() {
     return std::nullopt;
 }
 
-/// A wall clock that programs are started with, which jumps when it is told to; no other clock of theirs does.
+/// A wall clock that a program is started with, which jumps when it is told to; no other clock of its does.
 class JumpingClock {
 public:
     JumpingClock(const fs::path& library, fs::path file) : file_(std::move(file)) {
@@ -139,24 +140,30 @@ Outcome run_one(const Run& run, const fs::path& library, std::uint64_t seed, std
     const TemporaryDirectory place;
     std::mt19937_64 random(seed);
     const JumpingClock clock(library, place.path() / "clock");
-    ServerCommand command{"/usr/bin/env", clock.words()};
+    const JumpingClock robot_clock(library, place.path() / "robot_clock");
+    Command command{"/usr/bin/env", clock.words()};
     command.words.push_back(run.server.program.empty() ? test::program("scanloom-server").string()
                                                        : run.server.program.string());
     command.words.insert(command.words.end(), run.server.words.begin(), run.server.words.end());
     ServerProcess server(command, place.path());
     server.start_and_wait();
     Outcome outcome;
+    std::uint64_t sent = 0;
     for (std::uint64_t jump = 1; jump <= jumps && outcome.passed(); ++jump) {
         const std::uint64_t scans = jump * kScansPerJump;
-        const std::string days = random() % 2 == 0 ? "+365d" : "-365d";
-        auto robot = start_robot(clock.words(), robot_words(server.robot_port(), seed, scans), place.path() / "robot");
+        const auto one_of_the_years = [&] { return std::string(random() % 2 == 0 ? "+365d" : "-365d"); };
+        auto robot =
+            start_robot(robot_clock.words(), robot_words(server.robot_port(), seed, scans), place.path() / "robot");
         server.let_be(std::chrono::microseconds(random() % kMicrosUntilJump));
-        clock.jump_to(days);
+        clock.jump_to(one_of_the_years());
+        server.let_be(std::chrono::microseconds(random() % kMicrosUntilJump));
+        robot_clock.jump_to(one_of_the_years()); // which it is started with the next time
         finish(robot, scans, outcome);
         say_hello_after(clock, "+0d", server, outcome);
-        outcome.acknowledged = scans;
+        sent = scans;
     }
-    outcome.digest_equal = digest(server) == peaceful_digest(seed, outcome.acknowledged);
+    outcome.add(verify_numbers(ask_for(server.http_port(), "s").log, "r", sent));
+    outcome.digest_equal = digest(server) == peaceful_digest(seed, sent);
     if (const int code = server.stop(); code != 0)
         outcome.amiss.push_back(fmt::format("the server ends with {}", code));
     return outcome;

@@ -10,6 +10,7 @@
 #include <boost/asio/write.hpp>
 
 #include <array>
+#include <numeric>
 
 namespace scanloom::fault {
 
@@ -35,8 +36,10 @@ asio::awaitable<void> listen(tcp::socket& socket, bool reads) {
 
 } // namespace
 
-Crowd::Crowd(const std::vector<Manner>& members) : size_(members.size()) {
-    for (const Manner& manner : members) asio::co_spawn(io_, belong(manner), asio::detached);
+Crowd::Crowd(const std::vector<Manner>& members) : members_(members), times_hung_up_on_(members.size()) {
+    for (std::size_t member = 0; member < members_.size(); ++member) {
+        asio::co_spawn(io_, belong(member), asio::detached);
+    }
     thread_ = std::thread([this] { io_.run(); });
 }
 
@@ -46,10 +49,31 @@ Crowd::~Crowd() {
 }
 
 void Crowd::wait_until_there() const {
-    for (auto made = made_.load(); made < size_; made = made_.load()) made_.wait(made);
+    for (auto made = made_.load(); made < members_.size(); made = made_.load()) made_.wait(made);
 }
 
-asio::awaitable<void> Crowd::belong(Manner manner) {
+std::uint64_t Crowd::hung_up_on() const {
+    const std::lock_guard lock(mutex_);
+    return std::accumulate(times_hung_up_on_.begin(), times_hung_up_on_.end(), std::uint64_t{0});
+}
+
+std::size_t Crowd::wait_until_hung_up_on(std::chrono::seconds deadline) const {
+    const auto is_there_still = [&](std::size_t member) {
+        const auto& own = members_[member].deadline;
+        return own > std::chrono::seconds(0) && own <= deadline && times_hung_up_on_[member] == 0;
+    };
+    std::unique_lock lock(mutex_);
+    std::size_t there = 0;
+    left_.wait_until(lock, begun_ + 2 * deadline, [&] {
+        there = 0;
+        for (std::size_t member = 0; member < members_.size(); ++member) there += is_there_still(member) ? 1 : 0;
+        return there == 0;
+    });
+    return there;
+}
+
+asio::awaitable<void> Crowd::belong(std::size_t member) {
+    const Manner& manner = members_[member];
     asio::steady_timer pause(io_);
     for (;;) {
         tcp::socket socket(io_);
@@ -60,7 +84,9 @@ asio::awaitable<void> Crowd::belong(Manner manner) {
             ++made_;
             made_.notify_all();
             co_await (listen(socket, manner.reads) && speak(socket, manner));
-            ++hung_up_on_;
+            const std::lock_guard lock(mutex_);
+            ++times_hung_up_on_[member];
+            left_.notify_all();
         }
         pause.expires_after(kComesAgainAfter);
         co_await pause.async_wait(kUse);

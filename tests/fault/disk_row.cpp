@@ -3,19 +3,14 @@
 #include "tests/fault/cases.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/loop_disk.hpp"
+#include "tests/fault/readiness.hpp"
 #include "tests/fault/server_process.hpp"
 #include "tests/fault/verification.hpp"
-#include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 
-#include <fmt/format.h>
-
-#include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <random>
-#include <string_view>
+#include <string>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -56,26 +51,20 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-unsigned readiness(const ServerProcess& server) {
-    return test::http_request(server.http_port(), "GET", "/readyz").status;
+/// Which of the sentences it is depends on how little is left: enough for a reserve to be missed, or not for a write.
+bool tells_of_a_full_disk(const std::string& answer) {
+    return answer.find("MiB left") != answer.npos || answer.find("MiB are free") != answer.npos ||
+           answer.find("No space left on device") != answer.npos;
 }
 
-/// Waits until the server says that it is ready, or that it is not, doing something again and again.
-/// @return false when it has not after a minute, as it never will.
-bool wait_for_readiness(
-    const ServerProcess& server, unsigned status, const std::function<void()>& doing = [] {}) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (readiness(server) != status) {
-        if (std::chrono::steady_clock::now() > until) return false;
-        doing();
-        server.let_be(std::chrono::milliseconds(5));
+/// The store frees some of its own, now and then: so the ballast grows until the server notices.
+void fill_up(const ServerProcess& server, Ballast& ballast, std::uint64_t left, Outcome& outcome) {
+    const auto found = wait_for_readiness(server, 503, [&] { ballast.grow(left); });
+    if (found.status != 503) {
+        outcome.amiss.emplace_back("a full disk keeps nobody from being ready");
+    } else if (!tells_of_a_full_disk(found.answer)) {
+        outcome.amiss.push_back("on a full disk /readyz gives another reason: " + found.answer);
     }
-    return true;
-}
-
-void check_that_maps_are_served(const ServerProcess& server, Outcome& outcome) {
-    const auto status = test::http_request(server.http_port(), "GET", "/api/v1/sessions/shared/digest").status;
-    if (status != 200) outcome.amiss.push_back(fmt::format("on a full disk a digest is answered with {}", status));
 }
 
 Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t fillings) {
@@ -98,49 +87,14 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
             const auto left = random() % (kReserveMib << 18); // the superuser has some more
             ballast.grow(left);
             fleet.release(filling * kScansPerFilling);
-            // The store frees some of its own, now and then.
-            if (!wait_for_readiness(server, 503, [&] { ballast.grow(left); }))
-                outcome.amiss.emplace_back("a full disk keeps nobody from being ready");
-            check_that_maps_are_served(server, outcome);
+            fill_up(server, ballast, left, outcome);
+            check_that_maps_are_served(server, "on a full disk", outcome);
         }
-        if (!wait_for_readiness(server, 200)) outcome.amiss.emplace_back("room on the disk makes nobody ready again");
+        if (wait_for_readiness(server, 200).status != 200)
+            outcome.amiss.emplace_back("room on the disk makes nobody ready again");
     }
     fleet.release_all();
     outcome.add(verify_server(server.http_port(), fleet.finish()));
-    return outcome;
-}
-
-/// `fiu-run` and what it needs, in front of the server.
-ServerCommand with_failing_syncs(const ServerCommand& server) {
-    const auto program = server.program.empty() ? test::program("scanloom-server") : server.program;
-    std::vector<std::string> words{"-x", "-c", "enable_random name=posix/io/sync/*,probability=0.2", program.string()};
-    words.insert(words.end(), server.words.begin(), server.words.end());
-    return {"/usr/bin/fiu-run", std::move(words)};
-}
-
-std::uint64_t lines_ending_with(std::string_view text, const fs::path& log) {
-    std::ifstream in(log);
-    std::uint64_t count = 0;
-    for (std::string line; std::getline(in, line);) count += line.ends_with(text) ? 1 : 0;
-    return count;
-}
-
-Outcome fail_syncs(const Run& run, std::uint64_t seed, std::uint64_t scans) {
-    const TemporaryDirectory place;
-    ServerProcess server(with_failing_syncs(run.server), place.path(), {"--disk-reserve", "0"});
-    Fleet fleet(half_sharing(kRobots, seed, scans / kRobots), server.robot_port());
-    fleet.release_all();
-    std::uint64_t starts = 0;
-    do { // a new store syncs a dozen files, one of which may fail
-        if (++starts > 1) (void)server.wait();
-        server.start();
-    } while (!server.becomes_ready() && starts < 100);
-    auto robots = fleet.finish();
-    (void)wait_for_readiness(server, 200);
-    auto outcome = verify_server(server.http_port(), robots);
-    for (const auto& robot : robots) outcome.figures["reconnects"] += robot.reconnects;
-    outcome.figures["starts"] += starts;
-    outcome.figures["opened_again"] += lines_ending_with("has been opened again", place.path() / "log");
     return outcome;
 }
 
@@ -152,13 +106,6 @@ Outcome run_disk_row(const Run& run) {
                   auto outcome = fill_one_disk(run, seed, fillings);
                   return outcome ? std::move(*outcome) : Outcome{.skipped = outcome.error().message};
               }});
-}
-
-Outcome run_sync_row(const Run& run) {
-    if (!fs::exists("/usr/bin/fiu-run")) return {.skipped = "fiu-run is not installed; fiu-utils has it"};
-    return run_cases(run, {.row = "sync", .of_count = 1'000, .run = [&](std::uint64_t seed, std::uint64_t scans) {
-                               return fail_syncs(run, seed, scans);
-                           }});
 }
 
 } // namespace scanloom::fault

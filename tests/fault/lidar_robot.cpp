@@ -1,6 +1,7 @@
 #include "tests/fault/lidar_robot.hpp"
 
 #include "robot_client/spool/segment.hpp"
+#include "tests/fault/verification.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -75,14 +76,16 @@ std::string Lidar::address() const { return fmt::format("tcp://127.0.0.1:{}", ac
 void Lidar::send(const Bytes& bytes) { asio::write(*socket_, asio::buffer(bytes)); }
 
 test::ChildProcess start_lidar_robot(const std::filesystem::path& place, std::uint16_t port, const Lidar& lidar,
-                                     const std::vector<std::string>& options) {
-    std::vector<std::string> words{
-        "--server", fmt::format("127.0.0.1:{}", port), "--session", "s", "--robot", "r", "--cell-size", "0.1",
-        "--spool",  (place / "spool").string()};
+                                     const std::vector<std::string>& options, const Command& robot) {
+    std::vector<std::string> words = robot.words;
+    std::ranges::copy(std::vector<std::string>{"--server", fmt::format("127.0.0.1:{}", port), "--session", "s",
+                                               "--robot", "r", "--cell-size", "0.1", "--spool",
+                                               (place / "spool").string()},
+                      std::back_inserter(words));
     std::ranges::copy(options, std::back_inserter(words));
     std::ranges::copy(std::vector<std::string>{"ld06", lidar.address(), "--pose", "1,2,0.3"},
                       std::back_inserter(words));
-    return {test::program("scanloom-robot"), words, place / "robot"};
+    return {robot.program.empty() ? test::program("scanloom-robot") : robot.program, words, place / "robot"};
 }
 
 std::vector<Scan> spooled(const std::filesystem::path& place) { return scans_in(place / "spool" / "s.r"); }
@@ -90,6 +93,15 @@ std::vector<Scan> spooled(const std::filesystem::path& place) { return scans_in(
 std::uint64_t scans_of(std::uint16_t http_port) {
     const auto answer = test::http_request(http_port, "GET", "/api/v1/sessions/s");
     return answer.status == 200 ? boost::json::parse(answer.body).at("scans").to_number<std::uint64_t>() : 0;
+}
+
+std::vector<int> turns_of(std::uint16_t http_port) {
+    std::vector<int> turns;
+    if (scans_of(http_port) == 0) return turns; // there may be no session yet
+    for (const auto& entry : ask_for(http_port, "s").log) {
+        if (const auto* taken = std::get_if<ScanTaken>(&entry)) turns.push_back(turn_of(taken->scan));
+    }
+    return turns;
 }
 
 void wait_until(const std::string& what, const std::function<bool()>& has_come) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/scan/scan.hpp"
+#include "tests/fault/command.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/ld06_bytes.hpp"
 
@@ -41,13 +42,17 @@ private:
 
 /// Robot "r" of session "s", which reads its lidar, keeps its spool in `place`/spool, and has its server at `port`.
 [[nodiscard]] test::ChildProcess start_lidar_robot(const std::filesystem::path& place, std::uint16_t port,
-                                                   const Lidar& lidar, const std::vector<std::string>& options = {});
+                                                   const Lidar& lidar, const std::vector<std::string>& options = {},
+                                                   const Command& robot = {});
 
 /// The scans that wait in that spool.
 [[nodiscard]] std::vector<Scan> spooled(const std::filesystem::path& place);
 
 /// Scans that the server holds of session "s".
 [[nodiscard]] std::uint64_t scans_of(std::uint16_t http_port);
+
+/// The turns that the server holds of session "s", in its log's order.
+[[nodiscard]] std::vector<int> turns_of(std::uint16_t http_port);
 
 /// Asks until it is so. What is lost never comes: that is told, long after any machine would have brought it.
 void wait_until(const std::string& what, const std::function<bool()>& has_come);

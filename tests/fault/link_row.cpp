@@ -1,7 +1,5 @@
 #include "tests/fault/link_row.hpp"
 
-#include "common/wire/log_codec.hpp"
-#include "server/mapping/digest.hpp"
 #include "tests/fault/cases.hpp"
 #include "tests/fault/fault_proxy.hpp"
 #include "tests/fault/fleet.hpp"
@@ -76,17 +74,9 @@ public:
         std::promise<void> closed;
         session->close({Errc::kShuttingDown, "the trial is over"}, [&] { closed.set_value(); });
         closed.get_future().wait();
-        Held held;
-        const auto snapshot = session->snapshot();
-        held.revision = snapshot->revision;
-        for (const auto layer : mapping::kLayers) {
-            held.digests.emplace(mapping::name_of(layer), mapping::digest_of(*snapshot, layer));
-        }
-        for (const auto& bytes : store::entries_after(*log_, session->info().id, 0).value()) {
-            held.log.push_back(wire::decode_entry(bytes).value());
-        }
+        auto there = held(*session->snapshot(), store::entries_after(*log_, session->info().id, 0).value());
         ingest_.sessions().remove(name).value();
-        return held;
+        return there;
     }
 
 private:

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -24,9 +25,11 @@ struct Options {
 };
 
 void list_rows() {
+    const auto about_bytes = [](const Row& row) { return row.about.size(); };
+    const auto longest = about_bytes(*std::ranges::max_element(rows(), {}, about_bytes));
     for (const Row& row : rows()) {
-        std::cout << fmt::format("  {:<9}{:<78} {:>5} {}, long {}\n", row.name, row.about, row.count_short, row.counts,
-                                 row.count_long);
+        std::cout << fmt::format("  {:<11}{:<{}}  {:>5} {}, long {}\n", row.name, row.about, longest, row.count_short,
+                                 row.counts, row.count_long);
     }
 }
 

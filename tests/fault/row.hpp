@@ -1,7 +1,7 @@
 #pragma once
 
+#include "tests/fault/command.hpp"
 #include "tests/fault/outcome.hpp"
-#include "tests/fault/server_command.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -14,7 +14,8 @@ namespace scanloom::fault {
 struct Run {
     std::uint64_t seed = 1;  ///< all that is random comes from it
     std::uint64_t count = 1; ///< of what the row counts
-    ServerCommand server{};  ///< what is disturbed, where the row runs a program
+    Command server{};        ///< what is disturbed, where the row runs a program
+    Command robot{};         ///< likewise, where robots are programs
     /// Hears, now and then, how much of `count` is done.
     std::function<void(std::uint64_t)> on_progress = [](std::uint64_t) {};
 };

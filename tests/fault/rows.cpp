@@ -11,6 +11,7 @@
 #include "tests/fault/soak_row.hpp"
 #include "tests/fault/spool_row.hpp"
 #include "tests/fault/stall_row.hpp"
+#include "tests/fault/sync_row.hpp"
 
 #include <algorithm>
 

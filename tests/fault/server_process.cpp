@@ -16,7 +16,7 @@ ReservedPort::ReservedPort() {
     socket_.bind({boost::asio::ip::address_v4::loopback(), 0});
 }
 
-ServerProcess::ServerProcess(ServerCommand command, std::filesystem::path place, std::vector<std::string> options)
+ServerProcess::ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options)
     : command_(std::move(command)), place_(std::move(place)), options_(std::move(options)) {
     if (command_.program.empty()) command_.program = test::program("scanloom-server");
 }

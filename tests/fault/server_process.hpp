@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/fault/server_command.hpp"
+#include "tests/fault/command.hpp"
 #include "tests/support/child_process.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -32,7 +32,7 @@ private:
 class ServerProcess {
 public:
     /// `place` is a directory: the store is `place`/store, what the server says on standard error `place`/log.
-    ServerProcess(ServerCommand command, std::filesystem::path place, std::vector<std::string> options = {});
+    ServerProcess(Command command, std::filesystem::path place, std::vector<std::string> options = {});
 
     [[nodiscard]] std::uint16_t robot_port() const { return robot_port_.number(); }
     [[nodiscard]] std::uint16_t http_port() const { return http_port_.number(); }
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] std::string last_words() const;
 
 private:
-    ServerCommand command_;
+    Command command_;
     std::filesystem::path place_;
     std::vector<std::string> options_;
     ReservedPort robot_port_;

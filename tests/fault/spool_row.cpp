@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <csignal>
+#include <map>
 #include <random>
 
 namespace scanloom::fault {
@@ -21,7 +22,8 @@ constexpr std::uint64_t kKillsPerSpool = 8;
 /// A robot's spool through several lives of its program.
 class Outages {
 public:
-    Outages(const Run& run, std::uint64_t seed) : random_(seed), server_(run.server, place_.path()) {
+    Outages(const Run& run, std::uint64_t seed)
+        : random_(seed), program_(run.robot), server_(run.server, place_.path()) {
         server_.start_and_wait();
         link_.emplace(server_.robot_port());
     }
@@ -29,11 +31,7 @@ public:
     Outcome run(std::uint64_t kills) {
         for (std::uint64_t kill = 0; kill < kills; ++kill) one_life();
         last_life();
-        Outcome outcome;
-        outcome.acknowledged = static_cast<std::uint64_t>(taken_);
-        const std::uint64_t held = scans_of(server_.http_port());
-        outcome.lost = outcome.acknowledged - std::min(held, outcome.acknowledged);
-        outcome.twice = held - std::min(held, outcome.acknowledged);
+        Outcome outcome = count_turns();
         const auto digest = test::http_request(server_.http_port(), "GET", "/api/v1/sessions/s/digest").body;
         outcome.digest_equal = digest == peaceful_digest(taken_);
         if (const auto left = spooled(place_.path()).size(); left > 0) {
@@ -43,13 +41,24 @@ public:
     }
 
 private:
+    Outcome count_turns() {
+        Outcome outcome;
+        outcome.acknowledged = static_cast<std::uint64_t>(taken_);
+        std::map<int, std::uint64_t> times_held;
+        for (const int turn : turns_of(server_.http_port())) ++times_held[turn];
+        for (int turn = 1; turn <= taken_; ++turn) outcome.lost += times_held.contains(turn) ? 0 : 1;
+        for (const auto& [turn, times] : times_held) outcome.twice += times - 1;
+        return outcome;
+    }
+
     void one_life() {
         link_->cut();
         const std::uint64_t stored = scans_of(server_.http_port());
         Lidar lidar;
         const std::string compression = random_() % 2 == 0 ? "none" : "zstd";
         auto robot =
-            start_lidar_robot(place_.path(), link_->port(), lidar, {"--spool-size", "1", "--compression", compression});
+            start_lidar_robot(place_.path(), link_->port(), lidar,
+                              {"--spool-size", "1", "--batch-size", "2", "--compression", compression}, program_);
         lidar.wait_for_robot();
         lidar.send(turns(taken_ + 1, taken_ + kTurnsPerRound));
         taken_ += kTurnsPerRound;
@@ -57,26 +66,40 @@ private:
             const auto scans = spooled(place_.path());
             return !scans.empty() && turn_of(scans.back()) == taken_;
         });
-        link_->restore();
-        wait_for_scans(server_.http_port(), stored + random_() % (static_cast<std::uint64_t>(taken_) - stored));
+        if (random_() % 3 > 0) {
+            link_->restore();
+            wait_for_scans_or_the_newest(stored + random_() % (static_cast<std::uint64_t>(taken_) - stored));
+        }
         robot.signal(SIGKILL);
         (void)robot.wait();
     }
 
     /// Sends the rest, and one more: the server may hold all others by now.
     void last_life() {
+        link_->cut(); // it may be, or not
+        link_->restore();
         Lidar lidar;
-        auto robot = start_lidar_robot(place_.path(), link_->port(), lidar, {"--spool-size", "1"});
+        auto robot = start_lidar_robot(place_.path(), link_->port(), lidar, {"--spool-size", "1"}, program_);
         lidar.wait_for_robot();
         lidar.send(turns(taken_ + 1, taken_ + 1));
         taken_ += 1;
-        wait_for_scans(server_.http_port(), static_cast<std::uint64_t>(taken_));
+        wait_for_scans_or_the_newest(static_cast<std::uint64_t>(taken_));
         robot.signal(SIGTERM);
         (void)robot.wait();
     }
 
+    /// Scans come in the order in which they were taken: what is not there when the newest is never comes.
+    void wait_for_scans_or_the_newest(std::uint64_t scans) {
+        wait_until(fmt::format("{} scans on the server, or turn {}", scans, taken_), [&] {
+            if (scans_of(server_.http_port()) >= scans) return true;
+            const auto turns = turns_of(server_.http_port());
+            return !turns.empty() && turns.back() == taken_;
+        });
+    }
+
     TemporaryDirectory place_;
     std::mt19937_64 random_;
+    Command program_; // the robot's
     ServerProcess server_;
     std::optional<test::TcpProxy> link_;
     int taken_ = 0;

@@ -44,12 +44,17 @@ std::optional<std::string> complaint(const ScanTaken& taken, const Told& told, s
     return std::nullopt;
 }
 
+/// Adds the name of whoever joins with this entry.
+void note_joining(const LogEntry& entry, Told& told) {
+    const auto* joined = std::get_if<RobotJoined>(&entry);
+    if (joined == nullptr) return;
+    told.names.resize(std::max<std::size_t>(told.names.size(), joined->robot + 1));
+    told.names[joined->robot] = joined->name;
+}
+
 void read_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots, Told& told, Outcome& outcome) {
     for (const LogEntry& entry : log) {
-        if (const auto* joined = std::get_if<RobotJoined>(&entry)) {
-            told.names.resize(std::max<std::size_t>(told.names.size(), joined->robot + 1));
-            told.names[joined->robot] = joined->name;
-        }
+        note_joining(entry, told);
         const auto* taken = std::get_if<ScanTaken>(&entry);
         if (taken == nullptr) continue;
         if (auto wrong = complaint(*taken, told, robots)) {
@@ -60,23 +65,22 @@ void read_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> r
     }
 }
 
-void count_scans(const RobotStanding& robot, const std::map<std::uint64_t, std::uint64_t>& times_held,
-                 Outcome& outcome) {
-    Outcome of_robot;
-    of_robot.acknowledged = robot.acknowledged;
-    for (std::uint64_t seq = 1; seq <= robot.acknowledged; ++seq) {
-        if (!times_held.contains(seq)) ++of_robot.lost;
+Outcome count_scans(const std::string& robot, std::uint64_t acknowledged,
+                    const std::map<std::uint64_t, std::uint64_t>& times_held) {
+    Outcome outcome;
+    outcome.acknowledged = acknowledged;
+    for (std::uint64_t seq = 1; seq <= acknowledged; ++seq) {
+        if (!times_held.contains(seq)) ++outcome.lost;
     }
-    for (const auto& [seq, times] : times_held) of_robot.twice += times - 1;
-    const auto& name = robot.plan.name;
-    if (of_robot.lost > 0) {
-        of_robot.amiss.push_back(fmt::format("{} of the {} acknowledged scans of robot '{}' are lost", of_robot.lost,
-                                             robot.acknowledged, name));
+    for (const auto& [seq, times] : times_held) outcome.twice += times - 1;
+    if (outcome.lost > 0) {
+        outcome.amiss.push_back(
+            fmt::format("{} of the {} acknowledged scans of robot '{}' are lost", outcome.lost, acknowledged, robot));
     }
-    if (of_robot.twice > 0) {
-        of_robot.amiss.push_back(fmt::format("{} scans of robot '{}' are held twice", of_robot.twice, name));
+    if (outcome.twice > 0) {
+        outcome.amiss.push_back(fmt::format("{} scans of robot '{}' are held twice", outcome.twice, robot));
     }
-    outcome.add(std::move(of_robot));
+    return outcome;
 }
 
 void compare_maps(const Held& held, const SessionOptions& options, Outcome& outcome) {
@@ -88,6 +92,14 @@ void compare_maps(const Held& held, const SessionOptions& options, Outcome& outc
     outcome.digest_equal = right && *right == held.digests;
     if (!right) outcome.amiss.push_back("no maps can be made of the log: " + right.error().message);
     if (right && !outcome.digest_equal) outcome.amiss.emplace_back("the maps are not those of an undisturbed run");
+}
+
+std::map<std::string, std::string> digests_of(const mapping::Snapshot& maps) {
+    std::map<std::string, std::string> digests;
+    for (const auto layer : mapping::kLayers) {
+        digests.emplace(mapping::name_of(layer), mapping::digest_of(maps, layer));
+    }
+    return digests;
 }
 
 test::HttpAnswer must_get(std::uint16_t port, const std::string& target) {
@@ -113,6 +125,12 @@ std::vector<LogEntry> parse_log(std::string_view bytes) {
 
 } // namespace
 
+Held held(const mapping::Snapshot& maps, const std::vector<std::string>& entries) {
+    Held held{.revision = maps.revision, .digests = digests_of(maps)};
+    for (const auto& bytes : entries) held.log.push_back(wire::decode_entry(bytes).value());
+    return held;
+}
+
 Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector<LogEntry>& log,
                                                                const SessionOptions& options) {
     const auto config = mapping::resolve(options);
@@ -121,19 +139,31 @@ Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector
     for (const LogEntry& entry : log) {
         if (auto folded = projection.fold(entry); !folded) return folded.error();
     }
-    const auto snapshot = projection.snapshot();
-    std::map<std::string, std::string> digests;
-    for (const auto layer : mapping::kLayers) {
-        digests.emplace(mapping::name_of(layer), mapping::digest_of(snapshot, layer));
+    return digests_of(projection.snapshot());
+}
+
+Outcome verify_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots) {
+    Outcome outcome;
+    Told told;
+    read_log(log, robots, told, outcome);
+    for (const RobotStanding& robot : robots) {
+        outcome.add(count_scans(robot.plan.name, robot.acknowledged, told.times_held[robot.plan.name]));
     }
-    return digests;
+    return outcome;
+}
+
+Outcome verify_numbers(const std::vector<LogEntry>& log, const std::string& robot, std::uint64_t acknowledged) {
+    Told told;
+    for (const LogEntry& entry : log) {
+        note_joining(entry, told);
+        const auto* taken = std::get_if<ScanTaken>(&entry);
+        if (taken != nullptr) ++told.times_held[told.names.at(taken->robot)][taken->scan.seq];
+    }
+    return count_scans(robot, acknowledged, told.times_held[robot]);
 }
 
 Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options) {
-    Outcome outcome;
-    Told told;
-    read_log(held.log, robots, told, outcome);
-    for (const RobotStanding& robot : robots) count_scans(robot, told.times_held[robot.plan.name], outcome);
+    Outcome outcome = verify_log(held.log, robots);
     compare_maps(held, options, outcome);
     return outcome;
 }

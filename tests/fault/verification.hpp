@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/scan/log_entry.hpp"
 #include "common/scan/session_options.hpp"
+#include "server/mapping/snapshot.hpp"
 #include "tests/fault/fleet.hpp"
 #include "tests/fault/outcome.hpp"
 
@@ -21,14 +22,23 @@ struct Held {
     std::map<std::string, std::string> digests; ///< of the maps, by layer
 };
 
+/// What a server in this process holds: its maps, and the entries of its log as they are stored.
+[[nodiscard]] Held held(const mapping::Snapshot& maps, const std::vector<std::string>& entries);
+
 /// The maps of a log that nothing has disturbed: its entries, folded one after the other in this process.
 /// Errors  kMalformed: an entry that cannot follow those before it.
 [[nodiscard]] Result<std::map<std::string, std::string>> undisturbed_digests(const std::vector<LogEntry>& log,
                                                                              const SessionOptions& options);
 
-/// The absolute check of one session: every scan that a robot was told is durable is held, as it was sent, once and in
-/// order; nothing is held that nobody sent; the maps are those of an undisturbed run.
+/// Every scan that a robot was told is durable is in the log, as it was sent, once; nothing is there that nobody sent.
 /// Pre  `robots` are all those of the session.
+[[nodiscard]] Outcome verify_log(const std::vector<LogEntry>& log, std::span<const RobotStanding> robots);
+
+/// Every scan up to this number is in the log of the robot, once, whatever it shows.
+[[nodiscard]] Outcome verify_numbers(const std::vector<LogEntry>& log, const std::string& robot,
+                                     std::uint64_t acknowledged);
+
+/// The absolute check of one session: verify_log(), in order, and the maps are those of an undisturbed run.
 [[nodiscard]] Outcome verify(const Held& held, std::span<const RobotStanding> robots, const SessionOptions& options);
 
 /// What a server answers over HTTP. Throws where it does not answer, or not with 200.

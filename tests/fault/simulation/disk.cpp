@@ -77,7 +77,7 @@ void Disk::crash() {
     auto waiting = std::exchange(waiting_, {});
     for (std::uint64_t n = 0; n < waiting.size(); ++n) {
         const auto done = std::exchange(waiting[n].done, [](const Result<>&) {});
-        if (n < reached) store(waiting[n]);
+        n < reached ? store(waiting[n]) : drop(waiting[n]);
         done(gone());
     }
     failed_.reset();
@@ -103,22 +103,28 @@ void Disk::commit() {
     if (world_.chance(trouble_.full)) full_until_ = world_.now() + world_.between(100ms, 5s);
     const bool is_full = world_.now() < full_until_;
     for (auto& append : std::exchange(waiting_, {})) {
-        if (failed_) {
-            append.done(*failed_);
-        } else if (is_full) {
-            append.done(full());
-        } else {
+        if (!failed_ && !is_full) {
             store(append);
+        } else {
+            drop(append);
+            append.done(failed_ ? *failed_ : full());
         }
     }
 }
 
 void Disk::store(Append& append) {
+    const auto end = durable_.end_of(append.session);
+    if (!end || *end + 1 != append.first) drop(append); // as its log does: what it continues was dropped
     world_.note("stored", append.first + append.entries.size());
     const auto again = append.entries;
     durable_.append(append.session, append.first, std::move(append.entries), std::move(append.done));
     if (!trouble_.forgetful || !world_.chance(0.1)) return;
     durable_.append(append.session, append.first + again.size(), again, [](const Result<>&) {});
+}
+
+/// It is not stored, whatever was said of it.
+void Disk::drop(Append& append) {
+    if (trouble_.hasty) dropped_.push_back({append.session, append.entries});
 }
 
 /// What is stored of that which waited is not known to whoever asked for it.
@@ -127,7 +133,7 @@ void Disk::fail(const Error& why) {
     const std::uint64_t reached = world_.draw(waiting_.size() + 1);
     for (std::uint64_t n = 0; n < waiting_.size(); ++n) {
         auto done = std::exchange(waiting_[n].done, [](const Result<>&) {});
-        if (n < reached) store(waiting_[n]);
+        n < reached ? store(waiting_[n]) : drop(waiting_[n]);
         done(why);
     }
     waiting_.clear();

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::simulation {
@@ -39,6 +40,14 @@ public:
 
     [[nodiscard]] store::MemoryScanLog& durable() noexcept { return durable_; }
 
+    /// What a hasty disk called durable and never stored.
+    struct Dropped {
+        store::SessionId session;
+        std::vector<std::string> entries;
+    };
+    /// All since the last call.
+    [[nodiscard]] std::vector<Dropped> take_dropped() { return std::exchange(dropped_, {}); }
+
 private:
     class OpenLog;
     struct Append {
@@ -51,6 +60,7 @@ private:
     void add(Append append);
     void commit();
     void store(Append& append);
+    void drop(Append& append);
     void fail(const Error& why);
     [[nodiscard]] Result<> settle(bool adds);
 
@@ -58,6 +68,7 @@ private:
     DiskTrouble trouble_;
     store::MemoryScanLog durable_;
     std::vector<Append> waiting_;
+    std::vector<Dropped> dropped_;
     std::uint64_t programs_ = 0; // that had it open; the last one has it now
     std::optional<Error> failed_;
     Time full_until_{};

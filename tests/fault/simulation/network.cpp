@@ -11,9 +11,16 @@ namespace {
 
 constexpr Duration kTroubleWithin = 3s; // of its making
 
+bool is_within(Time time, const Pause& pause) { return time >= pause.from && time < pause.until; }
+
 } // namespace
 
 std::shared_ptr<Connection> Connection::make(World& world, const NetworkTrouble& trouble) {
+    if (world.chance(trouble.refuse) || std::ranges::any_of(trouble.partitions, [&](const Pause& partition) {
+            return is_within(world.now(), partition);
+        })) {
+        return nullptr;
+    }
     const std::shared_ptr<Connection> made(new Connection(world, trouble));
     if (!world.chance(trouble.cut)) return made;
     world.after(world.between(0ms, kTroubleWithin), [weak = std::weak_ptr(made)] {
@@ -23,18 +30,20 @@ std::shared_ptr<Connection> Connection::make(World& world, const NetworkTrouble&
 }
 
 Connection::Connection(World& world, const NetworkTrouble& trouble)
-    : world_(world), latency_(world.between(100us, 30ms)) {
+    : world_(world), latency_(world.between(100us, 30ms)), pauses_(trouble.partitions) {
     const auto soon = [&] { return world_.now() + world_.between(0ms, kTroubleWithin); };
     if (world_.chance(trouble.stall)) {
-        stalls_from_ = soon();
-        stalls_until_ = stalls_from_ + world_.between(100ms, 30s);
+        const Time from = soon();
+        pauses_.push_back({from, from + world_.between(100ms, 30s)});
     }
-    if (world_.chance(trouble.silent)) silent_from_ = soon();
+    std::ranges::sort(pauses_, {}, &Pause::from); // so that one may follow another without a gap
+    if (world_.chance(trouble.silent)) silent_from_.fill(soon());
+    if (world_.chance(trouble.deaf)) silent_from_[world_.draw(silent_from_.size())] = soon();
     if (world_.chance(trouble.forge)) forge_ = 0.05;
 }
 
 void Connection::send(Side from, std::string bytes) {
-    if (is_cut_ || world_.now() >= silent_from_) return;
+    if (is_cut_ || world_.now() >= silent_from_[index(from)]) return;
     auto& kept_back = kept_back_[index(from)];
     if (!kept_back && world_.chance(forge_)) {
         kept_back = std::move(bytes);
@@ -47,7 +56,9 @@ void Connection::send(Side from, std::string bytes) {
 
 Time Connection::arrival(Side from) {
     Time time = world_.now() + latency_ + world_.between(0us, 2ms);
-    if (time >= stalls_from_ && time < stalls_until_) time = stalls_until_;
+    for (const auto& pause : pauses_) {
+        if (is_within(time, pause)) time = pause.until;
+    }
     auto& last = last_arrival_[index(from)];
     return last = std::max(last, time);
 }
@@ -70,7 +81,7 @@ void Connection::hear(Side to, const std::string& bytes) {
 
 void Connection::close(Side from) {
     ears_[index(from)] = {};
-    if (is_cut_ || world_.now() >= silent_from_) return;
+    if (is_cut_ || world_.now() >= silent_from_[index(from)]) return;
     world_.at(arrival(from), [self = shared_from_this(), to = other(from)] {
         const auto closed = std::exchange(self->ears_[index(to)], {}).on_closed;
         if (closed) closed();
@@ -80,7 +91,7 @@ void Connection::close(Side from) {
 void Connection::vanish(Side from) {
     if (world_.chance(0.5)) return close(from);
     ears_[index(from)] = {};
-    silent_from_ = std::min(silent_from_, world_.now());
+    silent_from_[index(from)] = std::min(silent_from_[index(from)], world_.now());
 }
 
 void Connection::cut() {

@@ -8,16 +8,25 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace scanloom::simulation {
 
-/// What a network does wrong, until the world is calm: probabilities of each connection.
+/// A while in which nothing is carried; what was sent arrives when it has ended.
+struct Pause {
+    Time from;
+    Time until;
+};
+
+/// What a network does wrong, until the world is calm: probabilities of each connection, and what befalls all at once.
 struct NetworkTrouble {
-    double cut = 0.0;    ///< ends, at some moment, for both sides
-    double silent = 0.0; ///< carries nothing more from some moment on, and tells nobody
-    double stall = 0.0;  ///< carries nothing for a while, and all of it then
-    double refuse = 0.0; ///< is not made
-    double forge = 0.0;  ///< carries some pieces twice, and some in another order
+    double cut = 0.0;                ///< ends, at some moment, for both sides
+    double silent = 0.0;             ///< carries nothing more from some moment on, and tells nobody
+    double deaf = 0.0;               ///< the same, but in one direction only
+    double stall = 0.0;              ///< carries nothing for a while, and all of it then
+    double refuse = 0.0;             ///< is not made
+    double forge = 0.0;              ///< carries some pieces twice, and some in another order
+    std::vector<Pause> partitions{}; ///< of all robots from the server; no connection is made meanwhile
 };
 
 enum class Side { kRobot, kServer };
@@ -31,6 +40,7 @@ public:
         std::function<void()> on_closed; ///< by the other side, or by the network
     };
 
+    /// @return null: it cannot be made.
     [[nodiscard]] static std::shared_ptr<Connection> make(World& world, const NetworkTrouble& trouble);
 
     void listen(Side side, Ears ears) { ears_[index(side)] = std::move(ears); }
@@ -56,9 +66,8 @@ private:
     std::array<Time, 2> last_arrival_{};                  // by the side that sends
     std::array<std::optional<std::string>, 2> kept_back_; // likewise: goes behind the next
     Duration latency_;
-    Time stalls_from_ = Time::max();
-    Time stalls_until_ = Time::max();
-    Time silent_from_ = Time::max();
+    std::vector<Pause> pauses_;                                    // by their beginning
+    std::array<Time, 2> silent_from_ = {Time::max(), Time::max()}; // by the side that sends
     double forge_ = 0.0;
     bool is_cut_ = false;
 };

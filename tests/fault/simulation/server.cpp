@@ -117,6 +117,8 @@ private:
             (*entered)->leave(self);
         } else {
             self->decoder_.set_frame_bytes_max(wire::kFrameBytesMax);
+            self->robot_ = hello.robot;
+            self->server_.promise_(hello.robot, joined->last_durable_seq);
             self->dialogue_.welcome(std::move(*entered), *joined);
             self->take_frames();
         }
@@ -131,7 +133,10 @@ private:
         writing_ = false;
         if (parted_) return;
         while (auto piece = outbox_.next()) {
-            if (piece->durable_seq) dialogue_.acknowledged(*piece->durable_seq, server_.world_.now());
+            if (piece->durable_seq) {
+                dialogue_.acknowledged(*piece->durable_seq, server_.world_.now());
+                server_.promise_(robot_, *piece->durable_seq);
+            }
             connection_->send(Side::kServer, std::move(piece->bytes));
         }
         if (ending_) part();
@@ -169,6 +174,7 @@ private:
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
     ingest::Outbox outbox_;
     ingest::Dialogue dialogue_;
+    std::string robot_; // once it is welcome
     Time heard_{};
     bool entering_ = false;
     bool writing_ = false;
@@ -176,8 +182,9 @@ private:
     bool parted_ = false;
 };
 
-Server::Server(World& world, Disk& disk, const ServerOptions& options)
-    : world_(world), disk_(disk), options_(options), machine_(std::make_unique<Machine>(world)) {
+Server::Server(World& world, Disk& disk, const ServerOptions& options, Promise promise)
+    : world_(world), disk_(disk), options_(options), promise_(std::move(promise)),
+      machine_(std::make_unique<Machine>(world)) {
     world_.note("server starts");
     while (!log_) { // as whoever supervises it starts it again
         if (auto log = store::ReopeningLog::open([this] { return disk_.open(); })) log_ = std::move(*log);

@@ -9,8 +9,11 @@
 #include "tests/fault/simulation/network.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace scanloom::simulation {
@@ -25,8 +28,11 @@ struct ServerOptions {
 /// One run of a server: the real registry, sessions and dialogues, between a simulated network and a simulated disk.
 class Server {
 public:
+    /// Hears which robot is told that its scans up to which one are durable, when it is sent.
+    using Promise = std::function<void(const std::string& robot, std::uint64_t seq)>;
+
     /// Recovers what is on the disk.
-    Server(World& world, Disk& disk, const ServerOptions& options);
+    Server(World& world, Disk& disk, const ServerOptions& options, Promise promise);
 
     /// Killed, unless it was stopped: what is still done changes nothing that others see.
     ~Server();
@@ -46,6 +52,7 @@ private:
     World& world_;
     Disk& disk_;
     const ServerOptions options_;
+    const Promise promise_;
     metrics::Metrics metrics_{"simulation"};
     std::unique_ptr<Machine> machine_;
     std::unique_ptr<store::ReopeningLog> log_;

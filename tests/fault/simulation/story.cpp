@@ -1,7 +1,6 @@
 #include "tests/fault/simulation/story.hpp"
 
-#include "common/wire/log_codec.hpp"
-#include "server/mapping/digest.hpp"
+#include "tests/fault/simulation/promises.hpp"
 #include "tests/fault/simulation/robot.hpp"
 #include "tests/fault/simulation/server.hpp"
 #include "tests/fault/verification.hpp"
@@ -36,10 +35,25 @@ double some(World& world, double most) {
     return world.chance(0.5) ? 0.0 : most * static_cast<double>(world.draw(101)) / 100.0;
 }
 
+/// Partitions may be shorter than anybody's patience, and longer.
+NetworkTrouble network_of(World& world) {
+    NetworkTrouble network{.cut = some(world, 0.7),
+                           .silent = some(world, 0.3),
+                           .deaf = some(world, 0.3),
+                           .stall = some(world, 0.5),
+                           .refuse = some(world, 0.5),
+                           .forge = some(world, 0.3)};
+    for (auto more = world.draw(3); more > 0; --more) {
+        const Time from = world.now() + world.between(0s, kTroubled);
+        network.partitions.push_back({from, from + world.between(100ms, 20s)});
+    }
+    return network;
+}
+
 Plot plot_of(World& world, const Story& story) {
     Plot plot;
     plot.disk = {some(world, 0.05), some(world, 0.1), some(world, 0.1), story.hasty_disk, story.forgetful_disk};
-    plot.network = {some(world, 0.7), some(world, 0.3), some(world, 0.5), some(world, 0.5), some(world, 0.3)};
+    plot.network = network_of(world);
     plot.server.credit_bytes = world.chance(0.5) ? 4'000 + world.draw(8'000) : plot.server.credit_bytes;
     plot.server.idle_after = world.chance(0.5) ? Duration(3s) : plot.server.idle_after;
     if (world.chance(0.3)) plot.server.pages_max = 14 + world.draw(6); // one session takes 6, and a scan may touch 4
@@ -79,12 +93,15 @@ public:
     }
 
 private:
-    void start_server() { server_.emplace(world_, disk_, plot_.server); }
+    void start_server() {
+        server_.emplace(world_, disk_, plot_.server,
+                        [this](const std::string& robot, std::uint64_t seq) { promises_.say(robot, seq); });
+    }
 
     std::shared_ptr<Connection> connect() {
-        if (!server_ || world_.chance(plot_.network.refuse)) return nullptr;
+        if (!server_) return nullptr;
         auto connection = Connection::make(world_, plot_.network);
-        server_->accept(connection);
+        if (connection) server_->accept(connection);
         return connection;
     }
 
@@ -102,7 +119,14 @@ private:
         if (in_order) server_->stop();
         server_.reset();
         ++ends_;
+        check_promises();
         world_.after(world_.between(10ms, 5s), [this] { start_server(); });
+    }
+
+    /// While nothing but the disk is there.
+    void check_promises() {
+        ending_.outcome.add(promises_.check(disk_.durable(), plot_.robots));
+        ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
     }
 
     [[nodiscard]] bool all_done() const {
@@ -110,8 +134,7 @@ private:
     }
 
     Ending judge() {
-        Ending ending;
-        auto& outcome = ending.outcome;
+        auto& outcome = ending_.outcome;
         std::map<std::string, std::vector<fault::RobotStanding>> sessions;
         for (const auto& robot : robots_) {
             const auto& standing = robot->standing();
@@ -123,7 +146,7 @@ private:
             if (standing.outcome) continue;
             const Error& error = standing.outcome.error();
             ++outcome.figures[fmt::format("ended_{}", name_of(error.code))];
-            if (!is_forged_) {
+            if (!is_forged_ || error.code == Errc::kConflict) {
                 outcome.amiss.push_back(fmt::format("robot '{}' gave up: {}", standing.plan.name, error.message));
             }
         }
@@ -133,8 +156,9 @@ private:
             if (held) outcome.add(fault::verify(*held, members, fault::fleet_options()));
             if (!held) outcome.amiss.push_back(fmt::format("session '{}': {}", name, held.error().message));
         }
-        ending.fingerprint = world_.fingerprint();
-        return ending;
+        ending_.broken += promises_.count_broken(disk_.durable(), disk_.take_dropped());
+        ending_.fingerprint = world_.fingerprint();
+        return std::move(ending_);
     }
 
     /// Also where the server has to be started first, or its store to be opened again.
@@ -157,23 +181,16 @@ private:
     Result<fault::Held> hold(const std::string& name) {
         const auto woken = wake(name);
         if (!woken) return woken.error();
-        const auto& session = *woken;
-        const auto snapshot = session->snapshot();
-        fault::Held held;
-        held.revision = snapshot->revision;
-        for (const auto layer : mapping::kLayers) {
-            held.digests.emplace(mapping::name_of(layer), mapping::digest_of(*snapshot, layer));
-        }
-        for (const auto& bytes : store::entries_after(disk_.durable(), session->info().id, 0).value()) {
-            held.log.push_back(wire::decode_entry(bytes).value());
-        }
-        return held;
+        const auto entries = store::entries_after(disk_.durable(), (*woken)->info().id, 0);
+        return fault::held(*(*woken)->snapshot(), entries.value());
     }
 
     World world_;
     Plot plot_;
-    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then
+    const bool is_forged_ = plot_.network.forge > 0.0; // a robot may end with an error then, but not of lost scans
     Disk disk_;
+    Promises promises_;
+    Ending ending_;
     std::optional<Server> server_;
     std::vector<std::unique_ptr<Robot>> robots_;
     Time calm_{};

@@ -1,0 +1,111 @@
+#include "tests/fault/sync_row.hpp"
+
+#include "tests/fault/cases.hpp"
+#include "tests/fault/fleet.hpp"
+#include "tests/fault/readiness.hpp"
+#include "tests/fault/server_process.hpp"
+#include "tests/fault/verification.hpp"
+#include "tests/support/running_server.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scanloom::fault {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kScansPerStore = 1'000;
+constexpr unsigned kRobots = 4;
+
+/// A thousand scans take some twenty syncs: that none of so many rounds meets one that fails is out of the question.
+constexpr std::uint64_t kRoundsMax = 20;
+
+/// `fiu-run` and what it needs, in front of the server.
+Command with_failing_syncs(const Command& server) {
+    const auto program = server.program.empty() ? test::program("scanloom-server") : server.program;
+    std::vector<std::string> words{"-x", "-c", "enable_random name=posix/io/sync/*,probability=0.2", program.string()};
+    words.insert(words.end(), server.words.begin(), server.words.end());
+    return {"/usr/bin/fiu-run", std::move(words)};
+}
+
+std::uint64_t lines_ending_with(std::string_view text, const fs::path& log) {
+    std::ifstream in(log);
+    std::uint64_t count = 0;
+    for (std::string line; std::getline(in, line);) count += line.ends_with(text) ? 1 : 0;
+    return count;
+}
+
+/// Robots of sessions that no other round has.
+std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t round, std::uint64_t scans) {
+    auto made = half_sharing(kRobots, seed * kRoundsMax + round, scans / kRobots);
+    for (auto& plan : made) plan.session += fmt::format("-{}", round);
+    return made;
+}
+
+class FailingSyncs {
+public:
+    FailingSyncs(const Run& run, std::uint64_t seed, std::uint64_t scans)
+        : seed_(seed), scans_(scans), server_(with_failing_syncs(run.server), place_.path(), {"--disk-reserve", "0"}) {}
+
+    Outcome run() {
+        start();
+        for (std::uint64_t round = 0; round < kRoundsMax && (round == 0 || opened_again() == 0); ++round) {
+            stream(round);
+        }
+        outcome_.figures["opened_again"] = opened_again();
+        if (opened_again() == 0) outcome_.amiss.emplace_back("no sync that failed had the store opened again");
+        return std::move(outcome_);
+    }
+
+private:
+    /// A new store syncs a dozen files, one of which may fail.
+    void start() {
+        constexpr std::uint64_t kStartsMax = 100;
+        for (std::uint64_t starts = 1; starts <= kStartsMax; ++starts) {
+            ++outcome_.figures["starts"];
+            server_.start();
+            if (server_.becomes_ready()) return;
+            (void)server_.wait();
+        }
+        throw std::runtime_error("the server never starts: " + server_.last_words());
+    }
+
+    void stream(std::uint64_t round) {
+        Fleet fleet(plans(seed_, round, scans_), server_.robot_port());
+        fleet.release_all();
+        const auto robots = fleet.finish();
+        (void)wait_for_readiness(server_, 200);
+        outcome_.add(verify_server(server_.http_port(), robots));
+        for (const auto& robot : robots) outcome_.figures["reconnects"] += robot.reconnects;
+    }
+
+    [[nodiscard]] std::uint64_t opened_again() const {
+        return lines_ending_with("has been opened again", place_.path() / "log");
+    }
+
+    TemporaryDirectory place_;
+    std::uint64_t seed_;
+    std::uint64_t scans_;
+    ServerProcess server_;
+    Outcome outcome_;
+};
+
+} // namespace
+
+Outcome run_sync_row(const Run& run) {
+    if (!fs::exists("/usr/bin/fiu-run")) return {.skipped = "fiu-run is not installed; fiu-utils has it"};
+    return run_cases(run,
+                     {.row = "sync", .of_count = kScansPerStore, .run = [&](std::uint64_t seed, std::uint64_t scans) {
+                          return FailingSyncs(run, seed, scans).run();
+                      }});
+}
+
+} // namespace scanloom::fault
