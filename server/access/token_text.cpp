@@ -41,6 +41,33 @@ Error fault(const toml::source_region& where, std::string_view what, Errc code =
     return {code, fmt::format("{}: {}", where.begin.line, what)};
 }
 
+/// Whether a line is no table's name, or one that begins as a key does.
+bool can_be_header(std::string_view line) {
+    constexpr std::string_view kBlanks = " \t";
+    const auto skip = [&](std::size_t at) { return std::min(line.find_first_not_of(kBlanks, at), line.size()); };
+    std::size_t at = skip(0);
+    if (at == line.size() || line[at] != '[') return true;
+    at = skip(at + (line.substr(at).starts_with("[[") ? 2 : 1));
+    if (at == line.size()) return false;
+    const char c = line[at];
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' ||
+           c == '"' || c == '\'';
+}
+
+/// toml++ 3.3 does not look whether a key begins behind the brackets, and goes astray where none does
+/// (its pull request 301).
+Result<> check_headers(std::string_view toml) {
+    for (std::size_t line = 1; !toml.empty(); ++line) {
+        const auto end = std::min(toml.find('\n'), toml.size());
+        if (!can_be_header(toml.substr(0, end))) {
+            return Error{Errc::kMalformed,
+                         fmt::format("{}: this is no TOML: a table's name is missing behind the bracket", line)};
+        }
+        toml.remove_prefix(std::min(end + 1, toml.size()));
+    }
+    return {};
+}
+
 /// What stands in the file, fit for a message.
 std::string shown(std::string_view text) {
     constexpr std::size_t kShown = 64;
@@ -196,6 +223,7 @@ Result<TokenSet> read_tokens(const toml::array& tables) {
 } // namespace
 
 Result<TokenSet> parse_tokens(std::string_view toml) {
+    if (auto checked = check_headers(toml); !checked) return checked.error();
     const auto parsed = toml::parse(toml);
     if (!parsed) {
         return fault(parsed.error().source(), fmt::format("this is no TOML: {}", parsed.error().description()),

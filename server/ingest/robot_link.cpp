@@ -5,8 +5,6 @@
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/bind_cancellation_slot.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
@@ -26,12 +24,6 @@ constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the connection"}; }
 
 wire::LinkError in_words(const Error& error) { return {error, is_retryable(error.code)}; }
-
-std::string in_http(std::string_view sentence) {
-    return fmt::format("HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain; charset=utf-8\r\n"
-                       "Content-Length: {}\r\nConnection: close\r\n\r\n{}\n",
-                       sentence.size() + 1, sentence);
-}
 
 } // namespace
 
@@ -74,24 +66,6 @@ asio::awaitable<void> RobotLink::run() {
     if (!served && served.error().code != Errc::kUnreachable) co_await farewell(in_words(served.error()));
     hang_up();
     tell_end(served ? "goodbye" : served.error().message, was_let_in);
-}
-
-void RobotLink::tell_end(std::string_view how, bool was_let_in) const {
-    if (was_let_in) return log::info(about(), "{} {}", who_ended(), how);
-    const auto untold = services_.audit.take_line_of_stranger();
-    if (!untold) return;
-    const auto others =
-        *untold > 0 ? fmt::format(" ({} others were not let in since the last line like this)", *untold) : "";
-    log::info(about(), "{} {}{}", who_ended(), how, others);
-}
-
-std::string RobotLink::who_ended() const {
-    if (robot_.empty()) return fmt::format("a link from {} that never said a valid hello ended:", peer_);
-    return fmt::format("robot '{}' at {} left:", robot_, peer_);
-}
-
-log::Context RobotLink::about() const {
-    return {dialogue_.is_welcome() ? std::string_view(dialogue_.session()->info().name) : "", robot_, peer_};
 }
 
 void RobotLink::cut_off() {
@@ -298,80 +272,6 @@ void RobotLink::on_durable(std::uint64_t durable_seq, std::size_t bytes) {
 
 void RobotLink::on_failed(const Error& error) {
     asio::post(stream_.get_executor(), [self = shared_from_this(), error] { self->end(error); });
-}
-
-void RobotLink::end(const Error& error) {
-    if (ended_by_) return;
-    ended_by_ = error;
-    settled_.cancel();
-    held_back_.cancel();
-    stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
-}
-
-/// Tells the robot why.
-asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
-    ended_by_ = why.error;
-    if (!dialogue_.is_welcome() && decoder_.holds_http()) {
-        outbox_.send_bytes(in_http(why.error.message)); // who speaks HTTP reads no frames
-    } else {
-        outbox_.send(why);
-    }
-    co_await part();
-}
-
-/// Finishes what is being written, and waits for the robot to hang up: closing at once with its bytes unread would
-/// reset the connection and take the last frame with it.
-asio::awaitable<void> RobotLink::part() {
-    parting_ = true;
-    expect_something_within(config_.farewell_deadline);
-    outbox_.close();
-    co_await writer_.emptied();
-    co_await let_hang_up();
-}
-
-/// What was said last must have been read by then, be it TLS's own alert.
-asio::awaitable<void> RobotLink::let_hang_up() {
-    parting_ = true;
-    expect_something_within(config_.farewell_deadline);
-    stream_.shutdown_send();
-    for (;;) {
-        const auto room = decoder_.prepare(kReadBytes);
-        const auto [failed, bytes] =
-            co_await stream_.socket().async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
-        if (failed) co_return;
-    }
-}
-
-void RobotLink::hang_up() {
-    deadline_timer_.cancel();
-    stream_.close();
-}
-
-void RobotLink::start_watch() {
-    asio::co_spawn(
-        stream_.get_executor(), [self = shared_from_this()] { return self->watch_deadline(); }, asio::detached);
-}
-
-void RobotLink::expect_something_within(std::chrono::steady_clock::duration time) {
-    deadline_ = std::chrono::steady_clock::now() + time;
-    if (deadline_ < deadline_timer_.expiry()) deadline_timer_.cancel(); // sooner than the watch would look
-}
-
-/// One timer a link, looked at when it runs out: a busy link moves only a time point.
-asio::awaitable<void> RobotLink::watch_deadline() {
-    const auto self = shared_from_this();
-    while (stream_.is_open()) {
-        deadline_timer_.expires_at(deadline_);
-        co_await deadline_timer_.async_wait(kAsTuple);
-        if (!stream_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
-        if (ended_by_ || parting_) { // the farewell took too long
-            stream_.close();
-            co_return;
-        }
-        expect_something_within(config_.farewell_deadline);
-        end({Errc::kTimeout, dialogue_.is_welcome() ? "nothing was received for too long; send a ping now and then"
-                                                    : "no hello was received in time"});
-    }
 }
 
 } // namespace scanloom::ingest

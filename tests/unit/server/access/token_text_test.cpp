@@ -86,6 +86,14 @@ TEST(TokenText, EveryFaultNamesItsLineAndWhatToDo) {
     EXPECT_THAT(fault_with("role", "rolle = \"robot\"\n"), StartsWith("4: 'rolle' is unknown in a [[token]]"));
 }
 
+TEST(TokenText, BracketsWithoutANameAreNoTables) {
+    for (const auto* header : {"[[[token]]]", "[&", "[", "[[", "[[ ]]", "[]", "  [ .a]", "[[\t\xc2]]", "[=]"}) {
+        EXPECT_THAT(fault(fmt::format("# one\n{}\n", header)), StartsWith("2: this is no TOML")) << header;
+    }
+    EXPECT_THAT(fault("[ \"a\" ]\n"), HasSubstr("unknown here"));
+    EXPECT_THAT(fault("token = [\n  1 ]\n"), HasSubstr("[[token]]"));
+}
+
 TEST(TokenText, EveryLimitHasItsBounds) {
     const auto with = [](const std::string& limits) { return fault(stanza("a", '1') + "limits = " + limits + "\n"); };
     EXPECT_EQ(with("{ sensors = 64, beams = 4096, bytes_per_second = 1024 }"), "taken");
