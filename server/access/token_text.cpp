@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -54,18 +55,49 @@ bool can_be_header(std::string_view line) {
            c == '"' || c == '\'';
 }
 
-/// toml++ 3.3 does not look whether a key begins behind the brackets, and goes astray where none does
-/// (its pull request 301).
-Result<> check_headers(std::string_view toml) {
-    for (std::size_t line = 1; !toml.empty(); ++line) {
-        const auto end = std::min(toml.find('\n'), toml.size());
-        if (!can_be_header(toml.substr(0, end))) {
-            return Error{Errc::kMalformed,
-                         fmt::format("{}: this is no TOML: a table's name is missing behind the bracket", line)};
+/// Where a comment begins in a line, or its end. Texts of several lines are none of ours.
+std::size_t comment_in(std::string_view line) {
+    char quote = '\0';
+    for (std::size_t at = 0; at < line.size(); ++at) {
+        const char c = line[at];
+        if (quote == '"' && c == '\\') {
+            ++at;
+        } else if (quote != '\0') {
+            if (c == quote) quote = '\0';
+        } else if (c == '#') {
+            return at;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
         }
+    }
+    return line.size();
+}
+
+bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+/// The same file as toml++ 3.3 can read it: that goes astray where no key begins behind brackets (its pull request
+/// 301), and at some letters beyond ASCII (its issues 190 and 295). Of those there are none but in comments.
+Result<std::string> fit_for_parser(std::string_view toml) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"; // some editors put it first
+    if (toml.starts_with(kByteOrderMark)) toml.remove_prefix(kByteOrderMark.size());
+    std::string fit;
+    for (std::size_t number = 1; !toml.empty(); ++number) {
+        const auto end = std::min(toml.find('\n'), toml.size());
+        std::string line(toml.substr(0, end));
+        const auto comment = line.begin() + static_cast<std::ptrdiff_t>(comment_in(line));
+        if (!std::all_of(line.begin(), comment, is_ascii)) {
+            return Error{Errc::kMalformed, // not the line itself: a secret may stand there
+                         fmt::format("{}: there are letters beyond ASCII, which only comments may have", number)};
+        }
+        if (!can_be_header(line)) {
+            return Error{Errc::kMalformed,
+                         fmt::format("{}: this is no TOML: a table's name is missing behind the bracket", number)};
+        }
+        std::replace_if(comment, line.end(), std::not_fn(is_ascii), '?');
+        fit += line += '\n';
         toml.remove_prefix(std::min(end + 1, toml.size()));
     }
-    return {};
+    return fit;
 }
 
 /// What stands in the file, fit for a message.
@@ -223,8 +255,9 @@ Result<TokenSet> read_tokens(const toml::array& tables) {
 } // namespace
 
 Result<TokenSet> parse_tokens(std::string_view toml) {
-    if (auto checked = check_headers(toml); !checked) return checked.error();
-    const auto parsed = toml::parse(toml);
+    const auto fit = fit_for_parser(toml);
+    if (!fit) return fit.error();
+    const auto parsed = toml::parse(*fit);
     if (!parsed) {
         return fault(parsed.error().source(), fmt::format("this is no TOML: {}", parsed.error().description()),
                      Errc::kMalformed);

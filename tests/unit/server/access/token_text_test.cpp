@@ -87,11 +87,23 @@ TEST(TokenText, EveryFaultNamesItsLineAndWhatToDo) {
 }
 
 TEST(TokenText, BracketsWithoutANameAreNoTables) {
-    for (const auto* header : {"[[[token]]]", "[&", "[", "[[", "[[ ]]", "[]", "  [ .a]", "[[\t\xc2]]", "[=]"}) {
+    for (const auto* header : {"[[[token]]]", "[&", "[", "[[", "[[ ]]", "[]", "  [ .a]", "[[\t!]]", "[=]"}) {
         EXPECT_THAT(fault(fmt::format("# one\n{}\n", header)), StartsWith("2: this is no TOML")) << header;
     }
     EXPECT_THAT(fault("[ \"a\" ]\n"), HasSubstr("unknown here"));
     EXPECT_THAT(fault("token = [\n  1 ]\n"), HasSubstr("[[token]]"));
+}
+
+TEST(TokenText, BeyondAsciiAreOnlyComments) {
+    const std::string comment = "# J\u00fcrgen's \"tablet\" \xcc\xaa \xff\n";
+    EXPECT_THAT(fault("\xef\xbb\xbf"
+                      "a = 1\n"),
+                StartsWith("1: 'a' is unknown"));
+    EXPECT_THAT(fault(comment + "name = \"a#b\" " + comment + "\n"), StartsWith("2: 'name' is unknown"));
+    for (const auto* line : {"\xcc\xaa", "name = \"\u00fc\"", "[\u00fc]", "d = 1979-05-2\xc9\xab", "a = 'x' \xff # c",
+                             "a = \"\\\"#\xff\"", "\xef\xbb\xbf[[token]]"}) {
+        EXPECT_THAT(fault(fmt::format("# one\n{}\n", line)), AllOf(StartsWith("2: "), HasSubstr("ASCII"))) << line;
+    }
 }
 
 TEST(TokenText, EveryLimitHasItsBounds) {
