@@ -26,7 +26,7 @@ HttpAnswer http_request(std::uint16_t port, const std::string& method, const std
     http::write(socket, request);
     boost::beast::flat_buffer buffer;
     http::response_parser<http::string_body> parser;
-    parser.body_limit(std::uint64_t{256} << 20);
+    parser.body_limit(std::uint64_t{8} << 30); // logs of millions of scans
     http::read(socket, buffer, parser);
     const auto& response = parser.get();
     return {response.result_int(), std::string(response[http::field::content_type]),
