@@ -1,6 +1,7 @@
 #include "server/store/backups.hpp"
 
 #include "server/store/backup_engine.hpp"
+#include "server/store/failure.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/db.h>
@@ -16,11 +17,6 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-Error failure(fmt::format_string<Args...> text, Args&&... args) {
-    return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
-}
 
 Result<std::string> identity_of(rocksdb::DB& database) {
     std::string identity;

@@ -1,5 +1,6 @@
 #include "server/store/directory.hpp"
 
+#include "server/store/failure.hpp"
 #include "server/store/listing.hpp"
 #include "server/store/synced_files.hpp"
 
@@ -14,11 +15,6 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-Error failure(fmt::format_string<Args...> text, Args&&... args) {
-    return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
-}
 
 Error not_locked(const fs::path& directory, const Error& why) {
     if (why.code == Errc::kConflict) {

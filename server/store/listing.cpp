@@ -1,6 +1,7 @@
 #include "server/store/listing.hpp"
 
 #include "server/store/advice.hpp"
+#include "server/store/failure.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +12,6 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-Error failure(fmt::format_string<Args...> text, Args&&... args) {
-    return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
-}
 
 /// Says nothing about whether there is a store: who looks whether the disk can be written leaves *.dbtmp.
 bool is_neutral(const std::string& name) {

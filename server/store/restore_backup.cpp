@@ -2,6 +2,8 @@
 #include "server/store/compaction_watch.hpp"
 #include "server/store/rocksdb_options.hpp"
 
+#include "server/store/failure.hpp"
+
 #include <fmt/format.h>
 #include <rocksdb/db.h>
 
@@ -13,11 +15,6 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-Error failure(fmt::format_string<Args...> text, Args&&... args) {
-    return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
-}
 
 Result<Backup> find(rocksdb::BackupEngineReadOnly& engine, const fs::path& directory, std::optional<std::uint32_t> id) {
     const auto infos = infos_of(engine);

@@ -1,5 +1,7 @@
 #include "server/store/synced_files.hpp"
 
+#include "server/store/failure.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -15,11 +17,6 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... Args>
-Error failure(fmt::format_string<Args...> text, Args&&... args) {
-    return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};
-}
 
 std::string last_system_error() { return std::system_category().message(errno); }
 

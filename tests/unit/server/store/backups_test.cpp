@@ -226,14 +226,15 @@ TEST_F(BackupsTest, ADirectoryThatIsEmptiedOrRemovedIsMadeAgain) {
 
 TEST_F(BackupsTest, OnAnotherDiskNoneIsMade) {
     std::string elsewhere = "/dev/shm/scanloom-test-XXXXXX";
-    if (::mkdtemp(elsewhere.data()) == nullptr) GTEST_SKIP() << "there is one disk";
+    if (::mkdtemp(elsewhere.data()) == nullptr)
+        GTEST_SKIP() << "/dev/shm is no file system beside that of temporary files: a second one is needed";
     struct stat here = {};
     struct stat there = {};
     ASSERT_EQ(::stat(directory_.path().c_str(), &here), 0);
     ASSERT_EQ(::stat(elsewhere.c_str(), &there), 0);
     if (here.st_dev == there.st_dev) {
         fs::remove_all(elsewhere);
-        GTEST_SKIP() << "there is one disk";
+        GTEST_SKIP() << "/dev/shm is no file system beside that of temporary files: a second one is needed";
     }
     fs::create_directory_symlink(at("backups"), at("mounted"));
     backups_.reset();
