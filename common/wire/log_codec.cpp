@@ -109,6 +109,17 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     return damaged("a log entry");
 }
 
+Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes) {
+    google::protobuf::Arena arena;
+    auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
+    if (!proto->ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a log entry");
+    if (!proto->has_scan_taken()) return std::optional<ScanPose>();
+    const auto& scan = proto->scan_taken().scan();
+    const auto pose = from_proto(scan.pose());
+    if (!pose) return prefixed("scan_taken.pose: ", pose.error());
+    return std::optional(ScanPose{proto->scan_taken().robot(), scan.stamp(), *pose});
+}
+
 Result<std::string> plain_entry(std::string_view bytes) {
     google::protobuf::Arena arena;
     auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);

@@ -23,7 +23,7 @@ bool faces_target(const Visit& visit, const Pose2& pose, double cell_size_m) {
 /// Goes back through the scans as far as they were taken at the goal.
 bool has_stood(const Visit& visit, const mapping::RobotState& robot) {
     if (!visit.asking_since) return false;
-    for (std::size_t n = robot.trajectory.size(); n > 0; --n) {
+    for (std::size_t n = robot.trajectory.size(); n > robot.trajectory.begin(); --n) {
         const auto& point = robot.trajectory[n - 1];
         if (point.stamp < *visit.asking_since || !is_within(point.pose, visit.goal, visit.arrival_radius)) return false;
         if (robot.stamp - point.stamp >= kLookingTakes) return true;

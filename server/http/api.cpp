@@ -197,7 +197,7 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kDigest: return get_digest(maps_, call);
     case Operation::kDifference: return get_difference(maps_, call);
     case Operation::kDifferencePng: return get_difference_png(maps_, slots_, call);
-    case Operation::kTrajectory: return get_trajectory(sessions_, slots_, call);
+    case Operation::kTrajectory: return get_trajectory(sessions_, log_, slots_, call);
     case Operation::kFrontiers: return get_frontiers(maps_, slots_, call);
     case Operation::kPlan: return post_plan(maps_, slots_, call);
     case Operation::kCoverage: return post_coverage(maps_, slots_, call);

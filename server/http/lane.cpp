@@ -22,6 +22,7 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
     case Operation::kDifference:
     case Operation::kDifferencePng:
+    case Operation::kTrajectory:
     case Operation::kLog: return Lane::kSurvey;
     case Operation::kDigest:
     case Operation::kMapPng:

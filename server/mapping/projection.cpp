@@ -92,9 +92,8 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
     if (!integrate(robot, sensor, scan, work)) return false;
     robot.state.last_seq = scan.seq;
     robot.state.scan_count += 1;
-    robot.state.stamp = scan.stamp;
-    robot.state.pose = scan.pose;
-    robot.trajectory.append({revision, scan.stamp, scan.pose});
+    robot.newest = {revision, scan.stamp, scan.pose};
+    robot.trajectory.append(*robot.newest);
     return true;
 }
 
@@ -135,7 +134,7 @@ const Projection::KnownFan& Projection::fan_of(Robot& robot, const Sensor& senso
 
 std::size_t Projection::page_count() const noexcept {
     std::size_t blocks = 0;
-    for (const auto& robot : robots_) blocks += (robot.trajectory.size() + kTrajectoryBlock - 1) / kTrajectoryBlock;
+    for (const auto& robot : robots_) blocks += robot.trajectory.block_count();
     return chunk_count() + blocks;
 }
 
@@ -150,8 +149,11 @@ Snapshot Projection::snapshot() {
     snapshot.classes = classes_.snapshot();
     snapshot.robots.reserve(robots_.size());
     for (const auto& robot : robots_) {
-        snapshot.robots.push_back(robot.state);
-        snapshot.robots.back().trajectory = robot.trajectory.snapshot();
+        auto& state = snapshot.robots.emplace_back(robot.state);
+        state.trajectory = robot.trajectory.snapshot();
+        if (!robot.newest) continue;
+        state.stamp = robot.newest->stamp;
+        state.pose = robot.newest->pose;
     }
     return snapshot;
 }
@@ -180,20 +182,20 @@ Projection Projection::branch() {
 }
 
 /// Without the fans, which are made again when they are needed.
-Projection::Robot Projection::Robot::branch() const { return {state, source, trajectory.branch(), sensors, {}}; }
+Projection::Robot Projection::Robot::branch() const {
+    return {state, source, newest, trajectory.branch(), sensors, {}};
+}
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, page_count(), {}};
+    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, chunk_count(), {}};
     for (const auto& robot : robots_) {
         auto& out = state.robots.emplace_back(ProjectionState::Robot{robot.state.name,
                                                                      robot.source,
                                                                      robot.state.body_radius,
                                                                      robot.state.last_seq,
                                                                      robot.state.scan_count,
-                                                                     {},
+                                                                     robot.newest,
                                                                      {}});
-        const auto points = robot.trajectory.snapshot();
-        if (points.size() > 0) out.newest = points[points.size() - 1];
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
     }
     return state;
@@ -210,6 +212,8 @@ void Projection::restore(const ProjectionState& state) {
         robot.state.body_radius = saved.body_radius;
         robot.state.last_seq = saved.last_seq;
         robot.state.scan_count = saved.scan_count;
+        robot.newest = saved.newest;
+        robot.trajectory = Trajectory(saved.scan_count);
         for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;
     }
 }
@@ -220,16 +224,6 @@ LaserChunk& Projection::restore_laser_chunk(grid::ChunkKey key, Revision revisio
 
 SonarChunk& Projection::restore_sonar_chunk(grid::ChunkKey key, Revision revision) {
     return sonar_.restore(key, revision);
-}
-
-Result<> Projection::restore_point(RobotIndex robot, const TrajectoryPoint& point) {
-    if (point.revision > revision_) return {}; // comes again with its scan
-    if (robot >= robots_.size())
-        return misplaced(point.revision, fmt::format("a pose of robot {}, which never joined", robot));
-    robots_[robot].trajectory.append(point);
-    robots_[robot].state.stamp = point.stamp;
-    robots_[robot].state.pose = point.pose;
-    return {};
 }
 
 } // namespace scanloom::mapping

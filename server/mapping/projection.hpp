@@ -23,7 +23,8 @@ struct KnownSensor {
     std::shared_ptr<const Sensor> sensor;
 };
 
-/// Everything but the chunks and trajectories of a projection: what a checkpoint keeps besides them.
+/// Everything but the chunks of a projection, and its trajectories, which the log has: what a checkpoint keeps besides
+/// the chunks.
 struct ProjectionState {
     struct Robot {
         std::string name;
@@ -37,7 +38,7 @@ struct ProjectionState {
 
     Revision revision = 0;
     LayerBounds bounds;
-    std::size_t pages = 0; ///< Projection::page_count()
+    std::size_t pages = 0; ///< Projection::page_count() of what is read back
     std::vector<Robot> robots;
 };
 
@@ -94,15 +95,12 @@ public:
 
     [[nodiscard]] ProjectionState state() const;
 
-    /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then
-    /// every chunk (whose cells the caller fills in) and every trajectory point by rising revision. Chunks and points
-    /// may be newer than the state (a checkpoint cut short): folding the log's entries after the state's revision then
-    /// gives the same maps.
+    /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then every chunk (whose
+    /// cells the caller fills in). Chunks may be newer than the state (a checkpoint cut short): folding the log's
+    /// entries after the state's revision then gives the same maps. Its trajectories begin behind the state.
     void restore(const ProjectionState& state);
     [[nodiscard]] LaserChunk& restore_laser_chunk(grid::ChunkKey key, Revision revision);
     [[nodiscard]] SonarChunk& restore_sonar_chunk(grid::ChunkKey key, Revision revision);
-    /// Errors  kMalformed: no such robot.
-    [[nodiscard]] Result<> restore_point(RobotIndex robot, const TrajectoryPoint& point);
 
     /// The log has at least this many entries, or the chunks put back were of another log.
     [[nodiscard]] Revision newest_restored() const noexcept {
@@ -119,8 +117,9 @@ private:
     struct Robot {
         [[nodiscard]] Robot branch() const;
 
-        RobotState state; // its trajectory view is filled in by snapshot()
+        RobotState state; // what it says of its newest scan is filled in by snapshot()
         std::string source;
+        std::optional<TrajectoryPoint> newest; // of its scans
         Trajectory trajectory;
         std::map<std::uint32_t, KnownSensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;

@@ -17,8 +17,8 @@ constexpr std::string_view kLaserChunk = "weave/laser/";
 constexpr std::string_view kSonarChunk = "weave/sonar/";
 
 // 1 had no number of its own, and chunks as they are in memory; 2 did not say how many pages a map has and where its
-// robots are, so that it has to be read to be listed.
-constexpr std::uint32_t kPartsVersion = 3;
+// robots are, so that it has to be read to be listed; 2 and 3 had trajectories, track/<index>/<block>.
+constexpr std::uint32_t kPartsVersion = 4;
 constexpr std::uint32_t kOldestPartsVersion = 2;
 constexpr std::size_t kChunkBytesMax = sizeof(mapping::LaserChunk) + sizeof(mapping::SonarChunk);
 
@@ -62,13 +62,6 @@ std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     if (robot.newest) put(value, *robot.newest); // there is one just when it took scans
     value += robot.name + '\0' + robot.source;
     if (robot.body_radius) put(value += '\0', *robot.body_radius); // earlier versions knew of none
-    return value;
-}
-
-std::string track_part(const mapping::TrajectoryView& track, std::size_t begin) {
-    std::string value;
-    const std::size_t end = std::min(begin + mapping::kTrajectoryBlock, track.size());
-    for (std::size_t n = begin; n < end; ++n) put(value, track[n]);
     return value;
 }
 
@@ -139,18 +132,6 @@ private:
     Result<> written_;
 };
 
-void write_tracks(PieceWriter& out, const mapping::Snapshot& snapshot, Revision since) {
-    for (RobotIndex index = 0; index < snapshot.robots.size(); ++index) {
-        const auto& track = snapshot.robots[index].trajectory;
-        const std::size_t first_block = track.first_after(since) / mapping::kTrajectoryBlock;
-        for (std::size_t block = first_block; block * mapping::kTrajectoryBlock < track.size(); ++block) {
-            out.add(fmt::format("track/{:08x}/{:08x}", index, block),
-                    track_part(track, block * mapping::kTrajectoryBlock));
-            out.write_if_full();
-        }
-    }
-}
-
 template <class View>
 void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, Revision since) {
     view.visit({}, since, [&](grid::ChunkKey key, const auto& chunk) {
@@ -186,7 +167,6 @@ Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const m
         const Revision stored = since.value_or(0);
         PieceWriter out(log, session, stop);
         out.add("format", format_part());
-        write_tracks(out, snapshot, stored);
         write_chunks(out, kLaserChunk, snapshot.laser, stored);
         write_chunks(out, kSonarChunk, snapshot.sonar, stored);
         write_state(out, state, stored);
@@ -198,7 +178,7 @@ Result<> write_checkpoint(store::ScanLog& log, store::SessionId session, const m
 
 const CheckpointReader::Kind CheckpointReader::kKinds[5] = {
     {"robot/", 1, &CheckpointReader::add_robot},          {"sensor/", 2, &CheckpointReader::add_sensor},
-    {"track/", 2, &CheckpointReader::add_points},         {kLaserChunk, 2, &CheckpointReader::add_laser_chunk},
+    {"track/", 2, &CheckpointReader::add_old_points},     {kLaserChunk, 2, &CheckpointReader::add_laser_chunk},
     {kSonarChunk, 2, &CheckpointReader::add_sonar_chunk},
 };
 
@@ -273,14 +253,17 @@ bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value
     return true;
 }
 
-bool CheckpointReader::add_points(const Numbers& numbers, std::string_view value) {
-    begin_weaving();
+/// Of these, only the newest is wanted.
+bool CheckpointReader::add_old_points(const Numbers& numbers, std::string_view value) {
     PartReader part(value);
     while (!part.complete()) {
         const auto point = part.take<mapping::TrajectoryPoint>();
-        if (part.failed() || !projection_.restore_point(numbers[0], point)) return false;
+        if (part.failed()) return false;
+        if (point.revision > state_.revision) continue; // comes again with its scan
+        if (numbers[0] >= state_.robots.size()) return false;
+        state_.robots[numbers[0]].newest = point;
     }
-    return true;
+    return parts_version_ < kPartsVersion;
 }
 
 bool CheckpointReader::add_laser_chunk(const Numbers& numbers, std::string_view value) {
@@ -322,17 +305,19 @@ void CheckpointReader::begin_weaving() {
     weaving_ = true;
 }
 
+bool CheckpointReader::is_newest_format() const noexcept { return !has_format_ || parts_version_ == kPartsVersion; }
+
 std::optional<mapping::ProjectionState> CheckpointReader::state() && {
-    if (has_format_ && parts_version_ < kPartsVersion) return std::nullopt;
+    if (!is_newest_format()) return std::nullopt;
     return std::move(state_);
 }
 
 Result<mapping::Projection> CheckpointReader::finish() && {
     begin_weaving();
-    for (const auto& robot : projection_.snapshot().robots) {
-        if (robot.trajectory.size() == robot.scan_count) continue;
-        return Error{Errc::kMalformed, fmt::format("the checkpoint has {} poses of robot '{}', which took {} scans",
-                                                   robot.trajectory.size(), robot.name, robot.scan_count)};
+    for (const auto& robot : state_.robots) {
+        if (robot.newest || robot.scan_count == 0) continue;
+        return Error{Errc::kMalformed, fmt::format("the checkpoint has no pose of robot '{}', which took {} scans",
+                                                   robot.name, robot.scan_count)};
     }
     return std::move(projection_);
 }

@@ -16,18 +16,16 @@
 /// Parts, in the order in which the store visits them, integers little-endian:
 ///   format                   weaving version, version of the parts
 ///   head                     revision, bounds, pages
-///   robot/<index>            last seq, scan count, newest point of its trajectory where it took scans, name, a zero
+///   robot/<index>            last seq, scan count, revision, stamp and pose of the newest scan, if any, name, a zero
 ///                            byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
-///   track/<index>/<block>    512 points of a trajectory
 ///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer, compressed
 ///   weave/sonar/<chunk>      revision and cells of one chunk, compressed
-/// <index>, <block> and the like are fixed-width hexadecimal.
+/// <index> and the like are fixed-width hexadecimal. Where the robots were is in the log alone (old_paths.hpp).
 ///
-/// Written in pieces of 4 MiB, uncompressed: the format first, then tracks and chunks. What depends on the revision
-/// comes last and at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves
-/// is usable: tracks and chunks may then be newer than the head, and a chunk knows by its revision which entries of the
-/// log it holds already.
+/// Written in pieces of 4 MiB, uncompressed: the format first, then chunks. What depends on the revision comes last and
+/// at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves is usable:
+/// chunks may then be newer than the head, and a chunk knows by its revision which entries of the log it holds already.
 namespace scanloom::session {
 
 /// Writes the parts that changed after `since`; for none all of them, in place of whatever was there.
@@ -51,7 +49,10 @@ public:
     /// Errors  kMalformed: parts are missing.
     [[nodiscard]] Result<mapping::Projection> finish() &&;
 
-    /// All parts with this key and behind it are sensors, tracks and cells.
+    /// Whether what was read is as this program writes it; else it is written anew as a whole.
+    [[nodiscard]] bool is_newest_format() const noexcept;
+
+    /// All parts with this key and behind it are sensors and cells.
     static constexpr std::string_view kAfterState = "sensor/";
 
     /// The checkpoint's state, without sensors, when the parts before kAfterState are in; a blank one when there was no
@@ -73,7 +74,7 @@ private:
     [[nodiscard]] Result<> add_head(std::string_view value);
     [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
-    [[nodiscard]] bool add_points(const Numbers& numbers, std::string_view value);
+    [[nodiscard]] bool add_old_points(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_laser_chunk(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sonar_chunk(const Numbers& numbers, std::string_view value);
     void begin_weaving();

@@ -11,15 +11,23 @@ namespace {
 
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
 
-Result<mapping::Projection> read_checkpoint(store::ScanLog& log, store::SessionId session,
-                                            const mapping::MapConfig& config, const std::atomic<bool>& stop) {
+struct FromCheckpoint {
+    mapping::Projection projection;
+    bool can_be_added_to; // by the next checkpoint
+};
+
+Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
+                                       const std::atomic<bool>& stop) {
     CheckpointReader reader(config);
     auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
         if (stop) return stopped();
         return reader.add(key, value);
     });
     if (!read) return read.error();
-    return std::move(reader).finish();
+    const bool can_be_added_to = reader.is_newest_format();
+    auto projection = std::move(reader).finish();
+    if (!projection) return projection.error();
+    return FromCheckpoint{std::move(*projection), can_be_added_to};
 }
 
 /// @return whether the log's end was reached.
@@ -39,15 +47,15 @@ Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::P
 Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                     const std::atomic<bool>& stop) {
     auto checkpoint = read_checkpoint(log, session, config, stop);
-    Recovered recovered{checkpoint ? std::move(*checkpoint) : mapping::Projection(config)};
+    Recovered recovered{checkpoint ? std::move(checkpoint->projection) : mapping::Projection(config)};
     if (!checkpoint && checkpoint.error() == stopped()) {
         recovered.complete = false;
         return recovered;
     }
-    if (checkpoint) {
-        recovered.checkpointed = recovered.projection.revision();
-    } else {
+    if (!checkpoint) {
         recovered.checkpoint_rejected = checkpoint.error();
+    } else if (checkpoint->can_be_added_to) {
+        recovered.checkpointed = recovered.projection.revision();
     }
     const auto complete = fold_rest(log, session, recovered.projection, stop);
     if (!complete) return complete.error();

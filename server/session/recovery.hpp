@@ -12,7 +12,8 @@ namespace scanloom::session {
 /// A session woven again, up to the end of its log.
 struct Recovered {
     mapping::Projection projection;
-    /// Revision of the checkpoint it began from, 0 if there was none; nothing if there is one that cannot be used.
+    /// Revision of the checkpoint it began from, 0 if there was none; nothing if there is one that cannot be used, or
+    /// that an earlier version wrote in another format: the next one takes its place.
     std::optional<Revision> checkpointed{};
     std::optional<Error> checkpoint_rejected{}; ///< why it was woven from the whole log instead
     bool complete = true;                       ///< false: `stop` became true before the log's end

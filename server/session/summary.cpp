@@ -8,7 +8,7 @@
 namespace scanloom::session {
 namespace {
 
-const Error kEnough{Errc::kShuttingDown, "what follows are sensors, tracks and cells"};
+const Error kEnough{Errc::kShuttingDown, "what follows are sensors and cells"};
 
 Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
     mapping::Snapshot facts{.revision = state.revision, .config = config, .bounds = state.bounds};
@@ -29,14 +29,12 @@ Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConf
 
 Summary summary_of(const mapping::Snapshot& snapshot) {
     mapping::Snapshot facts{.revision = snapshot.revision, .config = snapshot.config, .bounds = snapshot.bounds};
-    std::size_t blocks = 0;
     for (const auto& robot : snapshot.robots) {
-        blocks += (robot.trajectory.size() + mapping::kTrajectoryBlock - 1) / mapping::kTrajectoryBlock;
         auto& told = facts.robots.emplace_back(robot);
         told.trajectory = {};
         told.newest_scan = nullptr;
     }
-    return {std::make_shared<const mapping::Snapshot>(std::move(facts)), snapshot.chunk_count + blocks};
+    return {std::make_shared<const mapping::Snapshot>(std::move(facts)), snapshot.chunk_count};
 }
 
 Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionId session,

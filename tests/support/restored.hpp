@@ -2,8 +2,6 @@
 
 #include "server/mapping/projection.hpp"
 
-#include <gtest/gtest.h>
-
 namespace scanloom::testing_support {
 
 /// A projection put together from what a checkpoint of another one would hold.
@@ -20,12 +18,6 @@ inline mapping::Projection restored(mapping::Projection& original) {
     saved.sonar.visit({}, 0, [&](grid::ChunkKey key, const mapping::SonarChunk& chunk) {
         copy.restore_sonar_chunk(key, chunk.revision).cells = chunk.cells;
     });
-    for (std::size_t robot = 0; robot < saved.robots.size(); ++robot) {
-        const auto& trajectory = saved.robots[robot].trajectory;
-        for (std::size_t n = 0; n < trajectory.size(); ++n) {
-            EXPECT_TRUE(copy.restore_point(static_cast<RobotIndex>(robot), trajectory[n]));
-        }
-    }
     return copy;
 }
 

@@ -3,15 +3,18 @@
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
+#include "server/session/old_paths.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace scanloom::http {
 namespace {
@@ -28,15 +31,37 @@ Result<bool> times_parameter(const Query& query) {
     return Error{Errc::kInvalidField, fmt::format("times is {}; true or false is needed", in_quotes(text))};
 }
 
-/// `,"name":[...]` with what value(point) is of each point from `first` on.
-template <class Value>
-void append_list(std::string& text, std::string_view name, const mapping::TrajectoryView& points, std::size_t first,
-                 Value&& value) {
-    fmt::format_to(std::back_inserter(text), R"(,"{}":[)", name);
-    for (std::size_t i = first; i < points.size(); ++i) {
-        if (i > first) text += ',';
-        fmt::format_to(std::back_inserter(text), "{}", value(points[i]));
+/// A robot's points that were asked for: those that the log told of, then those that are kept.
+class Points {
+public:
+    /// Of the kept ones those after `since`, up to `until`.
+    Points(const std::vector<mapping::TrajectoryPoint>& old, const mapping::TrajectoryView& kept, Revision since,
+           Revision until)
+        : old_(old), kept_(kept), first_kept_(kept.first_after(since)), end_kept_(kept.first_after(until)) {}
+
+    [[nodiscard]] std::size_t size() const noexcept { return old_.size() + end_kept_ - first_kept_; }
+
+    template <class Visit>
+    void visit(Visit&& visit) const {
+        for (const auto& point : old_) visit(point);
+        for (std::size_t n = first_kept_; n < end_kept_; ++n) visit(kept_[n]);
     }
+
+private:
+    const std::vector<mapping::TrajectoryPoint>& old_;
+    const mapping::TrajectoryView& kept_;
+    std::size_t first_kept_;
+    std::size_t end_kept_;
+};
+
+/// `[...]` with what `append` adds to the text for each point.
+template <class Append>
+void append_list(std::string& text, const Points& points, Append&& append) {
+    text += '[';
+    points.visit([&, is_first = true](const mapping::TrajectoryPoint& point) mutable {
+        if (!std::exchange(is_first, false)) text += ',';
+        append(point);
+    });
     text += ']';
 }
 
@@ -45,41 +70,44 @@ double rounded_radians(double radians) {
     return std::round(radians * kPerRadian) / kPerRadian + 0.0; // -0.0 + 0.0 is 0.0
 }
 
-void append_times(std::string& text, const mapping::TrajectoryView& points, std::size_t first) {
-    append_list(text, "revisions", points, first, [](const auto& point) { return point.revision; });
-    append_list(text, "stamps", points, first, [](const auto& point) { return point.stamp; });
-    append_list(text, "yaws", points, first, [](const auto& point) { return rounded_radians(point.pose.yaw); });
+void append_times(std::string& text, const Points& points) {
+    const auto append_all = [&](std::string_view name, auto value) {
+        fmt::format_to(std::back_inserter(text), R"(,"{}":)", name);
+        append_list(text, points,
+                    [&](const auto& point) { fmt::format_to(std::back_inserter(text), "{}", value(point)); });
+    };
+    append_all("revisions", [](const auto& point) { return point.revision; });
+    append_all("stamps", [](const auto& point) { return point.stamp; });
+    append_all("yaws", [](const auto& point) { return rounded_radians(point.pose.yaw); });
 }
 
 /// Written straight into the text: a long path would be many times its size as JSON values.
 /// Names are [A-Za-z0-9_-] and need no escapes; poses and stamps were checked to be finite.
-void append_feature(std::string& text, const mapping::RobotState& robot, const Asked& asked) {
-    const auto& points = robot.trajectory;
-    const std::size_t first = points.first_after(asked.since);
-    const std::size_t count = points.size() - first;
+void append_feature(std::string& text, const std::string& robot, const Points& points, bool with_times) {
     fmt::format_to(std::back_inserter(text),
-                   R"({{"type":"Feature","id":"{0}","properties":{{"robot":"{0}","points":{1})", robot.name, count);
-    if (asked.with_times) append_times(text, points, first);
-    fmt::format_to(std::back_inserter(text), R"(}},"geometry":{{"type":"{}","coordinates":[)",
-                   count < 2 ? "MultiPoint" : "LineString");
-    for (std::size_t i = first; i < points.size(); ++i) {
-        fmt::format_to(std::back_inserter(text), "{}[{},{}]", i == first ? "" : ",", rounded_metres(points[i].pose.x),
-                       rounded_metres(points[i].pose.y));
-    }
-    text += "]}}";
+                   R"({{"type":"Feature","id":"{0}","properties":{{"robot":"{0}","points":{1})", robot, points.size());
+    if (with_times) append_times(text, points);
+    fmt::format_to(std::back_inserter(text), R"(}},"geometry":{{"type":"{}","coordinates":)",
+                   points.size() < 2 ? "MultiPoint" : "LineString");
+    append_list(text, points, [&](const auto& point) {
+        fmt::format_to(std::back_inserter(text), "[{},{}]", rounded_metres(point.pose.x), rounded_metres(point.pose.y));
+    });
+    text += "}}";
 }
 
 std::size_t bytes_about(const mapping::Snapshot& snapshot, const Asked& asked) {
     const std::size_t point_bytes = asked.with_times ? 60 : 24;
-    std::size_t points = 0;
+    const std::size_t old = std::min(session::count_old_points(snapshot, asked.since), session::kOldPointsMax);
+    std::size_t points = old;
     for (const auto& robot : snapshot.robots)
         points += robot.trajectory.size() - robot.trajectory.first_after(asked.since);
-    return points * point_bytes;
+    return points * point_bytes + old * sizeof(mapping::TrajectoryPoint);
 }
 
 } // namespace
 
-Result<Response> get_trajectory(session::SessionRegistry& sessions, const AnswerSlots& slots, const Call& call) {
+Result<Response> get_trajectory(session::SessionRegistry& sessions, store::ScanLog& log, const AnswerSlots& slots,
+                                const Call& call) {
     if (auto known = call.query.check_only({"since", "times"}); !known) return known.error();
     const auto since = since_parameter(call.query);
     if (!since) return since.error();
@@ -92,13 +120,15 @@ Result<Response> get_trajectory(session::SessionRegistry& sessions, const Answer
     const Asked asked{since_in(*snapshot, *since), *with_times};
     auto slot = slots.take(bytes_about(*snapshot, asked));
     if (!slot) return slot.error();
+    const auto old = session::read_old_paths(log, (*session)->info().id, *snapshot, asked.since);
+    if (!old) return old.error();
     std::string text = fmt::format(
-        R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", snapshot->revision);
+        R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", old->until);
     const char* separator = "";
-    for (const auto& robot : snapshot->robots) {
-        text += separator;
-        append_feature(text, robot, asked);
-        separator = ",";
+    for (std::size_t n = 0; n < snapshot->robots.size(); ++n) {
+        const auto& robot = snapshot->robots[n];
+        text += std::exchange(separator, ",");
+        append_feature(text, robot.name, {old->robots[n], robot.trajectory, asked.since, old->until}, asked.with_times);
     }
     text += "]}";
     struct Path {

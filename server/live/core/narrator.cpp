@@ -140,7 +140,8 @@ void Narrator::tell_robots(const Moment& moment, wire::LiveEvent& event) {
                                                                    {},
                                                                    robot.body_radius});
         const auto& trail = robot.trajectory;
-        const std::size_t first = std::max(told.trail, trail.size() - std::min(trail.size(), trail_max));
+        const std::size_t first =
+            std::max({told.trail, trail.begin(), trail.size() - std::min(trail.size(), trail_max)});
         update.trail_from = first;
         for (std::size_t i = first; i < trail.size(); ++i) update.trail.push_back(point_of(trail[i].pose));
         if (shows_scan(robot, told)) {

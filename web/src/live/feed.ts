@@ -142,9 +142,18 @@ export class Feed {
     if (this.filling === trails) return;
     this.filling = trails;
     await untilDone(async (signal) => {
-      if (trails !== this.trails) return;
-      const { tracks } = await fetchTrajectory(this.name, 0, signal);
-      for (const { robot, points } of tracks) trails.merge(robot, 0, points);
+      const told = new Map<string, number>();
+      // Long paths come in several answers, each of which says up to where it goes.
+      for (let since = -1, until = 0; since < until && until < this.revision; ) {
+        if (trails !== this.trails) return;
+        const { revision, tracks } = await fetchTrajectory(this.name, until, signal);
+        for (const { robot, points } of tracks) {
+          const from = told.get(robot) ?? 0;
+          trails.merge(robot, from, points);
+          told.set(robot, from + points.length);
+        }
+        [since, until] = [until, revision];
+      }
     }, this.signal);
     this.filling = null;
     if (trails === this.trails && !this.signal.aborted) this.events.trails();

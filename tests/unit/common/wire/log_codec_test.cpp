@@ -30,6 +30,22 @@ TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
     }
 }
 
+TEST(LogCodec, WhereAScanWasTakenIsReadWithoutTheScan) {
+    for (const auto& entry : one_of_each()) {
+        for (const auto& bytes : {encode_entry(entry), plain_entry(encode_entry(entry)).value()}) {
+            const auto where = decode_scan_pose(bytes).value();
+            const auto* taken = std::get_if<ScanTaken>(&entry);
+            ASSERT_EQ(where.has_value(), taken != nullptr);
+            if (taken == nullptr) continue;
+            EXPECT_EQ(*where, (ScanPose{taken->robot, taken->scan.stamp, taken->scan.pose}));
+        }
+    }
+    EXPECT_FALSE(decode_scan_pose("\xff"));
+    auto nowhere = example_scan(1);
+    nowhere.pose.x = HUGE_VAL;
+    EXPECT_THAT(decode_scan_pose(encode_entry(ScanTaken{0, nowhere})).error().message, HasSubstr("scan_taken.pose"));
+}
+
 TEST(LogCodec, AnEntryOfTheFirstFormatIsStillRead) {
     // seq 7, pose (1, 0, 0), ranges 1500 and 0 as fixed32, byte by byte as it lay on disk.
     const std::string pose("\x22\x09\x09\0\0\0\0\0\0\xf0\x3f", 11);

@@ -111,6 +111,30 @@ TEST_F(ApiTest, TrajectoryTellsTimesOnlyWhenItIsAskedTo) {
     EXPECT_EQ(none, boost::json::parse(R"({"robot":"r1","points":0,"revisions":[],"stamps":[],"yaws":[]})"));
 }
 
+TEST_F(ApiTest, ALongTrajectoryIsWholeThoughItsBeginningIsNotInMemory) {
+    create("a");
+    constexpr std::size_t kScans = mapping::kTrajectoryKept + 2000;
+    std::vector<Scan> scans;
+    for (std::size_t n = 0; n < kScans; ++n) {
+        scans.push_back(scan(n + 1));
+        scans.back().pose.x = static_cast<double>(n % 16) / 4;
+    }
+    stream("a", "r1", std::move(scans));
+    ASSERT_GT(registry_.find("a")->snapshot()->robots.at(0).trajectory.begin(), 0U) << "or this test shows nothing";
+    const auto whole = get_json("/api/v1/sessions/a/trajectory.geojson?times=true");
+    EXPECT_EQ(whole.at("revision"), kScans + 2);
+    const auto& path = whole.at("features").at(0);
+    EXPECT_EQ(path.at("properties").at("points"), kScans);
+    EXPECT_EQ(path.at("properties").at("revisions").as_array().size(), kScans);
+    const auto without_times = get_json("/api/v1/sessions/a/trajectory.geojson");
+    EXPECT_EQ(without_times.at("features").at(0).at("geometry"), path.at("geometry"));
+    ASSERT_EQ(path.at("geometry").at("coordinates").as_array().size(), kScans);
+    for (std::size_t n = 0; n < kScans; ++n) {
+        const auto& point = path.at("geometry").at("coordinates").at(n);
+        ASSERT_EQ(point.at(0).to_number<double>(), static_cast<double>(n % 16) / 4) << n;
+    }
+}
+
 TEST_F(ApiTest, TimesAreTrueOrFalse) {
     create("a");
     for (const auto* times : {"", "1", "yes", "TRUE"}) {

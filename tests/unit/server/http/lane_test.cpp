@@ -18,12 +18,12 @@ TEST(Lane, WhatNeedsNothingIsAnsweredAtOnce) {
 TEST(Lane, WholeMapsDoNotHoldUpParts) {
     const std::string session = "/api/v1/sessions/s";
     for (const char* whole : {"/digest", "/map.png", "/map.csv", "/map.npy", "/map.pgm?bbox=0,0,1,1",
-                              "/difference?weave=0", "/difference.png?with=0"}) {
+                              "/difference?weave=0", "/difference.png?with=0", "/trajectory.geojson"}) {
         EXPECT_EQ(lane("GET", session + whole), Lane::kSurvey) << whole;
     }
     for (const char* part :
-         {"", "/map.yaml", "/changes?since=3", "/trajectory.geojson", "/goals.geojson", "/tiles/occupancy.json",
-          "/tiles/occupancy/5/0/0.png", "/tiles/occupancy/9/256/255.bin", "/tiles/occupancy/x/0/0.png"}) {
+         {"", "/map.yaml", "/changes?since=3", "/goals.geojson", "/tiles/occupancy.json", "/tiles/occupancy/5/0/0.png",
+          "/tiles/occupancy/9/256/255.bin", "/tiles/occupancy/x/0/0.png"}) {
         EXPECT_EQ(lane("GET", session + part), Lane::kServing) << part;
     }
 }

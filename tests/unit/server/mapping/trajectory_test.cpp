@@ -1,0 +1,81 @@
+#include "server/mapping/trajectory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace scanloom::mapping {
+namespace {
+
+constexpr std::size_t kMostKept = kTrajectoryKept + 2 * kTrajectoryBlock; // points
+
+TrajectoryPoint point(std::size_t n) {
+    return {2 * n + 1, static_cast<double>(n) / 10, {static_cast<double>(n), 0.5, 0.25}};
+}
+
+void append(Trajectory& trajectory, std::size_t from, std::size_t to) {
+    for (std::size_t n = from; n < to; ++n) trajectory.append(point(n));
+}
+
+void expect_newest(const TrajectoryView& view, std::size_t size) {
+    ASSERT_EQ(view.size(), size);
+    for (std::size_t n = view.begin(); n < size; ++n) ASSERT_EQ(view[n], point(n));
+}
+
+TEST(Trajectory, KeepsTheNewestPointsAndNoMore) {
+    Trajectory trajectory;
+    std::vector<TrajectoryView> views;
+    for (std::size_t n = 0; n < 3 * kTrajectoryKept; ++n) {
+        trajectory.append(point(n));
+        const auto view = trajectory.snapshot();
+        ASSERT_EQ(view.size(), n + 1);
+        ASSERT_GE(view.size() - view.begin(), std::min(n + 1, kTrajectoryKept));
+        ASSERT_LE(view.size() - view.begin(), kMostKept);
+        ASSERT_LE(trajectory.block_count() * kTrajectoryBlock, kMostKept);
+        if (n % 1000 == 0) views.push_back(view);
+    }
+    for (std::size_t n = 0; n < views.size(); ++n) expect_newest(views[n], 1000 * n + 1); // as they were taken
+}
+
+TEST(Trajectory, FindsTheFirstPointAfterARevisionAmongThoseThatAreKept) {
+    Trajectory trajectory;
+    append(trajectory, 0, 2 * kTrajectoryKept);
+    const auto view = trajectory.snapshot();
+    ASSERT_GT(view.begin(), 0U);
+    for (Revision since = 0; since < 4 * kTrajectoryKept + 3; since += 7) {
+        std::size_t first = view.begin();
+        while (first < view.size() && view[first].revision <= since) ++first;
+        ASSERT_EQ(view.first_after(since), first) << since;
+    }
+}
+
+TEST(Trajectory, GoesOnBehindPointsThatItNeverHad) {
+    constexpr std::size_t kBefore = 1'234'567;
+    Trajectory trajectory(kBefore);
+    EXPECT_EQ(trajectory.snapshot().begin(), kBefore);
+    EXPECT_EQ(trajectory.snapshot().size(), kBefore);
+    EXPECT_EQ(trajectory.snapshot().first_after(0), kBefore);
+    EXPECT_EQ(trajectory.block_count(), 0U);
+    append(trajectory, kBefore, kBefore + 700);
+    EXPECT_EQ(trajectory.snapshot().begin(), kBefore);
+    expect_newest(trajectory.snapshot(), kBefore + 700);
+}
+
+TEST(Trajectory, BranchesGoOnByThemselves) {
+    for (const std::size_t before : {std::size_t{0}, std::size_t{100}, kTrajectoryBlock, kTrajectoryKept + 700}) {
+        Trajectory first(before / 2);
+        append(first, before / 2, before);
+        Trajectory second = first.branch();
+        append(second, before, before + 2 * kTrajectoryKept);
+        for (std::size_t n = before; n < before + 600; ++n) first.append({});
+        expect_newest(second.snapshot(), before + 2 * kTrajectoryKept);
+        const auto view = first.snapshot();
+        ASSERT_EQ(view.size(), before + 600);
+        for (std::size_t n = view.begin(); n < view.size(); ++n) {
+            ASSERT_EQ(view[n], n < before ? point(n) : TrajectoryPoint{});
+        }
+    }
+}
+
+} // namespace
+} // namespace scanloom::mapping
