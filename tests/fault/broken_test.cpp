@@ -114,6 +114,10 @@ TEST(FloodRow, FindsAServerThatNeverHangsUp) {
     expect_found(run_flood_row({.seed = 1, .count = 12, .server = broken_server("clinging")}), "were not hung up on");
 }
 
+TEST(GreedRow, FindsAServerWhoseMemoryGrowsWithWhatItIsSent) {
+    expect_found(run_greed_row({.seed = 1, .count = 2, .server = broken_server("leaky")}), "MiB more for a crowd");
+}
+
 std::unique_ptr<store::ScanLog> memory_log() { return std::make_unique<store::MemoryScanLog>(); }
 
 TEST(LinkRow, FindsAServerThatAppliesTwice) {

@@ -11,19 +11,24 @@
 
 namespace scanloom::fault {
 
-/// Robots of scanloom-load that keep their pace, and say how soon they were acknowledged and whether all is there.
+/// Robots of scanloom-load, which say how soon they were acknowledged and whether all is there.
 class PacedLoad {
 public:
-    static constexpr unsigned kRobots = 20;
     static constexpr unsigned kSessions = 4;
+
+    struct Robots {
+        unsigned count = 20;
+        unsigned sessions = kSessions;
+        unsigned rate = 10; ///< scans a second of each; 0: as fast as the server lets them
+    };
 
     struct Report {
         Outcome outcome;
         double p99_ms = 0.0; ///< of acknowledgements, from when each scan was meant to be sent
     };
 
-    /// Begins. What it says on standard error is in `place`/load.log.
-    PacedLoad(const ServerProcess& server, std::uint64_t seed, std::chrono::seconds duration,
+    /// Begins. What it says on standard error is in `place`/load-SEED.log.
+    PacedLoad(const ServerProcess& server, const Robots& robots, std::uint64_t seed, std::chrono::seconds duration,
               const std::filesystem::path& place);
 
     /// Waits until its sessions are there.
@@ -38,6 +43,7 @@ public:
 
 private:
     const ServerProcess& server_;
+    Robots robots_;
     std::uint64_t seed_;
     test::ChildProcess program_;
 };

@@ -38,6 +38,7 @@ constexpr Row kRows[] = {
     {"viewers", "viewers", 200, kViewersLong, "viewers that do not read", run_viewers_row},
     {"flood", "connections", 120, kFloodLong, "senders that are slow, endless or talk nonsense, on both ports",
      run_flood_row},
+    {"greed", "robots", 2, kGreedLong, "robots that send as fast as they are let, beside others", run_greed_row},
     {"soak", "scans", 80'000, kSoakLong, "the same places again and again: memory must not grow", run_soak_row},
 };
 

@@ -34,6 +34,7 @@ TEST(FaultRow, OutagesAndKilledRobots) { run_short("spool"); }
 TEST(FaultRow, StallingDisks) { run_short("stall"); }
 TEST(FaultRow, ViewersThatDoNotRead) { run_short("viewers"); }
 TEST(FaultRow, Floods) { run_short("flood"); }
+TEST(FaultRow, Greed) { run_short("greed"); }
 TEST(FaultRow, Soak) { run_short("soak"); }
 
 } // namespace

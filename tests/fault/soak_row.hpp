@@ -7,6 +7,6 @@ namespace scanloom::fault {
 /// Row "soak": many scans of the same places, during which the server's memory must not grow once it is warm.
 [[nodiscard]] Outcome run_soak_row(const Run& run);
 
-constexpr std::uint64_t kSoakLong = 5'000'000;
+constexpr std::uint64_t kSoakLong = 20'000'000;
 
 } // namespace scanloom::fault
