@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <istream>
 #include <optional>
 #include <vector>
 
@@ -59,6 +60,14 @@ Result<std::string> one_line_a_setting(std::string_view toml) {
     }
     if (!open.empty()) return fault(open.front(), "a [ is not closed; end it with ]");
     return settings;
+}
+
+Result<std::string> read_config_text(std::istream& input) {
+    std::string text(kConfigBytesMax + 1, '\0');
+    input.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(input.gcount()));
+    if (text.size() <= kConfigBytesMax) return text;
+    return Error{Errc::kFull, fmt::format("it has more than {} bytes; name a file of settings", kConfigBytesMax)};
 }
 
 } // namespace scanloom

@@ -2,6 +2,8 @@
 
 #include "common/error/error.hpp"
 
+#include <cstddef>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -13,5 +15,12 @@ namespace scanloom {
 /// Errors  kMalformed: a string or an array that is not closed, or with something behind it; the message begins with
 ///         the number of the line.
 [[nodiscard]] Result<std::string> one_line_a_setting(std::string_view toml);
+
+/// What a file of settings may have at most: who names a device or a log by mistake is told so.
+inline constexpr std::size_t kConfigBytesMax = std::size_t{1} << 20;
+
+/// All that there is to be read.
+/// Errors  kFull: it is more than kConfigBytesMax.
+[[nodiscard]] Result<std::string> read_config_text(std::istream& input);
 
 } // namespace scanloom

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <istream>
-#include <iterator>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -38,11 +37,10 @@ public:
 
     /// Throws CLI::ConfigError where the file is no TOML.
     [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-        const auto text = one_line_a_setting(std::string(std::istreambuf_iterator<char>(input), {}));
-        if (!text) {
-            throw CLI::ConfigError(
-                fmt::format("{}:{}", app_.get_config_ptr()->as<std::string>(), text.error().message));
-        }
+        const auto file = read_config_text(input);
+        if (!file) throw CLI::ConfigError(fmt::format("{}: {}", file_name(), file.error().message));
+        const auto text = one_line_a_setting(*file);
+        if (!text) throw CLI::ConfigError(fmt::format("{}:{}", file_name(), text.error().message));
         std::istringstream lines(*text);
         auto settings = CLI::ConfigTOML::from_config(lines);
         std::erase_if(settings, [](const CLI::ConfigItem& item) {
@@ -52,6 +50,8 @@ public:
     }
 
 private:
+    [[nodiscard]] std::string file_name() const { return app_.get_config_ptr()->as<std::string>(); }
+
     const CLI::App& app_;
 };
 

@@ -2,8 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 namespace scanloom {
 namespace {
+
+TEST(ConfigText, AFileMayBeLargeButNotEndless) {
+    std::istringstream largest(std::string(kConfigBytesMax, '\n'));
+    EXPECT_EQ(read_config_text(largest).value().size(), kConfigBytesMax);
+    std::istringstream larger(std::string(kConfigBytesMax + 1, '\n'));
+    EXPECT_EQ(read_config_text(larger).error().code, Errc::kFull);
+    std::istringstream nothing("");
+    EXPECT_EQ(read_config_text(nothing).value(), "");
+}
 
 TEST(ConfigText, SettingsStayAsTheyAre) {
     const std::string text = "a = \"x\"\n[simulate]\nseed = 5\r\n\n'b' = 'y'\npath = C:/x\n";
