@@ -66,7 +66,9 @@ TEST(Trajectory, BranchesGoOnByThemselves) {
         Trajectory first(before / 2);
         append(first, before / 2, before);
         Trajectory second = first.branch();
-        append(second, before, before + 2 * kTrajectoryKept);
+        append(second, before, before + 10);
+        expect_newest(second.snapshot(), before + 10);
+        append(second, before + 10, before + 2 * kTrajectoryKept);
         for (std::size_t n = before; n < before + 600; ++n) first.append({});
         expect_newest(second.snapshot(), before + 2 * kTrajectoryKept);
         const auto view = first.snapshot();
