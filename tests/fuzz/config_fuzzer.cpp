@@ -8,12 +8,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = scanloom::fuzz;
     const std::string text(reinterpret_cast<const char*>(data), size);
-    if (const auto lines = scanloom::one_line_a_setting(text); lines) {
-        const auto again = scanloom::one_line_a_setting(*lines);
-        fuzz::check(again.has_value() && *again == *lines, "what was cleaned once is clean");
-    } else {
-        fuzz::check(!lines.error().message.empty(), "every error says what is wrong");
-    }
+    const auto lines = scanloom::one_line_a_setting(text);
+    fuzz::check(lines ? lines->size() <= text.size() : !lines.error().message.empty(),
+                "comments go and nothing comes, or an error says what is wrong");
 
     CLI::App app("a program", "program");
     std::string word;

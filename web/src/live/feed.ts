@@ -144,16 +144,19 @@ export class Feed {
     await untilDone(async (signal) => {
       const told = new Map<string, number>();
       // Long paths come in several answers, each of which says up to where it goes.
-      for (let since = -1, until = 0; since < until && until < this.revision; ) {
+      let since: number;
+      let until = 0;
+      do {
         if (trails !== this.trails) return;
-        const { revision, tracks } = await fetchTrajectory(this.name, until, signal);
+        since = until;
+        const { revision, tracks } = await fetchTrajectory(this.name, since, signal);
         for (const { robot, points } of tracks) {
           const from = told.get(robot) ?? 0;
           trails.merge(robot, from, points);
           told.set(robot, from + points.length);
         }
-        [since, until] = [until, revision];
-      }
+        until = revision;
+      } while (since < until && until < this.revision);
     }, this.signal);
     this.filling = null;
     if (trails === this.trails && !this.signal.aborted) this.events.trails();
