@@ -72,7 +72,8 @@ TEST(KillRow, SaysNothingOfADiskThatDoesNotSync) {
 }
 
 TEST(RestartRow, FindsAServerThatAcknowledgesWhatIsNotDurable) {
-    expect_found(run_restart_row({.seed = 1, .count = 3, .server = broken_server("hasty")}));
+    // In the row's own three, a kill may happen to find all that was acknowledged written.
+    expect_found(run_restart_row({.seed = 1, .count = 12, .server = broken_server("hasty")}));
 }
 
 TEST(DiskRow, FindsAServerThatAppliesTwice) {
