@@ -11,8 +11,8 @@
 /// The parts of robots' paths that are in memory no more, which is bounded: what the log tells of them.
 namespace scanloom::session {
 
-/// Points that are read at once at most: 160 MiB.
-inline constexpr std::size_t kOldPointsMax = std::size_t{4} << 20;
+/// Points that are read at once at most: 40 MiB, and up to 60 MiB of text that is made of them.
+inline constexpr std::size_t kOldPointsMax = std::size_t{1} << 20;
 
 struct OldPaths {
     std::vector<std::vector<mapping::TrajectoryPoint>> robots; ///< by RobotIndex, each by rising revision
