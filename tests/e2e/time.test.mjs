@@ -261,6 +261,40 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await says(page, '[data-robot="r1"] .row-detail', /\b50 scans /);
   });
 
+  it('that comes in pages is seen when it is whole, and until then how much has come', async () => {
+    const tab = await openTab(page.context(), server.address, complaints, kHash);
+    const asked = [];
+    let release;
+    const held = new Promise((resolve) => {
+      release = resolve;
+    });
+    await tab.route('**/trajectory.geojson?times=true*', async (route) => {
+      const since = Number(new URL(route.request().url()).searchParams.get('since'));
+      if (asked.push(since) === 2) await held;
+      const response = await route.fetch();
+      const json = await response.json();
+      json.revision = Math.min(json.revision, since + 200);
+      for (const { properties, geometry } of json.features) {
+        const isTold = (_, at) => properties.revisions[at] <= json.revision;
+        const { revisions, stamps, yaws } = properties;
+        geometry.coordinates = geometry.coordinates.filter(isTold);
+        Object.assign(properties, { stamps: stamps.filter(isTold), yaws: yaws.filter(isTold) });
+        properties.revisions = revisions.filter(isTold);
+      }
+      await route.fulfill({ response, json });
+    });
+    await tab.waitForSelector('[data-robot="r1"]');
+    await tab.click('#history-open');
+    await says(tab, '#time-message', /^Loading the history\u2026 4\d %$/);
+    assert.ok(await tab.isDisabled('#time-play'));
+    assert.equal(await textOf(tab, '#time-place'), '');
+    release();
+    await says(tab, '#time-place', /^scan 450 of 450/);
+    await says(tab, '#time-message', /^$/);
+    assert.deepEqual(asked, [0, 200, 400]);
+    await tab.close();
+  });
+
   it('tells the time of day, and marks when nobody was there', async () => {
     const tab = await openTab(page.context(), server.address, complaints, kHash);
     await tab.route('**/trajectory.geojson?times=true*', async (route) => {

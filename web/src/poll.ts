@@ -50,9 +50,14 @@ export async function untilDone(task: (signal: AbortSignal) => Promise<void>, si
       return await task(signal);
     } catch {
       // Whether the server can be heard is told elsewhere.
-      await pause(backoff(kRetryMs, failures), signal);
+      await rest(failures, signal);
     }
   }
+}
+
+/** Waits before something that failed so often in a row is tried again; ends early as the waits of poll do. */
+export function rest(failures: number, signal: AbortSignal): Promise<void> {
+  return pause(backoff(kRetryMs, failures), signal);
 }
 
 /** Doubles with every failure in a row, up to a few seconds. */

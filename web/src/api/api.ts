@@ -8,7 +8,7 @@ export const sessionsPath = 'api/v1/sessions';
 const kPageSize = 100;
 const kPagesMax = 20;
 /** For answers as long as the session. */
-const kLongMs = 120_000;
+export const kLongMs = 120_000;
 
 /** All sessions, at most kPageSize * kPagesMax of them. */
 export async function fetchSessions(signal: AbortSignal): Promise<Sessions> {

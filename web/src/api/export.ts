@@ -25,8 +25,9 @@ export function mapFilePath(session: string, format: MapFormat, { layer, box, we
   return `${sessionPath(session)}/map.${format}?${query}`;
 }
 
-export function trajectoryPath(session: string): string {
-  return `${sessionPath(session)}/trajectory.geojson`;
+/** @param since the positions after this revision; 0: from the first on */
+export function trajectoryPath(session: string, since = 0): string {
+  return `${sessionPath(session)}/trajectory.geojson${since === 0 ? '' : `?since=${since}`}`;
 }
 
 export function frontiersPath(session: string, weave: string | null): string {

@@ -1,5 +1,5 @@
 /** Which robot was where, when: the trajectories of a session with their times. */
-import { sessionPath } from './api';
+import { kLongMs, sessionPath } from './api';
 import { decodePoint, fields, list, MalformedAnswer, number, text } from './decode';
 import { getJson } from './http';
 import type { Track } from './types';
@@ -20,9 +20,10 @@ export interface TimedTrajectory {
   tracks: TimedTrack[];
 }
 
+/** The scans after a revision, or the first of them. */
 export async function fetchHistory(name: string, since: number, signal: AbortSignal): Promise<TimedTrajectory> {
   const query = new URLSearchParams({ times: 'true', since: String(since) });
-  return decodeHistory(await getJson(`${sessionPath(name)}/trajectory.geojson?${query}`, signal));
+  return decodeHistory(await getJson(`${sessionPath(name)}/trajectory.geojson?${query}`, signal, kLongMs));
 }
 
 export function decodeHistory(json: unknown): TimedTrajectory {

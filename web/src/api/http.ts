@@ -2,6 +2,8 @@
 
 const kDeadlineMs = 10_000;
 const kUnauthorized = 401;
+/** Took too long, asked too often, too much to do. */
+const kPassing = [408, 429, 503];
 
 /** The server could not be reached, or did not answer in time. */
 export class Unreachable extends Error {
@@ -18,6 +20,11 @@ export class Refused extends Error {
   ) {
     super(message);
   }
+}
+
+/** Whether waiting may mend it: there was no answer, or one that says so. */
+export function isPassing(error: unknown): boolean {
+  return error instanceof Unreachable || (error instanceof Refused && kPassing.includes(error.status));
 }
 
 let unauthorized: () => void = () => {};

@@ -8,6 +8,7 @@ import type { LayerName } from '../layers/layers';
 import { poll, untilDone, type Pace } from '../poll';
 import { errorOf, kCodeGone, LiveSocket } from './socket';
 import { Trails } from './trails';
+import { WholePaths, type PathSource } from './whole_paths';
 
 /** How soon a connection that ended is tried again; poll() waits longer with every failure in a row. */
 const kPace: Pace = { visibleMs: 500, hiddenMs: 5_000 };
@@ -36,9 +37,9 @@ export interface FeedEvents {
 export class Feed {
   private socket: LiveSocket | null = null;
   private id: string | null = null;
-  private trails = new Trails();
-  /** Those that are being fetched whole. */
-  private filling: Trails | null = null;
+  private paths: WholePaths | null = null;
+  /** Aborts when the session is another, or gone. */
+  private leaving = new AbortController();
   /** Since when the connection has not told what the server is known to have. */
   private behindSince: number | null = null;
   private revision = 0;
@@ -113,20 +114,31 @@ export class Feed {
   private start(session: Session): void {
     this.id = session.id;
     this.revision = 0;
-    this.trails = new Trails();
-    this.events.started(session, this.trails);
+    this.paths = this.followPaths();
+    this.events.started(session, this.paths.trails);
+  }
+
+  /** Those of the session before are wanted no more. */
+  private followPaths(): WholePaths {
+    this.leaving.abort();
+    this.leaving = new AbortController();
+    const source: PathSource = {
+      fetchAfter: (revision, signal) => fetchTrajectory(this.name, revision, signal),
+      filled: () => this.events.trails(),
+    };
+    return new WholePaths(new Trails(), source, AbortSignal.any([this.signal, this.leaving.signal]));
   }
 
   private leave(): void {
     this.id = null;
+    this.leaving.abort();
     this.events.gone();
   }
 
   private hear(event: LiveEvent): void {
     if (event.id !== this.id) throw new Replaced();
     this.replaced = 0;
-    const gap = event.robots.filter(({ name, trail, trailFrom }) => !this.trails.merge(name, trailFrom, trail));
-    if (gap.length > 0) void this.fillTrails(this.trails);
+    this.paths?.hear(event);
     for (const { layer, everything, tiles } of event.tiles) {
       if (everything) void this.fetchTiles(layer, this.revision);
       else if (tiles.length > 0) this.events.tiles(layer, tiles);
@@ -135,31 +147,6 @@ export class Feed {
     this.behindSince = null;
     this.events.event(event);
     this.events.settled(null);
-  }
-
-  /** Once at a time: what comes meanwhile joins on to what is fetched, or the next event finds the gap again. */
-  private async fillTrails(trails: Trails): Promise<void> {
-    if (this.filling === trails) return;
-    this.filling = trails;
-    await untilDone(async (signal) => {
-      const told = new Map<string, number>();
-      // Long paths come in several answers, each of which says up to where it goes.
-      let since: number;
-      let until = 0;
-      do {
-        if (trails !== this.trails) return;
-        since = until;
-        const { revision, tracks } = await fetchTrajectory(this.name, since, signal);
-        for (const { robot, points } of tracks) {
-          const from = told.get(robot) ?? 0;
-          trails.merge(robot, from, points);
-          told.set(robot, from + points.length);
-        }
-        until = revision;
-      } while (since < until && until < this.revision);
-    }, this.signal);
-    this.filling = null;
-    if (trails === this.trails && !this.signal.aborted) this.events.trails();
   }
 
   private async fetchTiles(layer: LayerName, since: number): Promise<void> {

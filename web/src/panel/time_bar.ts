@@ -115,7 +115,7 @@ export class TimeBar {
   }
 
   private showWords(state: HistoryState): void {
-    const { timeline, isKnown, index, shown, progress, trouble } = state;
+    const { timeline, isKnown, share, index, shown, progress, trouble } = state;
     const { count } = timeline;
     setText(this.mode, shown !== null ? 'Past' : index === null ? 'Live' : 'Going back');
     const at = index ?? count - 1;
@@ -123,7 +123,7 @@ export class TimeBar {
     const date = count > 0 ? words.dateOf(timeline, at) : '';
     this.place.title = date;
     setText(this.note, isKnown && count === 0 ? 'No scans yet.' : shown === null && index !== null ? '' : noteOf(shown !== null, date));
-    setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : 'Loading the history\u2026'));
+    setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : words.loading(share)));
     this.message.classList.toggle('trouble', trouble !== '');
     this.progress.hidden = progress === null;
     if (progress) Object.assign(this.progress, { max: Math.max(1, progress.until), value: progress.woven });

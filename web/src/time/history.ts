@@ -6,6 +6,7 @@ import type { MapSource } from '../map/map_source';
 import type { Picture } from '../picture';
 import { poll, type Pace } from '../poll';
 import type { Viewer } from '../viewer';
+import { PastLoader, type PastSource } from './past_loader';
 import { Player } from './player';
 import { kGapMin, Timeline } from './timeline';
 import { TimeTravel, type TravelEvents } from './time_travel';
@@ -16,9 +17,11 @@ import * as words from './words';
 const kGrowthPace: Pace = { visibleMs: 1_000, hiddenMs: 10_000 };
 
 export interface HistoryState {
+  /** Empty until it is known up to the present. */
   timeline: Timeline;
-  /** Whether the first answer is there. */
   isKnown: boolean;
+  /** How much of it has come by then, 0 to 1. */
+  share: number;
   /** The scan that is asked for; null: the present. */
   index: number | null;
   /** The scan that the map ends with; null: it is that of the present. */
@@ -31,7 +34,7 @@ export interface HistoryState {
   trouble: string;
 }
 
-const kAtFirst = { isKnown: false, index: null, shown: null, isPlaying: false, progress: null, trouble: '' };
+const kAtFirst = { isKnown: false, share: 0, index: null, shown: null, isPlaying: false, progress: null, trouble: '' };
 
 /** While somebody looks at the history. */
 interface Visit {
@@ -73,12 +76,12 @@ export class SessionHistory {
     const leave = new AbortController();
     const timeline = new Timeline();
     const player = new Player(timeline, () => performance.now() / 1000);
-    const state: HistoryState = { ...kAtFirst, timeline, speed: player.speed };
+    const state: HistoryState = { ...kAtFirst, timeline: new Timeline(), speed: player.speed };
     const weaver = new ServerWeaver(session, session.cellSize, () => this.picture.layersOfSession(), leave.signal);
     const travel = new TimeTravel(weaver, this.travelEvents(), leave.signal, kTimer);
     this.visit = { session, state, player, startAt: null, travel, leave };
     this.tell();
-    this.follow(this.visit);
+    this.follow(this.visit, timeline);
   }
 
   /** Back to the present, and out of sight. */
@@ -200,18 +203,18 @@ export class SessionHistory {
   }
 
   /** Fetches the scans, and those that come while somebody looks. */
-  private follow({ session, state, leave }: Visit): void {
-    let known = -1;
-    const load = async (signal: AbortSignal): Promise<void> => {
-      if ((this.viewer.session?.revision ?? 0) <= known) return;
-      const { revision, tracks } = await fetchHistory(session.name, Math.max(0, known), signal);
-      if (signal.aborted) return;
-      state.timeline.add(tracks);
-      known = revision;
-      this.change(state.isKnown ? {} : { isKnown: true, trouble: '' });
+  private follow({ session, state, leave }: Visit, timeline: Timeline): void {
+    const newest = (): number => this.viewer.session?.revision ?? 0;
+    const source: PastSource = {
+      fetchAfter: (revision, signal) => fetchHistory(session.name, revision, signal),
+      loading: (share) => this.change({ share, trouble: '' }),
+      // Shown only now: its oldest part would be taken for the whole.
+      loaded: () => this.change(state.isKnown ? {} : { timeline, isKnown: true, trouble: '' }),
     };
+    const loader = new PastLoader(timeline, newest, source);
+    const load = (signal: AbortSignal): Promise<void> => loader.load(signal);
     void poll(load, kGrowthPace, leave.signal, (error) => {
-      if (error !== null && known < 0) this.change({ trouble: words.troubleOf(error, true) });
+      if (error !== null && !state.isKnown) this.change({ trouble: words.troubleOf(error, true) });
     });
   }
 

@@ -1,5 +1,5 @@
 /** The way to a moment of the past: one at a time, and of those that are wanted meanwhile only the newest. */
-import { Refused, Unreachable } from '../api/http';
+import { isPassing, Refused } from '../api/http';
 import type { Weave } from '../api/weaves';
 import type { MapSource } from '../map/map_source';
 import { backoff } from '../poll';
@@ -75,7 +75,7 @@ export class TimeTravel {
         failures = 0;
       } catch (error) {
         if (this.isOver()) break;
-        const trying = isPassing(error);
+        const trying = mayGoBetter(error);
         this.events.failed(error, trying);
         if (!trying && this.wanted === revision) this.wanted = this.shown?.revision ?? null;
         failures += 1;
@@ -137,7 +137,7 @@ export class TimeTravel {
   /** Something of the shown maps cannot be had: they are asked for again, by the same way. */
   private async lose(error: unknown): Promise<void> {
     if (this.isOver() || this.shown === null) return;
-    const trying = isPassing(error);
+    const trying = mayGoBetter(error);
     this.events.failed(error, trying);
     if (!trying) return;
     this.shown = null;
@@ -165,7 +165,7 @@ function isUnderWay({ state }: Weave): boolean {
   return state === 'waiting' || state === 'weaving';
 }
 
-/** Whether it may well go better soon: nobody answers, too much to do, or the weave went before it was shown. */
-function isPassing(error: unknown): boolean {
-  return error instanceof Unreachable || (error instanceof Refused && [404, 408, 503].includes(error.status));
+/** Also when the weave went before it was shown. */
+function mayGoBetter(error: unknown): boolean {
+  return isPassing(error) || (error instanceof Refused && error.status === 404);
 }

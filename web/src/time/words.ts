@@ -39,6 +39,12 @@ export function dateOf(timeline: Timeline, index: number): string {
   return new Date(1000 * timeline.timeOf(index)).toLocaleDateString(undefined, { dateStyle: 'medium' });
 }
 
+/** @param share how much has come, 0 to 1 */
+export function loading(share: number): string {
+  const percent = Math.floor(100 * share);
+  return percent > 0 ? `Loading the history\u2026 ${percent} %` : 'Loading the history\u2026';
+}
+
 /** Why a moment cannot be shown. @param trying whether it is tried again */
 export function troubleOf(error: unknown, trying: boolean): string {
   const again = trying ? ' Trying again.' : '';

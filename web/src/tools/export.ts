@@ -9,6 +9,7 @@ import {
   type MapFormat,
   type MapQuery,
 } from '../api/export';
+import { fetchPathFile } from '../api/path_file';
 import type { Session } from '../api/types';
 import { el, setText } from '../dom';
 import * as format from '../format';
@@ -35,6 +36,8 @@ interface Offer {
   path: string;
   /** It has no bound: the browser fetches it by itself. */
   endless?: true;
+  /** It comes in pages: the session whose paths it is. */
+  pathsOf?: string;
 }
 
 export function exportTool(context: ToolContext): Tool {
@@ -147,7 +150,7 @@ class ExportCard {
     return el('li', {}, link, el('span', { class: 'quiet' }, note));
   }
 
-  private save({ label, file, path, endless }: Offer): void {
+  private save({ label, file, path, endless, pathsOf }: Offer): void {
     this.fetching.run(async (signal) => {
       this.outcome.say(`The server makes ${label}\u2026`);
       if (endless) {
@@ -156,7 +159,10 @@ class ExportCard {
         this.outcome.say(`The browser fetches ${file}.`);
         return;
       }
-      const blob = await fetchFile(path, signal, (bytes) => this.outcome.say(`${file}: ${megabytes(bytes)}\u2026`));
+      const progress = (bytes: number): void => this.outcome.say(`${file}: ${megabytes(bytes)}\u2026`);
+      const blob = await (pathsOf === undefined
+        ? fetchFile(path, signal, progress)
+        : fetchPathFile(pathsOf, signal, progress));
       saveBlob(blob, file);
       this.outcome.say(`Saved ${file}, ${megabytes(blob.size)}.`);
     });
@@ -188,7 +194,7 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     map('npy', 'NPY', 'for NumPy', `${base}.npy`),
     {
       ...{ label: 'Paths (GeoJSON)', note: 'where the robots were on the whole run, metres' },
-      ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session) },
+      ...{ file: `${session}-trajectory.geojson`, path: trajectoryPath(session), pathsOf: session },
     },
     {
       ...{ label: 'Frontiers (GeoJSON)', note: 'ends of the explored ground' },

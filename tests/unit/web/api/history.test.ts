@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
-import { describe, it } from 'node:test';
+import { describe, it, mock } from 'node:test';
+import { fetchTrajectory } from '../../../../web/src/api/api';
 import { MalformedAnswer } from '../../../../web/src/api/decode';
-import { decodeHistory } from '../../../../web/src/api/history';
+import { decodeHistory, fetchHistory } from '../../../../web/src/api/history';
 import { decodeWeave } from '../../../../web/src/api/weaves';
 
 function trajectory(properties: Record<string, unknown> = {}): unknown {
@@ -31,5 +32,24 @@ describe('decoding the past', () => {
     assert.equal(decodeWeave({ ...weave, state: 'failed', reason: 'no room' }).reason, 'no room');
     assert.throws(() => decodeWeave({ ...weave, state: 'dreaming' }), MalformedAnswer);
     assert.throws(() => decodeWeave({ ...weave, until: 9 }), MalformedAnswer);
+  });
+});
+
+describe('fetching the past', () => {
+  it('has as long as where robots were, which is as long', async () => {
+    Object.assign(globalThis, { document: { baseURI: 'http://localhost/' } });
+    const asked: string[] = [];
+    mock.method(globalThis, 'fetch', ({ pathname, search }: URL) => {
+      asked.push(pathname + search);
+      return Promise.resolve(Response.json(trajectory()));
+    });
+    const { mock: deadlines } = mock.method(AbortSignal, 'timeout', () => new AbortController().signal);
+    const { signal } = new AbortController();
+    await fetchTrajectory('s', 4, signal);
+    await fetchHistory('s', 4, signal);
+    mock.restoreAll();
+    const path = '/api/v1/sessions/s/trajectory.geojson';
+    assert.deepEqual(asked, [`${path}?since=4`, `${path}?times=true&since=4`]);
+    assert.deepEqual(deadlines.calls.map((call) => call.arguments), [[120_000], [120_000]]);
   });
 });

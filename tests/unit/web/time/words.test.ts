@@ -34,6 +34,11 @@ describe('words for times', () => {
     assert.match(words.dateOf(timelineFrom(noon), 1), /2026/);
   });
 
+  it('say how much of the past has come, once it is something', () => {
+    assert.equal(words.loading(0), 'Loading the history\u2026');
+    assert.equal(words.loading(0.337), 'Loading the history\u2026 33 %');
+  });
+
   it('say what is wrong, and what happens next', () => {
     assert.match(words.troubleOf(new Unreachable('x'), true), /^No connection .* Trying again\.$/);
     assert.match(words.troubleOf(new Refused(503, 'too many maps'), true), /reports: too many maps\. Trying again\.$/);

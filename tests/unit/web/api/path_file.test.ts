@@ -1,0 +1,103 @@
+import assert from 'node:assert/strict';
+import { afterEach, beforeEach, describe, it, mock } from 'node:test';
+import { MalformedAnswer } from '../../../../web/src/api/decode';
+import { Refused } from '../../../../web/src/api/http';
+import { decodePathPage, fetchPathFile, PathFile } from '../../../../web/src/api/path_file';
+
+/** Each robot's positions by revision. */
+type Course = Record<string, [revision: number, x: number, y: number][]>;
+
+const kCourse: Course = {
+  a: [[1, 0.5, -1.25], [3, 2, 0], [4, 1e-3, 7], [9, 3, 3]],
+  late: [[8, -4, 0.125]],
+  still: [],
+};
+
+/** As the server writes it. */
+function answer(course: Course, since: number, until: number): string {
+  const features = Object.entries(course).map(([robot, positions]) => {
+    const told = positions.filter(([revision]) => revision > since && revision <= until);
+    const points = told.map(([, x, y]) => `[${x},${y}]`).join(',');
+    const type = told.length < 2 ? 'MultiPoint' : 'LineString';
+    const properties = `"properties":{"robot":"${robot}","points":${told.length}}`;
+    return `{"type":"Feature","id":"${robot}",${properties},"geometry":{"type":"${type}","coordinates":[${points}]}}`;
+  });
+  const head = `"type":"FeatureCollection","frame_id":"map","units":"m","revision":${until}`;
+  return `{${head},"features":[${features.join(',')}]}`;
+}
+
+describe('a file of paths', () => {
+  it('of several pages is what one answer would be', async () => {
+    for (const pages of [[9], [2, 9], [3, 4, 7, 9], [1, 2, 3, 4, 5, 6, 7, 8, 9]]) {
+      const file = new PathFile();
+      let since = 0;
+      for (const until of pages) {
+        file.add(decodePathPage(answer(kCourse, since, until)));
+        since = until;
+      }
+      assert.equal(await file.blob().text(), answer(kCourse, 0, 9), `pages up to ${pages.join()}`);
+      assert.equal(file.blob().type, 'application/geo+json');
+    }
+  });
+
+  it('has robots that came with a later page, and none of nobody', async () => {
+    const file = new PathFile();
+    const { late, ...before } = kCourse;
+    file.add(decodePathPage(answer(before, 0, 4)));
+    file.add(decodePathPage(answer({ ...before, late: late ?? [] }, 4, 9)));
+    const { features } = JSON.parse(await file.blob().text());
+    type Feature = { id: string; properties: { points: number } };
+    const told = features.map(({ id, properties }: Feature) => [id, properties.points]);
+    assert.deepEqual(told, [['a', 4], ['still', 0], ['late', 1]]);
+    const empty = new PathFile();
+    empty.add(decodePathPage(answer({}, 0, 0)));
+    assert.equal(await empty.blob().text(), answer({}, 0, 0));
+  });
+
+  it('is not made of what is no page', () => {
+    assert.throws(() => decodePathPage('{"type":'), MalformedAnswer);
+    assert.throws(() => decodePathPage('{"frame_id":"map","units":"m","features":[]}'), /revision is not a number/);
+  });
+});
+
+describe('fetching a file of paths', () => {
+  let asked: string[];
+  let refuse: string | null;
+
+  /** A session of revision 9 that tells four revisions at once. */
+  function serve(url: URL): Response {
+    asked.push(url.pathname + url.search);
+    if (url.search === refuse) return new Response('{"title":"busy"}', { status: 503 });
+    if (url.pathname.endsWith('trajectory.geojson')) {
+      const since = Number(url.searchParams.get('since'));
+      return new Response(answer(kCourse, since, Math.min(9, since + 4)));
+    }
+    const config = { cell_size: 0.05 };
+    return Response.json({ name: 's', id: '1', created: '', revision: 9, scans: 5, config, bounds: null, robots: [] });
+  }
+
+  beforeEach(() => {
+    asked = [];
+    refuse = null;
+    Object.assign(globalThis, { document: { baseURI: 'http://localhost/' } });
+    mock.method(globalThis, 'fetch', (url: URL) => Promise.resolve(serve(url)));
+  });
+
+  afterEach(() => mock.restoreAll());
+
+  it('asks until the session is whole, and tells of the bytes of all pages', async () => {
+    const told: number[] = [];
+    const file = await fetchPathFile('s', new AbortController().signal, (bytes) => told.push(bytes));
+    const path = '/api/v1/sessions/s/trajectory.geojson';
+    assert.deepEqual(asked, ['/api/v1/sessions/s', path, `${path}?since=4`, `${path}?since=8`]);
+    assert.equal(await file.text(), answer(kCourse, 0, 9));
+    assert.deepEqual(told, [...told].sort((a, b) => a - b));
+    const bytes = [[0, 4], [4, 8], [8, 9]].map(([since = 0, until = 0]) => answer(kCourse, since, until).length);
+    assert.equal(told.at(-1), bytes.reduce((sum, each) => sum + each, 0));
+  });
+
+  it('is all or nothing', async () => {
+    refuse = '?since=4';
+    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}), Refused);
+  });
+});

@@ -1,0 +1,137 @@
+import assert from 'node:assert/strict';
+import { afterEach, describe, it, mock } from 'node:test';
+import { PbfWriter } from 'pbf';
+import { writeLiveEvent } from 'virtual:live-protocol';
+import type { Point } from '../../../../web/src/api/types';
+import { Feed } from '../../../../web/src/live/feed';
+import type { Trails } from '../../../../web/src/live/trails';
+import { hurry } from '../../../../web/src/poll';
+
+/** The newest connection of the page. */
+let socket: FakeSocket;
+
+class FakeSocket extends EventTarget {
+  static readonly OPEN = 1;
+  readyState = FakeSocket.OPEN;
+
+  constructor() {
+    super();
+    socket = this;
+    queueMicrotask(() => this.dispatchEvent(new Event('open')));
+  }
+
+  send(): void {}
+
+  close(): void {
+    this.readyState = 3;
+  }
+
+  /** The robot has been at this many places, of which the newest is told. */
+  tell(session: string, places: number): void {
+    const writer = new PbfWriter();
+    const robots = [{ name: 'r1', trail: [1000 * places, 0], trail_from: places - 1 }];
+    writeLiveEvent({ session, revision: places, robots }, writer);
+    this.dispatchEvent(Object.assign(new Event('message'), { data: new Uint8Array(writer.finish()).buffer }));
+  }
+}
+
+/** A server with a session, whose paths are told when the test says so. */
+class World {
+  id = 'first';
+  /** Revisions after which paths were asked for. */
+  readonly asked: string[] = [];
+  readonly trails: Trails[] = [];
+  filled = 0;
+  opened = 0;
+  private readonly leave = new AbortController();
+  private readonly answers: ((places: number) => void)[] = [];
+
+  constructor() {
+    const document = Object.assign(new EventTarget(), { baseURI: 'http://localhost/', hidden: false });
+    Object.assign(globalThis, { document, window: new EventTarget(), WebSocket: FakeSocket });
+    mock.method(globalThis, 'fetch', (url: URL) => this.answer(url));
+    const ignore = (): void => {};
+    const started = (_: unknown, trails: Trails): void => void this.trails.push(trails);
+    const [opened, trails] = [(): void => void ++this.opened, (): void => void ++this.filled];
+    const events = { started, opened, event: ignore, tiles: ignore, trails, gone: ignore, settled: ignore };
+    new Feed('map', events, this.leave.signal).run();
+  }
+
+  /** Answers the question for paths that was asked as the n-th. */
+  tellPaths(n: number, places: number): void {
+    this.answers[n]?.(places);
+  }
+
+  end(): void {
+    this.leave.abort();
+    mock.restoreAll();
+  }
+
+  private answer({ pathname, searchParams }: URL): Promise<Response> {
+    if (!pathname.endsWith('trajectory.geojson')) {
+      const config = { cell_size: 0.05 };
+      const counters = { revision: 9, scans: 9, bounds: null, robots: [] };
+      return Promise.resolve(Response.json({ name: 'map', id: this.id, created: '', config, ...counters }));
+    }
+    this.asked.push(searchParams.get('since') ?? '');
+    return new Promise((resolve) => this.answers.push((places) => resolve(Response.json(pathOf(places)))));
+  }
+}
+
+function pointsOf(places: number): Point[] {
+  return Array.from({ length: places }, (_, n): Point => [n + 1, 0]);
+}
+
+function pathOf(places: number): unknown {
+  const geometry = { type: 'LineString', coordinates: pointsOf(places) };
+  return { revision: places, features: [{ type: 'Feature', properties: { robot: 'r1', points: places }, geometry }] };
+}
+
+/** Lets happen what is under way. */
+async function until(reached: () => boolean): Promise<void> {
+  for (let turn = 0; !reached(); ++turn) {
+    assert.ok(turn < 10_000, `never: ${reached.toString()}`);
+    await new Promise((resolve) => setImmediate(resolve));
+  }
+}
+
+describe('a feed', () => {
+  let world: World;
+
+  afterEach(() => world.end());
+
+  it('fetches the beginning of a trail that events leave out', async () => {
+    world = new World();
+    await until(() => world.opened === 1);
+    socket.tell('first', 9);
+    await until(() => world.asked.length === 1);
+    world.tellPaths(0, 9);
+    await until(() => world.filled === 1);
+    assert.deepEqual(world.trails[0]?.get('r1').points, pointsOf(9));
+  });
+
+  it('keeps apart the paths of a session and of the one made anew under its name', async () => {
+    world = new World();
+    await until(() => world.opened === 1);
+    socket.tell('first', 9);
+    await until(() => world.asked.length === 1);
+    world.id = 'second';
+    socket.tell('second', 5);
+    await until(() => {
+      hurry();
+      return world.opened === 2;
+    });
+    socket.tell('second', 5);
+    await until(() => world.asked.length === 2);
+    // The answer about the first comes when it is wanted no more; that about the second is still awaited.
+    world.tellPaths(0, 7);
+    for (let n = 0; n < 10; ++n) await new Promise((resolve) => setImmediate(resolve));
+    socket.tell('second', 6);
+    assert.deepEqual([world.asked, world.filled], [['0', '0'], 0]);
+    world.tellPaths(1, 6);
+    await until(() => world.filled === 1);
+    assert.deepEqual(world.asked, ['0', '0']);
+    assert.deepEqual(world.trails[1]?.get('r1').points, pointsOf(6));
+    assert.deepEqual(world.trails[0]?.get('r1').points, []);
+  });
+});

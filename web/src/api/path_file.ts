@@ -1,0 +1,116 @@
+/** A session's paths as one file, put together from as many pages as it takes. */
+import { fetchSession } from './api';
+import { fields, list, MalformedAnswer, number, text } from './decode';
+import { fetchFile, trajectoryPath } from './export';
+import { pagesOf } from './path_pages';
+
+const kGeoJson = 'application/geo+json';
+
+/** One robot's part of a page. */
+interface PathPart {
+  robot: string;
+  points: number;
+  /** Separated by commas, as they stand in the file: values would be many times as long. */
+  coordinates: string;
+}
+
+export interface PathPage {
+  frame: string;
+  units: string;
+  revision: number;
+  parts: PathPart[];
+}
+
+/** Takes pages in their order, and has the members that one answer of the server would have. */
+export class PathFile {
+  private newest: PathPage | null = null;
+  private readonly paths = new Map<string, PathPart[]>();
+
+  add(page: PathPage): void {
+    this.newest = page;
+    for (const part of page.parts) {
+      const parts = this.paths.get(part.robot) ?? [];
+      this.paths.set(part.robot, parts);
+      parts.push(part);
+    }
+  }
+
+  blob(): Blob {
+    const { frame, units, revision } = this.newest ?? { frame: 'map', units: 'm', revision: 0 };
+    const head = { type: 'FeatureCollection', frame_id: frame, units, revision };
+    const features = [...this.paths].flatMap(([robot, parts], index) => [
+      index > 0 ? ',' : '',
+      ...featureOf(robot, parts),
+    ]);
+    return new Blob([opened(head), ',"features":[', ...features, ']}'], { type: kGeoJson });
+  }
+}
+
+/**
+ * The paths of all that the session has when it is asked for.
+ *
+ * @param progress told how many bytes have come
+ * @throws Refused with the server's sentence
+ */
+export async function fetchPathFile(
+  session: string,
+  signal: AbortSignal,
+  progress: (bytes: number) => void,
+): Promise<Blob> {
+  const { revision: wanted } = await fetchSession(session, signal);
+  const file = new PathFile();
+  let before = 0;
+  const fetchAfter = async (revision: number): Promise<PathPage> => {
+    const page = await fetchFile(trajectoryPath(session, revision), signal, (bytes) => progress(before + bytes));
+    before += page.size;
+    return decodePathPage(await page.text());
+  };
+  for await (const page of pagesOf(0, () => wanted, fetchAfter)) file.add(page);
+  return file.blob();
+}
+
+export function decodePathPage(body: string): PathPage {
+  const collection = fields(parse(body), 'trajectory');
+  return {
+    frame: text(collection['frame_id'], 'frame_id'),
+    units: text(collection['units'], 'units'),
+    revision: number(collection['revision'], 'revision'),
+    parts: list(collection['features'], 'features').map(decodePart),
+  };
+}
+
+function decodePart(json: unknown): PathPart {
+  const feature = fields(json, 'features[]');
+  const properties = fields(feature['properties'], 'features[].properties');
+  const geometry = fields(feature['geometry'], 'features[].geometry');
+  const coordinates = list(geometry['coordinates'], 'features[].geometry.coordinates');
+  return {
+    robot: text(properties['robot'], 'features[].properties.robot'),
+    points: coordinates.length,
+    coordinates: JSON.stringify(coordinates).slice(1, -1),
+  };
+}
+
+function parse(body: string): unknown {
+  try {
+    return JSON.parse(body);
+  } catch {
+    throw new MalformedAnswer('trajectory is not JSON');
+  }
+}
+
+/** A path of one point is no line. */
+function featureOf(robot: string, parts: PathPart[]): string[] {
+  const points = parts.reduce((sum, part) => sum + part.points, 0);
+  const feature = { type: 'Feature', id: robot, properties: { robot, points } };
+  const geometry = { type: points < 2 ? 'MultiPoint' : 'LineString' };
+  const coordinates = parts
+    .filter((part) => part.points > 0)
+    .flatMap((part, index) => [index > 0 ? ',' : '', part.coordinates]);
+  return [opened(feature), ',"geometry":', opened(geometry), ',"coordinates":[', ...coordinates, ']}}'];
+}
+
+/** The text of an object that more members are to follow in. */
+function opened(value: object): string {
+  return JSON.stringify(value).slice(0, -1);
+}
