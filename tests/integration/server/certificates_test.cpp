@@ -114,8 +114,8 @@ TEST_F(CertificatesTest, OfClientsAreAskedForOnBothPortsWhereSomebodyIsNamedWhoS
         EXPECT_THAT(foreigner.complaint(), HasSubstr("alert unknown ca"));
     }
     for (const auto* port : {"http", "robot"}) {
-        EXPECT_THAT(log(), HasSubstr(fmt::format("port={} who=127.0.0.1 token=- reason=no_certificate", port)));
-        EXPECT_THAT(log(), HasSubstr(fmt::format("port={} who=127.0.0.1 token=- reason=foreign_certificate", port)));
+        wait_for_log(fmt::format("port={} who=127.0.0.1 token=- reason=no_certificate", port));
+        wait_for_log(fmt::format("port={} who=127.0.0.1 token=- reason=foreign_certificate", port));
     }
     ChildProcess known(program("scanloom-robot"),
                        {"--server", server_->robot_address(), "--session", "s", "--robot", "r", "--tls-ca",
