@@ -18,6 +18,7 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kReplaced: return "replaced";
     case Errc::kGone: return "gone";
     case Errc::kStoreFailed: return "store_failed";
+    case Errc::kDataLoss: return "data_loss";
     case Errc::kShuttingDown: return "shutting_down";
     case Errc::kUnauthorized: return "unauthorized";
     case Errc::kUnreachable: return "unreachable";

@@ -25,7 +25,8 @@ enum class Errc {
     kTimeout,            ///< a deadline passed
     kReplaced,           ///< the same robot connected again
     kGone,               ///< the session was deleted while in use
-    kStoreFailed,        ///< the store could not read or write
+    kStoreFailed,        ///< the store could not read or write; later it may
+    kDataLoss,           ///< what was stored is damaged or missing; waiting does not mend it
     kShuttingDown,       ///< the server is draining
     kUnauthorized,       ///< no valid token
     kUnreachable,        ///< the peer cannot be reached, or hung up

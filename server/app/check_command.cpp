@@ -93,7 +93,7 @@ void check_sessions(store::AtRest& store, session::CheckDepth depth, Findings& f
     }
     for (const auto id : store.without_record) {
         findings.damaged({fmt::format("#{}", id), 0,
-                          Error{Errc::kStoreFailed, "its record is missing: what it was called, and its settings"}});
+                          Error{Errc::kDataLoss, "its record is missing: what it was called, and its settings"}});
     }
 }
 
@@ -104,7 +104,8 @@ ExitCode check_store(const ServerOptions& options) {
     auto store = store::open_at_rest(options.store);
     Findings findings;
     if (!store) {
-        if (store.error().code != Errc::kStoreFailed) { // nothing could be looked at
+        if (store.error().code != Errc::kStoreFailed &&
+            store.error().code != Errc::kDataLoss) { // nothing could be looked at
             standard_error().write(fmt::format("scanloom-server: {}\n", store.error().message));
             return kExitFailed;
         }

@@ -25,6 +25,7 @@ std::string_view title_of(Errc code) {
     case Errc::kReplaced: return "Replaced";
     case Errc::kGone: return "Deleted meanwhile";
     case Errc::kStoreFailed: return "The store failed";
+    case Errc::kDataLoss: return "The store is damaged";
     case Errc::kShuttingDown: return "Not available now";
     case Errc::kUnauthorized: return "Not authorized";
     case Errc::kUnreachable: return "Unreachable";
@@ -68,6 +69,7 @@ Status status_of(Errc code) noexcept {
     case Errc::kReplaced: return Status::conflict;
     case Errc::kGone: return Status::gone;
     case Errc::kStoreFailed: return Status::service_unavailable;
+    case Errc::kDataLoss: return Status::internal_server_error;
     case Errc::kShuttingDown: return Status::service_unavailable;
     case Errc::kUnauthorized: return Status::unauthorized;
     case Errc::kUnreachable: return Status::bad_gateway;

@@ -61,7 +61,7 @@ Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId sessio
     if (!complete) return complete.error();
     recovered.complete = *complete;
     if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {
-        return Error{Errc::kStoreFailed,
+        return Error{Errc::kDataLoss,
                      fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already; the store is "
                                  "damaged; {}",
                                  recovered.projection.revision(), recovered.projection.newest_restored(),

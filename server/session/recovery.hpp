@@ -20,7 +20,7 @@ struct Recovered {
 };
 
 /// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used.
-/// Errors  kStoreFailed, kMalformed: the log is damaged; the message names the entry.
+/// Errors  kDataLoss, kMalformed: the log is damaged; the message names the entry. kStoreFailed.
 ///         kOverloaded: memory ran out.
 [[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                         const std::atomic<bool>& stop);

@@ -1,3 +1,4 @@
+#include "server/session/damage.hpp"
 #include "server/session/session_registry.hpp"
 
 #include <boost/asio/post.hpp>
@@ -68,8 +69,7 @@ void SessionRegistry::read(const Wanted& wanted) {
     pages_->give_back(static_cast<std::int64_t>(pages)); // the session has its own share
     if (session && *session) return roster_.arrived(std::move(*session), config_.clock());
     if (session) return roster_.failed(info.name, shutting_down());
-    const bool may_pass = session.error().code == Errc::kOverloaded || log_.stats().last_error;
-    if (may_pass) return roster_.failed(info.name, session.error());
+    if (!is_damage(session.error()) || log_.stats().last_error) return roster_.failed(info.name, session.error());
     keep_damaged(info.name, info.id, session.error());
     roster_.remove(info.name, session.error());
 }

@@ -3,6 +3,7 @@
 #include "server/store/advice.hpp"
 #include "server/store/log_end.hpp"
 #include "server/store/record.hpp"
+#include "server/store/status_code.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/convenience.h>
@@ -48,12 +49,12 @@ Error no_such_session(SessionId session) {
 }
 
 Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
-    return {Errc::kStoreFailed, fmt::format("the store {} cannot read session {}: {}; {}", store, session,
-                                            status.ToString(), kBringBackOrRemove)};
+    return {code_of(status), fmt::format("the store {} cannot read session {}: {}; {}", store, session,
+                                         status.ToString(), kBringBackOrRemove)};
 }
 
 Error damaged(const std::string& store, SessionId session, std::string_view what) {
-    return {Errc::kStoreFailed,
+    return {Errc::kDataLoss,
             fmt::format("the store {} is damaged: {} of session {}; {}", store, what, session, kBringBackOrRemove)};
 }
 
@@ -91,7 +92,7 @@ RocksdbScanLog::~RocksdbScanLog() { watch_->set_tell(nullptr); }
 
 /// RocksDB would try again each second, for ever.
 void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
-    Error damage{Errc::kStoreFailed,
+    Error damage{Errc::kDataLoss,
                  fmt::format("the store {} is damaged: {}; what is stored from now on is whole, but its files are no "
                              "longer merged and use more disk; when you can, {}",
                              name(), reason.ToString(), kBringBack)};
@@ -142,7 +143,7 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
                          damage == ends_.damaged.end() ? std::nullopt : std::optional(damage->second)});
     }
     if (const auto status = scan.iterator->status(); !status.ok()) {
-        return Error{Errc::kStoreFailed,
+        return Error{code_of(status),
                      fmt::format("the store {} cannot list its sessions: {}", name(), status.ToString())};
     }
     return found;

@@ -25,7 +25,7 @@ using SessionId = std::uint64_t;
 
 struct StoredSession {
     SessionId id = 0;
-    Result<std::string> record;    ///< opaque bytes; kStoreFailed: damaged
+    Result<std::string> record;    ///< opaque bytes; kDataLoss: damaged
     std::optional<Error> damage{}; ///< of the log's end: nothing can be appended
 };
 
@@ -56,9 +56,9 @@ struct StoreStats {
 ///         that survives is never ahead of the log, provided it was handed over after the entries
 ///         it covers were; they need not be acknowledged yet.
 /// Errors  kNotFound: no such session, or it was removed. kConflict: an append that does not
-///         continue its session's log. kStoreFailed: reading or writing failed, or what was read
-///         is damaged. After one failed write or sync every change fails, until the store is
-///         opened again: what the disk holds is not known before that. Reading goes on.
+///         continue its session's log. kDataLoss: what was read is damaged. kStoreFailed:
+///         reading or writing failed. After one failed write or sync every change fails, until the
+///         store is opened again: what the disk holds is not known before that. Reading goes on.
 /// Thread  any, at the same time. Everything but append() and stats() may wait for the disk: keep
 ///         it off the threads that serve sockets. From within `done` only append() may be called.
 class ScanLog {
@@ -82,7 +82,7 @@ public:
     [[nodiscard]] virtual Result<std::vector<StoredSession>> sessions() = 0;
 
     /// The revision of the session's last entry, 0 for an empty log.
-    /// Errors  kNotFound; kStoreFailed: damaged.
+    /// Errors  kNotFound; kDataLoss.
     [[nodiscard]] virtual Result<Revision> end_of(SessionId session) = 0;
 
     /// Durable when it returns: record, entries and checkpoint are gone. The disk is freed in time.
@@ -103,7 +103,7 @@ public:
 
     /// Visits the entries after `after` in order, of the log as it is now; stops at the visitor's error.
     ///
-    /// Errors  kStoreFailed, naming session and revision: a damaged entry; a missing one; a log that
+    /// Errors  kDataLoss, naming session and revision: a damaged entry; a missing one; a log that
     ///         ends before `after`, as a checkpoint ahead of its log would have it.
     [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
 

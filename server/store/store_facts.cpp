@@ -41,7 +41,8 @@ bool is_empty(rocksdb::DB& database) {
 
 Error cannot_open(const fs::path& directory, const rocksdb::Status& status) {
     if (status.IsCorruption()) {
-        return failure(directory, fmt::format("it is damaged ({}); {}", status.ToString(), kBringBack));
+        return {Errc::kDataLoss, fmt::format("the store {} cannot be opened: it is damaged ({}); {}",
+                                             directory.native(), status.ToString(), kBringBack)};
     }
     if (status.IsNoSpace()) return failure(directory, fmt::format("the disk is full ({})", status.ToString()));
     return failure(directory, status.ToString());

@@ -21,6 +21,11 @@ void MemoryScanLog::fail_from_next_change(Error error) {
     failed_ = std::move(error);
 }
 
+void MemoryScanLog::fail_reading(std::optional<Error> error) {
+    const std::lock_guard lock(mutex_);
+    unreadable_ = std::move(error);
+}
+
 void MemoryScanLog::refuse_appends(std::size_t count, std::size_t stored) {
     const std::lock_guard lock(mutex_);
     refused_ = count;
@@ -129,6 +134,7 @@ Result<MemoryScanLog::Session> MemoryScanLog::copy_of(SessionId session) const {
     const std::lock_guard lock(mutex_);
     const auto found = sessions_.find(session);
     if (found == sessions_.end()) return no_such_session(session);
+    if (unreadable_) return *unreadable_;
     return found->second;
 }
 
@@ -136,7 +142,7 @@ Result<> MemoryScanLog::read(SessionId session, Revision after, const VisitEntry
     const auto copy = copy_of(session);
     if (!copy) return copy.error();
     if (copy->entries.size() < after) {
-        return Error{Errc::kStoreFailed, fmt::format("the log of session {} ends before revision {}", session, after)};
+        return Error{Errc::kDataLoss, fmt::format("the log of session {} ends before revision {}", session, after)};
     }
     for (Revision revision = after + 1; revision <= copy->entries.size(); ++revision) {
         if (auto visited = visit(revision, copy->entries[revision - 1]); !visited) return visited;

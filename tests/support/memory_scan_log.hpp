@@ -24,6 +24,9 @@ public:
     /// The next appends but `stored` of them are refused, as by a disk without room: `count` of them.
     void refuse_appends(std::size_t count, std::size_t stored = 0);
 
+    /// What is read fails with this error from now on; nothing: it does not any more.
+    void fail_reading(std::optional<Error> error);
+
     /// As opening the store again does: changes succeed again.
     void reopen();
 
@@ -71,6 +74,7 @@ private:
     std::map<SessionId, Session> sessions_;
     SessionId next_session_ = 1;
     std::optional<Error> failed_;
+    std::optional<Error> unreadable_;
     std::size_t stored_before_refusing_ = 0;
     std::size_t refused_ = 0; // appends that are still to be
     bool holding_ = false;

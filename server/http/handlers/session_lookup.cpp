@@ -2,6 +2,7 @@
 
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
+#include "server/session/damage.hpp"
 
 #include <fmt/format.h>
 
@@ -22,11 +23,11 @@ Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry&
 std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
-        if (found->second.code == Errc::kOverloaded) { // nothing is wrong with it
-            return Error{Errc::kOverloaded,
+        if (!session::is_damage(found->second)) {
+            return Error{found->second.code,
                          fmt::format("the session {} is not loaded: {}", name, found->second.message)};
         }
-        return Error{Errc::kInternal,
+        return Error{Errc::kDataLoss,
                      fmt::format("the session {} could not be recovered: {}; waiting will not mend it, DELETE forgets "
                                  "it",
                                  name, found->second.message)};

@@ -64,6 +64,9 @@ TEST_F(BackgroundCheckTest, TellsItInReadinessAndMetricsAndStaysReady) {
         EXPECT_EQ(session.at("state"), "ok");
         EXPECT_EQ(session.at("damage"), damaged.at(0).at("reason"));
         EXPECT_EQ(server.get_json("/api/v1/sessions").at("sessions").at(0).at("damage"), session.at("damage"));
+        const auto woven = server.get("/api/v1/sessions/one/digest?until=599"); // reads the log
+        EXPECT_EQ(woven.status, 500U) << "waiting does not mend it: " << woven.body;
+        EXPECT_THAT(woven.body, HasSubstr("--repair"));
     });
     EXPECT_THAT(store::bytes_of(place_.path() / "log"), HasSubstr("session 'one' is damaged: "));
 }

@@ -78,7 +78,7 @@ TEST_F(RecoveryTest, ALogThatEndsBeforeItsCheckpointIsReported) {
     damage("head", ahead_of_the_log);
     const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
-    EXPECT_EQ(recovered.error().code, Errc::kStoreFailed);
+    EXPECT_EQ(recovered.error().code, Errc::kDataLoss);
     EXPECT_THAT(recovered.error().message, HasSubstr("ends before revision 66138"));
 }
 

@@ -203,6 +203,17 @@ TEST_F(SleepingSessions, ThatTurnOutToBeDamagedAreReported) {
     EXPECT_EQ(registry_->wake("a").error().code, Errc::kNotFound);
 }
 
+TEST_F(SleepingSessions, AreNotTakenForDamagedWhereTheDiskCannotBeRead) {
+    const auto digest = leave_behind("a");
+    let_sleep({"a"});
+    log_.fail_reading(Error{Errc::kStoreFailed, "input/output error"});
+    EXPECT_EQ(registry_->wake("a").error(), (Error{Errc::kStoreFailed, "input/output error"}));
+    EXPECT_THAT(registry_->damaged(), IsEmpty());
+    EXPECT_THAT(registry_->all(), SizeIs(1));
+    log_.fail_reading({});
+    EXPECT_EQ(digest_when_woken("a"), digest);
+}
+
 TEST_F(SleepingSessions, CanBeRemoved) {
     leave_behind("a");
     let_sleep({"a"});

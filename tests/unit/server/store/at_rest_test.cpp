@@ -85,7 +85,7 @@ TEST_F(AtRestTest, DamageThatAStartWouldRefuseIsTold) {
     EXPECT_THAT(open_at_rest(copy()).error().message, HasSubstr("MANIFEST-"));
     copy_store(directory_.path() / "original", copy());
     fs::remove(only_file_like(copy(), ".sst"));
-    EXPECT_EQ(open_at_rest(copy()).error().code, Errc::kStoreFailed);
+    EXPECT_EQ(open_at_rest(copy()).error().code, Errc::kDataLoss);
 }
 
 TEST_F(AtRestTest, AStoreInUseIsRefusedAndOthersMayLookToo) {

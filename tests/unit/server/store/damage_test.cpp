@@ -216,7 +216,7 @@ TEST_F(TableStore, AFlippedBitInATableIsReportedOrHarmless) {
             continue;
         }
         ++reported;
-        EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+        EXPECT_EQ(entries.error().code, Errc::kDataLoss);
         EXPECT_THAT(entries.error().message, HasSubstr(file.filename().native()));
     }
     EXPECT_GE(reported, 50) << "nearly all of a table is entries";

@@ -193,7 +193,7 @@ TEST_F(OpenRocksdb, AMissingEntryIsReportedWithItsRevision) {
     write_raw(directory_, [&](rocksdb::DB& database) { return database.Delete({}, entry_key(session, 3)); });
     const auto entries = entries_after(*open_rocksdb(directory_).value(), session, 1);
     ASSERT_FALSE(entries);
-    EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+    EXPECT_EQ(entries.error().code, Errc::kDataLoss);
     EXPECT_THAT(entries.error().message, HasSubstr("the entry of revision 3 is missing of session 1"));
 }
 
@@ -237,7 +237,7 @@ TEST_F(OpenRocksdb, ADamagedSessionHoldsUpNoOther) {
     ASSERT_THAT(sessions, SizeIs(3));
     EXPECT_THAT(sessions[0].record.error().message, HasSubstr("the record of session 1"));
     EXPECT_FALSE(sessions[0].damage);
-    EXPECT_THAT(sessions[1].damage.value().message, HasSubstr("the end of the log of session 2"));
+    EXPECT_THAT(sessions[1].damage.value().message, HasSubstr("where the log of session 2 ends"));
     EXPECT_FALSE(sessions[2].damage);
     EXPECT_EQ(append_and_wait(*log, with_damaged_end, 1, {"entry"}).error(), *sessions[1].damage);
     EXPECT_TRUE(append_and_wait(*log, healthy, 1, {"entry"}));

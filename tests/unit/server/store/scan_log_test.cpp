@@ -127,7 +127,7 @@ TYPED_TEST(ScanLogContract, ReadingBeyondTheEndOfTheLogIsAnError) {
     ASSERT_TRUE(append_and_wait(this->log_, session, 1, {"a", "b"}));
     const auto entries = entries_after(this->log_, session, 3);
     ASSERT_FALSE(entries);
-    EXPECT_EQ(entries.error().code, Errc::kStoreFailed);
+    EXPECT_EQ(entries.error().code, Errc::kDataLoss);
     EXPECT_THAT(entries.error().message, HasSubstr("ends before revision 3"));
 }
 
