@@ -97,6 +97,7 @@ void Server::join_pools() {
     changing_.join();
     reading_.join();
     checkpointing_.join();
+    history_.join();
     survey_.join();
     serving_.join();
     weaving_.join();
@@ -171,8 +172,8 @@ Result<> Server::listen() {
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
         io_,
-        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), awaiting_.get_executor(),
-         planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
+        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), history_.get_executor(),
+         awaiting_.get_executor(), planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
         config,
         {[this](const http::Request& request) { return api_.answer(request); },
          [this](const http::Request& request) { return api_.look(request); },

@@ -5,9 +5,9 @@
 #include "server/http/incoming.hpp"
 #include "server/http/problem.hpp"
 #include "server/live/invitation.hpp"
+#include "server/sockets/compute_on.hpp"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/read.hpp>
@@ -295,10 +295,10 @@ asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::s
         if (!taken) co_return problem(taken.error(), instance_of(request.target));
         slot = std::move(*taken);
     }
-    auto work = [service = service_, request = std::move(request)]() -> asio::awaitable<Response> {
-        co_return guarded(service->answering.answer, request);
+    auto work = [service = service_, request = std::move(request)] {
+        return guarded(service->answering.answer, request);
     };
-    co_return co_await asio::co_spawn(executor_of(service_->executors, lane), std::move(work), asio::use_awaitable);
+    co_return co_await sockets::compute_on(executor_of(service_->executors, lane), std::move(work));
 }
 
 asio::awaitable<void> Connection::refuse(beast::error_code reason) {

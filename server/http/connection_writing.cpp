@@ -1,8 +1,8 @@
 #include "server/http/connection.hpp"
 #include "server/http/date.hpp"
+#include "server/sockets/compute_on.hpp"
 
 #include <boost/asio/as_tuple.hpp>
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <fmt/format.h>
@@ -55,9 +55,8 @@ asio::awaitable<bool> Connection::write(const Response& response, Manner manner)
 /// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
 asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
     for (;;) {
-        auto make = [&stream]() -> asio::awaitable<Result<std::string>> { co_return next_guarded(stream); };
         const Result<std::string> piece =
-            co_await asio::co_spawn(service_->executors.survey, std::move(make), asio::use_awaitable);
+            co_await sockets::compute_on(service_->executors.history, [&stream] { return next_guarded(stream); });
         if (!piece) {
             spdlog::error("an answer broke off: {}", piece.error().message);
             co_return false;

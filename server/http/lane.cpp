@@ -21,9 +21,9 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kMetrics: return Lane::kTelling;
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
     case Operation::kDifference:
-    case Operation::kDifferencePng:
+    case Operation::kDifferencePng: return Lane::kSurvey;
     case Operation::kTrajectory:
-    case Operation::kLog: return Lane::kSurvey;
+    case Operation::kLog: return Lane::kHistory;
     case Operation::kDigest:
     case Operation::kMapPng:
     case Operation::kMapPgm:

@@ -16,8 +16,9 @@ enum class Lane {
     kAtOnce,    ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
     kTelling,   ///< a look at the system: metrics
     kServing,   ///< its own work on a part of a snapshot: tiles (but see look_at_tile()), facts
-    kSurvey,    ///< its own work on a whole map or log, which may take a second: digests, images, paths, first drawings
-                ///< of tiles that show much
+    kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, first drawings of tiles that
+                ///< show much
+    kHistory,   ///< the disk, and its own work on a part of a log, which may take seconds: paths, the log itself
     kWeaving,   ///< maps that are to be woven first
     kImporting, ///< as kChanging, with a large body
     kPlanning,  ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time

@@ -30,6 +30,7 @@ const boost::asio::any_io_executor& executor_of(const Executors& executors, Lane
     switch (lane) {
     case Lane::kTelling: return executors.telling;
     case Lane::kSurvey: return executors.survey;
+    case Lane::kHistory: return executors.history;
     case Lane::kWeaving: return executors.weaving;
     case Lane::kPlanning: return executors.planning;
     case Lane::kImporting:

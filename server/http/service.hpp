@@ -44,6 +44,7 @@ struct Executors {
     boost::asio::any_io_executor telling;
     boost::asio::any_io_executor serving;
     boost::asio::any_io_executor survey;
+    boost::asio::any_io_executor history; ///< the pieces of streamed bodies, too
     boost::asio::any_io_executor weaving;
     boost::asio::any_io_executor planning;
     boost::asio::any_io_executor changing;

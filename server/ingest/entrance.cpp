@@ -1,9 +1,10 @@
 #include "server/ingest/entrance.hpp"
 
 #include "server/mapping/map_config.hpp"
+#include "server/session/damage.hpp"
+#include "server/sockets/compute_on.hpp"
 
 #include <boost/asio/async_result.hpp>
-#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -19,9 +20,8 @@ using Found = Result<std::shared_ptr<session::Session>>;
 
 asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
                               asio::any_io_executor may_wait) {
-    auto created = co_await asio::co_spawn(
-        may_wait, [&]() -> asio::awaitable<Found> { co_return sessions.create(hello.session, *hello.create, maker); },
-        asio::use_awaitable);
+    auto created = co_await sockets::compute_on(std::move(may_wait),
+                                                [&] { return sessions.create(hello.session, *hello.create, maker); });
     if (!created && created.error().code == Errc::kInvalidField) co_return prefixed("hello.create.", created.error());
     co_return created;
 }
@@ -49,7 +49,7 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
             Errc::kNotFound,
             fmt::format("hello.session is '{}', which does not exist; create it first, or send hello.create", name)};
     }
-    if (damage->second.code == Errc::kOverloaded) return damage->second; // nothing is wrong with it
+    if (!session::is_damage(damage->second)) return damage->second;
     return {Errc::kConflict,
             fmt::format("hello.session is '{}', whose log is damaged; delete the session first, or choose another name",
                         name)};

@@ -1,6 +1,7 @@
 #include "server/live/viewer.hpp"
 
 #include "common/wire/live.hpp"
+#include "server/sockets/compute_on.hpp"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -170,8 +171,8 @@ asio::awaitable<void> Viewer::tell_events() {
         if (ending_ || !reading_) co_return;
         changed_ = false;
         if (wishes_) narrator_.set_wishes(*std::exchange(wishes_, std::nullopt));
-        auto work = [self = shared_from_this()]() -> asio::awaitable<Narration> { co_return self->narrate(); };
-        const Narration narration = co_await asio::co_spawn(services_.showing, std::move(work), asio::use_awaitable);
+        auto work = [self = shared_from_this()] { return self->narrate(); };
+        const Narration narration = co_await sockets::compute_on(services_.showing, std::move(work));
         look_again_ = narration.look_again;
         if (narration.end) end(*narration.end);
         if (!narration.event) continue;

@@ -63,7 +63,7 @@ const std::vector<Folder> kFolders = {
      .pure = true},
     {.path = "server/live",
      .may_include = {"common", "server/guard", "server/guide", "server/mapping", "server/metrics", "server/session",
-                     "server/store"}},
+                     "server/sockets", "server/store"}},
     {.path = "server/http",
      .may_include = {"common", "server/access", "server/classify", "server/exchange", "server/grid", "server/guard",
                      "server/guide", "server/live", "server/mapping", "server/metrics", "server/planning",

@@ -18,8 +18,12 @@ TEST(Lane, WhatNeedsNothingIsAnsweredAtOnce) {
 TEST(Lane, WholeMapsDoNotHoldUpParts) {
     const std::string session = "/api/v1/sessions/s";
     for (const char* whole : {"/digest", "/map.png", "/map.csv", "/map.npy", "/map.pgm?bbox=0,0,1,1",
-                              "/difference?weave=0", "/difference.png?with=0", "/trajectory.geojson"}) {
+                              "/difference?weave=0", "/difference.png?with=0"}) {
         EXPECT_EQ(lane("GET", session + whole), Lane::kSurvey) << whole;
+    }
+    for (const char* of_the_log :
+         {"/trajectory.geojson", "/trajectory.geojson?since=3&times=true", "/log?format=clf"}) {
+        EXPECT_EQ(lane("GET", session + of_the_log), Lane::kHistory) << of_the_log;
     }
     for (const char* part :
          {"", "/map.yaml", "/changes?since=3", "/goals.geojson", "/tiles/occupancy.json", "/tiles/occupancy/5/0/0.png",

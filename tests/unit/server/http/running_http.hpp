@@ -54,8 +54,8 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(),  serving_.get_executor(),  survey_.get_executor(), weaving_.get_executor(),
-                planning_.get_executor(), changing_.get_executor(), showing_.get_executor()};
+        return {telling_.get_executor(), serving_.get_executor(),  survey_.get_executor(),   history_.get_executor(),
+                weaving_.get_executor(), planning_.get_executor(), changing_.get_executor(), showing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 
@@ -65,6 +65,7 @@ private:
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool serving_{1};
     boost::asio::thread_pool survey_{1};
+    boost::asio::thread_pool history_{1};
     boost::asio::thread_pool weaving_{1};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{1};
