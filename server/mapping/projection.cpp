@@ -197,6 +197,7 @@ ProjectionState Projection::state() const {
                                                                      robot.newest,
                                                                      {}});
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
+        if (robot.newest) state.pages += 1; // what restore() keeps of its path
     }
     return state;
 }
@@ -213,7 +214,9 @@ void Projection::restore(const ProjectionState& state) {
         robot.state.last_seq = saved.last_seq;
         robot.state.scan_count = saved.scan_count;
         robot.newest = saved.newest;
-        robot.trajectory = Trajectory(saved.scan_count);
+        const bool has_point = saved.newest && saved.scan_count > 0; // the newest one; those before are in the log
+        robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));
+        if (has_point) robot.trajectory.append(*saved.newest);
         for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;
     }
 }

@@ -9,12 +9,42 @@
 namespace scanloom::session {
 namespace {
 
-const Error kEnough{Errc::kShuttingDown, "what follows is kept in memory, or too much"};
+const Error kEnough{Errc::kInternal, "what follows is kept in memory, or too much"};
+
+constexpr Revision kAskEvery = 1024; // entries: a few milliseconds
 
 /// From this revision on, a robot's points are kept.
 Revision kept_from(const mapping::Snapshot& maps, const mapping::TrajectoryView& path) {
     if (path.begin() == 0) return 0;
     return path.begin() < path.size() ? path[path.begin()].revision : maps.revision + 1;
+}
+
+/// How many of a robot's old points are not beyond it.
+std::ptrdiff_t count_until(const std::vector<mapping::TrajectoryPoint>& points, Revision until) {
+    return std::ranges::upper_bound(points, until, {}, &mapping::TrajectoryPoint::revision) - points.begin();
+}
+
+/// All that would be told, of all robots.
+std::size_t count_until(const OldPaths& old, const mapping::Snapshot& maps, Revision since, Revision until) {
+    std::size_t points = 0;
+    for (std::size_t robot = 0; robot < maps.robots.size(); ++robot) {
+        const auto& kept = maps.robots[robot].trajectory;
+        points += static_cast<std::size_t>(count_until(old.robots[robot], until)) + kept.first_after(until) -
+                  kept.first_after(since);
+    }
+    return points;
+}
+
+/// Leaves out what is beyond the last revision up to which they are not more.
+void shorten(OldPaths& old, const mapping::Snapshot& maps, Revision since, std::size_t points_max) {
+    if (count_until(old, maps, since, old.until) <= points_max) return;
+    Revision beyond = old.until;
+    old.until = since;
+    while (beyond - old.until > 1) {
+        const Revision middle = old.until + (beyond - old.until) / 2;
+        (count_until(old, maps, since, middle) <= points_max ? old.until : beyond) = middle;
+    }
+    for (auto& points : old.robots) points.resize(static_cast<std::size_t>(count_until(points, old.until)));
 }
 
 } // namespace
@@ -29,29 +59,35 @@ std::size_t count_old_points(const mapping::Snapshot& maps, Revision since) {
 }
 
 Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, const mapping::Snapshot& maps,
-                                Revision since, std::size_t points_max) {
+                                Revision since, const std::function<bool()>& is_wanted, std::size_t points_max) {
     OldPaths paths{std::vector<std::vector<mapping::TrajectoryPoint>>(maps.robots.size()), maps.revision};
     std::vector<Revision> kept;
     for (const auto& robot : maps.robots) kept.push_back(kept_from(maps, robot.trajectory));
     const Revision all_kept = kept.empty() ? 0 : *std::ranges::max_element(kept);
-    if (all_kept <= since + 1) return paths;
     std::size_t points = 0;
-    const auto read = log.read(session, since, [&](Revision revision, std::string_view bytes) -> Result<> {
+    const auto visit = [&](Revision revision, std::string_view bytes) -> Result<> {
         if (revision >= all_kept) return kEnough;
+        if (revision % kAskEvery == 0 && !is_wanted()) {
+            return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
+        }
         if (points == points_max) {
             paths.until = revision - 1;
             return kEnough;
         }
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) {
-            return Error{Errc::kStoreFailed, fmt::format("log entry {}: {}", revision, taken.error().message)};
+            return Error{Errc::kDataLoss, fmt::format("log entry {}: {}", revision, taken.error().message)};
         }
         if (!*taken || (*taken)->robot >= kept.size() || revision >= kept[(*taken)->robot]) return {};
         paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, (*taken)->pose});
         ++points;
         return {};
-    });
-    if (!read && read.error() != kEnough) return read.error();
+    };
+    if (all_kept > since + 1) {
+        const auto read = log.read(session, since, visit);
+        if (!read && read.error() != kEnough) return read.error();
+    }
+    shorten(paths, maps, since, points_max);
     return paths;
 }
 

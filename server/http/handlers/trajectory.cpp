@@ -97,11 +97,12 @@ void append_feature(std::string& text, const std::string& robot, const Points& p
 
 std::size_t bytes_about(const mapping::Snapshot& snapshot, const Asked& asked) {
     const std::size_t point_bytes = asked.with_times ? 60 : 24;
-    const std::size_t old = std::min(session::count_old_points(snapshot, asked.since), session::kOldPointsMax);
+    const std::size_t old = session::count_old_points(snapshot, asked.since);
     std::size_t points = old;
     for (const auto& robot : snapshot.robots)
         points += robot.trajectory.size() - robot.trajectory.first_after(asked.since);
-    return points * point_bytes + old * sizeof(mapping::TrajectoryPoint);
+    return std::min(points, session::kPathPointsMax) * point_bytes +
+           std::min(old, session::kPathPointsMax) * sizeof(mapping::TrajectoryPoint);
 }
 
 } // namespace
@@ -120,7 +121,8 @@ Result<Response> get_trajectory(session::SessionRegistry& sessions, store::ScanL
     const Asked asked{since_in(*snapshot, *since), *with_times};
     auto slot = slots.take(bytes_about(*snapshot, asked));
     if (!slot) return slot.error();
-    const auto old = session::read_old_paths(log, (*session)->info().id, *snapshot, asked.since);
+    const auto old = session::read_old_paths(log, (*session)->info().id, *snapshot, asked.since,
+                                             [&] { return !sessions.is_draining(); });
     if (!old) return old.error();
     std::string text = fmt::format(
         R"({{"type":"FeatureCollection","frame_id":"map","units":"m","revision":{},"features":[)", old->until);

@@ -205,7 +205,7 @@ TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
     EXPECT_EQ(a.robots.front().pose, b.robots.front().pose);
     ASSERT_EQ(a.robots.front().trajectory.size(), b.robots.front().trajectory.size());
     EXPECT_EQ(a.robots.front().trajectory[299], b.robots.front().trajectory[299]);
-    EXPECT_EQ(b.robots.front().trajectory.begin(), 201U - kBeforeScans) << "what came before is in the log";
+    EXPECT_EQ(b.robots.front().trajectory.begin(), 200U - kBeforeScans) << "what came before the newest is in the log";
     EXPECT_EQ(a.robots.front().trajectory.first_after(150 + kBeforeScans), 150U);
     EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 300U);
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
+#include <thread>
 #include <vector>
 
 namespace scanloom::mapping {
@@ -77,6 +79,38 @@ TEST(Trajectory, BranchesGoOnByThemselves) {
             ASSERT_EQ(view[n], n < before ? point(n) : TrajectoryPoint{});
         }
     }
+}
+
+// Under ThreadSanitizer this says whether what readers and branches share with the writer is safe.
+TEST(Trajectory, GrowsWhileItIsReadAndBranchesGoTheirOwnWay) {
+    constexpr std::size_t kPoints = 2 * kTrajectoryKept;
+    Trajectory trajectory;
+    std::mutex mutex;
+    TrajectoryView newest;
+    std::thread reader([&] {
+        for (std::size_t size = 0; size < kPoints;) {
+            TrajectoryView view;
+            {
+                const std::lock_guard lock(mutex);
+                view = newest;
+            }
+            size = view.size();
+            expect_newest(view, size);
+        }
+    });
+    std::vector<std::thread> branches;
+    for (std::size_t n = 0; n < kPoints; ++n) {
+        trajectory.append(point(n));
+        const std::lock_guard lock(mutex);
+        newest = trajectory.snapshot();
+        if (n % 3001 != 0) continue;
+        branches.emplace_back([branch = trajectory.branch(), n]() mutable {
+            append(branch, n + 1, n + 1000);
+            expect_newest(branch.snapshot(), n + 1000);
+        });
+    }
+    for (auto& branch : branches) branch.join();
+    reader.join();
 }
 
 } // namespace

@@ -12,6 +12,8 @@ namespace {
 using testing::HasSubstr;
 using Path = std::vector<mapping::TrajectoryPoint>;
 
+const auto kWanted = [] { return true; };
+
 /// Robot 0 scans most of the time, robot 1 seldom, robot 2 never.
 class OldPathsTest : public testing::Test {
 protected:
@@ -50,24 +52,31 @@ protected:
         projection_.emplace(mapping::MapConfig{}).restore(state);
     }
 
-    void expect_whole_paths(Revision since, std::size_t points_max = kOldPointsMax) {
+    void expect_whole_paths(Revision since, std::size_t points_max = kPathPointsMax) {
         const auto maps = projection_->snapshot();
         std::vector<Path> read(3);
         std::size_t answers = 0;
         Revision from = since;
         do {
-            const auto old = read_old_paths(log_, id_, maps, from, points_max);
+            const auto old = read_old_paths(log_, id_, maps, from, kWanted, points_max);
             ASSERT_TRUE(old) << old.error().message;
             std::size_t points = 0;
+            std::size_t all_points = 0;
             for (RobotIndex robot = 0; robot < 3; ++robot) {
                 const auto& path = maps.robots[robot].trajectory;
                 read[robot].insert(read[robot].end(), old->robots[robot].begin(), old->robots[robot].end());
                 points += old->robots[robot].size();
                 for (auto n = path.first_after(from); n < path.first_after(old->until); ++n) {
                     read[robot].push_back(path[n]);
+                    ++all_points;
                 }
             }
-            ASSERT_LE(points, std::min(points_max, count_old_points(maps, from)));
+            all_points += points;
+            ASSERT_LE(points, count_old_points(maps, from));
+            ASSERT_LE(all_points, points_max);
+            if (old->until < maps.revision) {
+                ASSERT_EQ(all_points, points_max) << "more could be told at once";
+            }
             ASSERT_TRUE(old->until > from || maps.revision <= from) << "it never ends";
             from = old->until;
             ++answers;
@@ -86,6 +95,7 @@ protected:
             expect_whole_paths(since);
             expect_whole_paths(since, 1000);
             expect_whole_paths(since, 999);
+            expect_whole_paths(since, 7000);
         }
     }
 
@@ -118,15 +128,37 @@ TEST_F(OldPathsTest, AfterARestartAllOfItIs) {
     expect_whole_paths_after_some();
 }
 
+TEST_F(OldPathsTest, ARobotThatIsGoneIsNotLookedForBehindItsLastScan) {
+    scan(3000);
+    restart();
+    const Revision gone = end_;
+    add(RobotJoined{3, "d"});
+    EXPECT_EQ(count_old_points(projection_->snapshot(), gone), 0U);
+    EXPECT_LE(count_old_points(projection_->snapshot(), gone - 100), 2 * 100U) << "of either robot";
+}
+
+TEST_F(OldPathsTest, ReadingEndsSoonWhenItIsWantedNoMore) {
+    scan(5000);
+    restart();
+    Revision asked = 0;
+    const auto old = read_old_paths(log_, id_, projection_->snapshot(), 0, [&] { return ++asked < 2; });
+    ASSERT_FALSE(old);
+    EXPECT_EQ(old.error().code, Errc::kShuttingDown);
+    EXPECT_EQ(asked, 2U);
+}
+
 TEST_F(OldPathsTest, ADamagedEntryIsReportedWithItsNumber) {
     scan(10);
     ASSERT_TRUE(store::append_and_wait(log_, id_, ++end_, {"\xff"}));
     restart();
     auto maps = projection_->snapshot();
-    maps.revision = end_ + 1;
-    const auto old = read_old_paths(log_, id_, maps, 0);
+    auto& path = maps.robots[0].trajectory;
+    mapping::Trajectory later(path.size());
+    later.append({end_ + 1, 0.0, {}});
+    path = later.snapshot();
+    const auto old = read_old_paths(log_, id_, maps, 0, kWanted);
     ASSERT_FALSE(old);
-    EXPECT_EQ(old.error().code, Errc::kStoreFailed);
+    EXPECT_EQ(old.error().code, Errc::kDataLoss);
     EXPECT_THAT(old.error().message, HasSubstr("log entry 16"));
 }
 
