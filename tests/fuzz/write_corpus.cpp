@@ -1,4 +1,5 @@
-// Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record.
+// Writes the seeds of the fuzzers of our own formats: one small valid input for each kind of message and record. Or
+// tells which seeds are no longer what would be written: behind a format of the past a parser looks at nothing.
 #include "common/hash/crc32c.hpp"
 #include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
@@ -9,6 +10,8 @@
 #include "tests/support/ld06_bytes.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/memory_scan_log.hpp"
+#include "tests/support/stored_text.hpp"
+#include "tests/support/temporary_directory.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fmt/format.h>
@@ -17,6 +20,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 namespace {
@@ -187,6 +191,15 @@ void append_text(std::string& out, std::string_view text) {
     out.append(reinterpret_cast<const char*>(length), sizeof length).append(text);
 }
 
+void write_parts(const std::filesystem::path& path, store::ScanLog& log, store::SessionId id) {
+    std::string parts;
+    for (const auto& [key, value] : store::checkpoint_of(log, id).value()) {
+        append_text(parts, key);
+        append_text(parts, value);
+    }
+    write_file(path, parts);
+}
+
 void write_checkpoint(const std::filesystem::path& folder) {
     mapping::Projection projection{mapping::MapConfig{}};
     // One beam, into one chunk of the map.
@@ -199,30 +212,65 @@ void write_checkpoint(const std::filesystem::path& folder) {
          {LogEntry{RobotJoined{0, "r1"}}, LogEntry{SensorDescribed{0, laser()}}, LogEntry{ScanTaken{0, scan}}}) {
         if (const auto folded = projection.fold(entry); !folded) throw std::runtime_error(folded.error().message);
     }
-    std::string parts;
     store::MemoryScanLog log;
     const auto id = log.create_session("s").value();
     session::write_checkpoint(log, id, projection.snapshot(), projection.state(), 0, false).value();
-    for (const auto& [key, value] : store::checkpoint_of(log, id).value()) {
-        append_text(parts, key);
-        append_text(parts, value);
-    }
-    write_file(folder / "one_scan", parts);
+    write_parts(folder / "one_scan", log, id);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: %s CORPUS_FOLDER\n", argv[0]);
-        return 2;
+/// As earlier versions wrote them, with parts that there are no more.
+void write_earlier_checkpoints(const std::filesystem::path& folder) {
+    for (const char* version : {"parts_2", "parts_3"}) {
+        const TemporaryDirectory place;
+        const auto text = fmt::format("{}/store_2_{}.txt", SCANLOOM_TEST_DATA, version);
+        store::write_store(text, place.path() / "store");
+        write_parts(folder / version, *store::open_rocksdb(place.path() / "store").value(), 1);
     }
-    const std::filesystem::path folder = argv[1];
+}
+
+void write_corpus(const std::filesystem::path& folder) {
     write_messages(folder / "messages");
     write_streams(folder / "frame_decoder");
     write_log_entries(folder / "log_codec");
     write_log_files(folder / "log_file");
     write_ld06_streams(folder / "ld06");
     write_checkpoint(folder / "checkpoint");
+    write_earlier_checkpoints(folder / "checkpoint");
+}
+
+/// Empty where there is no such file.
+std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// @return whether each seed is there as it would be written. Others may be there, too.
+bool is_as_written(const std::filesystem::path& corpus) {
+    const TemporaryDirectory written;
+    write_corpus(written.path());
+    bool is_as_written = true;
+    for (const auto& seed : std::filesystem::recursive_directory_iterator(written.path())) {
+        const auto kept = corpus / std::filesystem::relative(seed, written.path());
+        if (!seed.is_regular_file() || bytes_of(kept) == bytes_of(seed)) continue;
+        std::fprintf(stderr, "%s is not as it would be written today\n", kept.c_str());
+        is_as_written = false;
+    }
+    return is_as_written;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const bool compares = argc == 3 && std::string_view(argv[1]) == "--compare";
+    if (argc != 2 && !compares) {
+        std::fprintf(stderr, "usage: %s [--compare] CORPUS_FOLDER\n", argv[0]);
+        return 2;
+    }
+    if (compares && is_as_written(argv[2])) return 0;
+    if (compares) {
+        std::fprintf(stderr, "write them anew: %s %s\n", argv[0], argv[2]);
+        return 1;
+    }
+    write_corpus(argv[1]);
     return 0;
 }

@@ -9,6 +9,7 @@
 
 #include "common/wire/log_codec.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +18,13 @@ namespace scanloom::session {
 namespace {
 
 using testing::AllOf;
+using testing::Each;
 using testing::HasSubstr;
+using testing::Key;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr store::SessionId kSession = 1; // the only one of each store
 
 class EarlierFormatsTest : public testing::Test {
 protected:
@@ -74,8 +81,21 @@ TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfVersion2AndIsWovenFromIts
     EXPECT_EQ(store::number_of(store::unsealed("f", format).value()), store::kFormatVersion);
 }
 
-TEST_F(EarlierFormatsTest, ACheckpointOfPartsVersion2IsReadAndTheRestOfTheLogFolded) {
-    write("store_2_parts_2.txt");
+/// By the version of the checkpoint's parts.
+class EarlierCheckpointTest : public EarlierFormatsTest, public testing::WithParamInterface<int> {
+protected:
+    void SetUp() override { write(fmt::format("store_2_parts_{}.txt", GetParam())); }
+
+    static CheckpointReader checkpoint_in(store::ScanLog& log, const mapping::MapConfig& config) {
+        CheckpointReader reader(config);
+        for (const auto& [key, value] : store::checkpoint_of(log, kSession).value()) {
+            EXPECT_TRUE(reader.add(key, value)) << key;
+        }
+        return reader;
+    }
+};
+
+TEST_P(EarlierCheckpointTest, IsReadAndTheRestOfTheLogFolded) {
     auto recovered = recover_session();
     EXPECT_FALSE(recovered.checkpoint_rejected);
     EXPECT_EQ(recovered.checkpointed, std::nullopt) << "the next one is to take its place";
@@ -85,6 +105,43 @@ TEST_F(EarlierFormatsTest, ACheckpointOfPartsVersion2IsReadAndTheRestOfTheLogFol
     EXPECT_EQ(robot.source, "sim:1");
     EXPECT_EQ(robot.last_seq, 3U);
 }
+
+TEST_P(EarlierCheckpointTest, TellsWhatItsRobotHadDone) {
+    const auto log = store::open_rocksdb(store()).value();
+    auto reader = checkpoint_in(*log, mapping::MapConfig{});
+    EXPECT_FALSE(reader.is_newest_format());
+    auto projection = std::move(reader).finish().value();
+    EXPECT_EQ(projection.revision(), 4U);
+    const auto summary = summary_of(projection.snapshot());
+    const auto& robot = summary.facts->robots.at(0);
+    EXPECT_EQ(robot.name, "r");
+    EXPECT_EQ(robot.body_radius, 0.2);
+    EXPECT_EQ(robot.last_seq, 2U);
+    EXPECT_EQ(robot.scan_count, 2U);
+    EXPECT_EQ(robot.stamp, 102.0);
+    EXPECT_EQ(robot.pose, (Pose2{1.2, 1.6, 0.6}));
+}
+
+TEST_P(EarlierCheckpointTest, GivesWayToOneOfTheNewestFormatWhichTheSessionIsListedFrom) {
+    auto recovered = recover_session();
+    const auto log = store::open_rocksdb(store()).value();
+    const auto config = recovered.projection.config();
+    const auto state = recovered.projection.state();
+    ASSERT_TRUE(
+        write_checkpoint(*log, kSession, recovered.projection.snapshot(), state, recovered.checkpointed, false));
+
+    EXPECT_THAT(store::checkpoint_of(*log, kSession).value(), Each(Key(Not(StartsWith("track/")))))
+        << "nothing is left of the earlier one";
+    EXPECT_TRUE(checkpoint_in(*log, config).is_newest_format());
+    const auto summary = read_summary(*log, kSession, config).value();
+    ASSERT_TRUE(summary);
+    EXPECT_EQ(summary->facts->revision, 5U);
+    EXPECT_EQ(summary->facts->robots.at(0).scan_count, 3U);
+    EXPECT_EQ(summary->pages, state.pages);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfParts, EarlierCheckpointTest, testing::Values(2, 3),
+                         [](const auto& version) { return fmt::format("Version{}", version.param); });
 
 TEST_F(EarlierFormatsTest, ANewerStoreIsRefusedWithASentence) {
     write("store_2_parts_2.txt");
@@ -99,7 +156,7 @@ TEST_F(EarlierFormatsTest, ANewerStoreIsRefusedWithASentence) {
 TEST_F(EarlierFormatsTest, ANewerCheckpointIsWovenFromTheLog) {
     write("store_2_parts_2.txt");
     const std::string newer("\x04\0\0\0\x63\0\0\0", 8); // this weaving version, parts of version 99
-    put(store::part_key(1, "format"), newer);
+    put(store::part_key(kSession, "format"), newer);
     auto recovered = recover_session();
     EXPECT_THAT(recovered.checkpoint_rejected.value().message, HasSubstr("parts are of version 99"));
     expect_its_maps(recovered);
