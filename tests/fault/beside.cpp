@@ -1,5 +1,7 @@
 #include "tests/fault/beside.hpp"
 
+#include "server/store/scan_log.hpp"
+#include "tests/fault/paces.hpp"
 #include "tests/fault/process_memory.hpp"
 #include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -15,27 +17,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned kRounds = 3;
+constexpr Rounds kLongForm{.count = 3, .duration = 20s, .must_keep_up = true};
 
-constexpr std::size_t kBytesOfGreed = std::size_t{4} << 20;   // twice a robot's credit
-constexpr std::size_t kBytesOfStore = std::size_t{140} << 20; // its buffers and cache, which so much fills
-constexpr std::size_t kBytesOfEach = std::size_t{128} << 10;  // twice what those took who read nothing
+constexpr std::size_t kBytesOfGreed = std::size_t{4} << 20;  // twice a robot's credit
+constexpr std::size_t kBytesOfEach = std::size_t{128} << 10; // twice what those took who read nothing
 
 // Of the server, for those who never finish (RobotLink, http::Connection).
 constexpr std::chrono::seconds kHelloDeadline{5};
 constexpr std::chrono::seconds kHeaderDeadline{10};
 constexpr std::chrono::seconds kBodyDeadline{30};
-
-/// Milliseconds, p99 of acknowledgements, a figure of each round.
-struct Paces {
-    std::vector<double> in_peace;
-    std::vector<double> beside;
-};
-
-double median(std::vector<double> figures) {
-    std::ranges::sort(figures);
-    return figures[figures.size() / 2];
-}
 
 void check_memory(std::uint64_t before, std::uint64_t after, const Beside& beside, Outcome& outcome) {
     const std::uint64_t grown = after - std::min(before, after);
@@ -45,16 +35,6 @@ void check_memory(std::uint64_t before, std::uint64_t after, const Beside& besid
     if (grown <= most) return;
     outcome.amiss.push_back(fmt::format("the server took {} MiB more for a crowd of {}, at most {} MiB are allowed",
                                         grown >> 20, beside.size, most >> 20));
-}
-
-void check_paces(const Paces& paces, const Beside& beside, Outcome& outcome) {
-    const double in_peace_ms = median(paces.in_peace);
-    const double beside_ms = median(paces.beside);
-    outcome.figures["p99_in_peace_us"] = static_cast<std::uint64_t>(in_peace_ms * 1e3);
-    outcome.figures["p99_beside_us"] = static_cast<std::uint64_t>(beside_ms * 1e3);
-    if (!beside.must_keep_up || beside_ms <= 2.0 * in_peace_ms) return;
-    outcome.amiss.push_back(fmt::format("acknowledgements took {:.1f} ms (p99) beside the crowd, {:.1f} ms in peace",
-                                        beside_ms, in_peace_ms));
 }
 
 void check_deadlines(const Crowd& crowd, const Beside& beside, Outcome& outcome) {
@@ -80,10 +60,11 @@ public:
         if (beside.greedy > 0) load_.emplace(server, PacedLoad::Robots{beside.greedy, 1, 0}, seed, duration, place);
     }
 
-    void finish(Outcome& outcome) {
+    /// The figure of that name is how many scans they sent.
+    void finish(const char* figure, Outcome& outcome) {
         if (!load_) return;
         const auto report = load_->finish();
-        outcome.figures["scans_of_greed"] += report.outcome.acknowledged;
+        outcome.figures[figure] += report.outcome.acknowledged;
         outcome.add(report.outcome);
     }
 
@@ -91,38 +72,48 @@ private:
     std::optional<PacedLoad> load_;
 };
 
+/// The loads of a round, each with numbers of its own.
+std::uint64_t seed_of(const Run& run, unsigned load) { return run.seed * 4 + load; }
+
+std::optional<double> pace_alone(const ServerProcess& server, const Run& run, const Beside& beside,
+                                 const std::filesystem::path& place, Outcome& outcome) {
+    const auto report = PacedLoad(server, {}, seed_of(run, 3), beside.rounds.duration, place).finish();
+    outcome.add(report.outcome);
+    return report.p99_ms;
+}
+
 /// How long acknowledgements take in peace; the greed goes to another server meanwhile, so that the machine has as much
 /// to do.
-double pace_in_peace(const ServerProcess& server, const Run& run, const Beside& beside, std::chrono::seconds duration,
-                     const std::filesystem::path& place, Outcome& outcome) {
+std::optional<double> pace_in_peace(const ServerProcess& server, const Run& run, const Beside& beside,
+                                    const std::filesystem::path& place, Outcome& outcome) {
     const TemporaryDirectory other_place;
     ServerProcess other(run.server, other_place.path());
     if (beside.greedy > 0) other.start_and_wait();
-    PacedLoad load(server, {}, run.seed * 3, duration, place);
+    PacedLoad load(server, {}, seed_of(run, 0), beside.rounds.duration, place);
     load.wait_until_it_streams();
-    Greed greed(other, beside, run.seed * 3 + 2, duration, other_place.path());
+    Greed greed(other, beside, seed_of(run, 2), beside.rounds.duration, other_place.path());
     const auto report = load.finish();
     outcome.add(report.outcome);
-    greed.finish(outcome);
+    greed.finish("scans_of_greed_elsewhere", outcome);
     return report.p99_ms;
 }
 
 void run_round(const Run& run, const Beside& beside, Paces& paces, Outcome& outcome) {
-    const auto duration = beside.must_keep_up ? 20s : 3s;
     const TemporaryDirectory place;
     ServerProcess server(run.server, place.path());
     server.start_and_wait();
-    paces.in_peace.push_back(pace_in_peace(server, run, beside, duration, place.path(), outcome));
+    if (beside.is_tried_alone) paces.alone.push_back(pace_alone(server, run, beside, place.path(), outcome));
+    paces.in_peace.push_back(pace_in_peace(server, run, beside, place.path(), outcome));
     const auto before = resident_bytes(server.id());
-    PacedLoad load(server, {}, run.seed * 3 + 1, duration, place.path());
+    PacedLoad load(server, {}, seed_of(run, 1), beside.rounds.duration, place.path());
     load.wait_until_it_streams();
-    Greed greed(server, beside, run.seed * 3 + 2, duration, place.path());
+    Greed greed(server, beside, seed_of(run, 2), beside.rounds.duration, place.path());
     Crowd crowd(beside.crowd ? beside.crowd(server, load) : std::vector<Manner>());
     crowd.wait_until_there();
     const auto disturbed = load.finish();
     outcome.add(disturbed.outcome);
     check_memory(before, resident_bytes(server.id()), beside, outcome);
-    greed.finish(outcome);
+    greed.finish("scans_of_greed", outcome);
     paces.beside.push_back(disturbed.p99_ms);
     check_deadlines(crowd, beside, outcome);
     if (const auto status = test::http_request(server.http_port(), "GET", "/readyz").status; status != 200)
@@ -134,41 +125,40 @@ void run_round(const Run& run, const Beside& beside, Paces& paces, Outcome& outc
 Outcome compare_with_peace(const Run& run, const Beside& beside) {
     Outcome outcome;
     Paces paces;
-    for (unsigned round = 0; round < (beside.must_keep_up ? kRounds : 1); ++round) {
-        run_round(run, beside, paces, outcome);
-    }
-    check_paces(paces, beside, outcome);
+    for (unsigned round = 0; round < beside.rounds.count; ++round) run_round(run, beside, paces, outcome);
+    check_paces(paces, beside.rounds.must_keep_up, outcome);
     return outcome;
 }
 
-Outcome run_viewers_row(const Run& run) {
-    Beside beside{.size = run.count, .bytes_of_each_max = kBytesOfEach, .must_keep_up = run.count >= kViewersLong};
-    beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
+Beside beside_viewers(const Run& run) {
+    Beside beside{.size = run.count, .bytes_of_each_max = kBytesOfEach, .rounds = run.is_long ? kLongForm : Rounds{}};
+    beside.crowd = [count = run.count](const ServerProcess& server, const PacedLoad& load) {
         std::vector<Manner> viewers;
-        for (unsigned n = 0; n < run.count; ++n) {
+        for (unsigned n = 0; n < count; ++n) {
             const auto session = load.session(n % PacedLoad::kSessions);
             viewers.push_back({server.http_port(), upgrade_to_live(session, server.http_port()), "", 0ms, false});
         }
         return viewers;
     };
-    return compare_with_peace(run, beside);
+    return beside;
 }
 
-Outcome run_greed_row(const Run& run) {
-    return compare_with_peace(run, {.size = run.count,
-                                    .bytes_of_each_max = kBytesOfGreed,
-                                    .bytes_besides = kBytesOfStore,
-                                    .must_keep_up = run.count >= kGreedLong,
-                                    .greedy = static_cast<unsigned>(run.count)});
+Beside beside_greed(const Run& run) {
+    Beside beside{.size = run.count,
+                  .bytes_of_each_max = kBytesOfGreed,
+                  .rounds = run.is_long ? kLongForm : Rounds{},
+                  .is_tried_alone = run.is_long,
+                  .greedy = static_cast<unsigned>(run.count)};
+    beside.bytes_besides += store::StoreOptions{}.memory_bytes; // so much fills its buffers and its cache
+    return beside;
 }
 
-Outcome run_flood_row(const Run& run) {
-    const bool is_long = run.count >= kFloodLong;
+Beside beside_flood(const Run& run) {
     Beside beside{.size = run.count,
                   .bytes_of_each_max = kBytesOfEach,
-                  .must_keep_up = is_long,
-                  .deadline = is_long ? kBodyDeadline : kHeaderDeadline};
-    beside.crowd = [&](const ServerProcess& server, const PacedLoad& load) {
+                  .rounds = run.is_long ? kLongForm : Rounds{},
+                  .deadline = run.is_long ? kBodyDeadline : kHeaderDeadline};
+    beside.crowd = [count = run.count](const ServerProcess& server, const PacedLoad& load) {
         const auto robots = server.robot_port();
         const auto http = server.http_port();
         const std::string noise(1024, '\xa5');
@@ -185,10 +175,14 @@ Outcome run_flood_row(const Run& run) {
             {http, map, map, 100ms, false},                           // asks for more and more, and reads none of it
         };
         std::vector<Manner> crowd;
-        for (unsigned n = 0; n < run.count; ++n) crowd.push_back(manners[n % manners.size()]);
+        for (unsigned n = 0; n < count; ++n) crowd.push_back(manners[n % manners.size()]);
         return crowd;
     };
-    return compare_with_peace(run, beside);
+    return beside;
 }
+
+Outcome run_viewers_row(const Run& run) { return compare_with_peace(run, beside_viewers(run)); }
+Outcome run_flood_row(const Run& run) { return compare_with_peace(run, beside_flood(run)); }
+Outcome run_greed_row(const Run& run) { return compare_with_peace(run, beside_greed(run)); }
 
 } // namespace scanloom::fault

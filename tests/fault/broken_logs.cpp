@@ -2,7 +2,11 @@
 
 #include "common/wire/log_codec.hpp"
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -174,6 +178,31 @@ private:
     std::vector<std::string> leaked_; // guarded by mutex_
 };
 
+class TiringLog final : public PassingLog {
+public:
+    using PassingLog::PassingLog;
+
+    void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) override {
+        if ((taken_ += entries.size()) <= kTakenFresh) {
+            return PassingLog::append(session, first, std::move(entries), std::move(done));
+        }
+        // It is late, but not slow: what is handed over while it waits is stored together, and then no later than this.
+        const auto when = Clock::now() + kLateness;
+        PassingLog::append(session, first, std::move(entries), [when, done = std::move(done)](Result<> appended) {
+            boost::asio::io_context io;
+            boost::asio::steady_timer(io, when).wait();
+            done(std::move(appended));
+        });
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::size_t kTakenFresh = 800; // 20 robots at 10 Hz for 3 s send fewer
+    static constexpr std::chrono::seconds kLateness{2};
+
+    std::atomic<std::size_t> taken_ = 0;
+};
+
 } // namespace
 
 std::unique_ptr<ScanLog> hasty_log(std::unique_ptr<ScanLog> log) { return std::make_unique<HastyLog>(std::move(log)); }
@@ -190,12 +219,17 @@ std::unique_ptr<ScanLog> misled_log(std::unique_ptr<ScanLog> log) {
 
 std::unique_ptr<ScanLog> leaky_log(std::unique_ptr<ScanLog> log) { return std::make_unique<LeakyLog>(std::move(log)); }
 
+std::unique_ptr<ScanLog> tiring_log(std::unique_ptr<ScanLog> log) {
+    return std::make_unique<TiringLog>(std::move(log));
+}
+
 std::unique_ptr<ScanLog> broken_log(std::string_view kind, std::unique_ptr<ScanLog> log) {
     if (kind == "hasty") return hasty_log(std::move(log));
     if (kind == "forgetful") return forgetful_log(std::move(log));
     if (kind == "blind") return blind_log(std::move(log));
     if (kind == "misled") return misled_log(std::move(log));
     if (kind == "leaky") return leaky_log(std::move(log));
+    if (kind == "tiring") return tiring_log(std::move(log));
     return log;
 }
 

@@ -23,7 +23,10 @@ namespace scanloom::fault {
 /// Never lets go of the memory of what it was given, 64 KiB an entry.
 [[nodiscard]] std::unique_ptr<store::ScanLog> leaky_log(std::unique_ptr<store::ScanLog> log);
 
-/// One of them by its name: "hasty", "forgetful", "blind", "misled" or "leaky". Another name breaks nothing.
+/// Says that entries are durable two seconds after it was given them, but for the first 800.
+[[nodiscard]] std::unique_ptr<store::ScanLog> tiring_log(std::unique_ptr<store::ScanLog> log);
+
+/// One of them by its name: "hasty", "forgetful", "blind", "misled", "leaky" or "tiring". Another name breaks nothing.
 [[nodiscard]] std::unique_ptr<store::ScanLog> broken_log(std::string_view kind, std::unique_ptr<store::ScanLog> log);
 
 } // namespace scanloom::fault

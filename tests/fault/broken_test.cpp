@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 
 /// The rows of faults on what is broken: a row that passes here shows nothing.
@@ -117,6 +118,26 @@ TEST(FloodRow, FindsAServerThatNeverHangsUp) {
 
 TEST(GreedRow, FindsAServerWhoseMemoryGrowsWithWhatItIsSent) {
     expect_found(run_greed_row({.seed = 1, .count = 2, .server = broken_server("leaky")}), "MiB more for a crowd");
+}
+
+/// Robots have to keep up in the long form. This is one of its rounds, and a short one, on a server that is late with
+/// all that it is told after the peace.
+Outcome keep_up_with_a_tiring_server(Beside (*row)(const Run&), std::uint64_t count) {
+    const Run run{.seed = 1, .count = count, .server = broken_server("tiring")};
+    Beside beside = row(run);
+    beside.rounds = {.count = 1, .duration = std::chrono::seconds(3), .must_keep_up = true};
+    beside.deadline = {}; // another test's
+    return compare_with_peace(run, beside);
+}
+
+constexpr auto kNotKeptUp = "(p99) beside the crowd";
+
+TEST(ViewersRow, FindsAServerThatIsLateBesideThem) {
+    expect_found(keep_up_with_a_tiring_server(beside_viewers, 12), kNotKeptUp);
+}
+
+TEST(FloodRow, FindsAServerThatIsLateBesideIt) {
+    expect_found(keep_up_with_a_tiring_server(beside_flood, 12), kNotKeptUp);
 }
 
 std::unique_ptr<store::ScanLog> memory_log() { return std::make_unique<store::MemoryScanLog>(); }

@@ -46,7 +46,8 @@ std::function<void(std::uint64_t)> teller(const Row& row, std::uint64_t count) {
 bool run_row(const Row& row, const Options& options) {
     const auto count = options.count > 0 ? options.count : options.is_long ? row.count_long : row.count_short;
     const auto begin = std::chrono::steady_clock::now();
-    const Outcome outcome = row.run({.seed = options.seed, .count = count, .on_progress = teller(row, count)});
+    const Outcome outcome =
+        row.run({.seed = options.seed, .count = count, .is_long = options.is_long, .on_progress = teller(row, count)});
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     for (const auto& sentence : outcome.amiss) std::cerr << row.name << ": " << sentence << '\n';
     std::cout << json_line(row.name, options.seed, count, took.count(), outcome) << std::endl;

@@ -27,7 +27,10 @@ void PacedLoad::wait_until_it_streams() const {
 PacedLoad::Report PacedLoad::finish() {
     std::string text;
     while (const auto line = program_.read_line()) text += *line;
-    const int code = program_.wait();
+    return read_report(text, program_.wait());
+}
+
+PacedLoad::Report PacedLoad::read_report(std::string_view text, int code) {
     Report report;
     boost::system::error_code failed;
     const auto json = boost::json::parse(text, failed);
@@ -36,7 +39,8 @@ PacedLoad::Report PacedLoad::finish() {
         return report;
     }
     const auto* from_intended = json.as_object().if_contains("ack_from_intended"); // where they keep a pace
-    if (from_intended != nullptr) report.p99_ms = from_intended->at("p99_ms").to_number<double>();
+    if (from_intended != nullptr && from_intended->at("count").to_number<std::uint64_t>() > 0)
+        report.p99_ms = from_intended->at("p99_ms").to_number<double>();
     report.outcome.acknowledged = json.at("scans").at("acknowledged").to_number<std::uint64_t>();
     report.outcome.lost = json.at("scans").at("lost").to_number<std::uint64_t>();
     const auto& verdict = json.at("verdict");

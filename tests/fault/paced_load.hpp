@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace scanloom::fault {
 
@@ -24,7 +26,9 @@ public:
 
     struct Report {
         Outcome outcome;
-        double p99_ms = 0.0; ///< of acknowledgements, from when each scan was meant to be sent
+        /// Of acknowledgements, from when each scan was meant to be sent; nothing where scanloom-load does not tell it,
+        /// as of robots without a pace.
+        std::optional<double> p99_ms{};
     };
 
     /// Begins. What it says on standard error is in `place`/load-SEED.log.
@@ -40,6 +44,9 @@ public:
 
     /// Waits for its end, and for what it then verifies.
     [[nodiscard]] Report finish();
+
+    /// Of what scanloom-load printed, and how it ended.
+    [[nodiscard]] static Report read_report(std::string_view text, int code);
 
 private:
     const ServerProcess& server_;

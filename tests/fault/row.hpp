@@ -14,6 +14,7 @@ namespace scanloom::fault {
 struct Run {
     std::uint64_t seed = 1;  ///< all that is random comes from it
     std::uint64_t count = 1; ///< of what the row counts
+    bool is_long = false;    ///< the long form, where it is more than a larger count
     Command server{};        ///< what is disturbed, where the row runs a program
     Command robot{};         ///< likewise, where robots are programs
     /// Hears, now and then, how much of `count` is done.
