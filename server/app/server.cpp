@@ -172,8 +172,14 @@ Result<> Server::listen() {
     config.connections_max = limits_.http;
     auto http = http::Server::listen(
         io_,
-        {telling_.get_executor(), serving_.get_executor(), survey_.get_executor(), history_.get_executor(),
-         awaiting_.get_executor(), planning_.get_executor(), changing_.get_executor(), showing_.get_executor()},
+        {.telling = telling_.get_executor(),
+         .serving = serving_.get_executor(),
+         .survey = survey_.get_executor(),
+         .history = history_.get_executor(),
+         .weaving = awaiting_.get_executor(),
+         .planning = planning_.get_executor(),
+         .changing = changing_.get_executor(),
+         .showing = showing_.get_executor()},
         config,
         {[this](const http::Request& request) { return api_.answer(request); },
          [this](const http::Request& request) { return api_.look(request); },

@@ -54,8 +54,14 @@ public:
     [[nodiscard]] Server& server() { return *server_; }
     [[nodiscard]] boost::asio::io_context& io() { return io_; }
     [[nodiscard]] Executors executors() {
-        return {telling_.get_executor(), serving_.get_executor(),  survey_.get_executor(),   history_.get_executor(),
-                weaving_.get_executor(), planning_.get_executor(), changing_.get_executor(), showing_.get_executor()};
+        return {.telling = telling_.get_executor(),
+                .serving = serving_.get_executor(),
+                .survey = survey_.get_executor(),
+                .history = history_.get_executor(),
+                .weaving = weaving_.get_executor(),
+                .planning = planning_.get_executor(),
+                .changing = changing_.get_executor(),
+                .showing = showing_.get_executor()};
     }
     [[nodiscard]] metrics::HttpCounters& counters() { return counters_; }
 

@@ -73,8 +73,16 @@ public:
         config.tls = std::move(tls);
         config.drain = std::chrono::hours(1); // so that viewers end by themselves
         const auto pool = pool_.get_executor();
-        server_ = http::Server::listen(io_, {pool, pool, pool, pool, pool, pool, showing_.get_executor()}, config,
-                                       {[this](const http::Request& request) { return api_.answer(request); }},
+        server_ = http::Server::listen(io_,
+                                       {.telling = pool,
+                                        .serving = pool,
+                                        .survey = pool,
+                                        .history = pool,
+                                        .weaving = pool,
+                                        .planning = pool,
+                                        .changing = pool,
+                                        .showing = showing_.get_executor()},
+                                       config, {[this](const http::Request& request) { return api_.answer(request); }},
                                        metrics_.http())
                       .value();
         server_->start();
