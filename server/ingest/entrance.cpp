@@ -1,7 +1,6 @@
 #include "server/ingest/entrance.hpp"
 
 #include "server/mapping/map_config.hpp"
-#include "server/session/damage.hpp"
 #include "server/sockets/compute_on.hpp"
 
 #include <boost/asio/async_result.hpp>
@@ -49,7 +48,7 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
             Errc::kNotFound,
             fmt::format("hello.session is '{}', which does not exist; create it first, or send hello.create", name)};
     }
-    if (!session::is_damage(damage->second)) return damage->second;
+    if (damage->second.code == Errc::kOverloaded) return damage->second; // nothing is wrong with it
     return {Errc::kConflict,
             fmt::format("hello.session is '{}', whose log is damaged; delete the session first, or choose another name",
                         name)};

@@ -1,6 +1,5 @@
 #include "server/session/background_check.hpp"
 
-#include "server/session/damage.hpp"
 #include "server/session/session_check.hpp"
 
 #include <boost/asio/post.hpp>
@@ -59,12 +58,11 @@ void BackgroundCheck::check(const store::StoredSession& stored, const std::strin
         check_session(log_, stored, CheckDepth::kLog, [this](std::size_t bytes) { return go_on_after(bytes); });
     if (!found) return; // stopped
     // Deleted meanwhile, or the store failed: then it cannot be read, and may be whole.
-    const bool is_damaged =
-        found->damage && is_damage(*found->damage) && is_still_there(name, stored.id) && !log_.stats().last_error;
-    if (is_damaged) spdlog::error("session '{}' is damaged: {}", name, found->damage->message);
+    const bool is_damage = found->damage && is_still_there(name, stored.id) && !log_.stats().last_error;
+    if (is_damage) spdlog::error("session '{}' is damaged: {}", name, found->damage->message);
     const std::lock_guard lock(mutex_);
     ++checked_;
-    if (is_damaged) damaged_[name] = {stored.id, *found->damage};
+    if (is_damage) damaged_[name] = {stored.id, *found->damage};
 }
 
 Result<> BackgroundCheck::go_on_after(std::size_t bytes) {

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/log_entry.hpp"
+
+#include <fmt/format.h>
 
 namespace scanloom::session {
 
-/// Whether what kept a session from being read is damage of what is stored. Where memory ran out or the disk could not
-/// be read, it may be whole.
-[[nodiscard]] inline bool is_damage(const Error& why) noexcept {
-    return why.code != Errc::kOverloaded && why.code != Errc::kStoreFailed;
+/// What an entry of a log that cannot be read, though its checksum is right, says of the log.
+[[nodiscard]] inline Error damaged_entry(Revision revision, const Error& why) {
+    return {Errc::kDataLoss, fmt::format("log entry {}: {}", revision, why.message)};
 }
 
 } // namespace scanloom::session

@@ -1,8 +1,7 @@
 #include "server/session/old_paths.hpp"
 
 #include "common/wire/log_codec.hpp"
-
-#include <fmt/format.h>
+#include "server/session/damage.hpp"
 
 #include <algorithm>
 
@@ -75,9 +74,7 @@ Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, c
             return kEnough;
         }
         const auto taken = wire::decode_scan_pose(bytes);
-        if (!taken) {
-            return Error{Errc::kDataLoss, fmt::format("log entry {}: {}", revision, taken.error().message)};
-        }
+        if (!taken) return damaged_entry(revision, taken.error());
         if (!*taken || (*taken)->robot >= kept.size() || revision >= kept[(*taken)->robot]) return {};
         paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, (*taken)->pose});
         ++points;

@@ -2,6 +2,7 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/session/checkpoint.hpp"
+#include "server/session/damage.hpp"
 #include "server/store/advice.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::P
     auto read = log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
         if (stop) return stopped();
         auto entry = wire::decode_entry(bytes);
-        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+        if (!entry) return damaged_entry(revision, entry.error());
         return projection.fold(*entry);
     });
     if (!read && read.error() == stopped()) return false;

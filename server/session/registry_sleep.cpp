@@ -1,5 +1,6 @@
-#include "server/session/damage.hpp"
 #include "server/session/session_registry.hpp"
+
+#include "server/log/context.hpp"
 
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
@@ -69,9 +70,15 @@ void SessionRegistry::read(const Wanted& wanted) {
     pages_->give_back(static_cast<std::int64_t>(pages)); // the session has its own share
     if (session && *session) return roster_.arrived(std::move(*session), config_.clock());
     if (session) return roster_.failed(info.name, shutting_down());
-    if (!is_damage(session.error()) || log_.stats().last_error) return roster_.failed(info.name, session.error());
-    keep_damaged(info.name, info.id, session.error());
-    roster_.remove(info.name, session.error());
+    const Error& why = session.error();
+    if (log_.stats().last_error) return roster_.failed(info.name, {Errc::kStoreFailed, why.message}); // it may be whole
+    if (why.code == Errc::kOverloaded) return roster_.failed(info.name, why);
+    if (why.code == Errc::kStoreFailed) { // it may be whole, too: whoever asks has it tried again
+        log::warn({.session = info.name}, "session '{}' cannot be read: {}", info.name, why.message);
+        return roster_.failed(info.name, why);
+    }
+    keep_damaged(info.name, info.id, why);
+    roster_.remove(info.name, why);
 }
 
 /// @return false when it will be tried again, or is refused.

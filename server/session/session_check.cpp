@@ -3,6 +3,7 @@
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/digest.hpp"
 #include "server/session/checkpoint.hpp"
+#include "server/session/damage.hpp"
 #include "server/session/entry_order.hpp"
 #include "server/session/recovery.hpp"
 
@@ -29,7 +30,7 @@ Result<> check_log(Checking& checking, Revision& entries) {
     EntryOrder order;
     return checking.log.read(checking.id, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
         const auto entry = wire::decode_entry(bytes);
-        if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+        if (!entry) return damaged_entry(revision, entry.error());
         if (auto follows = order.add(*entry); !follows) return follows;
         entries = revision;
         return checking.go_on(bytes.size());

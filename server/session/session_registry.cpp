@@ -105,6 +105,9 @@ std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
 }
 
 void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
+    if (why.code == Errc::kStoreFailed) { // nobody tries again before the next start
+        why = {Errc::kDataLoss, why.message + "; if its disk is well again, start the server again"};
+    }
     log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
     const std::unique_lock lock(damaged_mutex_);
     damaged_[std::move(name)] = {id, std::move(why)};

@@ -1,6 +1,7 @@
 #include "server/session/weave.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "server/session/damage.hpp"
 #include "server/session/weavable.hpp"
 
 #include <fmt/format.h>
@@ -181,7 +182,7 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget
             if (revision > target) return kEnd;
             if (turn_left_ <= 0.0) return kTurnIsOver;
             const auto entry = wire::decode_entry(bytes);
-            if (!entry) return prefixed(fmt::format("log entry {}: ", revision), entry.error());
+            if (!entry) return damaged_entry(revision, entry.error());
             if (is_taken_after(request_.end.stamp, *entry)) {
                 is_complete = true;
                 return kEnd;

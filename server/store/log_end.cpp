@@ -2,7 +2,6 @@
 
 #include "server/store/advice.hpp"
 #include "server/store/record.hpp"
-#include "server/store/status_code.hpp"
 
 #include <fmt/format.h>
 
@@ -12,17 +11,17 @@
 namespace scanloom::store {
 
 Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session) {
-    const auto unknown = [&](Errc code, std::string_view what) {
-        return Error{code, fmt::format("the store {} cannot tell where the log of session {} ends ({}); {}", store,
-                                       session, what, kBringBackOrRemove)};
+    const auto unknown = [&](std::string_view what) {
+        return Error{Errc::kDataLoss, fmt::format("the store {} cannot tell where the log of session {} ends ({}); {}",
+                                                  store, session, what, kBringBackOrRemove)};
     };
     const KeyRange range = entries_of(session);
     const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));
     iterator->SeekForPrev(range.end);
-    if (!iterator->status().ok()) return unknown(code_of(iterator->status()), iterator->status().ToString());
+    if (!iterator->status().ok()) return unknown(iterator->status().ToString());
     if (!iterator->Valid() || iterator->key().compare(range.begin) < 0) return Revision{0};
     const auto revision = revision_of(iterator->key().ToStringView());
-    if (!revision) return unknown(Errc::kDataLoss, "the key of the last entry");
+    if (!revision) return unknown("the key of the last entry");
     return *revision;
 }
 

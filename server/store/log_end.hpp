@@ -11,7 +11,7 @@ namespace scanloom::store {
 
 /// The revision of a session's last entry, found by its key alone; 0 for an empty log.
 /// @param store  its name, for the message.
-/// Errors  kDataLoss, kStoreFailed: the place cannot be read.
+/// Errors  kDataLoss: the place cannot be read.
 [[nodiscard]] Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session);
 
 } // namespace scanloom::store

@@ -49,8 +49,9 @@ Error no_such_session(SessionId session) {
 }
 
 Error unreadable(const std::string& store, SessionId session, const rocksdb::Status& status) {
-    return {code_of(status), fmt::format("the store {} cannot read session {}: {}; {}", store, session,
-                                         status.ToString(), kBringBackOrRemove)};
+    const auto code = code_of(status);
+    return {code, fmt::format("the store {} cannot read session {}: {}; {}", store, session, status.ToString(),
+                              code == Errc::kDataLoss ? kBringBackOrRemove : "look at its disk, and try again")};
 }
 
 Error damaged(const std::string& store, SessionId session, std::string_view what) {

@@ -55,7 +55,7 @@ public:
     [[nodiscard]] std::string head() const override { return exchange::CarmenText::head(session_); }
     [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
         const auto entry = wire::decode_entry(bytes);
-        if (!entry) return entry.error();
+        if (!entry) return Error{Errc::kDataLoss, entry.error().message};
         const auto lines = carmen_.lines(*entry);
         if (!lines) return lines.error();
         text += *lines;

@@ -5,7 +5,6 @@
 #include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
 #include "server/mapping/map_config.hpp"
-#include "server/session/damage.hpp"
 #include "server/tiles/extent.hpp"
 
 #include <boost/json/array.hpp>
@@ -97,8 +96,9 @@ boost::json::object failed_json(std::string_view name, const Error& reason) {
 }
 
 boost::json::object damaged_json(std::string_view name, const Error& reason) {
-    return {
-        {"name", name}, {"state", session::is_damage(reason) ? "damaged" : "not_loaded"}, {"reason", reason.message}};
+    return {{"name", name},
+            {"state", reason.code == Errc::kOverloaded ? "not_loaded" : "damaged"},
+            {"reason", reason.message}};
 }
 
 Result<SessionRequest> parse_session_request(std::string_view body) {

@@ -2,7 +2,6 @@
 
 #include "server/http/in_quotes.hpp"
 #include "server/http/number.hpp"
-#include "server/session/damage.hpp"
 
 #include <fmt/format.h>
 
@@ -23,8 +22,8 @@ Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry&
 std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
-        if (!session::is_damage(found->second)) {
-            return Error{found->second.code,
+        if (found->second.code == Errc::kOverloaded) { // nothing is wrong with it
+            return Error{Errc::kOverloaded,
                          fmt::format("the session {} is not loaded: {}", name, found->second.message)};
         }
         return Error{Errc::kDataLoss,

@@ -18,8 +18,8 @@ namespace scanloom::http {
 [[nodiscard]] Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry& sessions,
                                                                      const Call& call);
 
-/// Why a session that is stored cannot be served: kDataLoss: its log is damaged; kOverloaded, kStoreFailed: it could
-/// not be read, for want of memory or by its disk. Nothing where there is no such damage.
+/// Why a session that is stored cannot be served: kDataLoss: its log is damaged; kOverloaded: it could not be read for
+/// want of memory. Nothing where there is no such damage.
 [[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
 
 /// How this program makes maps from logs, and bytes from maps.

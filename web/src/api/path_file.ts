@@ -1,10 +1,13 @@
 /** A session's paths as one file, put together from as many pages as it takes. */
 import { fetchSession } from './api';
 import { fields, list, MalformedAnswer, number, text } from './decode';
+import { rest } from '../poll';
 import { fetchFile, trajectoryPath } from './export';
+import { isPassing } from './http';
 import { pagesOf } from './path_pages';
 
 const kGeoJson = 'application/geo+json';
+const kRetries = 8;
 
 /** One robot's part of a page. */
 interface PathPart {
@@ -50,23 +53,40 @@ export class PathFile {
  * The paths of all that the session has when it is asked for.
  *
  * @param progress told how many bytes have come
+ * @param pause waits, longer with every failure in a row
  * @throws Refused with the server's sentence
  */
 export async function fetchPathFile(
   session: string,
   signal: AbortSignal,
   progress: (bytes: number) => void,
+  pause = rest,
 ): Promise<Blob> {
-  const { revision: wanted } = await fetchSession(session, signal);
+  const { id, revision: wanted } = await fetchSession(session, signal);
   const file = new PathFile();
   let before = 0;
   const fetchAfter = async (revision: number): Promise<PathPage> => {
-    const page = await fetchFile(trajectoryPath(session, revision), signal, (bytes) => progress(before + bytes));
+    const path = trajectoryPath(session, revision);
+    const page = await patiently(() => fetchFile(path, signal, (bytes) => progress(before + bytes)), signal, pause);
     before += page.size;
     return decodePathPage(await page.text());
   };
   for await (const page of pagesOf(0, () => wanted, fetchAfter)) file.add(page);
+  if ((await fetchSession(session, signal)).id !== id) throw new MalformedAnswer('the session was replaced meanwhile');
   return file.blob();
+}
+
+/** Others may be given large answers at the moment: what waiting may mend is tried again for half a minute or so. */
+async function patiently<T>(task: () => Promise<T>, signal: AbortSignal, pause: typeof rest): Promise<T> {
+  for (let failures = 1; ; ++failures) {
+    try {
+      return await task();
+    } catch (error) {
+      signal.throwIfAborted();
+      if (failures > kRetries || !isPassing(error)) throw error;
+      await pause(failures, signal);
+    }
+  }
 }
 
 export function decodePathPage(body: string): PathPage {

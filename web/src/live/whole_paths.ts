@@ -42,8 +42,8 @@ export class WholePaths {
 
   hear(event: Told): void {
     if (this.join(event)) {
-      // While one is missing, others that join on say nothing of what came between.
-      if (!this.missing) this.know(event);
+      // While one is missing, others that join on say nothing of what came between; nor do those that a page overtook.
+      if (!this.missing && event.revision >= this.known) this.know(event);
       return;
     }
     this.missing = event;

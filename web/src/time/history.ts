@@ -1,5 +1,6 @@
 /** The past of the session that is open: its scans in order, which of them is looked at, and whether it is played. */
 import { fetchHistory } from '../api/history';
+import { isPassing } from '../api/http';
 import type { Robot, Session } from '../api/types';
 import type { Trail } from '../live/trails';
 import type { MapSource } from '../map/map_source';
@@ -213,8 +214,12 @@ export class SessionHistory {
     };
     const loader = new PastLoader(timeline, newest, source);
     const load = (signal: AbortSignal): Promise<void> => loader.load(signal);
-    void poll(load, kGrowthPace, leave.signal, (error) => {
-      if (error !== null && !state.isKnown) this.change({ trouble: words.troubleOf(error, true) });
+    const giveUp = new AbortController();
+    void poll(load, kGrowthPace, AbortSignal.any([leave.signal, giveUp.signal]), (error) => {
+      if (error === null) return;
+      const trying = isPassing(error);
+      if (!state.isKnown) this.change({ trouble: words.troubleOf(error, trying) });
+      if (!trying) giveUp.abort(); // until somebody looks again
     });
   }
 

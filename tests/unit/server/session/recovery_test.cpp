@@ -103,7 +103,7 @@ TEST_F(RecoveryTest, ADamagedLogIsReportedByItsEntry) {
     ASSERT_TRUE(store::append_and_wait(log_, id_, 653, {"no entry"}));
     const auto recovered = recover(log_, id_, config_, false);
     ASSERT_FALSE(recovered);
-    EXPECT_EQ(recovered.error().code, Errc::kMalformed);
+    EXPECT_EQ(recovered.error().code, Errc::kDataLoss);
     EXPECT_THAT(recovered.error().message, HasSubstr("log entry 653: "));
 }
 

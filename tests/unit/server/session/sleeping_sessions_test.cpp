@@ -214,6 +214,20 @@ TEST_F(SleepingSessions, AreNotTakenForDamagedWhereTheDiskCannotBeRead) {
     EXPECT_EQ(digest_when_woken("a"), digest);
 }
 
+TEST_F(SleepingSessions, ThatTheStartCannotReadAreReportedUntilTheNextOne) {
+    const auto digest = leave_behind("a");
+    registry_->drain();
+    log_.fail_reading(Error{Errc::kStoreFailed, "input/output error"});
+    restart();
+    const auto refused = registry_->wake("a").error();
+    EXPECT_EQ(refused.code, Errc::kDataLoss) << "asking again does not help";
+    EXPECT_THAT(refused.message, HasSubstr("input/output error; if its disk is well again, start the server again"));
+    EXPECT_THAT(registry_->damaged(), SizeIs(1));
+    log_.fail_reading({});
+    restart();
+    EXPECT_EQ(digest_when_woken("a"), digest);
+}
+
 TEST_F(SleepingSessions, CanBeRemoved) {
     leave_behind("a");
     let_sleep({"a"});

@@ -63,22 +63,28 @@ describe('a file of paths', () => {
 describe('fetching a file of paths', () => {
   let asked: string[];
   let refuse: string | null;
+  let refusal: number;
+  /** Of the session, each time that it is asked for; then it is 1. */
+  let ids: string[];
 
   /** A session of revision 9 that tells four revisions at once. */
   function serve(url: URL): Response {
     asked.push(url.pathname + url.search);
-    if (url.search === refuse) return new Response('{"title":"busy"}', { status: 503 });
+    if (url.search === refuse) return new Response('{"title":"busy"}', { status: refusal });
     if (url.pathname.endsWith('trajectory.geojson')) {
       const since = Number(url.searchParams.get('since'));
       return new Response(answer(kCourse, since, Math.min(9, since + 4)));
     }
     const config = { cell_size: 0.05 };
-    return Response.json({ name: 's', id: '1', created: '', revision: 9, scans: 5, config, bounds: null, robots: [] });
+    const id = ids.shift() ?? '1';
+    return Response.json({ name: 's', id, created: '', revision: 9, scans: 5, config, bounds: null, robots: [] });
   }
 
   beforeEach(() => {
     asked = [];
     refuse = null;
+    refusal = 503;
+    ids = [];
     Object.assign(globalThis, { document: { baseURI: 'http://localhost/' } });
     mock.method(globalThis, 'fetch', (url: URL) => Promise.resolve(serve(url)));
   });
@@ -89,15 +95,38 @@ describe('fetching a file of paths', () => {
     const told: number[] = [];
     const file = await fetchPathFile('s', new AbortController().signal, (bytes) => told.push(bytes));
     const path = '/api/v1/sessions/s/trajectory.geojson';
-    assert.deepEqual(asked, ['/api/v1/sessions/s', path, `${path}?since=4`, `${path}?since=8`]);
+    const session = '/api/v1/sessions/s';
+    assert.deepEqual(asked, [session, path, `${path}?since=4`, `${path}?since=8`, session]);
     assert.equal(await file.text(), answer(kCourse, 0, 9));
     assert.deepEqual(told, [...told].sort((a, b) => a - b));
     const bytes = [[0, 4], [4, 8], [8, 9]].map(([since = 0, until = 0]) => answer(kCourse, since, until).length);
     assert.equal(told.at(-1), bytes.reduce((sum, each) => sum + each, 0));
   });
 
+  it('tries a page again that is refused for the moment', async () => {
+    refuse = '?since=4';
+    const rests: number[] = [];
+    const file = await fetchPathFile('s', new AbortController().signal, () => {}, (failures) => {
+      if (rests.push(failures) === 3) refuse = null;
+      return Promise.resolve();
+    });
+    assert.equal(await file.text(), answer(kCourse, 0, 9));
+    assert.deepEqual(rests, [1, 2, 3]);
+  });
+
   it('is all or nothing', async () => {
     refuse = '?since=4';
-    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}), Refused);
+    const rests: number[] = [];
+    const pause = (failures: number): Promise<void> => Promise.resolve(void rests.push(failures));
+    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}, pause), Refused);
+    assert.deepEqual(rests, [1, 2, 3, 4, 5, 6, 7, 8]);
+    refusal = 500;
+    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}, pause), Refused);
+    assert.equal(rests.length, 8, 'waiting mends nothing');
+  });
+
+  it('is of one session', async () => {
+    ids.push('1', '2');
+    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}), /replaced meanwhile/);
   });
 });

@@ -180,6 +180,22 @@ describe('whole paths', () => {
     world.assertWhole();
   });
 
+  it('are not counted back by an event that a page has overtaken', async () => {
+    const world = new World();
+    world.hear(99);
+    world.revision = 20;
+    world.hear(1);
+    world.revision = 24;
+    await world.next();
+    const late = pathOf('a', 0, 21);
+    world.tell({ revision: 21, robots: [{ name: 'a', trail: late.slice(-1), trailFrom: late.length - 1 }] });
+    world.revision = 40;
+    world.hear(1);
+    await world.next();
+    assert.deepEqual(world.asked, [10, 24]);
+    world.assertWhole();
+  });
+
   it('that never get so far are not asked for again and again, and then from the beginning', async () => {
     const world = new World();
     world.hear(99);
