@@ -97,7 +97,8 @@ void Server::join_pools() {
     changing_.join();
     reading_.join();
     checkpointing_.join();
-    history_.join();
+    logs_.join();
+    paths_.join();
     survey_.join();
     serving_.join();
     weaving_.join();
@@ -133,6 +134,8 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
     server->api_.set_background_check(server->check_);
+    server->log_->on_unreadable(
+        [check = &server->check_](store::SessionId session, const Error& why) { check->note(session, why); });
     if (!options.backups.empty()) {
         auto backups = store::Backups::open(options.backups, options.backups_kept, *server->log_,
                                             [](const std::string& what) { spdlog::warn("{}", what); });
@@ -175,7 +178,8 @@ Result<> Server::listen() {
         {.telling = telling_.get_executor(),
          .serving = serving_.get_executor(),
          .survey = survey_.get_executor(),
-         .history = history_.get_executor(),
+         .paths = paths_.get_executor(),
+         .logs = logs_.get_executor(),
          .weaving = awaiting_.get_executor(),
          .planning = planning_.get_executor(),
          .changing = changing_.get_executor(),

@@ -38,7 +38,8 @@ using OpenLog =
 ///   weaving        the sessions' strands: everything that changes a map
 ///   serving        answers made from a part of a snapshot
 ///   survey         answers made from a whole snapshot: one at a time, as they may take a second
-///   history        answers read from a log, likewise
+///   paths          paths of robots, likewise: read from a log where they are long
+///   logs           logs, piece by piece
 ///   reweaving      maps woven once more, with other settings: with a lower priority than all else
 ///   awaiting       answers that wait for such maps
 ///   planning       ways through maps, for robots and people: one search at a time
@@ -90,7 +91,8 @@ private:
     boost::asio::thread_pool weaving_;
     boost::asio::thread_pool serving_;
     boost::asio::thread_pool survey_{1};
-    boost::asio::thread_pool history_{1};
+    boost::asio::thread_pool paths_{1};
+    boost::asio::thread_pool logs_{1};
     boost::asio::thread_pool reweaving_{2};
     boost::asio::thread_pool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
     boost::asio::thread_pool planning_{1};

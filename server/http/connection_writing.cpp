@@ -56,7 +56,7 @@ asio::awaitable<bool> Connection::write(const Response& response, Manner manner)
 asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
     for (;;) {
         const Result<std::string> piece =
-            co_await sockets::compute_on(service_->executors.history, [&stream] { return next_guarded(stream); });
+            co_await sockets::compute_on(service_->executors.logs, [&stream] { return next_guarded(stream); });
         if (!piece) {
             spdlog::error("an answer broke off: {}", piece.error().message);
             co_return false;

@@ -18,7 +18,8 @@ enum class Lane {
     kServing,   ///< its own work on a part of a snapshot: tiles (but see look_at_tile()), facts
     kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, first drawings of tiles that
                 ///< show much
-    kHistory,   ///< the disk, and its own work on a part of a log, which may take seconds: paths, the log itself
+    kPaths,     ///< the disk, and its own work on a part of a log, which may take seconds: paths of robots
+    kLog,       ///< a small piece of a log: its first one; the others follow there as the reader takes them
     kWeaving,   ///< maps that are to be woven first
     kImporting, ///< as kChanging, with a large body
     kPlanning,  ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time

@@ -27,6 +27,7 @@ namespace scanloom::http {
 ///         "changes": at most config.changes_max requests create or delete sessions; one more is answered 503.
 ///         "imports": at most config.imports_max maps are read and imported; one more is answered 503.
 ///         "weaves": at most config.weaves_max requests wait for maps to be woven; one more is answered 503.
+///         "paths": at most config.paths_max requests have paths read; one more is answered 503.
 ///         "plans": at most config.plans_max requests look for ways, or wait for their turn; one more is answered 503.
 ///         Viewers, who watch live: at most config.live.viewers_max of the connections; one more is answered 503.
 /// Thread  any. The counters must outlive the server's work on all executors.

@@ -21,6 +21,7 @@ struct ServerConfig {
 
     std::size_t changes_max = 16; ///< requests that create or delete sessions; one more is answered 503
     std::size_t weaves_max = 16;  ///< requests that wait for maps to be woven; one more is answered 503
+    std::size_t paths_max = 8;    ///< requests for paths, each of which may take a second; one more is answered 503
     std::size_t plans_max = 16;   ///< requests for frontiers, goals and ways; one more is answered 503
 
     std::uint32_t header_bytes_max = 8 * 1024;

@@ -19,6 +19,10 @@ Result<std::shared_ptr<const void>> take_slot(const Service& service, Lane lane)
         slot = service.weaves.try_take();
         if (!slot) return Error{Errc::kOverloaded, "too many maps are being waited for at this moment; try again soon"};
     }
+    if (lane == Lane::kPaths) {
+        slot = service.paths.try_take();
+        if (!slot) return Error{Errc::kOverloaded, "too many paths are being read at this moment; try again soon"};
+    }
     if (lane == Lane::kPlanning) {
         slot = service.plans.try_take();
         if (!slot) return Error{Errc::kOverloaded, "too many ways are being looked for at this moment; try again soon"};
@@ -30,7 +34,8 @@ const boost::asio::any_io_executor& executor_of(const Executors& executors, Lane
     switch (lane) {
     case Lane::kTelling: return executors.telling;
     case Lane::kSurvey: return executors.survey;
-    case Lane::kHistory: return executors.history;
+    case Lane::kPaths: return executors.paths;
+    case Lane::kLog: return executors.logs;
     case Lane::kWeaving: return executors.weaving;
     case Lane::kPlanning: return executors.planning;
     case Lane::kImporting:

@@ -44,7 +44,8 @@ struct Executors {
     boost::asio::any_io_executor telling;
     boost::asio::any_io_executor serving;
     boost::asio::any_io_executor survey;
-    boost::asio::any_io_executor history; ///< the pieces of streamed bodies, too
+    boost::asio::any_io_executor paths;
+    boost::asio::any_io_executor logs; ///< the pieces of streamed bodies, too
     boost::asio::any_io_executor weaving;
     boost::asio::any_io_executor planning;
     boost::asio::any_io_executor changing;
@@ -61,6 +62,7 @@ struct Service {
     sockets::Slots changes; ///< requests in Lane::kChanging
     sockets::Slots imports; ///< requests in Lane::kImporting
     sockets::Slots weaves;  ///< requests in Lane::kWeaving
+    sockets::Slots paths;   ///< requests in Lane::kPaths
     sockets::Slots plans;   ///< requests in Lane::kPlanning
     live::Seats seats;      ///< connections that are viewers'
 };

@@ -1,9 +1,9 @@
 #include "server/session/background_check.hpp"
 
+#include "server/log/context.hpp"
 #include "server/session/session_check.hpp"
 
 #include <boost/asio/post.hpp>
-#include <spdlog/spdlog.h>
 
 #include <sys/resource.h>
 
@@ -14,6 +14,7 @@ namespace scanloom::session {
 namespace {
 
 constexpr int kNiceness = 19;
+constexpr std::chrono::seconds kWarnEvery{10};
 
 /// Of this thread: whoever weaves or answers comes first.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
@@ -59,10 +60,30 @@ void BackgroundCheck::check(const store::StoredSession& stored, const std::strin
     if (!found) return; // stopped
     // Deleted meanwhile, or the store failed: then it cannot be read, and may be whole.
     const bool is_damage = found->damage && is_still_there(name, stored.id) && !log_.stats().last_error;
-    if (is_damage) spdlog::error("session '{}' is damaged: {}", name, found->damage->message);
+    if (is_damage) keep(name, stored.id, *found->damage);
     const std::lock_guard lock(mutex_);
     ++checked_;
-    if (is_damage) damaged_[name] = {stored.id, *found->damage};
+}
+
+void BackgroundCheck::note(store::SessionId id, const Error& why) {
+    if (log_.stats().last_error) return; // it may be whole, and that the store has failed is told
+    for (const auto& listed : sessions_.all()) {
+        if (listed.info.id != id) continue;
+        if (why.code == Errc::kDataLoss) return keep(listed.info.name, id, why);
+        const std::lock_guard lock(mutex_);
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_warning_) return;
+        next_warning_ = now + kWarnEvery; // whoever asks may ask often
+        log::warn({.session = listed.info.name}, "session '{}' cannot be read: {}", listed.info.name, why.message);
+    }
+}
+
+/// Logs it once.
+void BackgroundCheck::keep(const std::string& name, store::SessionId id, const Error& why) {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = damaged_.find(name); known != damaged_.end() && known->second.id == id) return;
+    log::error({.session = name}, "session '{}' is damaged: {}", name, why.message);
+    damaged_[name] = {id, why};
 }
 
 Result<> BackgroundCheck::go_on_after(std::size_t bytes) {

@@ -7,6 +7,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <map>
@@ -32,6 +33,9 @@ public:
     /// Has it end at its next entry, for good.
     void stop();
 
+    /// Somebody else could not read the log of this session: kDataLoss is damage from now on, other reasons are logged.
+    void note(store::SessionId id, const Error& why);
+
     /// What was found and is still there: name and reason. These sessions are served as far as they can be.
     [[nodiscard]] std::map<std::string, Error> damaged() const;
 
@@ -49,6 +53,7 @@ private:
 
     void run();
     void check(const store::StoredSession& stored, const std::string& name);
+    void keep(const std::string& name, store::SessionId id, const Error& why);
     [[nodiscard]] Result<> go_on_after(std::size_t bytes);
     [[nodiscard]] bool is_still_there(const std::string& name, store::SessionId id) const;
 
@@ -62,6 +67,7 @@ private:
     bool done_ = false;
     std::uint64_t checked_ = 0;
     std::map<std::string, Damaged> damaged_;
+    std::chrono::steady_clock::time_point next_warning_{};
 };
 
 } // namespace scanloom::session

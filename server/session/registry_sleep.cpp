@@ -1,7 +1,5 @@
 #include "server/session/session_registry.hpp"
 
-#include "server/log/context.hpp"
-
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
@@ -72,11 +70,8 @@ void SessionRegistry::read(const Wanted& wanted) {
     if (session) return roster_.failed(info.name, shutting_down());
     const Error& why = session.error();
     if (log_.stats().last_error) return roster_.failed(info.name, {Errc::kStoreFailed, why.message}); // it may be whole
-    if (why.code == Errc::kOverloaded) return roster_.failed(info.name, why);
-    if (why.code == Errc::kStoreFailed) { // it may be whole, too: whoever asks has it tried again
-        log::warn({.session = info.name}, "session '{}' cannot be read: {}", info.name, why.message);
-        return roster_.failed(info.name, why);
-    }
+    const bool may_pass = why.code == Errc::kOverloaded || why.code == Errc::kStoreFailed;
+    if (may_pass) return roster_.failed(info.name, why); // whoever asks has it tried again
     keep_damaged(info.name, info.id, why);
     roster_.remove(info.name, why);
 }

@@ -83,7 +83,11 @@ void ReopeningLog::append(SessionId session, Revision first, std::vector<std::st
 }
 
 Result<> ReopeningLog::read(SessionId session, Revision after, const VisitEntry& visit) {
-    return use([&](ScanLog& log) { return log.read(session, after, visit); });
+    auto read = use([&](ScanLog& log) { return log.read(session, after, visit); });
+    if (!read && (read.error().code == Errc::kDataLoss || read.error().code == Errc::kStoreFailed)) {
+        on_unreadable_(session, read.error());
+    }
+    return read;
 }
 
 Result<> ReopeningLog::clear_checkpoint(SessionId session) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <shared_mutex>
 #include <string>
+#include <utility>
 
 namespace scanloom::store {
 
@@ -23,6 +24,10 @@ public:
     /// Opens it for the first time. `disk_is_well` tells whether it may be worth trying again; null: always.
     /// Errors  those of `open`.
     [[nodiscard]] static Result<std::unique_ptr<ReopeningLog>> open(Open open, Check disk_is_well = nullptr);
+
+    /// Who is told, by the reader's thread, of every log that could not be read to its end: kDataLoss or kStoreFailed.
+    /// Call before others use it.
+    void on_unreadable(std::function<void(SessionId, const Error&)> told) { on_unreadable_ = std::move(told); }
 
     /// Where it has failed and the disk is well again: opens it again. Waits for whoever reads.
     /// @return whether it has been opened again: whoever appended has to look where its log ends now.
@@ -54,6 +59,7 @@ private:
 
     const Open open_;
     const Check disk_is_well_;
+    std::function<void(SessionId, const Error&)> on_unreadable_ = [](SessionId, const Error&) {};
     mutable std::shared_mutex mutex_; // held shared by whoever uses the log
     std::unique_ptr<ScanLog> log_;    // null: it could not be opened again yet
     StoreStats before_;               // of the earlier ones; last_error says why there is none

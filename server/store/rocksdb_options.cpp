@@ -39,6 +39,7 @@ void set_memory(rocksdb::Options& rocksdb, const StoreOptions& options) {
     table.block_cache = rocksdb::NewLRUCache(options.memory_bytes / 2);
     table.cache_index_and_filter_blocks = true; // or they would grow with the store, outside of any bound
     table.block_size = 32 << 10;                // entries are read in order; larger blocks compress better
+    table.max_auto_readahead_size = 0; // the system reads ahead; RocksDB's own asserts that no file is cut short
     rocksdb.table_factory.reset(rocksdb::NewBlockBasedTableFactory(table));
 }
 

@@ -70,7 +70,6 @@ struct Scan {
         rocksdb::ReadOptions read;
         read.iterate_upper_bound = end;
         read.fill_cache = false;
-        read.readahead_size = 1 << 20;
         return read;
     }
 

@@ -21,10 +21,10 @@ TEST(Lane, WholeMapsDoNotHoldUpParts) {
                               "/difference?weave=0", "/difference.png?with=0"}) {
         EXPECT_EQ(lane("GET", session + whole), Lane::kSurvey) << whole;
     }
-    for (const char* of_the_log :
-         {"/trajectory.geojson", "/trajectory.geojson?since=3&times=true", "/log?format=clf"}) {
-        EXPECT_EQ(lane("GET", session + of_the_log), Lane::kHistory) << of_the_log;
+    for (const char* path : {"/trajectory.geojson", "/trajectory.geojson?since=3&times=true"}) {
+        EXPECT_EQ(lane("GET", session + path), Lane::kPaths) << path;
     }
+    EXPECT_EQ(lane("GET", session + "/log?format=clf"), Lane::kLog);
     for (const char* part :
          {"", "/map.yaml", "/changes?since=3", "/goals.geojson", "/tiles/occupancy.json", "/tiles/occupancy/5/0/0.png",
           "/tiles/occupancy/9/256/255.bin", "/tiles/occupancy/x/0/0.png"}) {

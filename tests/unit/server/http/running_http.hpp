@@ -57,7 +57,8 @@ public:
         return {.telling = telling_.get_executor(),
                 .serving = serving_.get_executor(),
                 .survey = survey_.get_executor(),
-                .history = history_.get_executor(),
+                .paths = paths_.get_executor(),
+                .logs = logs_.get_executor(),
                 .weaving = weaving_.get_executor(),
                 .planning = planning_.get_executor(),
                 .changing = changing_.get_executor(),
@@ -71,7 +72,8 @@ private:
     boost::asio::thread_pool telling_{1};
     boost::asio::thread_pool serving_{1};
     boost::asio::thread_pool survey_{1};
-    boost::asio::thread_pool history_{1};
+    boost::asio::thread_pool paths_{1};
+    boost::asio::thread_pool logs_{1};
     boost::asio::thread_pool weaving_{1};
     boost::asio::thread_pool planning_{1};
     boost::asio::thread_pool changing_{1};

@@ -427,6 +427,23 @@ TEST(HttpServer, OneChangeTooManyIsToldToComeBack) {
     EXPECT_EQ(answer_to(server, post("/api/v1/sessions")).status, 200);
 }
 
+TEST(HttpServer, OnePathTooManyIsToldToComeBackAndLogsAreNotHeldUp) {
+    Gate gate(1);
+    RunningHttp server(ServerConfig{.paths_max = 1}, [&](const Request& request) {
+        if (request.target.ends_with(".geojson")) gate.pass_slowly();
+        return echo(request);
+    });
+    HttpClient first(server.port());
+    first.send(get("/api/v1/sessions/s/trajectory.geojson"));
+    gate.wait_until_all_are_in();
+    EXPECT_EQ(answer_to(server, get("/api/v1/sessions/other/trajectory.geojson")).status, 503);
+    for (const auto* other : {"/api/v1/sessions/s/log", "/api/v1/sessions/s/digest"}) {
+        EXPECT_EQ(answer_to(server, get(other)).status, 200) << other;
+    }
+    gate.open();
+    EXPECT_EQ(first.read().status, 200);
+}
+
 TEST(HttpServer, OneSearchTooManyIsToldToComeBackAndTilesAreNotHeldUp) {
     Gate gate(1);
     RunningHttp server(ServerConfig{.plans_max = 1}, [&](const Request& request) {

@@ -84,6 +84,22 @@ TEST_F(BackgroundCheckTest, WhatAFailedStoreCannotReadIsNotCalledDamaged) {
     EXPECT_THAT(check.damaged(), IsEmpty());
 }
 
+TEST_F(BackgroundCheckTest, WhatOthersCouldNotReadIsDamageUnlessItMayPass) {
+    BackgroundCheck check(stored_, *registry_, checking_.get_executor());
+    const auto id = [&](const char* name) { return registry_->info(name)->id; };
+    check.note(id("a"), {Errc::kStoreFailed, "input/output error"});
+    check.note(4711, {Errc::kDataLoss, "of no session"});
+    EXPECT_THAT(check.damaged(), IsEmpty());
+    check.note(id("b"), {Errc::kDataLoss, "bits"});
+    check.note(id("b"), {Errc::kDataLoss, "bits once more"});
+    ASSERT_THAT(check.damaged(), SizeIs(1));
+    EXPECT_EQ(check.damaged().at("b").message, "bits");
+    stored_.fail_from_next_change({Errc::kStoreFailed, "the disk is gone"});
+    EXPECT_FALSE(registry_->create("d", {}));
+    check.note(id("c"), {Errc::kDataLoss, "while the store has failed"});
+    EXPECT_THAT(check.damaged(), SizeIs(1));
+}
+
 TEST(ReadRate, LeavesTheTimeThatBytesAreWorthAndMakesUpForNone) {
     using std::chrono::milliseconds;
     const ReadRate::Time begin{std::chrono::hours(5)};
