@@ -79,7 +79,7 @@ private:
         Revision first;
         std::vector<std::string> entries;
     };
-    static constexpr std::size_t kKeptBackMax = 16;
+    static constexpr std::size_t kKeptBackMax = 64;
 
     void write() {
         for (auto& append : std::exchange(kept_back_, {})) {
