@@ -35,6 +35,7 @@ TEST(ReopeningLog, TellsOfLogsThatCannotBeRead) {
     for (const auto code : {Errc::kDataLoss, Errc::kStoreFailed}) {
         inner->fail_reading(Error{code, "no"});
         EXPECT_FALSE(entries_after(*log, session, 0));
+        ASSERT_FALSE(told.empty());
         EXPECT_EQ(told.back(), std::pair(session, code));
     }
     EXPECT_THAT(told, SizeIs(2));
