@@ -10,6 +10,9 @@ target_compile_options(scanloom_options INTERFACE -Wall -Wextra -Wconversion -Ws
 if(DEFINED ENV{CI})
   target_compile_options(scanloom_options INTERFACE -Werror)
 endif()
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_compile_options(-Wno-subobject-linkage) # it takes the files that are put together for headers
+endif()
 if(SCANLOOM_SANITIZE)
   add_compile_options(-fsanitize=${SCANLOOM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SCANLOOM_SANITIZE})
@@ -18,10 +21,17 @@ if(SCANLOOM_SANITIZE)
   endif()
 endif()
 
-# scanloom_library(NAME SOURCES a.cpp ... LINKS target ...)
+# What follows takes ALONE, too: files that are compiled by themselves also where the others are put together
+# (CMAKE_UNITY_BUILD), as names of theirs that are nobody else's business are those of another file as well.
+function(scanloom_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# scanloom_library(NAME SOURCES a.cpp ... [ALONE a.cpp ...] LINKS target ...)
 # One folder, one library; LINKS are the folders and packages it may include.
 function(scanloom_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINKS" ${ARGN})
+  scanloom_alone(${ARG_ALONE})
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC scanloom_options ${ARG_LINKS})
@@ -31,17 +41,19 @@ function(scanloom_library name)
   endif()
 endfunction()
 
-# scanloom_program(NAME SOURCES main.cpp ... LINKS target ...)
+# scanloom_program(NAME SOURCES main.cpp ... [ALONE a.cpp ...] LINKS target ...)
 function(scanloom_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINKS" ${ARGN})
+  scanloom_alone(${ARG_ALONE})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE scanloom_options ${ARG_LINKS})
 endfunction()
 
-# scanloom_test(NAME SOURCES x_test.cpp ... LINKS target ...)
+# scanloom_test(NAME SOURCES x_test.cpp ... [ALONE a.cpp ...] LINKS target ...)
 # One executable; each of its cases is a test of CTest's.
 function(scanloom_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINKS;ENVIRONMENT" ${ARGN})
+  scanloom_alone(${ARG_ALONE})
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${name} PRIVATE scanloom_options GTest::gmock GTest::gtest_main ${ARG_LINKS})
