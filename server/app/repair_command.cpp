@@ -40,6 +40,7 @@ struct Sum {
     std::uint64_t missing = 0;
     std::uint64_t stood_in = 0;
     std::uint64_t set_aside = 0;
+    std::size_t damaged_files = 0; // of the old store
 
     void add(const session::RepairedSession& session) {
         ++sessions;
@@ -73,6 +74,7 @@ Result<Sum> repair(const ServerOptions& options) {
     for (const auto& note : (*salvage)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
     auto sum = save(**salvage, *unfinished, lost);
     if (!sum) return sum;
+    sum->damaged_files = (*salvage)->notes().size();
     salvage->reset();
     if (auto finished = unfinished->finish(); !finished) return finished.error();
     return sum;
@@ -89,8 +91,11 @@ ExitCode repair_store(const ServerOptions& options) {
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     const boost::json::object summary{
-        {"event", "repaired"},       {"sessions", sum->sessions},   {"kept", sum->kept},         {"lost", sum->missing},
-        {"stood_in", sum->stood_in}, {"set_aside", sum->set_aside}, {"seconds", seconds.count()}};
+        {"event", "repaired"},         {"damaged_files", sum->damaged_files},
+        {"sessions", sum->sessions},   {"kept", sum->kept},
+        {"lost", sum->missing},        {"stood_in", sum->stood_in},
+        {"set_aside", sum->set_aside}, {"seconds", seconds.count()},
+    };
     std::cout << json_text(summary) << std::endl;
     return kExitDone;
 }

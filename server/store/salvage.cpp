@@ -5,6 +5,7 @@
 #include "server/store/log_file.hpp"
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
+#include "server/store/table_carving.hpp"
 #include "server/store/table_walk.hpp"
 
 #include <fmt/format.h>
@@ -58,6 +59,11 @@ std::unique_ptr<rocksdb::Iterator> iterator_of(rocksdb::SstFileReader& table) {
     return std::unique_ptr<rocksdb::Iterator>(table.NewIterator(read));
 }
 
+bool is_whole(const fs::path& table) {
+    rocksdb::SstFileReader reader{rocksdb::Options()};
+    return reader.Open(table.native()).ok() && reader.VerifyChecksum().ok();
+}
+
 } // namespace
 
 Result<std::unique_ptr<Salvage>> Salvage::open(const fs::path& store, const fs::path& copy,
@@ -67,6 +73,7 @@ Result<std::unique_ptr<Salvage>> Salvage::open(const fs::path& store, const fs::
     std::unique_ptr<Salvage> salvage(new Salvage(copy));
     if (auto copied = salvage->copy_files(store); !copied) return copied.error();
     if (auto opened = salvage->open_tables(options); !opened) return opened.error();
+    if (auto carved = salvage->carve_damaged_tables(); !carved) return carved.error();
     if (auto taken = salvage->take_write_ahead_logs(store); !taken) return taken.error();
     salvage->list_tables();
     salvage->find_sessions();
@@ -117,6 +124,40 @@ Result<> Salvage::open_tables(const StoreOptions& options) {
     return {};
 }
 
+/// Before the write-ahead logs: what these have was written later.
+Result<> Salvage::carve_damaged_tables() {
+    auto tables = files_with(copy_, ".sst");
+    std::ranges::copy(files_with(copy_ / kSetAside, ".sst"), std::back_inserter(tables));
+    for (const auto& table : tables) {
+        if (is_whole(table)) continue;
+        const auto taken = carve(table);
+        if (!taken) return taken.error();
+        notes_.push_back(fmt::format("{} is damaged; what is intact of it was taken, {} entries",
+                                     table.filename().native(), *taken));
+    }
+    return {};
+}
+
+/// @return how many entries were taken.
+Result<std::uint64_t> Salvage::carve(const fs::path& table) {
+    std::map<SessionId, bool> removed;
+    rocksdb::WriteBatch batch;
+    std::uint64_t taken = 0;
+    carve_table(bytes_in_file(table), [&](std::string_view key, std::string_view sealed_value) {
+        const auto session = *owner_of(key);
+        const auto [of_session, is_first] = removed.try_emplace(session);
+        if (is_first) of_session->second = is_removed(session, table);
+        if (of_session->second) return;
+        if (std::string newer; session_of(key) && database_->Get({}, key, &newer).ok() && unsealed(key, newer)) return;
+        batch.Put(key, sealed_value).PermitUncheckedError(); // fails where a batch is limited, which this is not
+        if (!session_of(key)) ++taken;
+    });
+    if (const auto status = database_->Write({}, &batch); !status.ok()) {
+        return failure(fmt::format("what is left of {} cannot be taken: {}", table.native(), status.ToString()));
+    }
+    return taken;
+}
+
 /// A write that is in a table, too, is the same once more.
 Result<> Salvage::take_write_ahead_logs(const fs::path& store) {
     for (const auto& file : files_with(store, ".log")) {
@@ -156,8 +197,8 @@ void Salvage::find_sessions() {
 }
 
 /// Whether the database knows that all of it is gone; a table alone does not.
-bool Salvage::is_removed(SessionId session, const Table& table) const {
-    if (table.file.parent_path() != copy_) return false; // set aside: the database does not have it
+bool Salvage::is_removed(SessionId session, const fs::path& table) const {
+    if (table.parent_path() != copy_) return false; // set aside: the database does not have it
     std::string record;
     if (!database_->Get({}, session_key(session), &record).IsNotFound()) return false;
     const std::unique_ptr<rocksdb::Iterator> iterator(database_->NewIterator({}));
@@ -169,17 +210,14 @@ bool Salvage::is_removed(SessionId session, const Table& table) const {
 
 void Salvage::find_records(const Table& table) {
     rocksdb::SstFileReader reader{rocksdb::Options()};
-    if (!reader.Open(table.file.native()).ok()) {
-        notes_.push_back(fmt::format("{} cannot be opened: all of it is lost", table.file.filename().native()));
-        return;
-    }
+    if (!reader.Open(table.file.native()).ok()) return; // carved
     const auto iterator = iterator_of(reader);
     for (iterator->Seek(std::string(kSessionsBegin)); iterator->Valid(); iterator->Next()) {
         const auto key = iterator->key().ToStringView();
         const auto session = session_of(key);
         if (!session) break;
         const auto record = unsealed(key, iterator->value().ToStringView());
-        if (is_removed(*session, table)) continue;
+        if (is_removed(*session, table.file)) continue;
         auto& found = sessions_[*session];
         if (record && !found) found.emplace(*record);
     }
@@ -194,7 +232,7 @@ void Salvage::find_owners(const Table& table) {
         const auto key = iterator->key().ToStringView();
         const auto owner = owner_of(key);
         if (!owner || !revision_of(key)) break;
-        if (!sessions_.contains(*owner) && !is_removed(*owner, table)) sessions_[*owner];
+        if (!sessions_.contains(*owner) && !is_removed(*owner, table.file)) sessions_[*owner];
         iterator->Seek(entries_of(*owner).end);
     }
 }

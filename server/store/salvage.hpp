@@ -23,9 +23,10 @@ namespace scanloom::store {
 /// left: maps are woven anew.
 ///
 /// Reads a copy, which shares the tables' files with the store where the disk allows it: what is never changed need not
-/// be copied. Tables are read each by itself, as one with a bad block would hide what others have; of the write-ahead
-/// log every whole write is taken, also behind damage; a manifest that is damaged, or names tables that are missing, is
-/// made again from the tables that are there. A session that was deleted shortly before may come back then.
+/// be copied. Tables are read each by itself, as one with a bad block would hide what others have, and of one that is
+/// damaged every intact entry is taken (carve_table); of the write-ahead log every whole write is, also behind damage; a
+/// manifest that is damaged, or names tables that are missing, is made again from the tables that are there. A session
+/// that was deleted shortly before may come back then.
 /// Thread  one.
 class Salvage {
 public:
@@ -46,7 +47,7 @@ public:
     /// error. @return how many were found whose checksum does not hold.
     [[nodiscard]] Result<std::uint64_t> read(SessionId session, const VisitEntry& visit) const;
 
-    /// What was done to have it read, a sentence each.
+    /// What was done to have it read, a sentence for each file that is damaged.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
 private:
@@ -60,12 +61,14 @@ private:
     explicit Salvage(std::filesystem::path copy);
     [[nodiscard]] Result<> copy_files(const std::filesystem::path& store);
     [[nodiscard]] Result<> open_tables(const StoreOptions& options);
+    [[nodiscard]] Result<> carve_damaged_tables();
+    [[nodiscard]] Result<std::uint64_t> carve(const std::filesystem::path& table);
     [[nodiscard]] Result<> take_write_ahead_logs(const std::filesystem::path& store);
     void list_tables();
     void find_sessions();
     void find_records(const Table& table);
     void find_owners(const Table& table);
-    [[nodiscard]] bool is_removed(SessionId session, const Table& table) const;
+    [[nodiscard]] bool is_removed(SessionId session, const std::filesystem::path& table) const;
 
     const std::filesystem::path copy_;
     std::unique_ptr<rocksdb::DB> database_; // of the copy

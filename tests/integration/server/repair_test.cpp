@@ -67,6 +67,7 @@ TEST_F(RepairTest, WhatIsLostOfADamagedOneIsToldAndTheRobotGoesOn) {
     EXPECT_EQ(run({"--check", "--store", store().native()}).code, 1);
     const auto answer = repair();
     ASSERT_EQ(answer.code, 0) << answer.text;
+    EXPECT_EQ(answer.summary.at("damaged_files").to_number<int>(), 1);
     EXPECT_GT(answer.summary.at("lost").to_number<int>(), 0);
     EXPECT_EQ(answer.summary.at("lost"), answer.summary.at("stood_in")) << "all of them scans";
     EXPECT_EQ(answer.summary.at("kept").to_number<int>() + answer.summary.at("lost").to_number<int>(), 302);

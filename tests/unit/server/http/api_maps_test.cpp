@@ -98,7 +98,7 @@ TEST_F(ApiTest, TrajectoryTellsTimesOnlyWhenItIsAskedTo) {
     scans[2].pose.yaw = -1.23456;
     stream("a", "r1", std::move(scans));
     const std::string path = "/api/v1/sessions/a/trajectory.geojson";
-    const auto plain = get(path).body.bytes();
+    const std::string plain(get(path).body.bytes());
     EXPECT_EQ(get(path + "?times=false").body.bytes(), plain);
     EXPECT_THAT(plain, Not(HasSubstr("stamps")));
     EXPECT_THAT(get(path + "?times=true").body.bytes(),

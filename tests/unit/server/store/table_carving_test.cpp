@@ -1,0 +1,87 @@
+#include "server/store/table_carving.hpp"
+
+#include "server/store/record.hpp"
+#include "tests/support/table_block.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace scanloom::store {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// What is found, as "session/revision", or "session" of a record.
+std::vector<std::string> carved(std::string_view table) {
+    std::vector<std::string> found;
+    carve_table(table, [&](std::string_view key, std::string_view sealed_value) {
+        EXPECT_TRUE(unsealed(key, sealed_value));
+        auto name = std::to_string(*owner_of(key));
+        if (const auto revision = revision_of(key)) name += "/" + std::to_string(*revision);
+        found.push_back(std::move(name));
+    });
+    return found;
+}
+
+TEST(TableCarving, FindsRecordsAndEntriesAndNothingElse) {
+    TableBlock block;
+    block.put(part_key(3, "map"), sealed(part_key(3, "map"), "a part of a checkpoint"));
+    block.put("f", sealed("f", number_bytes(2)));
+    block.entry(3, 1, "first").entry(3, 2, "second").entry(4, 1, "another");
+    block.put("n", sealed("n", number_bytes(5)));
+    block.record(3, "three").record(4, "four");
+    EXPECT_THAT(carved(block.bytes()), ElementsAre("3/1", "3/2", "4/1", "3", "4"));
+    EXPECT_THAT(carved(std::string(37, '\x7f') + block.bytes() + block.bytes()), SizeIs(10)) << "wherever they lie";
+    EXPECT_THAT(carved(""), IsEmpty());
+}
+
+TEST(TableCarving, AnEntryThatIsDamagedCostsNoOther) {
+    for (std::size_t byte = 0;; ++byte) {
+        TableBlock block;
+        block.entry(7, 8, "before");
+        const auto begin = block.bytes().size();
+        block.entry(7, 9, "this one is hit somewhere");
+        const auto end = block.bytes().size();
+        block.entry(7, 10, "behind").entry(7, 11, "and behind it").record(7, "seven");
+        if (begin + byte == end) break;
+        auto bytes = block.bytes();
+        bytes[begin + byte] = static_cast<char>(bytes[begin + byte] ^ 0x10);
+        auto found = carved(bytes);
+        std::erase(found, "7/9"); // of which a number that is not needed may have been hit
+        EXPECT_THAT(found, ElementsAre("7/8", "7/10", "7/11", "7")) << "byte " << byte;
+    }
+}
+
+TEST(TableCarving, KeysAreToldFromTheOneBeforeAlsoWhereThatIsDamagedAndItsLastDigitsHadRunOver) {
+    TableBlock block;
+    block.entry(1, 255, "last intact");
+    block.entry(1, 256, "damaged");
+    const auto hit = block.bytes().size() - 1;
+    block.entry(1, 257, "says only its last byte");
+    auto bytes = block.bytes();
+    bytes[hit] = static_cast<char>(bytes[hit] ^ 1);
+    EXPECT_THAT(carved(bytes), ElementsAre("1/255", "1/257"));
+}
+
+TEST(TableCarving, KeysAreToldFromThatOfARemoval) {
+    TableBlock block;
+    block.record(1, "one").remove(session_key(2)).record(3, "three");
+    EXPECT_THAT(carved(block.bytes()), ElementsAre("1", "3"));
+    TableBlock removal_first;
+    removal_first.entry(9, 1, "an entry").remove(session_key(2)).record(3, "three");
+    EXPECT_THAT(carved(removal_first.bytes()), ElementsAre("9/1", "3"));
+}
+
+TEST(TableCarving, NothingIsFoundInNoise) {
+    std::mt19937 random(1);
+    std::string noise(200'000, '\0');
+    for (auto& byte : noise) byte = static_cast<char>(random() % 4 == 0 ? random() % 32 : random());
+    EXPECT_THAT(carved(noise), IsEmpty());
+}
+
+} // namespace
+} // namespace scanloom::store
