@@ -59,5 +59,9 @@ function(scanloom_test name)
   target_link_libraries(${name} PRIVATE scanloom_options GTest::gmock GTest::gtest_main ${ARG_LINKS})
   # g++ 12 sees overlaps that are not there in "text" + std::string (GCC bug 105651).
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300 ENVIRONMENT "${ARG_ENVIRONMENT}")
+  set(seconds 300)
+  if(SCANLOOM_SANITIZE)
+    set(seconds 1800) # brute force takes twenty times as long
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT ${seconds} ENVIRONMENT "${ARG_ENVIRONMENT}")
 endfunction()

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -25,6 +26,15 @@ inline void flip_bit(const std::filesystem::path& file, std::size_t byte, unsign
     std::string bytes = bytes_of(file);
     bytes.at(byte) = static_cast<char>(bytes.at(byte) ^ (1 << bit));
     write_bytes(file, bytes);
+}
+
+/// Each file of a directory, by name.
+inline std::map<std::string, std::string> files_in(const std::filesystem::path& directory) {
+    std::map<std::string, std::string> files;
+    for (const auto& file : std::filesystem::directory_iterator(directory)) {
+        files.emplace(file.path().filename().native(), bytes_of(file.path()));
+    }
+    return files;
 }
 
 /// The files whose names begin or end like this, by name.

@@ -21,14 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::map<std::string, std::string> files_in(const fs::path& directory) {
-    std::map<std::string, std::string> files;
-    for (const auto& file : fs::directory_iterator(directory)) {
-        files.emplace(file.path().filename().native(), bytes_of(file.path()));
-    }
-    return files;
-}
-
 /// A copy of a store that was killed with entries in a table and in its write-ahead log.
 class AtRestTest : public testing::Test {
 protected:

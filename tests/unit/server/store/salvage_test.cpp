@@ -22,14 +22,6 @@ using testing::SizeIs;
 constexpr Revision kInTable = 1000;
 constexpr Revision kInLog = 40;
 
-std::map<std::string, std::string> files_in(const fs::path& directory) {
-    std::map<std::string, std::string> files;
-    for (const auto& file : fs::directory_iterator(directory)) {
-        files.emplace(file.path().filename().native(), bytes_of(file.path()));
-    }
-    return files;
-}
-
 /// Two sessions, each with entries in a table, and one with some in the write-ahead log.
 class SalvageTest : public testing::Test {
 protected:
