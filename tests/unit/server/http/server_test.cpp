@@ -101,7 +101,7 @@ TEST(HttpServer, WhatIsNotHttpIsABadRequest) {
 TEST(HttpServer, WhoGreetsInTlsWhereThereIsNoneIsLeftInOrder) {
     RunningHttp server;
     HttpClient client(server.port());
-    client.send(std::string_view("\x16\x03\x01\x02\x01garbage\r\n\r\n", 18));
+    client.send("\x16\x03\x01\x02\x01garbage\r\n\r\n");
     EXPECT_EQ(client.read().status, 0) << "whatever were said could not be read there";
     EXPECT_TRUE(client.ends_in_order());
 }
