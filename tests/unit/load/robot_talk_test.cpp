@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <span>
 
 namespace scanloom::load {
 namespace {
@@ -37,7 +39,7 @@ protected:
         talk_->write(bytes, now, *figures_);
         wire::FrameDecoder decoder(wire::kFrameBytesMax);
         const auto room = decoder.prepare(bytes.size());
-        std::memcpy(room.data(), bytes.data(), bytes.size());
+        std::ranges::copy(std::as_bytes(std::span(bytes)), room.begin());
         decoder.commit(bytes.size());
         std::vector<wire::Message> messages;
         for (auto body = decoder.next(); body && *body; body = decoder.next()) {
