@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
+#include "common/scan/reading.hpp"
 #include "common/scan/scan.hpp"
 #include "server/mapping/beam_fan.hpp"
-#include "server/mapping/reading.hpp"
 #include "server/mapping/scan_conversion.hpp"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 
 #include "common/geometry/pose2.hpp"
 #include "common/scan/ray_model.hpp"
+#include "common/scan/reading.hpp"
 #include "server/mapping/beam_fan.hpp"
 #include "server/mapping/ray_tracing.hpp"
-#include "server/mapping/reading.hpp"
 #include "server/mapping/scan_marks.hpp"
 
 #include <cmath>

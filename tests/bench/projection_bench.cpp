@@ -27,9 +27,7 @@ mapping::MapConfig config_of(const Column& column) {
     return config;
 }
 
-mapping::ReadingRules readings_of(const Column& column) {
-    return {column.sensor.range_min, column.sensor.range_max, false};
-}
+ReadingRules readings_of(const Column& column) { return {column.sensor.range_min, column.sensor.range_max, false}; }
 
 std::shared_ptr<const mapping::LaserChunk> unknown_chunk() {
     auto chunk = std::make_shared<mapping::LaserChunk>();

@@ -1,7 +1,7 @@
 #include "server/live/core/scan_points.hpp"
 
 #include "common/scan/beam_angles.hpp"
-#include "server/mapping/reading.hpp"
+#include "common/scan/reading.hpp"
 
 #include <cmath>
 
@@ -17,10 +17,10 @@ wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride
     const Sensor& sensor = *folded.sensor;
     wire::ScanPoints out{sensor.id, sensor.kind, scan.stamp, compose(scan.pose, sensor.mount), {}};
     const BeamAngles angles = angles_of(scan, sensor);
-    const mapping::ReadingRules rules{sensor.range_min, sensor.range_max, false};
+    const ReadingRules rules{sensor.range_min, sensor.range_max, false};
     std::size_t hits = 0;
     for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
-        const auto reading = mapping::reading_of(scan.ranges[beam], rules);
+        const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit || hits++ % stride != 0) continue;
         const double direction = out.origin.yaw + beam_angle(angles, beam);
         out.points.push_back(

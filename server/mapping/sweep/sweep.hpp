@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
+#include "common/scan/reading.hpp"
 #include "common/scan/scan.hpp"
 #include "server/mapping/laser_chunk.hpp"
-#include "server/mapping/reading.hpp"
 #include "server/mapping/sweep/fan_ring.hpp"
 
 #include <array>

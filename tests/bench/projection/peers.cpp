@@ -168,7 +168,7 @@ private:
     std::vector<Span> spans_of(const Column& column, const mapping::FanRing& ring, const Scan& scan) {
         std::vector<Span> spans;
         const mapping::Sweep::Band band{&ring, 0.1};
-        const mapping::ReadingRules readings{column.sensor.range_min, column.sensor.range_max, false};
+        const ReadingRules readings{column.sensor.range_min, column.sensor.range_max, false};
         mapping::Sweep sweep({scan.ranges, scan.pose, readings, column.cell_size}, {&band, 1});
         for (std::size_t strip = 0; strip < sweep.strips(); ++strip) {
             sweep.visit(strip, [&](grid::ChunkKey key, std::span<const mapping::ChunkVerdicts> verdicts) {

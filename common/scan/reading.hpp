@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace scanloom::mapping {
+namespace scanloom {
 
 /// Which readings of a sensor mean what.
 struct ReadingRules {
@@ -30,4 +30,4 @@ struct Reading {
     return Reading{rules.range_max, false};
 }
 
-} // namespace scanloom::mapping
+} // namespace scanloom
