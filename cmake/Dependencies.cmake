@@ -17,6 +17,7 @@ if(SCANLOOM_SERVER)
   find_package(RocksDB 7.8 REQUIRED)
   find_package(prometheus-cpp REQUIRED)
   find_package(hwy 1.0 CONFIG REQUIRED)
+  find_package(nanoflann 1.4 CONFIG REQUIRED)
   # Its headers alone: one file uses them, and Debian's library would be one more to install.
   find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
   mark_as_advanced(TOMLPLUSPLUS_INCLUDE_DIR)

@@ -1,0 +1,125 @@
+#include "server/landmarks/alignment_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <numbers>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr int kRotations = 120;          // of a full turn
+constexpr double kCell = 0.15;           // metres, of translations
+constexpr std::size_t kSurfelsMax = 250; // of each cloud
+constexpr double kAlike = 0.85;          // cosine between normals of like direction
+constexpr std::size_t kPeaksMax = 6;     // of one rotation
+constexpr double kApart = 0.3;           // metres between hypotheses of like rotation
+constexpr double kTurned = 7.0 * std::numbers::pi / 180.0;
+
+struct Peak {
+    Pose2 pose;
+    int votes;
+};
+
+/// Evenly among the cloud's rows.
+std::vector<Surfel> sample(std::span<const Surfel> surfels) {
+    if (surfels.size() <= kSurfelsMax) return {surfels.begin(), surfels.end()};
+    std::vector<Surfel> some;
+    for (std::size_t n = 0; n < kSurfelsMax; ++n) some.push_back(surfels[n * surfels.size() / kSurfelsMax]);
+    return some;
+}
+
+std::vector<Surfel> rotated(std::span<const Surfel> surfels, double yaw) {
+    const Pose2 rotation{0.0, 0.0, yaw};
+    std::vector<Surfel> turned;
+    turned.reserve(surfels.size());
+    for (const Surfel& surfel : surfels) turned.push_back(transformed(rotation, surfel));
+    return turned;
+}
+
+/// Votes for translations, in cells around none.
+class Ballot {
+public:
+    explicit Ballot(double distance_max)
+        : reach_((std::ceil(distance_max / kCell) + 1.0) * kCell),
+          side_(2 * static_cast<int>(std::round(reach_ / kCell))),
+          votes_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_)) {}
+
+    void vote(std::span<const Surfel> first, std::span<const Surfel> second) {
+        std::ranges::fill(votes_, 0);
+        for (const Surfel& there : second) {
+            for (const Surfel& here : first) {
+                const double x = here.position.x() - there.position.x() + reach_;
+                const double y = here.position.y() - there.position.y() + reach_;
+                if (!(x >= 0.0 && y >= 0.0 && x < 2.0 * reach_ && y < 2.0 * reach_)) continue;
+                const bool comparable = here.is_straight() && there.is_straight();
+                if (comparable && std::abs(here.normal.dot(there.normal)) < kAlike) continue;
+                ++votes_[index(static_cast<int>(x / kCell), static_cast<int>(y / kCell))];
+            }
+        }
+    }
+
+    /// The squares of 2 x 2 cells with the most votes, none beside a better one.
+    [[nodiscard]] std::vector<Peak> peaks(double yaw) const {
+        std::vector<Peak> all;
+        for (int y = 1; y + 2 < side_; ++y) {
+            for (int x = 1; x + 2 < side_; ++x) {
+                const int votes = square(x, y);
+                if (votes == 0 || !is_peak(x, y, votes)) continue;
+                all.push_back({{(x + 1) * kCell - reach_, (y + 1) * kCell - reach_, yaw}, votes});
+            }
+        }
+        std::ranges::stable_sort(all, std::greater(), &Peak::votes);
+        if (all.size() > kPeaksMax) all.resize(kPeaksMax);
+        return all;
+    }
+
+private:
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(std::min(y, side_ - 1)) * static_cast<std::size_t>(side_) +
+               static_cast<std::size_t>(std::min(x, side_ - 1));
+    }
+    [[nodiscard]] int square(int x, int y) const {
+        return votes_[index(x, y)] + votes_[index(x + 1, y)] + votes_[index(x, y + 1)] + votes_[index(x + 1, y + 1)];
+    }
+    [[nodiscard]] bool is_peak(int x, int y, int votes) const {
+        return square(x - 1, y) < votes && square(x, y - 1) < votes && square(x + 1, y) <= votes &&
+               square(x, y + 1) <= votes;
+    }
+
+    double reach_;
+    int side_;
+    std::vector<std::int32_t> votes_;
+};
+
+bool is_near(const Pose2& a, const Pose2& b) {
+    return std::hypot(a.x - b.x, a.y - b.y) < kApart && std::abs(normalize_angle(a.yaw - b.yaw)) < kTurned;
+}
+
+} // namespace
+
+std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second, double distance_max,
+                                   std::size_t count_max) {
+    const auto here = sample(first);
+    const auto there = sample(second);
+    Ballot ballot(distance_max);
+    std::vector<Peak> peaks;
+    for (int n = 0; n < kRotations; ++n) {
+        const double yaw = normalize_angle(2.0 * std::numbers::pi * n / kRotations);
+        ballot.vote(here, rotated(there, yaw));
+        std::ranges::copy(ballot.peaks(yaw), std::back_inserter(peaks));
+    }
+    std::ranges::stable_sort(peaks, std::greater(), &Peak::votes);
+    std::vector<Pose2> hypotheses;
+    for (const Peak& peak : peaks) {
+        if (hypotheses.size() == count_max) break;
+        const bool is_new =
+            std::ranges::none_of(hypotheses, [&](const Pose2& pose) { return is_near(pose, peak.pose); });
+        if (is_new) hypotheses.push_back(peak.pose);
+    }
+    return hypotheses;
+}
+
+} // namespace scanloom::landmarks

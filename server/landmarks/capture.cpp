@@ -1,0 +1,69 @@
+#include "server/landmarks/capture.hpp"
+
+#include "common/scan/reading.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace scanloom::landmarks {
+namespace {
+
+double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double turn(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)); }
+
+bool is_still(const Capture& capture, const Scan& scan) {
+    return distance(capture.pose, scan.pose) <= kStillDistance && turn(capture.pose, scan.pose) <= kStillTurn;
+}
+
+/// Whether a robot that began `last` begins another one now.
+bool is_due(const Capture& last, const Scan& scan) {
+    return distance(last.pose, scan.pose) >= kCaptureDistance || turn(last.pose, scan.pose) >= kCaptureTurn ||
+           scan.stamp - last.stamp >= kCaptureAgainAfter;
+}
+
+std::int32_t millimetres(double metres) { return static_cast<std::int32_t>(std::lround(metres * 1000.0)); }
+
+void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
+    const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+    const BeamAngles angles = angles_of(scan, sensor);
+    const ReadingRules rules{sensor.range_min, sensor.range_max, true};
+    for (std::size_t beam = 0; beam < scan.ranges.size(); ++beam) {
+        const auto reading = reading_of(scan.ranges[beam], rules);
+        if (!reading || !reading->is_hit) continue;
+        const double direction = T_map_sensor.yaw + beam_angle(angles, beam);
+        capture.points.push_back({millimetres(T_map_sensor.x + reading->metres * std::cos(direction)),
+                                  millimetres(T_map_sensor.y + reading->metres * std::sin(direction))});
+    }
+}
+
+} // namespace
+
+std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor, Revision revision) {
+    std::optional<Capture> ended;
+    if (is_open_ && !is_still(*newest_, scan)) ended = end();
+    if (!is_open_) {
+        if (newest_ && !is_due(*newest_, scan)) return ended;
+        newest_ = Capture{scan.pose, scan.stamp, revision, revision, 0, {}};
+        is_open_ = true;
+    }
+    newest_->last = revision;
+    newest_->scans += 1;
+    add_points(*newest_, scan, sensor);
+    if (newest_->scans == kCaptureScansMax) ended = end(); // kCaptureScansMax > 1: none has ended with this scan yet
+    return ended;
+}
+
+Capture CaptureCutter::end() {
+    is_open_ = false;
+    auto points = std::exchange(newest_->points, {});
+    Capture ended = *newest_;
+    ended.points = std::move(points);
+    return ended;
+}
+
+void CaptureCutter::restore(std::optional<Capture> newest, bool is_open) {
+    newest_ = std::move(newest);
+    is_open_ = is_open;
+}
+
+} // namespace scanloom::landmarks

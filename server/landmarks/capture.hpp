@@ -1,0 +1,67 @@
+#pragma once
+
+#include "common/scan/log_entry.hpp"
+#include "common/scan/sensor.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+/// A robot that has come so far from where its last capture began begins another.
+inline constexpr double kCaptureDistance = 0.5; ///< metres
+inline constexpr double kCaptureTurn = 0.6;     ///< radians, of the robot
+
+/// As long as it is within these of where the capture began it stands still, and the capture goes on.
+inline constexpr double kStillDistance = 0.03; ///< metres
+inline constexpr double kStillTurn = 0.02;     ///< radians
+
+/// A capture has so many scans at most: more of the same place tell little, and cost as much.
+inline constexpr std::uint32_t kCaptureScansMax = 16;
+
+/// A robot that stands looks again after so many seconds, of its scans' stamps: doors open, people go.
+inline constexpr double kCaptureAgainAfter = 30.0;
+
+/// A point of a capture in whole millimetres, as the readings are that it comes from.
+using PointMm = std::array<std::int32_t, 2>;
+
+/// What a robot saw from one place: one scan of a robot that drives on (a keyframe), up to kCaptureScansMax of one that
+/// stands still.
+struct Capture {
+    Pose2 pose;         ///< T_map_robot, of the first scan
+    double stamp = 0.0; ///< seconds, of the first scan
+    Revision first = 0; ///< log entries of the first and the last of its scans
+    Revision last = 0;
+    std::uint32_t scans = 0;
+    std::vector<PointMm> points; ///< map frame; where its lasers met something
+
+    friend bool operator==(const Capture&, const Capture&) = default;
+};
+
+/// Divides what the lasers of one robot see into captures, scan by scan: a fold, so that the same scans give the same
+/// captures however they came.
+/// Thread  one at a time.
+class CaptureCutter {
+public:
+    /// Adds the next scan.
+    /// @return the capture that has ended: it is full, or the robot has moved on
+    /// Pre  the sensor is a laser, and the one that took the scan; revisions rise.
+    [[nodiscard]] std::optional<Capture> add(const Scan& scan, const Sensor& sensor, Revision revision);
+
+    /// The last capture that was begun; without points and is_open() where it has ended.
+    [[nodiscard]] const std::optional<Capture>& newest() const noexcept { return newest_; }
+    [[nodiscard]] bool is_open() const noexcept { return is_open_; }
+
+    /// Goes on from what newest() and is_open() told.
+    void restore(std::optional<Capture> newest, bool is_open);
+
+private:
+    [[nodiscard]] Capture end();
+
+    std::optional<Capture> newest_;
+    bool is_open_ = false;
+};
+
+} // namespace scanloom::landmarks

@@ -1,0 +1,55 @@
+#include "server/landmarks/distinct_points.hpp"
+
+#include "server/landmarks/point_check.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+namespace scanloom::landmarks {
+namespace {
+
+struct Place {
+    double x;
+    double y;
+    std::uint32_t index;
+
+    [[nodiscard]] bool operator<(const Place& other) const {
+        return std::tie(x, y, index) < std::tie(other.x, other.y, other.index);
+    }
+    [[nodiscard]] bool is_at(const Place& other) const { return x == other.x && y == other.y; }
+};
+
+std::vector<Place> sorted_places(std::span<const Point2> cloud) {
+    std::vector<Place> places(cloud.size());
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x(), cloud[n].y(), n};
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+} // namespace
+
+DistinctPoints distinct_points(std::span<const Point2> cloud) {
+    assert(cloud.size() <= kPointsMax);
+    DistinctPoints distinct;
+    distinct.of.resize(cloud.size());
+    const std::vector<Place> places = sorted_places(cloud);
+    for (std::size_t n = 0, first = 0; n < places.size(); ++n) {
+        if (!places[n].is_at(places[first])) first = n;
+        distinct.of[places[n].index] = places[first].index; // for now: the first equal point's index in the cloud
+    }
+    for (std::uint32_t n = 0; n < cloud.size(); ++n) {
+        const std::uint32_t first = distinct.of[n];
+        if (first == n) {
+            distinct.of[n] = static_cast<std::uint32_t>(distinct.points.size());
+            distinct.points.push_back(cloud[n]);
+            distinct.counts.push_back(1);
+        } else {
+            distinct.of[n] = distinct.of[first];
+            ++distinct.counts[distinct.of[n]];
+        }
+    }
+    return distinct;
+}
+
+} // namespace scanloom::landmarks

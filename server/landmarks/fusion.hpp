@@ -1,0 +1,31 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "common/geometry/pose2.hpp"
+
+#include <span>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+struct FusedPoint {
+    Point2 position;    ///< metres; of one cloud alone: its very coordinates
+    std::size_t clouds; ///< how many of them saw it, 1 or more
+};
+
+/// One cloud of many. Points of different clouds that correspond become one; all others stay.
+///
+/// What corresponds: the clouds are taken in their order, and each point of the first is a group. The points of each
+/// further cloud are matched with the groups so far, as match() does: mutual nearest neighbours at most `threshold`
+/// apart, a group standing where the per-axis median of its points is (of an even number, the mean of the middle
+/// two). A point that is matched joins its group, one that is not begins a new one. So a group has at most one point of
+/// a cloud, and equal points of one cloud stay as many as they are. The fused points are the groups' medians.
+///
+/// Frames  all clouds in one frame; see transform_points().
+/// @return in the order in which the groups began
+/// Post    as many clouds seen, over all fused points, as there are points in all clouds.
+/// Errors  kInvalidField: a threshold that is negative or not finite. Those of check_points().
+/// Cost    n log n of the points so far, for each cloud.
+[[nodiscard]] Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold);
+
+} // namespace scanloom::landmarks

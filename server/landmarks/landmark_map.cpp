@@ -1,0 +1,132 @@
+#include "server/landmarks/landmark_map.hpp"
+
+#include "server/landmarks/median.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace scanloom::landmarks {
+namespace {
+
+std::pair<std::int32_t, std::int32_t> cell_of(const Point2& position) {
+    return {static_cast<std::int32_t>(std::floor(position.y() / kTolerance)),
+            static_cast<std::int32_t>(std::floor(position.x() / kTolerance))};
+}
+
+/// Of the sightings that are kept.
+Point2 median_position(const MapLandmark& known) {
+    const std::size_t count = std::min<std::size_t>(known.seen, kSightingsKept);
+    std::array<double, kSightingsKept> values{};
+    const auto along = [&](std::size_t axis) {
+        for (std::size_t n = 0; n < count; ++n) values[n] = known.sightings[n][axis];
+        return median(std::span(values).first(count));
+    };
+    const double x = along(0);
+    return {x, along(1)};
+}
+
+} // namespace
+
+std::size_t LandmarkMap::add(std::span<const Landmark> seen, Revision revision) {
+    const auto around = known_around(seen);
+    std::vector<Point2> known;
+    for (const auto id : around) known.push_back(at(id).landmark.position);
+    const auto matches = match(positions_of(seen), known, kTolerance);
+    assert(matches); // landmarks are finite
+    std::vector<bool> is_known(seen.size());
+    for (const auto& found : *matches) {
+        is_known[found.first] = true;
+        see_again(around[found.second], seen[found.first], revision);
+    }
+    for (std::size_t n = 0; n < seen.size(); ++n) {
+        if (!is_known[n]) add_new(seen[n], revision);
+    }
+    return matches->size();
+}
+
+/// By rising id: of equally near ones the oldest counts.
+std::vector<std::uint32_t> LandmarkMap::known_around(std::span<const Landmark> seen) const {
+    std::vector<std::uint32_t> ids;
+    for (const auto& landmark : seen) {
+        const auto [j, i] = cell_of(landmark.position);
+        for (std::int32_t row = j - 1; row <= j + 1; ++row) {
+            const auto end = ids_in_.upper_bound({row, i + 1});
+            for (auto cell = ids_in_.lower_bound({row, i - 1}); cell != end; ++cell) {
+                ids.insert(ids.end(), cell->second.begin(), cell->second.end());
+            }
+        }
+    }
+    std::ranges::sort(ids);
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+}
+
+void LandmarkMap::add_new(const Landmark& landmark, Revision revision) {
+    if (size_ % kLandmarkBlock == 0) {
+        blocks_.push_back(std::make_shared<detail::LandmarkBlock>());
+        is_shared_.push_back(false);
+    }
+    auto& block = writable(blocks_.size() - 1);
+    const auto id = static_cast<std::uint32_t>(size_++);
+    auto& known = block.landmarks.emplace_back(MapLandmark{id, 1, revision, revision, landmark});
+    known.sightings[0] = {landmark.position.x(), landmark.position.y()};
+    block.revision = revision;
+    place(id, landmark.position);
+}
+
+void LandmarkMap::see_again(std::uint32_t id, const Landmark& landmark, Revision revision) {
+    auto& block = writable(id / kLandmarkBlock);
+    auto& known = block.landmarks[id % kLandmarkBlock];
+    take_away(id, known.landmark.position);
+    known.sightings[known.seen % kSightingsKept] = {landmark.position.x(), landmark.position.y()};
+    known.seen += 1;
+    known.last = revision;
+    known.landmark = landmark;
+    known.landmark.position = median_position(known);
+    block.revision = revision;
+    place(id, known.landmark.position);
+}
+
+void LandmarkMap::place(std::uint32_t id, const Point2& position) { ids_in_[cell_of(position)].push_back(id); }
+
+void LandmarkMap::take_away(std::uint32_t id, const Point2& position) {
+    const auto cell = ids_in_.find(cell_of(position));
+    std::erase(cell->second, id);
+    if (cell->second.empty()) ids_in_.erase(cell);
+}
+
+const MapLandmark& LandmarkMap::at(std::uint32_t id) const {
+    return blocks_[id / kLandmarkBlock]->landmarks[id % kLandmarkBlock];
+}
+
+detail::LandmarkBlock& LandmarkMap::writable(std::size_t block) {
+    has_changed_ = true;
+    if (is_shared_[block]) {
+        blocks_[block] = std::make_shared<detail::LandmarkBlock>(*blocks_[block]);
+        is_shared_[block] = false;
+    }
+    return *blocks_[block];
+}
+
+LandmarkView LandmarkMap::snapshot() {
+    if (!std::exchange(has_changed_, false)) return view_;
+    is_shared_.assign(blocks_.size(), true);
+    view_ = LandmarkView(std::make_shared<const detail::LandmarkBlocks>(blocks_.begin(), blocks_.end()));
+    return view_;
+}
+
+LandmarkMap LandmarkMap::branch() {
+    is_shared_.assign(blocks_.size(), true);
+    return *this;
+}
+
+void LandmarkMap::restore(detail::LandmarkBlock block) {
+    for (const auto& known : block.landmarks) place(known.id, known.landmark.position);
+    size_ += block.landmarks.size();
+    blocks_.push_back(std::make_shared<detail::LandmarkBlock>(std::move(block)));
+    is_shared_.push_back(false);
+    has_changed_ = true;
+}
+
+} // namespace scanloom::landmarks

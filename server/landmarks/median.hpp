@@ -1,0 +1,20 @@
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <span>
+
+namespace scanloom::landmarks {
+
+/// The middle value; of an even count, the mean of the middle two. Reorders the values.
+/// Pre  there are some, all finite.
+[[nodiscard]] inline double median(std::span<double> values) {
+    assert(!values.empty());
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2 == 1) return *middle;
+    return 0.5 * (*std::max_element(values.begin(), middle) + *middle);
+}
+
+} // namespace scanloom::landmarks

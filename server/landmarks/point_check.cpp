@@ -1,0 +1,25 @@
+#include "server/landmarks/point_check.hpp"
+
+#include <fmt/format.h>
+
+namespace scanloom::landmarks {
+
+Result<> check_points(std::span<const Point2> points, std::string_view name) {
+    if (points.size() > kPointsMax) {
+        return Error{Errc::kTooLarge, fmt::format("{} are {}, more than the {} points of one cloud: give fewer", name,
+                                                  points.size(), kPointsMax)};
+    }
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (!points[n].allFinite()) {
+            return Error{Errc::kInvalidField, fmt::format("{}[{}] is not finite: leave it out", name, n)};
+        }
+        if (points[n].cwiseAbs().maxCoeff() > kPointCoordinateMax) {
+            return Error{Errc::kInvalidField,
+                         fmt::format("{}[{}] is ({:g}, {:g}), further than {:g} m from the origin: leave it out", name,
+                                     n, points[n].x(), points[n].y(), kPointCoordinateMax)};
+        }
+    }
+    return {};
+}
+
+} // namespace scanloom::landmarks

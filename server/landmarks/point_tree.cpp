@@ -1,0 +1,170 @@
+#include "server/landmarks/point_tree.hpp"
+
+#include "server/landmarks/point_check.hpp"
+
+#include <nanoflann.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr std::size_t kLeafPoints = 16;
+
+/// The points as nanoflann reads them.
+struct Cloud {
+    std::vector<Point2> points;
+
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::uint32_t index, std::size_t axis) const {
+        return points[index][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Bounds>
+    bool kdtree_get_bbox(Bounds&) const {
+        return false;
+    }
+};
+
+using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 2, std::uint32_t>;
+
+/// A point found, by the square of its distance.
+struct Found {
+    double squared;
+    std::uint32_t index;
+
+    [[nodiscard]] auto operator<=>(const Found&) const = default;
+};
+
+/// nanoflann leaves out what is not nearer than the bound, and its bounds on whole branches are rounded: with a little
+/// more, whatever is as near as the bound is still looked at.
+double beyond(double squared) { return squared * (1.0 + 1e-9) + std::numeric_limits<double>::min(); }
+
+/// Collects the nearest points for nanoflann: `found` is a heap, the furthest on top.
+class Nearest {
+public:
+    explicit Nearest(std::size_t count) : count_(count) { found_.reserve(count); }
+
+    [[nodiscard]] bool full() const { return found_.size() == count_; }
+    [[nodiscard]] double worstDist() const {
+        return full() ? beyond(found_.front().squared) : std::numeric_limits<double>::infinity();
+    }
+    bool addPoint(double squared, std::uint32_t index) {
+        const Found found{squared, index};
+        if (full()) {
+            if (!(found < found_.front())) return true;
+            std::ranges::pop_heap(found_);
+            found_.back() = found;
+        } else {
+            found_.push_back(found);
+        }
+        std::ranges::push_heap(found_);
+        return true;
+    }
+
+    [[nodiscard]] std::vector<Found>& found() { return found_; }
+
+private:
+    std::size_t count_;
+    std::vector<Found> found_;
+};
+
+/// The one nearest point, without a heap.
+class First {
+public:
+    [[nodiscard]] bool full() const { return true; }
+    [[nodiscard]] double worstDist() const { return beyond(found_.squared); }
+    bool addPoint(double squared, std::uint32_t index) {
+        found_ = std::min(found_, Found{squared, index});
+        return true;
+    }
+
+    [[nodiscard]] const Found& found() const { return found_; }
+
+private:
+    Found found_{std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()};
+};
+
+/// Collects all points within a radius.
+class Within {
+public:
+    explicit Within(double radius) : squared_(radius * radius) {}
+
+    [[nodiscard]] bool full() const { return true; }
+    [[nodiscard]] double worstDist() const { return beyond(squared_); }
+    bool addPoint(double squared, std::uint32_t index) {
+        if (squared <= squared_) found_.push_back({squared, index});
+        return true;
+    }
+
+    [[nodiscard]] std::vector<Found>& found() { return found_; }
+
+private:
+    double squared_;
+    std::vector<Found> found_;
+};
+
+Neighbor neighbor(const Found& found) { return {found.index, std::sqrt(found.squared)}; }
+
+std::vector<Neighbor> in_order(std::vector<Found>& found) {
+    std::ranges::sort(found);
+    std::vector<Neighbor> neighbors(found.size());
+    std::ranges::transform(found, neighbors.begin(), neighbor);
+    return neighbors;
+}
+
+} // namespace
+
+struct PointTree::Tree {
+    explicit Tree(std::span<const Point2> points)
+        : cloud{{points.begin(), points.end()}},
+          index(2, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {}
+
+    template <class Results>
+    void search(Results& results, const Point2& place) const {
+        assert(place.allFinite());
+        index.findNeighbors(results, place.data(), nanoflann::SearchParams());
+    }
+
+    Cloud cloud;
+    Index index;
+};
+
+PointTree::PointTree(std::span<const Point2> points) {
+    assert(points.size() <= kPointsMax);
+    assert(std::ranges::all_of(points, [](const Point2& point) { return point.allFinite(); }));
+    tree_ = std::make_unique<const Tree>(points);
+}
+
+PointTree::PointTree(PointTree&& other) noexcept = default;
+PointTree& PointTree::operator=(PointTree&& other) noexcept = default;
+PointTree::~PointTree() = default;
+
+std::size_t PointTree::size() const noexcept { return tree_->cloud.points.size(); }
+
+std::optional<Neighbor> PointTree::nearest(const Point2& place) const {
+    if (size() == 0) return std::nullopt;
+    First first;
+    tree_->search(first, place);
+    return neighbor(first.found());
+}
+
+std::vector<Neighbor> PointTree::nearest(const Point2& place, std::size_t count) const {
+    count = std::min(count, size());
+    if (count == 0) return {};
+    Nearest nearest(count);
+    tree_->search(nearest, place);
+    return in_order(nearest.found());
+}
+
+std::vector<Neighbor> PointTree::within(const Point2& place, double radius) const {
+    assert(radius >= 0.0);
+    Within within(radius);
+    tree_->search(within, place);
+    return in_order(within.found());
+}
+
+} // namespace scanloom::landmarks

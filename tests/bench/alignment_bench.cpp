@@ -1,0 +1,84 @@
+#include "robot_client/sim/laser.hpp"
+#include "server/landmarks/alignment.hpp"
+#include "server/landmarks/fusion.hpp"
+#include "server/landmarks/matching.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+// Aligning and fusing what a standing lidar sees from two places of the simulator's room.
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr Pose2 kFirst{-3.3, 1.2, 1.0};
+constexpr Pose2 kSecond{-2.6, 0.2, -2.0};
+
+/// In the robot's frame.
+std::vector<Point2> capture(const Pose2& place, std::size_t count, std::uint64_t seed) {
+    const auto room = robot::make_room();
+    const Sensor laser = robot::find_laser("lidar360").value();
+    robot::Random random(seed);
+    std::vector<Point2> points;
+    while (points.size() < count) {
+        const auto ranges = robot::sweep(room, laser, place, robot::Noise{}, random);
+        for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
+            if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
+            const double angle = beam_angle(laser.angles, n);
+            points.push_back(1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle)));
+        }
+    }
+    return points;
+}
+
+std::vector<Point2> capture_in_map(const Pose2& place, std::size_t count, std::uint64_t seed) {
+    auto points = capture(place, count, seed);
+    for (Point2& point : points) point = transform(place, point);
+    return points;
+}
+
+void AlignTwoCaptures(benchmark::State& state) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const auto first = capture(kFirst, count, 1);
+    const auto second = capture(kSecond, count, 2);
+    for (auto _ : state) {
+        const auto alignment = align({.points = first}, {.points = second});
+        if (!alignment || alignment->certainty != Certainty::kClear) return state.SkipWithError("it is not clear");
+        state.counters["explained"] = alignment->explained;
+        state.counters["sigma_mm"] = 1e3 * alignment->position_sigma;
+    }
+}
+
+void MatchTwoClouds(benchmark::State& state) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const auto first = capture_in_map(kFirst, count, 1);
+    const auto second = capture_in_map(kSecond, count, 2);
+    for (auto _ : state) benchmark::DoNotOptimize(match(first, second, 0.05));
+    state.SetComplexityN(state.range(0));
+}
+
+void FuseTwoClouds(benchmark::State& state) {
+    const auto count = static_cast<std::size_t>(state.range(0));
+    const std::vector<std::vector<Point2>> clouds = {capture_in_map(kFirst, count, 1),
+                                                     capture_in_map(kSecond, count, 2)};
+    for (auto _ : state) {
+        const auto fused = fuse(clouds, 0.05);
+        if (!fused) return state.SkipWithError(fused.error().message.c_str());
+        state.counters["fused"] = static_cast<double>(fused->size());
+    }
+    state.SetComplexityN(state.range(0));
+}
+
+BENCHMARK(AlignTwoCaptures)->Arg(360)->Arg(7'200)->Arg(120'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(MatchTwoClouds)->Arg(7'200)->Arg(120'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(FuseTwoClouds)
+    ->Arg(7'200)
+    ->Arg(30'000)
+    ->Arg(120'000)
+    ->Arg(480'000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity(benchmark::oNLogN);
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,111 @@
+#include "robot_client/sim/laser.hpp"
+#include "server/landmarks/adaptive_eps.hpp"
+#include "server/landmarks/landmark.hpp"
+#include "server/landmarks/point_tree.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <map>
+
+// Landmarks of captures: what a standing lidar sees in the simulator's room, turn upon turn.
+
+namespace scanloom::landmarks {
+namespace {
+
+enum Cloud : std::int64_t {
+    kMillimetres, ///< readings as they come, of 360 fixed directions: many are equal
+    kJittered,    ///< every point moved by up to half a millimetre: none are equal
+};
+
+std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
+    const auto room = robot::make_room();
+    const Sensor laser = robot::find_laser("lidar360").value();
+    const Pose2 place{-3.3, 1.2, 1.0};
+    robot::Random random(1);
+    std::vector<Point2> points;
+    while (points.size() < count) {
+        const auto ranges = robot::sweep(room, laser, place, robot::Noise{}, random);
+        for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
+            if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
+            const double angle = beam_angle(laser.angles, n);
+            points.push_back(transform(place, 1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle))));
+            if (cloud != kJittered) continue;
+            points.back() += Point2(random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4));
+        }
+    }
+    return points;
+}
+
+/// The capture of the benchmark's numbers: which cloud, how many points.
+const std::vector<Point2>& capture(const benchmark::State& state) {
+    static std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Point2>> captures;
+    auto& points = captures[{state.range(0), state.range(1)}];
+    if (points.empty()) {
+        points = make_capture(static_cast<Cloud>(state.range(0)), static_cast<std::size_t>(state.range(1)));
+    }
+    return points;
+}
+
+void finish(benchmark::State& state) {
+    state.SetComplexityN(state.range(1));
+    state.SetLabel(state.range(0) == kMillimetres ? "many equal" : "none equal");
+}
+
+template <std::int64_t cloud>
+void sizes(benchmark::internal::Benchmark* bench) {
+    for (const std::int64_t count : {1'000, 3'600, 12'000, 36'000, 120'000, 240'000, 1'200'000, 6'000'000}) {
+        bench->Args({cloud, count});
+    }
+    bench->Unit(benchmark::kMillisecond)->Complexity(benchmark::oNLogN);
+}
+
+void FindLandmarks(benchmark::State& state) {
+    const auto& points = capture(state);
+    std::size_t count = 0;
+    for (auto _ : state) {
+        const auto landmarks = find_landmarks(points);
+        if (!landmarks) return state.SkipWithError(landmarks.error().message.c_str());
+        count = landmarks->size();
+    }
+    state.counters["landmarks"] = static_cast<double>(count);
+    finish(state);
+}
+BENCHMARK(FindLandmarks)->Apply(sizes<kMillimetres>);
+BENCHMARK(FindLandmarks)->Apply(sizes<kJittered>);
+
+/// With an eps of 0.5 m thousands of points are within it of each.
+void ClusterCrowds(benchmark::State& state) {
+    const auto& points = capture(state);
+    for (auto _ : state) benchmark::DoNotOptimize(dbscan(points, 0.5, 5));
+    finish(state);
+}
+BENCHMARK(ClusterCrowds)->Apply(sizes<kJittered>);
+
+/// The eps just above and below which walls fall apart: heaps of core points are compared in vain.
+void ClusterByBeams(benchmark::State& state) {
+    const auto& points = capture(state);
+    for (auto _ : state) benchmark::DoNotOptimize(dbscan(points, 0.05, 5));
+    finish(state);
+}
+BENCHMARK(ClusterByBeams)->Apply(sizes<kJittered>);
+
+void MakePointTree(benchmark::State& state) {
+    const auto& points = capture(state);
+    for (auto _ : state) benchmark::DoNotOptimize(PointTree(points).size());
+    finish(state);
+}
+BENCHMARK(MakePointTree)->Args({kJittered, 240'000})->Unit(benchmark::kMillisecond);
+
+/// Of every point of the cloud.
+void FiveNearest(benchmark::State& state) {
+    const auto& points = capture(state);
+    const PointTree tree(points);
+    std::size_t n = 0;
+    for (auto _ : state) benchmark::DoNotOptimize(tree.nearest(points[n++ % points.size()], 5));
+    finish(state);
+}
+BENCHMARK(FiveNearest)->Args({kJittered, 240'000});
+
+} // namespace
+} // namespace scanloom::landmarks

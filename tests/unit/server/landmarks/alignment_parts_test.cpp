@@ -1,0 +1,125 @@
+#include "server/landmarks/alignment_evidence.hpp"
+#include "server/landmarks/alignment_search.hpp"
+#include "server/landmarks/refinement.hpp"
+#include "tests/unit/server/landmarks/random_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+// What an alignment is made of: surface elements, hypotheses, refinement, evidence.
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// The border of a room that no turn maps to itself, around the origin, with noise.
+std::vector<Point2> odd_room(std::mt19937& random) {
+    const std::vector<Point2> corners = {{-3.0, -2.0}, {3.0, -2.0}, {3.0, 1.0}, {1.0, 1.0}, {1.0, 3.0}, {-3.0, 3.0}};
+    std::vector<Point2> points;
+    for (std::size_t side = 0; side < corners.size(); ++side) {
+        const Point2& a = corners[side];
+        const Point2& b = corners[(side + 1) % corners.size()];
+        for (int n = 0; n < 600; ++n) {
+            const Point2 noise(uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02));
+            points.push_back(a + (b - a) * uniform(random, 0.0, 1.0) + noise);
+        }
+    }
+    return points;
+}
+
+std::vector<Point2> seen_from(const Pose2& place, std::vector<Point2> points) {
+    for (Point2& point : points) point = transform(inverse(place), point);
+    return points;
+}
+
+double metres_off(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double degrees_off(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)) / kDegree; }
+
+TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
+    std::mt19937 random(1);
+    std::vector<Point2> points;
+    for (int n = 0; n < 4000; ++n) {
+        const double x = n % 4 == 0 ? uniform(random, 0.0, 4.0) : uniform(random, 0.0, 1.0);
+        points.emplace_back(x, 7.0 + uniform(random, -0.02, 0.02));
+    }
+    const auto surfels = surfels_of(points);
+    EXPECT_LE(surfels.size(), 84U);
+    for (const Surfel& surfel : surfels) {
+        ASSERT_TRUE(surfel.is_straight());
+        EXPECT_NEAR(surfel.position.y(), 7.0, 0.006);
+        EXPECT_GT(std::abs(surfel.normal.y()), 0.99);
+    }
+    EXPECT_TRUE(surfels_of({}).empty());
+    EXPECT_FALSE(surfels_of(std::vector<Point2>(9, Point2(1.0, 1.0))).front().is_straight());
+}
+
+TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
+    std::mt19937 random(2);
+    for (int round = 0; round < 20; ++round) {
+        const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
+        const auto first = surfels_of(odd_room(random));
+        const auto second = surfels_of(seen_from(place, odd_room(random)));
+        const auto hypotheses = find_hypotheses(first, second, 5.0, 5);
+        const bool found = std::ranges::any_of(hypotheses, [&](const Pose2& pose) {
+            return metres_off(pose, place) < 0.3 && degrees_off(pose, place) < 4.0;
+        });
+        EXPECT_TRUE(found) << "round " << round;
+    }
+}
+
+TEST(Refinement, BringsANearPoseToTheTruth) {
+    std::mt19937 random(3);
+    const Surface first(surfels_of(odd_room(random)));
+    for (int round = 0; round < 50; ++round) {
+        const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
+        const Surface second(surfels_of(seen_from(place, odd_room(random))));
+        const Pose2 start{place.x + uniform(random, -0.2, 0.2), place.y + uniform(random, -0.2, 0.2),
+                          place.yaw + uniform(random, -0.07, 0.07)};
+        const Pose2 settled = settle(first, second.surfels(), start);
+        EXPECT_LT(metres_off(settled, place), 0.05);
+        const auto fit = fit_to_lines(first, second, settled);
+        EXPECT_LT(metres_off(fit.T_first_second, place), 0.005);
+        EXPECT_LT(degrees_off(fit.T_first_second, place), 0.1);
+        EXPECT_LT(fit.rms, 0.01);
+    }
+}
+
+TEST(Refinement, WhereNothingIsCloseThePoseStays) {
+    std::mt19937 random(4);
+    const Surface room(surfels_of(odd_room(random)));
+    const Pose2 far{50.0, 50.0, 1.0};
+    EXPECT_EQ(settle(room, room.surfels(), far), far);
+    const auto fit = fit_to_lines(room, room, far);
+    EXPECT_EQ(fit.T_first_second, far);
+    EXPECT_EQ(fit.used, 0U);
+}
+
+TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
+    std::mt19937 random(5);
+    const auto room = odd_room(random);
+    const Surface surface(surfels_of(room));
+    const Horizon horizon(room, {0.0, 0.0});
+    const std::vector<Surfel> things = {
+        {{-3.0, 1.0}, {1.0, 0.0}},  // on the wall
+        {{-3.0, 1.0}, {0.0, 1.0}},  // there too, but across it
+        {{-1.5, 0.0}, {0.0, 0.0}},  // in the open
+        {{-9.0, 0.0}, {0.0, 0.0}},  // behind the wall
+        {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly before it
+    };
+    const auto evidence = evidence_of(surface, horizon, things, {});
+    EXPECT_EQ(evidence.elements, 5U);
+    EXPECT_EQ(evidence.matched, 1U);
+    EXPECT_EQ(evidence.contradicted, 1U);
+    EXPECT_EQ(horizon.at({-1.5, 0.0}), Horizon::Verdict::kOpen);
+    EXPECT_EQ(horizon.at({-9.0, 0.0}), Horizon::Verdict::kHidden);
+    EXPECT_EQ(Horizon({}, {0.0, 0.0}).at({1.0, 0.0}), Horizon::Verdict::kUnknown);
+}
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,225 @@
+#include "server/landmarks/alignment.hpp"
+#include "tests/unit/server/landmarks/standing_robot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+using robot::Box;
+using testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct Off {
+    double metres;
+    double radians;
+    [[nodiscard]] bool is_right() const { return metres < 0.02 && radians < 0.5 * kDegree; }
+};
+
+Off off(const Pose2& pose, const Pose2& truth) {
+    const Pose2 between = compose(inverse(truth), pose);
+    return {std::hypot(between.x, between.y), std::abs(between.yaw)};
+}
+
+/// An empty room around the origin, but for what stands in it.
+robot::World room_of(double half_width, double half_height, const std::vector<Box>& things = {}) {
+    std::vector<Box> solids = {{-half_width - 1.0, -half_height - 1.0, half_width + 1.0, -half_height},
+                               {-half_width - 1.0, half_height, half_width + 1.0, half_height + 1.0},
+                               {-half_width - 1.0, -half_height - 1.0, -half_width, half_height + 1.0},
+                               {half_width, -half_height - 1.0, half_width + 1.0, half_height + 1.0}};
+    solids.insert(solids.end(), things.begin(), things.end());
+    return robot::make_world("test", std::move(solids), {{-half_width, -half_height, half_width, half_height}});
+}
+
+TwoCaptures captures_at(const robot::World& world, const Pose2& first, const Pose2& second) {
+    robot::Random random(1);
+    auto before = standing_capture(world, first, 20, random);
+    auto after = standing_capture(world, second, 20, random);
+    return {std::move(before), std::move(after), compose(inverse(first), second)};
+}
+
+Alignment aligned(const TwoCaptures& captures) {
+    return align({.points = captures.first}, {.points = captures.second}).value();
+}
+
+/// What is clear is right; how many are.
+int clear_of(const robot::World& world, int seeds) {
+    int clear = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        const auto captures = two_captures(world, doors_of(world), static_cast<std::uint64_t>(seed));
+        const auto alignment = aligned(captures);
+        const Off error = off(alignment.T_first_second, captures.T_first_second);
+        EXPECT_EQ(alignment.why.empty(), alignment.certainty == Certainty::kClear);
+        if (alignment.certainty != Certainty::kClear) continue;
+        ++clear;
+        EXPECT_TRUE(error.is_right()) << world.name << ", seed " << seed << ": " << error.metres << " m, "
+                                      << error.radians / kDegree << " degrees";
+        EXPECT_LT(error.metres, 6.0 * alignment.position_sigma) << world.name << ", seed " << seed;
+    }
+    return clear;
+}
+
+TEST(Alignment, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 40), 39); }
+
+TEST(Alignment, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
+    auto office = robot::make_office();
+    office.starts = {{-15.0, -10.0, 15.0, 10.0}};
+    EXPECT_GE(clear_of(office, 40), 38);
+}
+
+TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 20), 16); }
+
+TEST(Alignment, InASquareRoomHasRivalsAQuarterTurnAway) {
+    const auto captures = captures_at(room_of(3.0, 3.0), {0.5, 0.2, 0.3}, {-0.4, 0.6, 2.0});
+    const auto alignment = aligned(captures);
+    EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
+    EXPECT_THAT(alignment.why, HasSubstr("another pose"));
+    ASSERT_TRUE(alignment.rival);
+    const double turn = std::abs(normalize_angle(alignment.rival->yaw - alignment.T_first_second.yaw)) / kDegree;
+    EXPECT_NEAR(std::remainder(turn, 90.0), 0.0, 1.0);
+    EXPECT_GT(turn, 80.0);
+}
+
+TEST(Alignment, InARoomWithoutFeaturesIsClearOnlyWhereItIsRight) {
+    const auto square = room_of(3.0, 3.0);
+    const auto oblong = room_of(4.0, 2.5);
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const auto captures = two_captures(seed % 2 == 0 ? square : oblong, {}, seed);
+        const auto alignment = aligned(captures);
+        if (alignment.certainty != Certainty::kClear) continue; // else the rivals are beyond distance_max
+        EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right()) << "seed " << seed;
+    }
+}
+
+TEST(Alignment, ATableTellsTheCornersOfASquareRoomApart) {
+    const auto world = room_of(3.0, 3.0, {{-3.0, -3.0, -2.2, -2.2}});
+    const auto captures = captures_at(world, {0.5, 0.2, 0.3}, {-0.4, 0.6, 2.0});
+    const auto alignment = aligned(captures);
+    EXPECT_EQ(alignment.certainty, Certainty::kClear) << alignment.why;
+    EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right());
+    EXPECT_GT(alignment.explained, 0.9);
+    EXPECT_LT(alignment.contradicted, 0.01);
+}
+
+TEST(Alignment, InALongCorridorIsAmbiguousAlongIt) {
+    const auto captures = captures_at(room_of(40.0, 1.0), {0.0, 0.2, 0.3}, {1.0, -0.2, 2.0});
+    const auto alignment = aligned(captures);
+    EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
+    EXPECT_NE(alignment.why, "");
+    ASSERT_TRUE(alignment.rival);
+    const Pose2 T_map_first{0.0, 0.2, 0.3};
+    const Pose2 one = compose(T_map_first, alignment.T_first_second);
+    EXPECT_NEAR(std::abs(one.y), 0.2, 0.02) << "across the corridor it is known, but for which end is which";
+    EXPECT_GT(off(alignment.T_first_second, *alignment.rival).metres, kDistinctDistance);
+}
+
+TEST(Alignment, BetweenTwoParallelLinesIsHeldByNothingAlongThem) {
+    std::vector<Point2> lines;
+    for (int n = -80; n <= 80; ++n) {
+        lines.emplace_back(0.1 * n, 1.0);
+        lines.emplace_back(0.1 * n + 0.05, 1.0);
+        lines.emplace_back(0.1 * n, -1.3);
+        lines.emplace_back(0.1 * n + 0.05, -1.3);
+    }
+    const auto alignment = align({.points = lines}, {.points = lines}).value();
+    EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
+    EXPECT_THAT(alignment.why, HasSubstr("hardly anything holds the pose along"));
+    EXPECT_GT(alignment.position_sigma, 0.0);
+}
+
+TEST(Alignment, AmongEvenlySpacedDoorFramesIsAmbiguous) {
+    std::vector<Box> frames;
+    for (double x = -39.0; x < 39.0; x += 1.5) frames.push_back({x, 0.9, x + 0.4, 1.0});
+    const auto alignment = aligned(captures_at(room_of(40.0, 1.0, frames), {0.0, 0.2, 0.3}, {1.0, -0.2, 2.0}));
+    EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
+}
+
+TEST(Alignment, OfWhatIsFarAwayAloneIsSaidNotToBeKnownWell) {
+    const auto hall = robot::make_hall();
+    const auto alignment = aligned(two_captures(hall, doors_of(hall), 124));
+    EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
+    EXPECT_THAT(alignment.why, HasSubstr("known to within"));
+}
+
+TEST(Alignment, OfDifferentPlacesIsUndetermined) {
+    const auto room = robot::make_room();
+    const auto hall = robot::make_hall();
+    robot::Random random(1);
+    const auto first = standing_capture(room, {-3.3, 1.2, 1.0}, 20, random);
+    const auto second = standing_capture(hall, {12.0, 0.0, 0.0}, 20, random);
+    const auto alignment = align({.points = first}, {.points = second}).value();
+    EXPECT_EQ(alignment.certainty, Certainty::kUndetermined) << alignment.why;
+    EXPECT_NE(alignment.why, "");
+}
+
+TEST(Alignment, IsTheSameEveryTimeAndInAnyFrame) {
+    const auto captures = two_captures(robot::make_room(), {}, 5);
+    const auto once = aligned(captures);
+    const auto again = aligned(captures);
+    EXPECT_EQ(once.T_first_second, again.T_first_second);
+    EXPECT_EQ(once.rms, again.rms);
+    const Pose2 T_map_first{30.0, -20.0, 0.5};
+    const Pose2 T_odom_second{-7.0, 3.0, -2.0};
+    TwoCaptures moved = captures;
+    for (Point2& point : moved.first) point = transform(T_map_first, point);
+    for (Point2& point : moved.second) point = transform(T_odom_second, point);
+    const auto elsewhere =
+        align({moved.first, {T_map_first.x, T_map_first.y}}, {moved.second, {T_odom_second.x, T_odom_second.y}})
+            .value();
+    EXPECT_EQ(elsewhere.certainty, Certainty::kClear);
+    const Pose2 expected = compose(compose(T_map_first, once.T_first_second), inverse(T_odom_second));
+    const Off difference = off(elsewhere.T_first_second, expected);
+    EXPECT_LT(difference.metres, 0.02) << "surface elements lie otherwise in another frame";
+    EXPECT_LT(difference.radians, 0.2 * kDegree);
+}
+
+TEST(Alignment, PointsThatDetermineNothingHaveNoClearOne) {
+    std::vector<Point2> wall;
+    for (int n = 0; n < 400; ++n) wall.emplace_back(-2.0 + 0.01 * n, 1.5);
+    const std::vector<Point2> heap(100, Point2(1.0, 1.0));
+    std::vector<Point2> circle;
+    for (int n = 0; n < 720; ++n) circle.emplace_back(3.0 * std::cos(n * kDegree / 2), 3.0 * std::sin(n * kDegree / 2));
+    for (const auto& points : {wall, heap, circle}) {
+        const auto alignment = align({.points = points}, {.points = points}).value();
+        EXPECT_NE(alignment.certainty, Certainty::kClear);
+        EXPECT_NE(alignment.why, "");
+        EXPECT_TRUE(is_finite(alignment.T_first_second));
+        EXPECT_TRUE(std::isfinite(alignment.position_sigma) && std::isfinite(alignment.yaw_sigma));
+    }
+    EXPECT_NE(align({.points = wall}, {.points = heap})->certainty, Certainty::kClear);
+}
+
+TEST(Alignment, ATurnAloneDoesAsWell) {
+    const auto captures = two_captures(robot::make_room(), {}, 3, 1);
+    const auto alignment = aligned(captures);
+    const Off error = off(alignment.T_first_second, captures.T_first_second);
+    EXPECT_TRUE(alignment.certainty != Certainty::kClear || (error.metres < 0.03 && error.radians < kDegree))
+        << error.metres;
+}
+
+TEST(Alignment, WhatCannotBeIsRefused) {
+    const std::vector<Point2> good(20, Point2(1.0, 1.0));
+    EXPECT_THAT(align({.points = {}}, {.points = good}).error().message, HasSubstr("first has 0 points"));
+    EXPECT_THAT(align({.points = good}, {.points = std::span(good).first(19)}).error().message,
+                HasSubstr("second has 19 points"));
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        auto points = good;
+        points[7].y() = bad;
+        EXPECT_THAT(align({.points = points}, {.points = good}).error().message, HasSubstr("first.points[7]"));
+        EXPECT_THAT(align({.points = good}, {good, {bad, 0.0}}).error().message, HasSubstr("second.from"));
+        EXPECT_THAT(align({.points = good}, {.points = good}, {.distance_max = bad}).error().message,
+                    HasSubstr("distance_max"));
+    }
+    EXPECT_FALSE(align({.points = good}, {.points = good}, {.distance_max = 0.0}));
+}
+
+} // namespace
+} // namespace scanloom::landmarks

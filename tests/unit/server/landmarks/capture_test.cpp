@@ -1,0 +1,129 @@
+#include "server/landmarks/capture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::landmarks {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// Four beams: ahead, left, behind, right.
+const Sensor kLaser{.id = 1,
+                    .kind = SensorKind::kLaser,
+                    .name = "laser",
+                    .mount = {0.1, 0.0, 0.0},
+                    .angles = UniformAngles{0.0, std::numbers::pi / 2, 4},
+                    .aperture = 0.01,
+                    .range_min = 0.1,
+                    .range_max = 10.0};
+
+/// Scans of one robot as they come, tenths of a second apart, each an entry of the log.
+class Robot {
+public:
+    explicit Robot(CaptureCutter& cutter) : cutter_(cutter) {}
+
+    std::optional<Capture> scan(const Pose2& pose, std::vector<RangeMm> ranges = {1000, 1000, 1000, 1000}) {
+        Scan scan{.seq = revision_, .stamp = stamp_ += 0.1, .sensor = 1, .pose = pose, .ranges = std::move(ranges)};
+        return cutter_.add(scan, kLaser, revision_++);
+    }
+
+    void wait(double seconds) { stamp_ += seconds; }
+
+private:
+    CaptureCutter& cutter_;
+    Revision revision_ = 10;
+    double stamp_ = 100.0;
+};
+
+class CaptureTest : public testing::Test {
+protected:
+    CaptureCutter cutter_;
+    Robot robot_{cutter_};
+};
+
+TEST_F(CaptureTest, ARobotThatDrivesOnHasOneOfAScanEveryHalfMetre) {
+    std::vector<Revision> firsts;
+    for (int step = 0; step < 100; ++step) {
+        if (const auto ended = robot_.scan({step * 0.1, 0.0, 0.0})) {
+            EXPECT_EQ(ended->scans, 1U);
+            firsts.push_back(ended->first);
+        }
+    }
+    ASSERT_THAT(firsts, SizeIs(20));
+    for (std::size_t n = 0; n < firsts.size(); ++n) EXPECT_EQ(firsts[n], 10 + 5 * n);
+}
+
+TEST_F(CaptureTest, ARobotThatTurnsHasOneForEachDirection) {
+    int ended = 0;
+    for (int step = 0; step < 60; ++step) ended += robot_.scan({0.0, 0.0, normalize_angle(step * 0.21)}) ? 1 : 0;
+    EXPECT_EQ(ended, 20);
+}
+
+TEST_F(CaptureTest, OneThatStandsIsPutTogetherUntilItIsFull) {
+    for (std::uint32_t n = 1; n < kCaptureScansMax; ++n) EXPECT_FALSE(robot_.scan({0.02 * (n % 2), 0.0, 0.01}));
+    const auto full = robot_.scan({0.0, 0.0, 0.0});
+    ASSERT_TRUE(full);
+    EXPECT_EQ(full->scans, kCaptureScansMax);
+    EXPECT_EQ(full->first, 10U);
+    EXPECT_EQ(full->last, 10U + kCaptureScansMax - 1);
+    EXPECT_THAT(full->points, SizeIs(4 * kCaptureScansMax));
+    EXPECT_EQ(full->pose, (Pose2{0.02, 0.0, 0.01}));
+    for (int n = 0; n < 100; ++n) EXPECT_FALSE(robot_.scan({0.0, 0.0, 0.0})) << "it has looked";
+    EXPECT_FALSE(cutter_.is_open());
+}
+
+TEST_F(CaptureTest, OneThatStandsLooksAgainAfterAWhile) {
+    for (std::uint32_t n = 0; n < kCaptureScansMax; ++n) static_cast<void>(robot_.scan({}));
+    robot_.wait(kCaptureAgainAfter);
+    EXPECT_FALSE(robot_.scan({}));
+    EXPECT_TRUE(cutter_.is_open());
+}
+
+TEST_F(CaptureTest, MovingOnEndsItAndAStepThatIsTooShortBeginsNone) {
+    EXPECT_FALSE(robot_.scan({}));
+    EXPECT_FALSE(robot_.scan({}));
+    const auto ended = robot_.scan({0.2, 0.0, 0.0});
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(ended->scans, 2U);
+    EXPECT_EQ(ended->last, 11U);
+    EXPECT_FALSE(cutter_.is_open());
+    EXPECT_FALSE(robot_.scan({0.4, 0.0, 0.0}));
+    EXPECT_FALSE(cutter_.is_open());
+    EXPECT_FALSE(robot_.scan({0.5, 0.0, 0.0}));
+    EXPECT_TRUE(cutter_.is_open());
+    const auto jumped = robot_.scan({7.5, 0.0, 0.0});
+    ASSERT_TRUE(jumped);
+    EXPECT_EQ(jumped->pose.x, 0.5);
+    EXPECT_TRUE(cutter_.is_open()) << "the next begins at once";
+}
+
+TEST_F(CaptureTest, PointsAreWhereTheBeamsMetSomethingInTheMap) {
+    static_cast<void>(robot_.scan({1.0, 2.0, std::numbers::pi / 2}, {2000, kNoReturn, kInvalidRange, 50}));
+    const auto ended = robot_.scan({9.0, 9.0, 0.0}, {10'000, 3000, 0, 0});
+    ASSERT_TRUE(ended);
+    EXPECT_THAT(ended->points, ElementsAre(PointMm{1000, 4100}))
+        << "no returns, bad readings, and too near ones are none";
+    const auto next = robot_.scan({});
+    ASSERT_TRUE(next);
+    EXPECT_THAT(next->points, ElementsAre(PointMm{9100, 12'000})) << "range_max is a reading of nothing";
+}
+
+TEST_F(CaptureTest, GoesOnFromWhatItTold) {
+    static_cast<void>(robot_.scan({}));
+    static_cast<void>(robot_.scan({}));
+    CaptureCutter other;
+    other.restore(cutter_.newest(), cutter_.is_open());
+    const Scan away{
+        .seq = 99, .stamp = 200.0, .sensor = 1, .pose = {5.0, 0.0, 0.0}, .ranges = {1000, 1000, 1000, 1000}};
+    EXPECT_EQ(other.add(away, kLaser, 99), cutter_.add(away, kLaser, 99));
+    EXPECT_EQ(other.newest(), cutter_.newest());
+}
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,97 @@
+#include "server/landmarks/filter_figures.hpp"
+#include "server/landmarks/median_filter.hpp"
+#include "tests/unit/server/landmarks/random_points.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+
+constexpr double kPi = std::numbers::pi;
+
+/// A wall 2 m ahead, seen over a right angle, with noise of up to 20 mm either way.
+struct NoisyWall {
+    BeamAngles angles = UniformAngles{-kPi / 4, kPi / 2 / 200, 201};
+    std::vector<RangeMm> ranges;
+
+    NoisyWall() {
+        std::mt19937 random(1);
+        for (std::size_t n = 0; n < 201; ++n) {
+            ranges.push_back(to_range_mm(2.0 / std::cos(beam_angle(angles, n)) + uniform(random, -0.02, 0.02)));
+        }
+    }
+};
+
+TEST(FilterFigures, WhatIsNotChangedHasNone) {
+    const NoisyWall wall;
+    const auto figures = filter_figures(wall.ranges, wall.ranges, wall.angles);
+    EXPECT_EQ(figures.rmse, 0.0);
+    EXPECT_EQ(figures.noise_reduction_x, 0.0);
+    EXPECT_EQ(figures.noise_reduction_y, 0.0);
+}
+
+TEST(FilterFigures, AMedianTakesMostOfTheNoiseAway) {
+    const NoisyWall wall;
+    for (const std::size_t window : {3U, 5U, 9U}) {
+        const auto after = median_filtered(wall.ranges, window, false).value();
+        const auto figures = filter_figures(wall.ranges, after, wall.angles);
+        EXPECT_GT(figures.rmse, 0.005) << window;
+        EXPECT_LT(figures.rmse, 0.02) << window;
+        EXPECT_GT(figures.noise_reduction_x.value(), 0.5) << window;
+        EXPECT_GT(figures.noise_reduction_y.value(), 0.5) << window;
+    }
+}
+
+TEST(FilterFigures, MoreNoiseIsLessThanNone) {
+    const NoisyWall wall;
+    std::vector<RangeMm> rougher = wall.ranges;
+    for (std::size_t n = 0; n < rougher.size(); n += 2) rougher[n] += 100;
+    EXPECT_LT(filter_figures(wall.ranges, rougher, wall.angles).noise_reduction_x.value(), -1.0);
+}
+
+TEST(FilterFigures, RmseIsThatOfTheReturns) {
+    const BeamAngles angles = UniformAngles{0.0, 0.1, 4};
+    const std::vector<RangeMm> before = {1000, kInvalidRange, kNoReturn, 2000};
+    const std::vector<RangeMm> after = {1003, kInvalidRange, kNoReturn, 1996};
+    EXPECT_NEAR(filter_figures(before, after, angles).rmse, std::sqrt((9.0 + 16.0) / 2.0) * 1e-3, 1e-12);
+}
+
+TEST(FilterFigures, RoughnessIsOfThreeNeighbouringReturns) {
+    // Along x, at angle 0 all: second differences of 4, 6 and, past the gap, 1.
+    const BeamAngles angles = ExplicitAngles(8, 0.0);
+    const std::vector<RangeMm> before = {1000, 1002, 1000, 1004, kInvalidRange, 3000, 3001, 3003};
+    const std::vector<RangeMm> after = {1000, 1001, 1000, 1001, kInvalidRange, 3000, 3001, 3003};
+    const auto figures = filter_figures(before, after, angles);
+    EXPECT_NEAR(figures.noise_reduction_x.value(), 1.0 - 2.0 / 4.0, 1e-9);
+    EXPECT_EQ(figures.noise_reduction_y, std::nullopt);
+}
+
+TEST(FilterFigures, AFullCircleHasNoEnds) {
+    const BeamAngles angles = UniformAngles{0.0, kPi / 2, 4};
+    const std::vector<RangeMm> before = {1000, 1000, 2000, 1000};
+    const std::vector<RangeMm> after = {1000, 1000, 1000, 1000};
+    const auto figures = filter_figures(before, after, angles);
+    EXPECT_NEAR(figures.rmse, 0.5, 1e-12);
+    // Along x the bends are 1, 4, 1, 2 before and 0, 2, 0, 2 after.
+    EXPECT_NEAR(figures.noise_reduction_x.value(), 1.0 - 1.0 / 1.5, 1e-9);
+    EXPECT_NEAR(figures.noise_reduction_y.value(), 0.0, 1e-9);
+}
+
+TEST(FilterFigures, FewBeamsHaveNoRoughness) {
+    for (std::size_t beams = 0; beams < 3; ++beams) {
+        const std::vector<RangeMm> ranges(beams, 1000);
+        const auto figures = filter_figures(ranges, ranges, UniformAngles{0.0, 0.1, static_cast<std::uint32_t>(beams)});
+        EXPECT_EQ(figures, FilterFigures{});
+    }
+    const std::vector<RangeMm> none(9, kNoReturn);
+    EXPECT_EQ(filter_figures(none, none, UniformAngles{0.0, 0.1, 9}), FilterFigures{});
+}
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,147 @@
+#include "server/landmarks/landmark_layer.hpp"
+
+#include "server/landmarks/metrics.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace scanloom::landmarks {
+namespace {
+
+using testing::DoubleNear;
+using testing::SizeIs;
+
+constexpr std::size_t kBeams = 360;
+
+const Sensor kLaser{.id = 1,
+                    .kind = SensorKind::kLaser,
+                    .name = "laser",
+                    .angles = UniformAngles{0.0, 2 * std::numbers::pi / kBeams, kBeams},
+                    .aperture = 0.02,
+                    .range_min = 0.05,
+                    .range_max = 12.0};
+
+/// Round pillars, and nothing else.
+const std::vector<Point2> kPillars = {{3.0, 1.0}, {1.0, -3.0}, {-2.5, -1.5}, {-1.0, 3.2}};
+constexpr double kRadius = 0.25;
+
+RangeMm range_to_pillars(const Point2& from, double direction) {
+    double nearest = INFINITY;
+    const Point2 along(std::cos(direction), std::sin(direction));
+    for (const auto& pillar : kPillars) {
+        const double ahead = (pillar - from).dot(along);
+        const double aside = std::abs(along.x() * (pillar - from).y() - along.y() * (pillar - from).x());
+        if (ahead > 0 && aside < kRadius) {
+            nearest = std::min(nearest, ahead - std::sqrt(kRadius * kRadius - aside * aside));
+        }
+    }
+    return to_range_mm(nearest);
+}
+
+class LandmarkLayerTest : public testing::Test {
+protected:
+    Scan scan(const Pose2& pose) {
+        Scan scan{.seq = revision_, .stamp = 0.1 * static_cast<double>(revision_), .sensor = 1, .pose = pose};
+        for (std::size_t beam = 0; beam < kBeams; ++beam) {
+            scan.ranges.push_back(range_to_pillars({pose.x, pose.y}, pose.yaw + beam_angle(kLaser.angles, beam)));
+        }
+        return scan;
+    }
+
+    void see(LandmarkLayer& layer, RobotIndex robot, const Pose2& pose) {
+        layer.add(robot, scan(pose), kLaser, revision_++);
+    }
+
+    Revision revision_ = 1;
+};
+
+TEST_F(LandmarkLayerTest, ThingsThatAreSeenFromSeveralPlacesAreTheSameLandmarks) {
+    LandmarkLayer layer;
+    for (const auto& place : {Pose2{}, Pose2{0.3, 0.6, 1.0}, Pose2{-0.4, 0.2, -2.0}}) {
+        for (std::uint32_t n = 0; n < kCaptureScansMax; ++n) see(layer, 0, place);
+    }
+    const auto state = layer.snapshot();
+    EXPECT_EQ(state.captures, 3U);
+    ASSERT_EQ(state.landmarks.size(), kPillars.size());
+    for (std::size_t id = 0; id < state.landmarks.size(); ++id) {
+        const auto& found = state.landmarks[id];
+        EXPECT_EQ(found.seen, 3U);
+        const auto nearest = std::ranges::min(
+            kPillars, {}, [&](const Point2& pillar) { return (pillar - found.landmark.position).norm(); });
+        EXPECT_LT((nearest - found.landmark.position).norm(), kRadius + 0.01);
+    }
+    EXPECT_EQ(state.sums.persistence_pairs, 2U);
+    EXPECT_THAT(state.sums.persistence, DoubleNear(2.0, 1e-12));
+    EXPECT_EQ(state.sums.landmarks, 12U);
+    EXPECT_EQ(state.revision, 3 * kCaptureScansMax);
+}
+
+TEST_F(LandmarkLayerTest, PairsAreOfOneRobot) {
+    LandmarkLayer layer;
+    see(layer, 4, {});
+    see(layer, 2, {});
+    see(layer, 4, {1.0, 0.0, 0.0}); // ends the first
+    see(layer, 2, {1.0, 0.0, 0.0});
+    EXPECT_EQ(layer.snapshot().captures, 2U);
+    EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 0U);
+    see(layer, 4, {0.0, 0.0, 0.0});
+    EXPECT_EQ(layer.snapshot().captures, 3U);
+    EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 1U);
+}
+
+TEST_F(LandmarkLayerTest, ARobotThatSeesNothingHasCapturesWithoutLandmarks) {
+    LandmarkLayer layer;
+    for (int n = 0; n < 20; ++n) see(layer, 0, {1000.0 + n, 0.0, 0.0});
+    EXPECT_EQ(layer.snapshot().captures, 19U);
+    EXPECT_EQ(layer.snapshot().landmarks.size(), 0U);
+    EXPECT_EQ(layer.snapshot().sums.persistence_pairs, 0U) << "nothing is divided by";
+}
+
+void expect_equal(LandmarkLayer& a, LandmarkLayer& b) {
+    const auto one = a.snapshot();
+    const auto other = b.snapshot();
+    ASSERT_EQ(one.landmarks.size(), other.landmarks.size());
+    for (std::size_t id = 0; id < one.landmarks.size(); ++id) EXPECT_EQ(one.landmarks[id], other.landmarks[id]);
+    EXPECT_EQ(one.captures, other.captures);
+    EXPECT_EQ(one.sums, other.sums);
+    EXPECT_EQ(one.revision, other.revision);
+    EXPECT_EQ(a.robots(), b.robots());
+}
+
+/// Whenever it is put aside and taken up again.
+TEST_F(LandmarkLayerTest, GoesOnFromWhatACheckpointKeeps) {
+    std::mt19937 random(3);
+    std::vector<std::pair<RobotIndex, Pose2>> drives;
+    std::array<Pose2, 3> poses;
+    for (int n = 0; n < 300; ++n) {
+        const auto robot = static_cast<RobotIndex>(random() % 3);
+        if (random() % 3 != 0) {
+            poses[robot].x += 0.01 * static_cast<double>(random() % 60) - 0.3;
+            poses[robot].yaw = normalize_angle(poses[robot].yaw + 0.1);
+        }
+        drives.emplace_back(robot, poses[robot]);
+    }
+    LandmarkLayer whole;
+    LandmarkLayer resumed;
+    for (const auto& [robot, pose] : drives) {
+        const auto seen = scan(pose);
+        whole.add(robot, seen, kLaser, revision_);
+        resumed.add(robot, seen, kLaser, revision_);
+        ++revision_;
+        if (random() % 7 != 0) continue;
+        const auto state = resumed.snapshot();
+        LandmarkLayer again;
+        for (const auto& block : state.landmarks.blocks()) again.restore(*block);
+        again.restore(state.captures, state.sums, state.revision, resumed.robots());
+        resumed = random() % 2 == 0 ? again.branch() : std::move(again);
+    }
+    EXPECT_GT(whole.snapshot().captures, 30U);
+    expect_equal(whole, resumed);
+}
+
+} // namespace
+} // namespace scanloom::landmarks

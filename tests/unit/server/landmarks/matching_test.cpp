@@ -1,0 +1,89 @@
+#include "server/landmarks/matching.hpp"
+#include "tests/unit/server/landmarks/random_points.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The first of the nearest.
+std::size_t nearest_of(const Point2& place, const std::vector<Point2>& points) {
+    std::size_t nearest = 0;
+    for (std::size_t n = 1; n < points.size(); ++n) {
+        if ((points[n] - place).squaredNorm() < (points[nearest] - place).squaredNorm()) nearest = n;
+    }
+    return nearest;
+}
+
+/// Every point against every other.
+std::vector<Match> all_matches(const std::vector<Point2>& first, const std::vector<Point2>& second, double tolerance) {
+    std::vector<Match> matches;
+    if (second.empty()) return matches;
+    for (std::size_t n = 0; n < first.size(); ++n) {
+        const std::size_t there = nearest_of(first[n], second);
+        const double distance = (second[there] - first[n]).norm();
+        if (nearest_of(second[there], first) == n && distance <= tolerance) matches.push_back({n, there, distance});
+    }
+    return matches;
+}
+
+TEST(Matching, FindsThePairsThatALookAtAllOfThemFinds) {
+    std::mt19937 random(1);
+    std::size_t found = 0;
+    for (int round = 0; round < 5000; ++round) {
+        const auto first = random_points(random, random() % 40);
+        const auto second = random_points(random, random() % 40);
+        const double tolerance = std::array{0.0, 0.1, 0.25, 0.5, 1.0, 9.0}[random() % 6];
+        const auto expected = all_matches(first, second, tolerance);
+        ASSERT_EQ(match(first, second, tolerance).value(), expected) << "round " << round;
+        found += expected.size();
+    }
+    EXPECT_GT(found, 10'000U);
+}
+
+TEST(Matching, IsMutualAndTiesGoToTheLowestIndex) {
+    const std::vector<Point2> first = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}};
+    const std::vector<Point2> second = {{0.5, 0.0}, {1.25, 0.0}, {1.25, 0.0}};
+    EXPECT_THAT(match(first, second, 1.0).value(), ElementsAre(Match{0, 0, 0.5}, Match{1, 1, 0.25}));
+}
+
+TEST(Matching, ThoseExactlyTheToleranceApartAreMatched) {
+    const std::vector<Point2> first = {{0.0, 0.0}};
+    const std::vector<Point2> second = {{kTolerance, 0.0}};
+    EXPECT_THAT(match(first, second).value(), ElementsAre(Match{0, 0, kTolerance}));
+    EXPECT_THAT(match(first, second, std::nextafter(kTolerance, 0.0)).value(), IsEmpty());
+    EXPECT_THAT(match(first, first, 0.0).value(), ElementsAre(Match{0, 0, 0.0}));
+}
+
+TEST(Matching, AnEmptySetMatchesNothing) {
+    const std::vector<Point2> some = {{0.0, 0.0}};
+    EXPECT_THAT(match({}, some).value(), IsEmpty());
+    EXPECT_THAT(match(some, {}).value(), IsEmpty());
+    EXPECT_THAT(match({}, {}).value(), IsEmpty());
+}
+
+TEST(Matching, WhatCannotBeIsRefused) {
+    const double nan = std::nan("");
+    const double infinite = std::numeric_limits<double>::infinity();
+    const std::vector<Point2> good = {{0.0, 0.0}};
+    for (const double bad : {nan, infinite, -infinite, 2e7}) {
+        const std::vector<Point2> points = {{0.0, 0.0}, {0.0, bad}};
+        EXPECT_THAT(match(points, good).error().message, HasSubstr("first[1]")) << bad;
+        EXPECT_THAT(match(good, points).error().message, HasSubstr("second[1]")) << bad;
+    }
+    for (const double bad : {nan, infinite, -0.1}) {
+        EXPECT_THAT(match(good, good, bad).error().message, HasSubstr("tolerance")) << bad;
+    }
+}
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "common/geometry/pose2.hpp"
+
+#include <cstddef>
+#include <random>
+#include <vector>
+
+/// Clouds that are the same for the same seed, on every machine.
+namespace scanloom::testing_support {
+
+/// Evenly spread over [low, high), in steps of 2^-32 of that.
+inline double uniform(std::mt19937& random, double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) * 0x1p-32);
+}
+
+/// Points of a cloud of one of several kinds: anywhere, on a lattice (many equal and equally far), on a line, in heaps.
+inline std::vector<Point2> random_points(std::mt19937& random, std::size_t count) {
+    std::vector<Point2> points;
+    const auto kind = random() % 5;
+    const auto step = static_cast<int>(1 + random() % 8);
+    const auto on_lattice = [&] { return static_cast<double>(static_cast<int>(random() % 8) - step) * 0.25; };
+    for (std::size_t n = 0; n < count; ++n) {
+        switch (kind) {
+        case 0: points.emplace_back(uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0)); break;
+        case 1: points.emplace_back(on_lattice(), on_lattice()); break;
+        case 2: points.emplace_back(on_lattice(), 1.0); break;
+        case 3: {
+            const Point2 heap(on_lattice(), on_lattice());
+            points.push_back(heap + Point2(uniform(random, -0.05, 0.05), uniform(random, -0.05, 0.05)));
+            break;
+        }
+        default:
+            if (points.empty() || random() % 3 == 0) {
+                points.emplace_back(uniform(random, -2.0, 2.0), uniform(random, -2.0, 2.0));
+            } else {
+                points.push_back(points[random() % points.size()]);
+            }
+        }
+    }
+    return points;
+}
+
+} // namespace scanloom::testing_support
