@@ -13,6 +13,7 @@
 #include <rocksdb/write_batch.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -42,15 +43,26 @@ std::vector<fs::path> files_with(const fs::path& directory, std::string_view ext
     std::error_code none;
     for (fs::directory_iterator file(directory, none); !none && file != fs::directory_iterator();
          file.increment(none)) {
-        if (file->path().extension() == extension) found.push_back(file->path());
+        if (file->path().extension() == extension && file->is_regular_file(none)) found.push_back(file->path());
     }
     std::ranges::sort(found);
     return found;
 }
 
-std::string bytes_in_file(const fs::path& file) {
+/// A file that cannot be read is not one without anything in it: what it has would be lost without a word.
+Result<std::string> bytes_in_file(const fs::path& file) {
+    std::error_code problem;
+    std::string bytes(fs::file_size(file, problem), '\0');
+    errno = 0;
     std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    if (problem || !in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+        const auto reason = problem ? problem : std::error_code(errno, std::generic_category());
+        return failure(
+            fmt::format("cannot read {}: {}; copy the store with a tool that passes over what cannot be read, "
+                        "and repair the copy",
+                        file.native(), reason.message()));
+    }
+    return bytes;
 }
 
 std::unique_ptr<rocksdb::Iterator> iterator_of(rocksdb::SstFileReader& table) {
@@ -71,8 +83,14 @@ Result<std::unique_ptr<Salvage>> Salvage::open(const fs::path& store, const fs::
     const auto locked = LockedDirectory::open_to_read(store, LockedDirectory::Files::kAny);
     if (!locked) return locked.error();
     std::unique_ptr<Salvage> salvage(new Salvage(copy));
+    if (files_with(store, ".sst").empty() && files_with(store, ".log").empty()) {
+        return Error{Errc::kNotFound,
+                     fmt::format("there is no store in {}: it has neither tables nor write-ahead logs; "
+                                 "name its directory, or mount its disk",
+                                 store.native())};
+    }
     if (auto copied = salvage->copy_files(store); !copied) return copied.error();
-    if (auto opened = salvage->open_tables(options); !opened) return opened.error();
+    if (auto opened = salvage->open_tables(store, options); !opened) return opened.error();
     if (auto carved = salvage->carve_damaged_tables(); !carved) return carved.error();
     if (auto taken = salvage->take_write_ahead_logs(store); !taken) return taken.error();
     salvage->list_tables();
@@ -101,7 +119,7 @@ Result<> Salvage::copy_files(const fs::path& store) {
         const bool is_table = name.extension() == ".sst";
         const bool tells = name == "CURRENT" || name == "IDENTITY" || name.native().starts_with("MANIFEST-") ||
                            name.native().starts_with("OPTIONS-");
-        if (!is_table && !tells) continue;
+        if ((!is_table && !tells) || !file.is_regular_file(problem)) continue;
         if (is_table) fs::create_hard_link(file.path(), to, problem);
         if (!is_table || problem) fs::copy_file(file.path(), to, problem);
         if (problem) return failure(fmt::format("cannot copy {}: {}", file.path().native(), problem.message()));
@@ -109,10 +127,11 @@ Result<> Salvage::copy_files(const fs::path& store) {
     return {};
 }
 
-Result<> Salvage::open_tables(const StoreOptions& options) {
+Result<> Salvage::open_tables(const fs::path& store, const StoreOptions& options) {
     const auto rocksdb = options_of_copy(options);
     rocksdb::DB* opened = nullptr;
     auto status = rocksdb::DB::Open(rocksdb, copy_.native(), &opened);
+    has_all_tables_ = status.ok();
     if (!status.ok()) {
         notes_.push_back(fmt::format("the list of its tables could not be used ({}) and was made again from the tables",
                                      status.ToString()));
@@ -121,6 +140,23 @@ Result<> Salvage::open_tables(const StoreOptions& options) {
     }
     database_.reset(opened);
     if (!status.ok()) return failure(fmt::format("nothing of it can be read: {}", status.ToString()));
+    return has_all_tables_ ? set_unlisted_aside(store) : Result<>();
+}
+
+/// A manifest that ends early names only the first of the tables, and RocksDB removes the others.
+Result<> Salvage::set_unlisted_aside(const fs::path& store) {
+    std::vector<rocksdb::LiveFileMetaData> live;
+    database_->GetLiveFilesMetaData(&live);
+    for (const auto& table : files_with(store, ".sst")) {
+        const auto name = table.filename();
+        if (std::ranges::any_of(live, [&](const auto& one) { return one.relative_filename == name; })) continue;
+        has_all_tables_ = false;
+        notes_.push_back(fmt::format("{} is not in the list of its tables; what it has was taken", name.native()));
+        std::error_code problem;
+        fs::create_directories(copy_ / kSetAside, problem);
+        fs::copy_file(table, copy_ / kSetAside / name, problem);
+        if (problem) return failure(fmt::format("cannot copy {}: {}", table.native(), problem.message()));
+    }
     return {};
 }
 
@@ -143,7 +179,9 @@ Result<std::uint64_t> Salvage::carve(const fs::path& table) {
     std::map<SessionId, bool> removed;
     rocksdb::WriteBatch batch;
     std::uint64_t taken = 0;
-    carve_table(bytes_in_file(table), [&](std::string_view key, std::string_view sealed_value) {
+    const auto bytes = bytes_in_file(table);
+    if (!bytes) return bytes.error();
+    carve_table(*bytes, [&](std::string_view key, std::string_view sealed_value) {
         const auto session = *owner_of(key);
         const auto [of_session, is_first] = removed.try_emplace(session);
         if (is_first) of_session->second = is_removed(session, table);
@@ -162,11 +200,12 @@ Result<std::uint64_t> Salvage::carve(const fs::path& table) {
 Result<> Salvage::take_write_ahead_logs(const fs::path& store) {
     for (const auto& file : files_with(store, ".log")) {
         const auto bytes = bytes_in_file(file);
-        if (const auto damage = check_log_file(bytes).damage) {
+        if (!bytes) return bytes.error();
+        if (const auto damage = check_log_file(*bytes).damage) {
             notes_.push_back(fmt::format("{} is damaged at byte {}; its whole writes are taken, before it and behind",
                                          file.filename().native(), *damage));
         }
-        for (auto& write : whole_writes_of(bytes)) {
+        for (auto& write : whole_writes_of(*bytes)) {
             if (write.size() < kBatchHeaderBytes) continue;
             rocksdb::WriteBatch batch(std::move(write));
             if (const auto status = database_->Write({}, &batch); !status.ok()) {
@@ -201,11 +240,14 @@ bool Salvage::is_removed(SessionId session, const fs::path& table) const {
     if (table.parent_path() != copy_) return false; // set aside: the database does not have it
     std::string record;
     if (!database_->Get({}, session_key(session), &record).IsNotFound()) return false;
-    const std::unique_ptr<rocksdb::Iterator> iterator(database_->NewIterator({}));
+    if (has_all_tables_) return true; // a session has a record until it is removed
     const auto range = entries_of(session);
+    const rocksdb::Slice end(range.end);
+    rocksdb::ReadOptions read;
+    read.iterate_upper_bound = &end; // what lies behind may be damaged, and is none of its entries
+    const std::unique_ptr<rocksdb::Iterator> iterator(database_->NewIterator(read));
     iterator->Seek(range.begin);
-    if (!iterator->Valid()) return iterator->status().ok();
-    return iterator->key().compare(range.end) >= 0;
+    return !iterator->Valid() && iterator->status().ok();
 }
 
 void Salvage::find_records(const Table& table) {

@@ -24,9 +24,9 @@ namespace scanloom::store {
 ///
 /// Reads a copy, which shares the tables' files with the store where the disk allows it: what is never changed need not
 /// be copied. Tables are read each by itself, as one with a bad block would hide what others have, and of one that is
-/// damaged every intact entry is taken (carve_table); of the write-ahead log every whole write is, also behind damage; a
-/// manifest that is damaged, or names tables that are missing, is made again from the tables that are there. A session
-/// that was deleted shortly before may come back then.
+/// damaged every intact entry is taken (carve_table); of the write-ahead log every whole write is, also behind damage;
+/// a manifest that is damaged, or names tables that are missing, is made again from the tables that are there. A
+/// session that was deleted shortly before may come back then.
 /// Thread  one.
 class Salvage {
 public:
@@ -60,7 +60,8 @@ private:
 
     explicit Salvage(std::filesystem::path copy);
     [[nodiscard]] Result<> copy_files(const std::filesystem::path& store);
-    [[nodiscard]] Result<> open_tables(const StoreOptions& options);
+    [[nodiscard]] Result<> open_tables(const std::filesystem::path& store, const StoreOptions& options);
+    [[nodiscard]] Result<> set_unlisted_aside(const std::filesystem::path& store);
     [[nodiscard]] Result<> carve_damaged_tables();
     [[nodiscard]] Result<std::uint64_t> carve(const std::filesystem::path& table);
     [[nodiscard]] Result<> take_write_ahead_logs(const std::filesystem::path& store);
@@ -72,6 +73,7 @@ private:
 
     const std::filesystem::path copy_;
     std::unique_ptr<rocksdb::DB> database_; // of the copy
+    bool has_all_tables_ = false;           // those that its own manifest names
     std::vector<Table> tables_;
     std::map<SessionId, std::optional<std::string>> sessions_;
     std::vector<std::string> notes_;

@@ -12,6 +12,8 @@ namespace scanloom::store {
 namespace {
 
 constexpr std::size_t kTailBytes = 8; // type and sequence, behind a key
+constexpr std::size_t kRecordKeyBytes = 9;
+constexpr std::size_t kEntryKeyBytes = 17;
 constexpr char kRemoval = 0;
 constexpr char kValue = 1;
 
@@ -44,7 +46,10 @@ std::optional<Found> read_one(std::string_view bytes) {
 
 /// The whole key, if it is one of the two kinds; without its tail.
 std::optional<std::string> key_of(const Found& found, std::string_view before) {
-    if (found.shared > before.size()) return std::nullopt;
+    const auto key_bytes = found.shared + found.key_rest.size() - kTailBytes;
+    if (found.shared > before.size() || (key_bytes != kRecordKeyBytes && key_bytes != kEntryKeyBytes)) {
+        return std::nullopt; // before anything is copied: noise may say that a key is the rest of the table
+    }
     std::string key(before.substr(0, found.shared));
     key.append(found.key_rest.substr(0, found.key_rest.size() - kTailBytes));
     if (!session_of(key) && !revision_of(key)) return std::nullopt;
@@ -60,7 +65,7 @@ public:
         keys_[kNext] = revision ? entry_key(*owner_of(key), *revision + 1) : std::string();
     }
 
-    /// Without a value there is no checksum, so that it may not have been one.
+    /// It has the shape of a key, and no checksum says that it was one: that of a removal, or of a damaged value.
     void may_be(const std::string& key) { keys_[kUncertain] = key; }
 
     [[nodiscard]] const std::array<std::string, 3>& all() const { return keys_; }
@@ -75,6 +80,7 @@ private:
 void carve_table(std::string_view table, const VisitCarved& visit) {
     KeysBefore before;
     const auto take = [&](const Found& found) {
+        std::optional<std::string> shaped; // a key whose value is damaged, if it is one
         const char type = found.key_rest[found.key_rest.size() - kTailBytes];
         for (const auto& key_before : before.all()) {
             const auto key = key_of(found, key_before);
@@ -82,11 +88,16 @@ void carve_table(std::string_view table, const VisitCarved& visit) {
                 before.may_be(*key);
                 return false;
             }
-            if (!key || type != kValue || !unsealed(*key, found.value)) continue;
+            if (!key || type != kValue) continue;
+            if (!unsealed(*key, found.value)) {
+                shaped = key;
+                continue;
+            }
             visit(*key, found.value);
             before.is_intact(*key);
             return true;
         }
+        if (shaped) before.may_be(*shaped);
         return false;
     };
     while (!table.empty()) {

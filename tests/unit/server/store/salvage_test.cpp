@@ -64,8 +64,13 @@ protected:
 
     std::unique_ptr<Salvage> salvaged() {
         const auto before = files_in(store());
-        auto salvage = Salvage::open(store(), at("copy"));
+        auto salvage = salvaged_of_files();
         EXPECT_EQ(files_in(store()), before) << "nothing of the old one is changed";
+        return salvage;
+    }
+
+    std::unique_ptr<Salvage> salvaged_of_files() {
+        auto salvage = Salvage::open(store(), at("copy"));
         if (!salvage) throw std::runtime_error(salvage.error().message);
         return std::move(*salvage);
     }
@@ -157,6 +162,18 @@ TEST_F(SalvageTest, AManifestThatIsDamagedOrGoneIsMadeAgain) {
     expect_all();
 }
 
+TEST_F(SalvageTest, AManifestThatEndsEarlyTakesNoTableAlong) {
+    const auto manifest = only_file_like(store(), "MANIFEST-");
+    const auto bytes = bytes_of(manifest);
+    for (std::size_t left = bytes.size() - 1; left > 3; left -= std::min<std::size_t>(left, 11)) {
+        write_bytes(manifest, std::string_view(bytes).substr(0, left));
+        const auto salvage = salvaged();
+        EXPECT_EQ(salvage->sessions().at(1), "one") << left;
+        EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog)) << left;
+        EXPECT_THAT(found(*salvage, 2), SizeIs(kInTable)) << left;
+    }
+}
+
 TEST_F(SalvageTest, ATableThatIsGoneTakesItsEntriesAlong) {
     const auto tables = files_like(store(), ".sst");
     for (const auto& table : tables) fs::remove(table);
@@ -177,6 +194,29 @@ TEST_F(SalvageTest, AServerKeepsItOutAndWhereThereIsNoStoreThatIsSaid) {
     const auto server = open_rocksdb(store()).value();
     EXPECT_EQ(Salvage::open(store(), at("copy")).error().code, Errc::kConflict);
     EXPECT_EQ(Salvage::open(at("nowhere"), at("copy")).error().code, Errc::kNotFound);
+    fs::create_directory(at("empty"));
+    EXPECT_EQ(Salvage::open(at("empty"), at("copy")).error().code, Errc::kNotFound) << "a disk that is not mounted";
+}
+
+/// Wherever the table is damaged that still has it: what the table after it says holds.
+TEST_F(SalvageTest, ASessionThatWasRemovedDoesNotComeBack) {
+    { open_rocksdb(store()).value()->remove_session(1).value(); }
+    const auto table = largest_table();
+    const auto bytes = bytes_of(table);
+    for (std::size_t at = 500; at < bytes.size() * 9 / 10; at += 20'000) {
+        write_bytes(table, bytes);
+        flip_bit(table, at, 1);
+        const auto salvage = salvaged();
+        EXPECT_THAT(salvage->sessions(), SizeIs(1)) << "byte " << at;
+        EXPECT_GE(found(*salvage, 2).size(), kInTable - 1);
+    }
+}
+
+TEST_F(SalvageTest, WhatIsNoFileOfTheStoresIsPassedOver) {
+    fs::create_directory(store() / "000999.log");
+    fs::create_directory(store() / "000999.sst");
+    const auto salvage = salvaged_of_files();
+    EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog));
 }
 
 } // namespace

@@ -67,6 +67,32 @@ TEST(TableCarving, KeysAreToldFromTheOneBeforeAlsoWhereThatIsDamagedAndItsLastDi
     EXPECT_THAT(carved(bytes), ElementsAre("1/255", "1/257"));
 }
 
+TEST(TableCarving, WhereTheFirstOfASessionOrOfItsKindIsDamagedTheNextAreFound) {
+    const auto damaged_at_end_of = [](TableBlock block, auto... behind) {
+        const auto hit = block.bytes().size() - 1;
+        (behind(block), ...);
+        auto bytes = block.bytes();
+        bytes[hit] = static_cast<char>(bytes[hit] ^ 1);
+        return carved(bytes);
+    };
+    const auto two_more = [](TableBlock& block) { block.entry(9, 2, "the second").entry(9, 3, "the third"); };
+    EXPECT_THAT(damaged_at_end_of(TableBlock().entry(9, 1, "the first of all"), two_more), ElementsAre("9/2", "9/3"));
+    EXPECT_THAT(damaged_at_end_of(TableBlock().entry(3, 700, "another's").entry(9, 1, "the first"), two_more),
+                ElementsAre("3/700", "9/2", "9/3"));
+    const auto records = [](TableBlock& block) { block.record(2, "two").record(3, "three"); };
+    EXPECT_THAT(damaged_at_end_of(TableBlock().entry(3, 7, "an entry").record(1, "one"), records),
+                ElementsAre("3/7", "2", "3"));
+}
+
+TEST(TableCarving, NoiseBehindAnIntactEntryTakesNoTime) {
+    std::mt19937 random(4);
+    TableBlock block;
+    block.entry(1, 1, "an entry");
+    auto noise = block.bytes();
+    for (int n = 0; n < 4'000'000; ++n) noise += static_cast<char>(random());
+    EXPECT_THAT(carved(noise), ElementsAre("1/1"));
+}
+
 TEST(TableCarving, KeysAreToldFromThatOfARemoval) {
     TableBlock block;
     block.record(1, "one").remove(session_key(2)).record(3, "three");
