@@ -36,7 +36,8 @@ DistinctPoints distinct_points(std::span<const Point2> cloud) {
     const std::vector<Place> places = sorted_places(cloud);
     for (std::size_t n = 0, first = 0; n < places.size(); ++n) {
         if (!places[n].is_at(places[first])) first = n;
-        distinct.of[places[n].index] = places[first].index; // for now: the first equal point's index in the cloud
+        distinct.of[places[n].index] =
+            places[first].index; // in the cloud; its number among the distinct ones comes next
     }
     for (std::uint32_t n = 0; n < cloud.size(); ++n) {
         const std::uint32_t first = distinct.of[n];

@@ -1,5 +1,6 @@
 #include "robot_client/sim/laser.hpp"
 #include "server/landmarks/landmark.hpp"
+#include "tests/unit/server/landmarks/standing_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,17 +15,9 @@ namespace {
 
 /// What a standing lidar sees, in the map frame.
 std::vector<Point2> capture(const robot::World& world, const Pose2& place, int turns) {
-    const Sensor laser = robot::find_laser("lidar360").value();
     robot::Random random(1);
-    std::vector<Point2> points;
-    for (int turn = 0; turn < turns; ++turn) {
-        const auto ranges = robot::sweep(world, laser, place, robot::Noise{}, random);
-        for (std::size_t n = 0; n < ranges.size(); ++n) {
-            if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
-            const double angle = beam_angle(laser.angles, n);
-            points.push_back(transform(place, 1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle))));
-        }
-    }
+    auto points = testing_support::standing_capture(world, place, turns, random);
+    for (auto& point : points) point = transform(place, point);
     return points;
 }
 
