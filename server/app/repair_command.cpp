@@ -3,6 +3,7 @@
 #include "common/app/standard_error.hpp"
 #include "common/json/json_text.hpp"
 #include "server/session/repair.hpp"
+#include "server/session/repaired_names.hpp"
 #include "server/store/unfinished_store.hpp"
 
 #include <boost/json/object.hpp>
@@ -56,8 +57,9 @@ Result<Sum> save(const store::Salvage& salvage, const store::UnfinishedStore& to
     const auto repaired = to.open_log();
     if (!repaired) return repaired.error();
     Sum sum;
+    const auto names = session::repaired_names(salvage.sessions());
     for (const auto& [id, record] : salvage.sessions()) {
-        const auto session = session::repair_session(salvage, id, record, **repaired, lost);
+        const auto session = session::repair_session(salvage, id, record, names.at(id), **repaired, lost);
         if (!session) return session.error();
         std::cout << line_of(*session) << std::flush;
         sum.add(*session);
@@ -71,10 +73,11 @@ Result<Sum> repair(const ServerOptions& options) {
     if (!unfinished) return unfinished.error();
     auto salvage = store::Salvage::open(options.store, unfinished->salvage());
     if (!salvage) return salvage.error();
-    for (const auto& note : (*salvage)->notes()) standard_error().write(fmt::format("scanloom-server: {}\n", note));
+    for (const auto& note : (*salvage)->tables().notes())
+        standard_error().write(fmt::format("scanloom-server: {}\n", note));
     auto sum = save(**salvage, *unfinished, lost);
     if (!sum) return sum;
-    sum->damaged_files = (*salvage)->notes().size();
+    sum->damaged_files = (*salvage)->tables().damaged_files();
     salvage->reset();
     if (auto finished = unfinished->finish(); !finished) return finished.error();
     return sum;

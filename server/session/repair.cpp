@@ -90,45 +90,38 @@ private:
 
 /// A part of an import may be lost, and what is left of it is to be kept: the next start would remove a session that
 /// has fewer entries than its import.
-Result<std::string> record_to_keep(const std::string& bytes) {
+std::optional<std::string> record_to_keep(const std::string& bytes, const std::string& name) {
     auto record = wire::decode_session(bytes);
-    if (!record) return record.error();
+    if (!record) return std::nullopt;
     record->map_patches = 0;
+    record->name = name;
     return wire::encode_session(*record);
 }
 
-struct Target {
-    std::string name;
-    std::optional<store::SessionId> id; ///< nothing: all is set aside
-};
-
-/// Where the session goes.
-Result<Target> target_of(store::SessionId id, const std::optional<std::string>& record, store::ScanLog& to) {
-    Target target{fmt::format("session-{}", id), std::nullopt};
-    if (!record) return target;
-    const auto kept = record_to_keep(*record);
-    if (!kept) return target;
-    target.name = wire::decode_session(*kept)->name;
+/// Where the session goes; nothing: all of it is set aside.
+Result<std::optional<store::SessionId>> target_of(const std::optional<std::string>& record, const std::string& name,
+                                                  store::ScanLog& to) {
+    const auto kept = record ? record_to_keep(*record, name) : std::nullopt;
+    if (!kept) return std::optional<store::SessionId>();
     const auto created = to.create_session(*kept);
     if (!created) return created.error();
-    target.id = *created;
-    return target;
+    return std::optional(*created);
 }
 
 } // namespace
 
 Result<RepairedSession> repair_session(const store::Salvage& from, store::SessionId id,
-                                       const std::optional<std::string>& record, store::ScanLog& to,
-                                       const std::filesystem::path& aside) {
-    const auto target = target_of(id, record, to);
+                                       const std::optional<std::string>& record, const std::string& name,
+                                       store::ScanLog& to, const std::filesystem::path& aside) {
+    const auto target = target_of(record, name, to);
     if (!target) return target.error();
-    RepairedSession repaired{.name = target->name, .aside = aside / (target->name + ".scanlog")};
+    RepairedSession repaired{.name = name, .aside = aside / (name + ".scanlog")};
     Rescue rescue;
-    LogWriter kept(to, target->id.value_or(0));
+    LogWriter kept(to, target->value_or(0));
     AsideFile set_aside(repaired.aside);
     const auto read = from.read(id, [&](Revision revision, std::string_view bytes) -> Result<> {
         auto entry = wire::decode_entry(bytes);
-        if (!entry || !target->id) return set_aside.add(bytes);
+        if (!entry || !*target) return set_aside.add(bytes);
         const auto entries = rescue.add(revision, std::move(*entry));
         if (entries.empty()) return set_aside.add(bytes);
         for (const auto& one : entries) {

@@ -72,7 +72,8 @@ Result<> cut_off(const fs::path& file, std::size_t bytes) {
     return failure(fmt::format("cannot cut the unfinished write off {} of the store: {}", file.native(), problem));
 }
 
-/// RocksDB takes a damaged length near the manifest's end for its end, and would go on without the rest.
+} // namespace
+
 Result<> check_manifest(const fs::path& directory) {
     std::error_code problem;
     const fs::path current = directory / "CURRENT";
@@ -95,8 +96,6 @@ Result<> check_manifest(const fs::path& directory) {
     }
     return {};
 }
-
-} // namespace
 
 Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory) {
     if (auto manifest = check_manifest(directory.path()); !manifest) return manifest.error();

@@ -16,6 +16,11 @@ struct UnfinishedWrite {
     std::uint64_t bytes = 0;       ///< that are to be cut off
 };
 
+/// Whether the manifest that CURRENT names is whole: RocksDB takes a damaged length near its end for its end, and would
+/// go on without the rest.
+/// Errors  kStoreFailed, naming file and offset.
+[[nodiscard]] Result<> check_manifest(const std::filesystem::path& directory);
+
 /// Reads manifest and write-ahead log and changes nothing.
 /// Pre, Errors  as of mend_after_crash().
 [[nodiscard]] Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory);

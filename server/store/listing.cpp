@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -60,6 +61,18 @@ bool is_store_file(const std::string& name) {
     Listing listing;
     note(listing, name);
     return listing.foreign.empty() && name != "lost+found";
+}
+
+std::vector<fs::path> regular_files(const fs::path& directory, std::string_view extension) {
+    std::vector<fs::path> found;
+    std::error_code none;
+    for (fs::directory_iterator file(directory, none); !none && file != fs::directory_iterator();
+         file.increment(none)) {
+        if (!extension.empty() && file->path().extension() != extension) continue;
+        if (file->is_regular_file(none)) found.push_back(file->path());
+    }
+    std::ranges::sort(found);
+    return found;
 }
 
 Result<> check_listing(const fs::path& directory, const Listing& listing) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace scanloom::store {
 
@@ -30,6 +31,11 @@ struct Listing {
 
 /// Errors  kStoreFailed: the directory cannot be listed.
 [[nodiscard]] Result<Listing> listing_of(const std::filesystem::path& directory);
+
+/// A directory's regular files, by name.
+/// @param extension  with its dot; empty: all.
+[[nodiscard]] std::vector<std::filesystem::path> regular_files(const std::filesystem::path& directory,
+                                                               std::string_view extension = {});
 
 /// Whether it is a file of a store, by its name: ours, or RocksDB's.
 [[nodiscard]] bool is_store_file(const std::string& name);

@@ -79,4 +79,10 @@ rocksdb::Options rocksdb_options(const StoreOptions& options, std::shared_ptr<Co
     return rocksdb;
 }
 
+rocksdb::Options options_of_table(const StoreOptions& options) {
+    rocksdb::Options rocksdb;
+    if (options.env != nullptr) rocksdb.env = options.env;
+    return rocksdb;
+}
+
 } // namespace scanloom::store

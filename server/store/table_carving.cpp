@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace scanloom::store {
 namespace {
@@ -14,6 +16,8 @@ namespace {
 constexpr std::size_t kTailBytes = 8; // type and sequence, behind a key
 constexpr std::size_t kRecordKeyBytes = 9;
 constexpr std::size_t kEntryKeyBytes = 17;
+constexpr std::size_t kValueBytesMax = std::size_t{4} << 20; // a scan has 1 MiB at most, a part of an imported map less
+constexpr std::uint64_t kRow = 256;                          // keys that differ in their last byte only
 constexpr char kRemoval = 0;
 constexpr char kValue = 1;
 
@@ -44,65 +48,104 @@ std::optional<Found> read_one(std::string_view bytes) {
     return Found{*shared, bytes.substr(0, *rest), bytes.substr(*rest, *length)};
 }
 
+/// Without its tail.
+std::size_t key_bytes_of(const Found& found) { return found.shared + found.key_rest.size() - kTailBytes; }
+
 /// The whole key, if it is one of the two kinds; without its tail.
 std::optional<std::string> key_of(const Found& found, std::string_view before) {
-    const auto key_bytes = found.shared + found.key_rest.size() - kTailBytes;
-    if (found.shared > before.size() || (key_bytes != kRecordKeyBytes && key_bytes != kEntryKeyBytes)) {
-        return std::nullopt; // before anything is copied: noise may say that a key is the rest of the table
-    }
+    if (found.shared > before.size()) return std::nullopt;
     std::string key(before.substr(0, found.shared));
     key.append(found.key_rest.substr(0, found.key_rest.size() - kTailBytes));
     if (!session_of(key) && !revision_of(key)) return std::nullopt;
     return key;
 }
 
-/// Keys that the next one may be told from.
-class KeysBefore {
+/// The first bytes that keys near this one have: in its row of 256, the rows beside it, the next session's entries, and
+/// the records.
+std::array<std::string, 5> keys_near(const std::string& key) {
+    const auto revision = revision_of(key);
+    if (!revision) {
+        const auto session = *session_of(key);
+        return {key, session_key(session + kRow), session_key(session < kRow ? 0 : session - kRow)};
+    }
+    const auto session = *owner_of(key);
+    return {key, entry_key(session, *revision + kRow), entry_key(session, *revision < kRow ? 0 : *revision - kRow),
+            entry_key(session + 1, 0), session_key(0)};
+}
+
+class Carving {
 public:
-    void is_intact(const std::string& key) {
-        keys_[kIntact] = key;
-        const auto revision = revision_of(key);
-        keys_[kNext] = revision ? entry_key(*owner_of(key), *revision + 1) : std::string();
+    explicit Carving(const VisitCarved& visit) : visit_(visit) {}
+
+    /// @return whether it is intact; one whose key cannot be told yet may turn out to be later.
+    bool take(const Found& found) {
+        const auto key_bytes = key_bytes_of(found); // before anything is copied: noise may say that it is the rest
+        if (key_bytes != kRecordKeyBytes && key_bytes != kEntryKeyBytes) return false;
+        const char type = found.key_rest[found.key_rest.size() - kTailBytes];
+        if (type == kRemoval && found.value.empty()) may_be_removal(found);
+        if (type != kValue || found.value.size() > kValueBytesMax) return false;
+        if (const auto key = intact_key(found)) {
+            is_intact(*key, found);
+            take_waiting();
+            return true;
+        }
+        waiting_.push_back(found);
+        return false;
     }
 
-    /// It has the shape of a key, and no checksum says that it was one: that of a removal, or of a damaged value.
-    void may_be(const std::string& key) { keys_[kUncertain] = key; }
-
-    [[nodiscard]] const std::array<std::string, 3>& all() const { return keys_; }
-
 private:
-    enum : std::size_t { kIntact, kNext, kUncertain };
-    std::array<std::string, 3> keys_; // next: of an entry that is damaged
+    /// Nothing if the checksum holds with no key that it may have.
+    std::optional<std::string> intact_key(const Found& found) {
+        std::optional<std::string> shaped; // the likeliest
+        std::optional<std::string> tried;  // the last
+        for (const auto* near : {&near_intact_, &near_uncertain_}) {
+            for (const auto& before : *near) {
+                auto key = key_of(found, before);
+                if (!key || key == tried) continue;
+                if (unsealed(*key, found.value)) return key;
+                if (!shaped) shaped = key;
+                tried = std::move(key);
+            }
+        }
+        if (shaped) near_uncertain_ = keys_near(*shaped); // of a damaged value, if it is an entry
+        return std::nullopt;
+    }
+
+    /// A removal has no checksum.
+    void may_be_removal(const Found& found) {
+        for (const auto& before : near_intact_) {
+            if (const auto key = key_of(found, before)) near_uncertain_ = keys_near(*key);
+        }
+    }
+
+    void is_intact(const std::string& key, const Found& found) {
+        visit_(key, found.value);
+        near_intact_ = keys_near(key);
+    }
+
+    /// Those before an intact entry have keys that are near its own.
+    void take_waiting() {
+        const auto near_last = near_intact_;
+        const auto waiting = std::exchange(waiting_, {});
+        for (auto found = waiting.rbegin(); found != waiting.rend(); ++found) {
+            if (const auto key = intact_key(*found)) is_intact(*key, *found);
+        }
+        near_intact_ = near_last;
+    }
+
+    const VisitCarved& visit_;
+    std::array<std::string, 5> near_intact_ = keys_near(session_key(0)); // the last that was
+    std::array<std::string, 5> near_uncertain_;
+    std::vector<Found> waiting_; // since then
 };
 
 } // namespace
 
 void carve_table(std::string_view table, const VisitCarved& visit) {
-    KeysBefore before;
-    const auto take = [&](const Found& found) {
-        std::optional<std::string> shaped; // a key whose value is damaged, if it is one
-        const char type = found.key_rest[found.key_rest.size() - kTailBytes];
-        for (const auto& key_before : before.all()) {
-            const auto key = key_of(found, key_before);
-            if (key && type == kRemoval && found.value.empty()) {
-                before.may_be(*key);
-                return false;
-            }
-            if (!key || type != kValue) continue;
-            if (!unsealed(*key, found.value)) {
-                shaped = key;
-                continue;
-            }
-            visit(*key, found.value);
-            before.is_intact(*key);
-            return true;
-        }
-        if (shaped) before.may_be(*shaped);
-        return false;
-    };
+    Carving carving(visit);
     while (!table.empty()) {
         const auto found = read_one(table);
-        const bool taken = found && take(*found);
+        const bool taken = found && carving.take(*found);
         table.remove_prefix(taken ? static_cast<std::size_t>(found->value.end() - table.begin()) : 1);
     }
 }

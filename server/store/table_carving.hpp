@@ -9,9 +9,9 @@ namespace scanloom::store {
 /// A session's record or a log entry whose checksum holds; both are valid during the call only.
 using VisitCarved = std::function<void(std::string_view key, std::string_view sealed_value)>;
 
-/// Looks at every byte of a table whether a record or an entry begins there, and tells those that are intact, in the
-/// order in which they lie. An entry says only in what its key differs from the one before, so of one behind a damaged
-/// entry the key is made from the last intact one. It is believed where the checksum of key and value holds.
+/// Looks at every byte of a table whether a record or an entry begins there, and tells those that are intact, each
+/// once. An entry says only in what its key differs from the one before, so of one behind a damaged entry the key is
+/// made from that of the last intact one, or of the next. It is believed where the checksum of key and value holds.
 ///
 /// Removals are not told: whoever takes what is found has to know what was removed since.
 ///

@@ -11,9 +11,9 @@ constexpr Revision kFarthest = Revision{1} << 40; // no log is as long
 
 } // namespace
 
-TableWalk::TableWalk(const std::filesystem::path& table, SessionId session)
+TableWalk::TableWalk(const std::filesystem::path& table, SessionId session, const rocksdb::Options& options)
     : session_(session), range_(entries_of(session)), end_(range_.end),
-      reader_(std::make_unique<rocksdb::SstFileReader>(rocksdb::Options())) {
+      reader_(std::make_unique<rocksdb::SstFileReader>(options)) {
     if (!reader_->Open(table.native()).ok()) {
         met_damage_ = true;
         return;

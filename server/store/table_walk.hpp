@@ -17,7 +17,7 @@ namespace scanloom::store {
 class TableWalk {
 public:
     /// A table that cannot be opened has no entries.
-    TableWalk(const std::filesystem::path& table, SessionId session);
+    TableWalk(const std::filesystem::path& table, SessionId session, const rocksdb::Options& options);
 
     [[nodiscard]] bool valid() const { return iterator_ != nullptr && iterator_->Valid(); }
 

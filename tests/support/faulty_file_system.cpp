@@ -12,6 +12,26 @@ using rocksdb::IOOptions;
 using rocksdb::IOStatus;
 using rocksdb::Slice;
 
+namespace {
+
+/// One byte of it cannot be read.
+class FileWithBadSector final : public rocksdb::FSRandomAccessFileOwnerWrapper {
+public:
+    FileWithBadSector(std::unique_ptr<rocksdb::FSRandomAccessFile> file, std::uint64_t at)
+        : FSRandomAccessFileOwnerWrapper(std::move(file)), at_(at) {}
+
+    IOStatus Read(std::uint64_t offset, std::size_t bytes, const IOOptions& options, Slice* result, char* scratch,
+                  IODebugContext* debug) const override {
+        if (offset <= at_ && at_ < offset + bytes) return IOStatus::IOError("Input/output error");
+        return FSRandomAccessFileOwnerWrapper::Read(offset, bytes, options, result, scratch, debug);
+    }
+
+private:
+    const std::uint64_t at_;
+};
+
+} // namespace
+
 /// A file being written through a FaultyFileSystem.
 class FaultyFile final : public rocksdb::FSWritableFileOwnerWrapper {
 public:
@@ -100,6 +120,24 @@ IOStatus FaultyFileSystem::NewWritableFile(const std::string& name, const rocksd
     if (!status.ok()) return status;
     synced_bytes_[name] = 0;
     *result = std::make_unique<FaultyFile>(std::move(*result), *this, name);
+    return status;
+}
+
+void FaultyFileSystem::set_unreadable(const std::string& name, std::uint64_t at) {
+    const std::lock_guard lock(mutex_);
+    unreadable_[name] = at;
+}
+
+IOStatus FaultyFileSystem::NewRandomAccessFile(const std::string& name, const rocksdb::FileOptions& file_options,
+                                               std::unique_ptr<rocksdb::FSRandomAccessFile>* result,
+                                               IODebugContext* debug) {
+    auto status = FileSystemWrapper::NewRandomAccessFile(name, file_options, result, debug);
+    if (!status.ok()) return status;
+    const std::lock_guard lock(mutex_);
+    const auto unreadable = unreadable_.find(std::filesystem::path(name).filename());
+    if (unreadable != unreadable_.end()) {
+        *result = std::make_unique<FileWithBadSector>(std::move(*result), unreadable->second);
+    }
     return status;
 }
 

@@ -13,7 +13,7 @@
 
 namespace scanloom {
 
-/// RocksDB's file layer with a disk that fills up, fails to sync, or loses power.
+/// RocksDB's file layer with a disk that fills up, fails to sync, loses power, or cannot read a sector.
 ///
 /// Thread  any. A picture is taken between two operations, never in the middle of one.
 class FaultyFileSystem final : public rocksdb::FileSystemWrapper {
@@ -29,6 +29,9 @@ public:
     /// What the disk is said to have free. Nothing: what it has.
     void set_free_bytes(std::optional<std::uint64_t> bytes);
 
+    /// Reading byte `at` of files of this name fails from now on, and with it whatever else is read at once.
+    void set_unreadable(const std::string& name, std::uint64_t at);
+
     /// Copies a directory as it would be found after a power cut now: of each file what was synced,
     /// then a part of what was written since, in which some pages may read as zeros.
     /// Names of files count as durable at once.
@@ -39,6 +42,9 @@ public:
     rocksdb::IOStatus NewWritableFile(const std::string& name, const rocksdb::FileOptions& file_options,
                                       std::unique_ptr<rocksdb::FSWritableFile>* result,
                                       rocksdb::IODebugContext* debug) override;
+    rocksdb::IOStatus NewRandomAccessFile(const std::string& name, const rocksdb::FileOptions& file_options,
+                                          std::unique_ptr<rocksdb::FSRandomAccessFile>* result,
+                                          rocksdb::IODebugContext* debug) override;
     rocksdb::IOStatus GetFreeSpace(const std::string& path, const rocksdb::IOOptions& options, std::uint64_t* bytes,
                                    rocksdb::IODebugContext* debug) override;
     rocksdb::IOStatus RenameFile(const std::string& from, const std::string& to, const rocksdb::IOOptions& options,
@@ -54,6 +60,7 @@ private:
     bool sync_fails_ = false;
     bool disk_full_ = false;
     std::optional<std::uint64_t> free_bytes_;
+    std::map<std::string, std::uint64_t> unreadable_; // by name, without the directory
 };
 
 /// The file layer as a store takes it.

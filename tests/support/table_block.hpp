@@ -26,6 +26,12 @@ public:
 
     TableBlock& put(std::string_view key, std::string_view value) { return add(key, '\1', value); }
 
+    /// The next one has its whole key, as each sixteenth has.
+    TableBlock& restart() {
+        last_.clear();
+        return *this;
+    }
+
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
 private:

@@ -1,5 +1,6 @@
 #include "server/store/salvage.hpp"
 
+#include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/store_files.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -14,6 +15,7 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -81,7 +83,7 @@ protected:
 TEST_F(SalvageTest, OfAStoreThatIsWholeEverythingIsFoundAndNothingIsLeftBehind) {
     {
         const auto salvage = salvaged();
-        EXPECT_THAT(salvage->notes(), IsEmpty());
+        EXPECT_THAT(salvage->tables().notes(), IsEmpty());
         ASSERT_THAT(salvage->sessions(), SizeIs(2)) << "the third was removed";
         EXPECT_EQ(salvage->sessions().at(1), "one");
         EXPECT_EQ(salvage->sessions().at(2), "two");
@@ -101,7 +103,7 @@ TEST_F(SalvageTest, OfATableWithBadBlocksAllIsKeptButTheEntriesThatAreHit) {
             flip_bit(table, random() % (fs::file_size(table) * 9 / 10), 1);
         }
         const auto salvage = salvaged();
-        EXPECT_THAT(salvage->notes(), ElementsAre(HasSubstr("is damaged; what is intact of it was taken")));
+        EXPECT_THAT(salvage->tables().notes(), ElementsAre(HasSubstr("is damaged: what is intact of it was taken")));
         const auto kept_now = found(*salvage, 1).size() + found(*salvage, 2).size();
         EXPECT_GE(kept_now, 2 * kInTable + kInLog - 3);
         EXPECT_THAT(salvage->sessions(), SizeIs(2)) << "the third was removed";
@@ -144,7 +146,7 @@ TEST_F(SalvageTest, OfTheWriteAheadLogEachWholeWriteIsTaken) {
     const auto log = only_file_like(store(), ".log");
     flip_bit(log, fs::file_size(log) / 2, 1);
     const auto salvage = salvaged();
-    EXPECT_THAT(salvage->notes(), ElementsAre(HasSubstr("is damaged at byte")));
+    EXPECT_THAT(salvage->tables().notes(), ElementsAre(HasSubstr("is damaged: from byte")));
     EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable + kInLog - 1));
 }
 
@@ -213,13 +215,33 @@ TEST_F(SalvageTest, ASessionThatWasRemovedDoesNotComeBack) {
     { open_rocksdb(store()).value()->remove_session(1).value(); }
     const auto table = largest_table();
     const auto bytes = bytes_of(table);
-    for (std::size_t at = 500; at < bytes.size() * 9 / 10; at += 20'000) {
+    for (std::size_t at = 500; at < bytes.size() * 9 / 10; at += 150'000) {
         write_bytes(table, bytes);
         flip_bit(table, at, 1);
         const auto salvage = salvaged();
         EXPECT_THAT(salvage->sessions(), SizeIs(1)) << "byte " << at;
         EXPECT_GE(found(*salvage, 2).size(), kInTable - 1);
     }
+}
+
+TEST_F(SalvageTest, WhatTheDiskCannotReadCostsTheEntriesThatLieThereAndNoOther) {
+    const FaultyEnv disk;
+    const auto make_unreadable = [&](const fs::path& file, std::uint64_t at) {
+        disk.files->set_unreadable(file.filename(), at);
+    };
+    make_unreadable(largest_table(), fs::file_size(largest_table()) / 3);
+    make_unreadable(only_file_like(store(), ".log"), 3000);
+    make_unreadable(only_file_like(store(), "MANIFEST-"), 50);
+    StoreOptions options;
+    options.env = disk.env.get();
+    const auto salvage = Salvage::open(store(), at("copy"), options).value();
+    EXPECT_EQ(salvage->tables().damaged_files(), 3U);
+    EXPECT_THAT(salvage->tables().notes(), Contains(HasSubstr("the disk cannot read 4096 bytes of it")).Times(2));
+    constexpr std::size_t kInPage = 4096 / 100; // entries have more than a hundred bytes
+    EXPECT_GE(found(*salvage, 1).size() + found(*salvage, 2).size(), 2 * kInTable + kInLog - 2 * kInPage);
+    EXPECT_LT(found(*salvage, 1).size() + found(*salvage, 2).size(), 2 * kInTable + kInLog);
+    EXPECT_EQ(salvage->sessions().at(1), "one");
+    EXPECT_EQ(salvage->sessions().at(2), "two");
 }
 
 TEST_F(SalvageTest, WhatIsNoFileOfTheStoresIsPassedOver) {

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
 
 namespace scanloom::store {
@@ -82,6 +83,60 @@ TEST(TableCarving, WhereTheFirstOfASessionOrOfItsKindIsDamagedTheNextAreFound) {
     const auto records = [](TableBlock& block) { block.record(2, "two").record(3, "three"); };
     EXPECT_THAT(damaged_at_end_of(TableBlock().entry(3, 7, "an entry").record(1, "one"), records),
                 ElementsAre("3/7", "2", "3"));
+}
+
+/// Whatever of its bytes is hit, also where the keys behind it say only in what they differ from its own.
+TEST(TableCarving, TheFirstOfASessionCostsNoOtherWhereverItIsHit) {
+    struct Place {
+        const char* what;
+        std::function<void(TableBlock&)> before;
+        std::vector<std::pair<SessionId, Revision>> behind; // the first of them is hit
+    };
+    const std::vector<Place> places{
+        {"of a table", [](TableBlock&) {}, {{9, 1}, {9, 2}, {9, 3}}},
+        {"of a session far on", [](TableBlock& block) { block.entry(3, 70'000, "another's"); }, {{9, 1}, {9, 2}}},
+        {"of the next session, and the last there is",
+         [](TableBlock& block) { block.entry(3, 70'000, "another's"); },
+         {{4, 1}, {4, 2}}},
+        {"in another row of 256", [](TableBlock& block) { block.entry(3, 511, "before"); }, {{3, 512}, {3, 513}}},
+        {"behind lost rows", [](TableBlock& block) { block.entry(3, 5, "before"); }, {{3, 900}, {3, 901}, {3, 1024}}},
+    };
+    for (const auto& place : places) {
+        TableBlock block;
+        place.before(block);
+        const auto before = carved(block.bytes());
+        const auto begin = block.bytes().size();
+        std::size_t end = 0;
+        auto expected = before;
+        for (const auto& [session, revision] : place.behind) {
+            block.entry(session, revision, "entry " + std::to_string(revision));
+            if (end > 0) expected.push_back(std::to_string(session) + "/" + std::to_string(revision));
+            if (end == 0) end = block.bytes().size();
+        }
+        const auto [session, last] = place.behind.back();
+        block.restart().entry(session, last + 1, "with its whole key");
+        expected.push_back(std::to_string(session) + "/" + std::to_string(last + 1));
+        for (std::size_t byte = begin; byte < end; ++byte) {
+            auto bytes = block.bytes();
+            bytes[byte] = static_cast<char>(bytes[byte] ^ 0x21);
+            const auto found = carved(bytes);
+            EXPECT_THAT(found, testing::IsSupersetOf(expected)) << place.what << ", byte " << byte - begin;
+        }
+    }
+}
+
+TEST(TableCarving, TheFirstRecordCostsNoOtherWhereverItIsHit) {
+    TableBlock block;
+    block.entry(3, 7, "an entry");
+    const auto begin = block.bytes().size();
+    block.record(1, "one");
+    const auto end = block.bytes().size();
+    block.record(2, "two").record(3, "three");
+    for (std::size_t byte = begin; byte < end; ++byte) {
+        auto bytes = block.bytes();
+        bytes[byte] = static_cast<char>(bytes[byte] ^ 0x21);
+        EXPECT_THAT(carved(bytes), testing::IsSupersetOf({"3/7", "2", "3"})) << byte - begin;
+    }
 }
 
 TEST(TableCarving, NoiseBehindAnIntactEntryTakesNoTime) {
