@@ -1,6 +1,7 @@
 #include "server/store/crash_recovery.hpp"
 
 #include "server/store/advice.hpp"
+#include "server/store/listing.hpp"
 #include "server/store/log_file.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ namespace scanloom::store {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kManifest = "MANIFEST-";
 
 Error failure(std::string message) { return {Errc::kStoreFailed, std::move(message)}; }
 
@@ -46,18 +49,22 @@ Result<LogFileCheck> checked(const fs::path& file) {
     return check;
 }
 
+using Logs = std::map<std::uint64_t, fs::path>;
+
+/// Of what follows "MANIFEST-", or stands before ".log".
+std::optional<std::uint64_t> number_in(std::string_view digits) {
+    std::uint64_t number = 0;
+    const auto [end, unread] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (unread != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    return number;
+}
+
 /// By rising number: the last was written last. The others were synced as a whole, and RocksDB recorded their sizes in
 /// its manifest.
-std::map<std::uint64_t, fs::path> write_ahead_logs(const fs::path& directory) {
-    std::map<std::uint64_t, fs::path> logs;
-    std::error_code problem;
-    for (fs::directory_iterator file(directory, problem); !problem && file != fs::directory_iterator();
-         file.increment(problem)) {
-        if (file->path().extension() != ".log") continue;
-        const std::string stem = file->path().stem().native();
-        std::uint64_t number = 0;
-        const auto [end, unread] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
-        if (unread == std::errc() && end == stem.data() + stem.size()) logs.emplace(number, file->path());
+Logs write_ahead_logs(const fs::path& directory) {
+    Logs logs;
+    for (const auto& file : regular_files(directory, ".log")) {
+        if (const auto number = number_in(file.stem().native())) logs.emplace(*number, file);
     }
     return logs;
 }
@@ -73,6 +80,19 @@ Result<> cut_off(const fs::path& file, std::size_t bytes) {
 }
 
 } // namespace
+
+Result<> check_newest_log(const fs::path& directory) {
+    const auto logs = write_ahead_logs(directory);
+    std::error_code problem;
+    if (logs.empty() || fs::file_size(logs.rbegin()->second, problem) > 0 || problem) return {};
+    std::ifstream in(directory / "CURRENT");
+    std::string manifest;
+    if (!(in >> manifest) || !manifest.starts_with(kManifest)) return {}; // a new store
+    const auto number = number_in(std::string_view(manifest).substr(kManifest.size()));
+    if (!number || logs.rbegin()->first + 1 >= *number) return {};
+    return failure(fmt::format("the newest write-ahead log of the store {} is missing: {} is older than {}; {}",
+                               directory.native(), logs.rbegin()->second.filename().native(), manifest, kBringBack));
+}
 
 Result<> check_manifest(const fs::path& directory) {
     std::error_code problem;
@@ -99,8 +119,10 @@ Result<> check_manifest(const fs::path& directory) {
 
 Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory) {
     if (auto manifest = check_manifest(directory.path()); !manifest) return manifest.error();
+    if (auto newest = check_newest_log(directory.path()); !newest) return newest.error();
+    const auto logs = write_ahead_logs(directory.path());
     std::optional<UnfinishedWrite> unfinished;
-    for (const auto& [number, log] : write_ahead_logs(directory.path())) {
+    for (const auto& [number, log] : logs) {
         if (unfinished) {
             return failure(fmt::format("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
                                        unfinished->whole_bytes, kBringBack));

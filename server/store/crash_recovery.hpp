@@ -21,6 +21,12 @@ struct UnfinishedWrite {
 /// Errors  kStoreFailed, naming file and offset.
 [[nodiscard]] Result<> check_manifest(const std::filesystem::path& directory);
 
+/// Whether the newest write-ahead log is there, as far as that can be told; where there is none at all, a listing
+/// tells. A start makes a log, then the manifest behind it: so one that is empty, and older than that, is not the
+/// newest.
+/// Errors  kStoreFailed.
+[[nodiscard]] Result<> check_newest_log(const std::filesystem::path& directory);
+
 /// Reads manifest and write-ahead log and changes nothing.
 /// Pre, Errors  as of mend_after_crash().
 [[nodiscard]] Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirectory& directory);

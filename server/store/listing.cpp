@@ -85,8 +85,9 @@ Result<> check_listing(const fs::path& directory, const Listing& listing) {
         return failure("the store {} is damaged: its file CURRENT is missing; {}", directory.native(), kBringBack);
     }
     if (!listing.has_current && !listing.foreign.empty()) {
-        return failure("the directory {} holds other files ({}) and no store; name a directory of its own",
-                       directory.native(), listing.foreign);
+        return Error{Errc::kNotFound, fmt::format("the directory {} holds other files ({}) and no store; name a "
+                                                  "directory of its own",
+                                                  directory.native(), listing.foreign)};
     }
     if (!listing.has_current && !listing.trace.empty() && !listing.is_new) {
         return failure(

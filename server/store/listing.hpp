@@ -42,7 +42,7 @@ struct Listing {
 
 /// RocksDB takes a directory without CURRENT for an empty one, and removes table files no manifest knows. So a store
 /// that lost files is recognised before RocksDB sees it.
-/// Errors  kStoreFailed: it lost files, or is unfinished; there are other files, and no store.
+/// Errors  kStoreFailed: it lost files, or is unfinished; kNotFound: there are other files, and no store.
 [[nodiscard]] Result<> check_listing(const std::filesystem::path& directory, const Listing& listing);
 
 } // namespace scanloom::store

@@ -55,7 +55,9 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
 }
 
 Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
-    return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kBeingMade), {});
+    StoreOptions options;
+    options.disk_reserve_bytes = 0; // nothing else writes it: it fits, or it does not
+    return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kBeingMade), options);
 }
 
 } // namespace scanloom::store

@@ -59,7 +59,7 @@ void Salvage::find_records(const SalvagedTables::Table& table) {
         const auto session = session_of(key);
         if (!session) break;
         const auto record = unsealed(key, iterator->value().ToStringView());
-        if (tables_->is_removed(*session, table.file)) continue;
+        if (tables_->is_removed(*session)) continue;
         auto& found = sessions_[*session];
         if (record && !found) found.emplace(*record);
     }
@@ -74,7 +74,7 @@ void Salvage::find_owners(const SalvagedTables::Table& table) {
         const auto key = iterator->key().ToStringView();
         const auto owner = owner_of(key);
         if (!owner || !revision_of(key)) break;
-        if (!sessions_.contains(*owner) && !tables_->is_removed(*owner, table.file)) sessions_[*owner];
+        if (!sessions_.contains(*owner) && !tables_->is_removed(*owner)) sessions_[*owner];
         iterator->Seek(entries_of(*owner).end);
     }
 }

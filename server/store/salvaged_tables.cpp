@@ -8,14 +8,17 @@
 #include "server/store/record.hpp"
 #include "server/store/rocksdb_options.hpp"
 #include "server/store/table_carving.hpp"
+#include "server/store/table_check.hpp"
 
 #include <fmt/format.h>
 #include <rocksdb/db.h>
-#include <rocksdb/sst_file_reader.h>
 #include <rocksdb/write_batch.h>
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <regex>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -26,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kTable = ".sst";
 constexpr std::string_view kLog = ".log";
-constexpr std::string_view kSetAside = "lost"; // where RepairDB puts tables of which it could not read all
+constexpr std::string_view kSetAside = "aside"; // tables that RocksDB does not have
 constexpr std::size_t kBatchHeaderBytes = 12;
 
 Error failure(std::string message) { return {Errc::kStoreFailed, std::move(message)}; }
@@ -59,12 +62,35 @@ std::string reason_of(const rocksdb::Status& status, const fs::path& copy) {
     return text;
 }
 
+/// The first table that RocksDB did not find; it tells another ending.
+std::optional<std::string> missing_table_in(const std::string& reason) {
+    std::smatch number;
+    if (!std::regex_search(reason, number, std::regex("([0-9]{6,})[.](ldb|sst)"))) return std::nullopt;
+    return number[1].str() + std::string(kTable);
+}
+
+/// The sessions that a write removes.
+class Removals : public rocksdb::WriteBatch::Handler {
+public:
+    explicit Removals(std::set<SessionId>& sessions) : sessions_(sessions) {}
+
+    rocksdb::Status PutCF(std::uint32_t, const rocksdb::Slice&, const rocksdb::Slice&) override { return {}; }
+    rocksdb::Status DeleteCF(std::uint32_t, const rocksdb::Slice& key) override {
+        if (const auto session = session_of(key.ToStringView())) sessions_.insert(*session);
+        return {};
+    }
+    rocksdb::Status DeleteRangeCF(std::uint32_t, const rocksdb::Slice&, const rocksdb::Slice&) override { return {}; }
+
+private:
+    std::set<SessionId>& sessions_;
+};
+
 } // namespace
 
 Result<std::unique_ptr<SalvagedTables>> SalvagedTables::open(const fs::path& store, const fs::path& copy,
                                                              const StoreOptions& options) {
     std::unique_ptr<SalvagedTables> tables(new SalvagedTables(store, copy, options));
-    for (const auto step : {&SalvagedTables::copy_files, &SalvagedTables::open_database, &SalvagedTables::carve_damaged,
+    for (const auto step : {&SalvagedTables::copy_files, &SalvagedTables::open_database, &SalvagedTables::take_damaged,
                             &SalvagedTables::take_write_ahead_logs}) {
         if (auto done = (*tables.*step)(); !done) return done.error();
     }
@@ -100,20 +126,45 @@ Result<> SalvagedTables::copy_files() {
 }
 
 Result<> SalvagedTables::open_database() {
-    const auto rocksdb = options_of_copy(options_);
+    auto rocksdb = options_of_copy(options_);
     rocksdb::DB* opened = nullptr;
     auto status = rocksdb::DB::Open(rocksdb, copy_.native(), &opened);
     has_all_ = status.ok();
     if (!status.ok()) {
-        if (!check_manifest(store_)) damaged_.insert("MANIFEST");
-        notes_.push_back(
-            fmt::format("RocksDB cannot open it as it is ({}); its tables were listed anew", reason_of(status, copy_)));
-        status = rocksdb::RepairDB(copy_.native(), rocksdb);
-        if (status.ok()) status = rocksdb::DB::Open(rocksdb, copy_.native(), &opened);
+        note_why_not(reason_of(status, copy_));
+        if (auto aside = set_all_aside(); !aside) return aside;
+        rocksdb.create_if_missing = true;
+        status = rocksdb::DB::Open(rocksdb, copy_.native(), &opened);
     }
     database_.reset(opened);
     if (!status.ok()) return failure(fmt::format("nothing of it can be read: {}", reason_of(status, copy_)));
     return has_all_ ? set_unlisted_aside() : Result<>();
+}
+
+/// Tables that have been merged do not stand beside those that have not, where no manifest tells which are which.
+Result<> SalvagedTables::set_all_aside() {
+    std::error_code problem;
+    fs::create_directories(copy_ / kSetAside, problem);
+    for (const auto& file : regular_files(copy_)) {
+        if (problem) break;
+        if (file.extension() == kTable)
+            fs::rename(file, copy_ / kSetAside / file.filename(), problem);
+        else
+            fs::remove(file, problem);
+    }
+    if (problem) return failure(fmt::format("cannot write {}: {}", copy_.native(), problem.message()));
+    return {};
+}
+
+/// RocksDB opens no store of which the manifest or a table is missing or not as it was.
+void SalvagedTables::note_why_not(const std::string& reason) {
+    notes_.push_back(fmt::format("RocksDB cannot open it as it is ({}); each of its tables is read by itself", reason));
+    if (!fs::exists(store_ / "CURRENT")) is_damaged("CURRENT", "it is missing");
+    if (const auto manifest = check_manifest(store_); !manifest) is_damaged("MANIFEST", manifest.error().message);
+    const auto missing = missing_table_in(reason);
+    if (missing && !fs::exists(store_ / *missing)) {
+        is_damaged(*missing, "it is missing, and maybe others: what they had is lost, how much cannot be told");
+    }
 }
 
 /// A manifest that ends early names only the first of the tables, and RocksDB removes the others.
@@ -124,7 +175,7 @@ Result<> SalvagedTables::set_unlisted_aside() {
         const auto name = table.filename();
         if (std::ranges::any_of(live, [&](const auto& one) { return one.relative_filename == name; })) continue;
         has_all_ = false;
-        notes_.push_back(fmt::format("{} is not in the list of its tables; what it has was taken", name.native()));
+        is_damaged("MANIFEST", fmt::format("{} is not in this list of tables; what it has was taken", name.native()));
         std::error_code problem;
         fs::create_directories(copy_ / kSetAside, problem);
         if (auto copied = copy(table, copy_ / kSetAside / name); !copied) return copied;
@@ -132,22 +183,31 @@ Result<> SalvagedTables::set_unlisted_aside() {
     return {};
 }
 
-/// Before the write-ahead logs: what these have was written later.
-Result<> SalvagedTables::carve_damaged() {
+std::vector<fs::path> SalvagedTables::files() const {
     auto tables = regular_files(copy_, kTable);
     std::ranges::copy(regular_files(copy_ / kSetAside, kTable), std::back_inserter(tables));
-    for (const auto& table : tables) {
-        if (is_whole(table)) continue;
+    return tables;
+}
+
+/// Before the write-ahead logs: what these have was written later.
+Result<> SalvagedTables::take_damaged() {
+    std::vector<fs::path> damaged;
+    for (const auto& table : files()) {
+        if (!check_table(table, options_)) {
+            damaged.push_back(table);
+        } else if (!has_all_) {
+            const auto bytes = read(table);
+            if (!bytes) return bytes.error();
+            removed_.merge(sessions_removed_in(*bytes));
+        }
+    }
+    for (const auto& table : damaged) {
         const auto taken = carve(table);
         if (!taken) return taken.error();
         is_damaged(table, fmt::format("what is intact of it was taken, {} entries", *taken));
     }
+    if (!has_all_ && damaged_.empty()) is_damaged("MANIFEST", "it does not fit the tables that are there");
     return {};
-}
-
-bool SalvagedTables::is_whole(const fs::path& table) const {
-    rocksdb::SstFileReader reader(options_of_table(options_));
-    return reader.Open(table.native()).ok() && reader.VerifyChecksum().ok();
 }
 
 void SalvagedTables::is_damaged(const fs::path& file, std::string_view how) {
@@ -172,16 +232,12 @@ Result<> SalvagedTables::copy(const fs::path& file, const fs::path& to) {
 
 /// @return how many entries were taken.
 Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
-    std::map<SessionId, bool> removed;
     rocksdb::WriteBatch batch;
     std::uint64_t taken = 0;
     const auto file = read(table);
     if (!file) return file.error();
     carve_table(*file, [&](std::string_view key, std::string_view sealed_value) {
-        const auto session = *owner_of(key);
-        const auto [of_session, is_first] = removed.try_emplace(session);
-        if (is_first) of_session->second = is_removed(session, table);
-        if (of_session->second) return;
+        if (is_removed(*owner_of(key))) return;
         if (std::string newer; session_of(key) && database_->Get({}, key, &newer).ok() && unsealed(key, newer)) return;
         batch.Put(key, sealed_value).PermitUncheckedError(); // fails where a batch is limited, which this is not
         if (!session_of(key)) ++taken;
@@ -194,6 +250,10 @@ Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
 
 /// A write that is in a table, too, is the same once more.
 Result<> SalvagedTables::take_write_ahead_logs() {
+    const auto newest = check_newest_log(store_);
+    if (!newest || regular_files(store_, kLog).empty()) {
+        is_damaged("the newest write-ahead log", "it is missing: what it had is lost, how much cannot be told");
+    }
     for (const auto& file : regular_files(store_, kLog)) {
         const auto bytes = read(file);
         if (!bytes) return bytes.error();
@@ -203,6 +263,8 @@ Result<> SalvagedTables::take_write_ahead_logs() {
         for (auto& write : whole_writes_of(*bytes)) {
             if (write.size() < kBatchHeaderBytes) continue;
             rocksdb::WriteBatch batch(std::move(write));
+            Removals removals(removed_);
+            batch.Iterate(&removals).PermitUncheckedError(); // its checksum holds
             if (const auto status = database_->Write({}, &batch); !status.ok()) {
                 return failure(
                     fmt::format("a write of {} cannot be taken: {}", file.filename().native(), status.ToString()));
@@ -225,19 +287,10 @@ void SalvagedTables::list() {
     for (const auto& table : regular_files(copy_ / kSetAside, kTable)) all_.push_back({table, "", last});
 }
 
-/// Whether the database knows that all of it is gone; a table alone does not.
-bool SalvagedTables::is_removed(SessionId session, const fs::path& table) const {
-    if (table.parent_path() != copy_) return false; // set aside: the database does not have it
+bool SalvagedTables::is_removed(SessionId session) const {
+    if (!has_all_) return removed_.contains(session); // no id is used twice
     std::string record;
-    if (!database_->Get({}, session_key(session), &record).IsNotFound()) return false;
-    if (has_all_) return true; // a session has a record until it is removed
-    const auto range = entries_of(session);
-    const rocksdb::Slice end(range.end);
-    rocksdb::ReadOptions read;
-    read.iterate_upper_bound = &end; // what lies behind may be damaged, and is none of its entries
-    const std::unique_ptr<rocksdb::Iterator> iterator(database_->NewIterator(read));
-    iterator->Seek(range.begin);
-    return !iterator->Valid() && iterator->status().ok();
+    return database_->Get({}, session_key(session), &record).IsNotFound(); // each has one until it is removed
 }
 
 } // namespace scanloom::store

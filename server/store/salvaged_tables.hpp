@@ -44,8 +44,9 @@ public:
 
     [[nodiscard]] const std::vector<Table>& all() const noexcept { return all_; }
 
-    /// Whether the session of which a table has something was removed later.
-    [[nodiscard]] bool is_removed(SessionId session, const std::filesystem::path& table) const;
+    /// Whether the session, of which a table has something, was removed later. Where tables are missing or damaged that
+    /// may not be known.
+    [[nodiscard]] bool is_removed(SessionId session) const;
 
     /// What was done to have them read: sentences.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
@@ -56,12 +57,14 @@ private:
     SalvagedTables(std::filesystem::path store, std::filesystem::path copy, const StoreOptions& options);
     [[nodiscard]] Result<> copy_files();
     [[nodiscard]] Result<> open_database();
+    [[nodiscard]] Result<> set_all_aside();
     [[nodiscard]] Result<> set_unlisted_aside();
-    [[nodiscard]] Result<> carve_damaged();
+    [[nodiscard]] std::vector<std::filesystem::path> files() const;
+    [[nodiscard]] Result<> take_damaged();
     [[nodiscard]] Result<std::uint64_t> carve(const std::filesystem::path& table);
     [[nodiscard]] Result<> take_write_ahead_logs();
     void list();
-    [[nodiscard]] bool is_whole(const std::filesystem::path& table) const;
+    void note_why_not(const std::string& reason);
     [[nodiscard]] Result<std::string> read(const std::filesystem::path& file);
     [[nodiscard]] Result<> copy(const std::filesystem::path& file, const std::filesystem::path& to);
     void is_damaged(const std::filesystem::path& file, std::string_view how);
@@ -71,6 +74,7 @@ private:
     const StoreOptions options_;
     std::unique_ptr<rocksdb::DB> database_; // of the copy
     bool has_all_ = false;                  // those that its own manifest names
+    std::set<SessionId> removed_;           // where not all are there: what those that are tell
     std::vector<Table> all_;
     std::set<std::string> damaged_; // files of the store, by name
     std::vector<std::string> notes_;

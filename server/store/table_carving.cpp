@@ -139,6 +139,9 @@ private:
     std::vector<Found> waiting_; // since then
 };
 
+/// Whether a key may begin like this: see record.hpp.
+bool is_kind(std::string_view key) { return std::string_view("cflns").find(key.front()) != std::string_view::npos; }
+
 } // namespace
 
 void carve_table(std::string_view table, const VisitCarved& visit) {
@@ -148,6 +151,26 @@ void carve_table(std::string_view table, const VisitCarved& visit) {
         const bool taken = found && carving.take(*found);
         table.remove_prefix(taken ? static_cast<std::size_t>(found->value.end() - table.begin()) : 1);
     }
+}
+
+std::set<SessionId> sessions_removed_in(std::string_view table) {
+    std::set<SessionId> removed;
+    std::string before; // the key of the entry that ends where the next one begins; empty: none does
+    while (!table.empty()) {
+        const auto found = read_one(table);
+        if (!found || found->shared > before.size() || !is_kind(found->shared > 0 ? before : found->key_rest)) {
+            before.clear();
+            table.remove_prefix(1);
+            continue;
+        }
+        before.resize(found->shared);
+        before.append(found->key_rest.substr(0, found->key_rest.size() - kTailBytes));
+        const char type = found->key_rest[found->key_rest.size() - kTailBytes];
+        const auto session = session_of(before);
+        if (session && type == kRemoval && found->value.empty()) removed.insert(*session);
+        table.remove_prefix(static_cast<std::size_t>(found->value.end() - table.begin()));
+    }
+    return removed;
 }
 
 } // namespace scanloom::store

@@ -137,6 +137,30 @@ TEST_F(SessionTest, ACheckpointIsWrittenEvery4096EntriesAndNothingIsFoldedTwice)
     EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digest());
 }
 
+TEST_F(SessionTest, ACheckpointThatIsBeingWrittenHoldsUpNoScan) {
+    boost::asio::io_context slow; // whoever writes checkpoints; begins when it is run
+    auto recovered = recover(log_, id_, config_, false).value();
+    session_ = std::make_shared<Session>(SessionInfo{id_, "lab", 0.0, config_}, std::move(recovered.projection),
+                                         recovered.checkpointed, log_, compute_.get_executor(), counters_, limits_,
+                                         slow.get_executor());
+    const auto link = join("r");
+    for (std::uint64_t seq = 1; seq <= 20'000; seq += 1000) {
+        std::vector<Scan> scans(1000, random_scan(1, 1));
+        for (std::size_t n = 0; n < scans.size(); ++n) {
+            scans[n].seq = seq + n;
+            scans[n].ranges = {1000};
+        }
+        session_->submit(link, std::move(scans), 0);
+        run();
+        EXPECT_EQ(link->durable_seq(), seq + 999);
+        EXPECT_EQ(session_->snapshot()->revision, seq + 1001);
+    }
+    EXPECT_THAT(store::checkpoint_of(log_, id_).value(), IsEmpty());
+    slow.run();
+    EXPECT_GT(recover(log_, id_, config_, false)->checkpointed, 4000U);
+    run();
+}
+
 TEST_F(SessionTest, SessionsThatBeganTogetherWriteTheirCheckpointsOneAfterAnother) {
     std::set<Revision> written_at;
     for (int n = 0; n < 8; ++n) {

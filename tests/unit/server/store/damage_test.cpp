@@ -1,5 +1,6 @@
 #include "server/store/log_file.hpp"
 #include "server/store/scan_log.hpp"
+#include "server/store/table_check.hpp"
 
 #include "tests/support/log_reading.hpp"
 #include "tests/support/store_files.hpp"
@@ -76,6 +77,31 @@ TEST_F(KilledStore, AMissingWriteAheadLogIsReported) {
     copy_store(killed(), copy());
     fs::remove(only_file_like(copy(), ".log"));
     EXPECT_THAT(open_rocksdb(copy()).error().message, HasSubstr("write-ahead log (*.log) is missing"));
+}
+
+/// Removing a session begins a log, which is empty when the server is killed then, and stays at the next start.
+TEST_F(KilledStore, AMissingWriteAheadLogIsReportedAlsoBesideAnOlderOneThatIsEmpty) {
+    const auto twice = directory_.path() / "killed twice";
+    {
+        auto log = open_rocksdb(original()).value();
+        log->remove_session(log->create_session("short").value()).value();
+        copy_store(original(), killed());
+    }
+    {
+        auto log = open_rocksdb(killed()).value();
+        append_and_wait(*log, session_, kBatches * kBatchEntries + 1, {"acknowledged"}).value();
+        copy_store(killed(), twice);
+    }
+    copy_store(twice, copy());
+    const auto logs = files_like(copy(), ".log");
+    ASSERT_EQ(logs.size(), 2U);
+    ASSERT_EQ(fs::file_size(logs.front()), 0U);
+    EXPECT_EQ(open_rocksdb(copy()).value()->end_of(session_).value(), kBatches * kBatchEntries + 1);
+    copy_store(twice, copy());
+    fs::remove(logs.back());
+    const auto without = open_rocksdb(copy());
+    ASSERT_FALSE(without);
+    EXPECT_THAT(without.error().message, HasSubstr("the newest write-ahead log"));
 }
 
 TEST_F(KilledStore, ItsWriteAheadLogIsAsTheFormatSays) {
@@ -262,6 +288,19 @@ TEST_F(TableStore, ATableThatIsMissingOrCutOffIsReported) {
     restore();
     fs::remove(file);
     EXPECT_THAT(read_all().error().message, HasSubstr(file.stem().native()));
+}
+
+TEST_F(TableStore, ATableIsReadWholeToCheckIt) {
+    const auto table = only_file_like(copy(), ".sst");
+    EXPECT_TRUE(check_table(table));
+    const auto size = fs::file_size(table);
+    for (std::size_t byte = 0; byte < size; byte += 1 + size / 50) {
+        restore();
+        flip_bit(table, byte, 5);
+        const auto checked = check_table(table);
+        ASSERT_FALSE(checked) << "flipped in byte " << byte;
+        EXPECT_THAT(checked.error().message, HasSubstr(table.native()));
+    }
 }
 
 TEST_F(TableStore, AMissingWriteAheadLogIsReported) {

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rocksdb/db.h>
 
 #include <random>
 
@@ -164,6 +165,46 @@ TEST_F(SalvageTest, AManifestThatIsDamagedOrGoneIsMadeAgain) {
     expect_all();
 }
 
+/// Tables that were merged have numbers of earlier and later changes; RocksDB minds when it finds them beside others.
+TEST_F(SalvageTest, WithoutAManifestMergedTablesAreTakenToo) {
+    const auto append_round = [&](Revision first) {
+        auto log = open_rocksdb(at("merged")).value();
+        for (const SessionId id : {1, 2}) {
+            if (first == 1) log->create_session("merged").value();
+            append_and_wait(*log, id, first, distinct_entries(id, first, 300)).value();
+        }
+    };
+    for (const Revision first : {1, 301, 601}) append_round(first);
+    {
+        rocksdb::Options options;
+        options.target_file_size_base = 16 << 10;
+        options.compression = rocksdb::kNoCompression;
+        rocksdb::DB* opened = nullptr;
+        ASSERT_TRUE(rocksdb::DB::Open(options, at("merged").native(), &opened).ok());
+        const std::unique_ptr<rocksdb::DB> database(opened);
+        ASSERT_TRUE(database->CompactRange({}, nullptr, nullptr).ok());
+    }
+    for (const Revision first : {901, 1201}) append_round(first);
+    copy_store(at("merged"), store());
+    EXPECT_GT(files_like(store(), ".sst").size(), 4U);
+    fs::remove(store() / "CURRENT");
+    const auto salvage = salvaged();
+    for (const SessionId id : {1, 2}) {
+        EXPECT_EQ(salvage->sessions().at(id), "merged");
+        EXPECT_THAT(found(*salvage, id), SizeIs(1500));
+    }
+    EXPECT_EQ(salvage->tables().damaged_files(), 1U) << "CURRENT";
+}
+
+TEST_F(SalvageTest, WithoutAManifestASessionThatWasRemovedDoesNotComeBack) {
+    fs::remove(store() / "CURRENT"); // its removal is in the write-ahead log
+    EXPECT_THAT(salvaged()->sessions(), SizeIs(2));
+    copy_store(at("original"), store());
+    { auto log = open_rocksdb(store()).value(); } // which writes that log into a table
+    fs::remove(store() / "CURRENT");
+    EXPECT_THAT(salvaged()->sessions(), SizeIs(2));
+}
+
 TEST_F(SalvageTest, AManifestThatEndsEarlyTakesNoTableAlong) {
     {
         auto log = open_rocksdb(at("growing")).value();
@@ -190,6 +231,8 @@ TEST_F(SalvageTest, ATableThatIsGoneTakesItsEntriesAlong) {
     const auto tables = files_like(store(), ".sst");
     for (const auto& table : tables) fs::remove(table);
     const auto salvage = salvaged();
+    EXPECT_GE(salvage->tables().damaged_files(), 1U);
+    EXPECT_THAT(salvage->tables().notes(), Contains(HasSubstr(".sst is damaged: it is missing, and maybe others")));
     EXPECT_THAT(found(*salvage, 1), SizeIs(kInLog));
     EXPECT_EQ(salvage->sessions().at(1), std::nullopt) << "its record was in a table";
 }
@@ -200,6 +243,13 @@ TEST_F(SalvageTest, ATableWithABadBlockAndAManifestThatIsGoneAreBothOvercome) {
     const auto salvage = salvaged();
     EXPECT_EQ(salvage->sessions().at(1), "one");
     EXPECT_GE(found(*salvage, 1).size() + found(*salvage, 2).size(), 2 * kInTable + kInLog - 1);
+}
+
+TEST_F(SalvageTest, AWriteAheadLogThatIsGoneIsTold) {
+    fs::remove(only_file_like(store(), ".log"));
+    const auto salvage = salvaged();
+    EXPECT_THAT(salvage->tables().notes(), ElementsAre(HasSubstr("write-ahead log is damaged: it is missing")));
+    EXPECT_THAT(found(*salvage, 1), SizeIs(kInTable));
 }
 
 TEST_F(SalvageTest, AServerKeepsItOutAndWhereThereIsNoStoreThatIsSaid) {

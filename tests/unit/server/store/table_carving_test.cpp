@@ -157,6 +157,22 @@ TEST(TableCarving, KeysAreToldFromThatOfARemoval) {
     EXPECT_THAT(carved(removal_first.bytes()), ElementsAre("9/1", "3"));
 }
 
+TEST(TableCarving, RemovedSessionsAreTold) {
+    TableBlock block;
+    block.put(part_key(3, "map"), sealed(part_key(3, "map"), "a part of a checkpoint"));
+    block.put("f", sealed("f", number_bytes(2)));
+    block.entry(3, 1, "first").remove(entry_key(3, 2)).entry(4, 1, "another");
+    block.put("n", sealed("n", number_bytes(5)));
+    block.record(3, "three")
+        .remove(session_key(4))
+        .remove(session_key(299))
+        .remove(session_key(300))
+        .record(301, "last");
+    const std::string other_blocks(37, '\x7f');
+    EXPECT_THAT(sessions_removed_in(other_blocks + block.bytes() + other_blocks), ElementsAre(4, 299, 300));
+    EXPECT_THAT(sessions_removed_in(other_blocks), IsEmpty());
+}
+
 TEST(TableCarving, NothingIsFoundInNoise) {
     std::mt19937 random(1);
     std::string noise(200'000, '\0');

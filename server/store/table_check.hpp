@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/error/error.hpp"
+#include "server/store/scan_log.hpp"
+
+#include <filesystem>
+
+namespace scanloom::store {
+
+/// Reads a table file of RocksDB and compares every block with its checksum, also what no session needs any more.
+/// Errors  kDataLoss, naming the file.
+[[nodiscard]] Result<> check_table(const std::filesystem::path& table, const StoreOptions& options = {});
+
+} // namespace scanloom::store
