@@ -6,7 +6,7 @@ import { readFileSync, realpathSync } from 'node:fs';
 import { debianPackage, document, npmPackages } from './spdx.mjs';
 
 // Libraries that are nothing but headers, so that no program names them.
-const HEADERS = ['libboost1.81-dev', 'libeigen3-dev', 'libcli11-dev', 'libtomlplusplus-dev'];
+const HEADERS = ['libboost1.81-dev', 'libeigen3-dev', 'libcli11-dev', 'libnanoflann-dev', 'libtomlplusplus-dev'];
 
 const run = (command, ...args) =>
   execFileSync(command, args, { encoding: 'utf8', maxBuffer: 1 << 26, stdio: ['ignore', 'pipe', 'ignore'] });

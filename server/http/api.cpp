@@ -10,6 +10,7 @@
 #include "server/http/handlers/goals.hpp"
 #include "server/http/handlers/health.hpp"
 #include "server/http/handlers/import.hpp"
+#include "server/http/handlers/landmarks.hpp"
 #include "server/http/handlers/live.hpp"
 #include "server/http/handlers/log.hpp"
 #include "server/http/handlers/login.hpp"
@@ -17,6 +18,7 @@
 #include "server/http/handlers/metrics.hpp"
 #include "server/http/handlers/openapi.hpp"
 #include "server/http/handlers/plan.hpp"
+#include "server/http/handlers/points.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/handlers/sessions.hpp"
 #include "server/http/handlers/tile.hpp"
@@ -183,7 +185,7 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kListSessions: return list_sessions(sessions_, check_, call);
     case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
     case Operation::kGetSession: return get_session(sessions_, check_, call);
-    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, tiles_, call);
+    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, landmarks_, tiles_, call);
     case Operation::kImportMap: return import_map(sessions_, doorman_, call);
     case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
     case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);
@@ -199,6 +201,9 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kDifferencePng: return get_difference_png(maps_, slots_, call);
     case Operation::kTrajectory: return get_trajectory(sessions_, log_, slots_, call);
     case Operation::kFrontiers: return get_frontiers(maps_, slots_, call);
+    case Operation::kLandmarks: return get_landmarks(sessions_, landmarks_, slots_, call);
+    case Operation::kPointsCsv: return get_points(sessions_, log_, slots_, PointFile::kCsv, call);
+    case Operation::kPointsPly: return get_points(sessions_, log_, slots_, PointFile::kPly, call);
     case Operation::kPlan: return post_plan(maps_, slots_, call);
     case Operation::kCoverage: return post_coverage(maps_, slots_, call);
     case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);

@@ -11,6 +11,7 @@
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/background_check.hpp"
+#include "server/session/landmark_folds.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/store/backups.hpp"
@@ -74,6 +75,7 @@ private:
     const MapsLookup maps_;
     tiles::TileMaker tiles_;
     store::ScanLog& log_;
+    session::LandmarkFolds landmarks_{log_};
     const metrics::Metrics& metrics_;
     const Doorman doorman_;
     const WebFiles web_;

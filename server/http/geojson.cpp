@@ -59,8 +59,9 @@ std::string multi_polygon(std::vector<grid::Cell> cells, double cell_size_m) {
     return text += '}';
 }
 
-std::string feature(const boost::json::object& properties, std::string_view geometry) {
-    return fmt::format(R"({{"type":"Feature","properties":{},"geometry":{}}})", json_text(properties), geometry);
+std::string feature(const boost::json::object& properties, std::string_view geometry, std::optional<std::uint64_t> id) {
+    return fmt::format(R"({{"type":"Feature",{}"properties":{},"geometry":{}}})",
+                       id ? fmt::format(R"("id":{},)", *id) : "", json_text(properties), geometry);
 }
 
 std::string feature_document(Revision revision, const boost::json::object& properties, std::string_view geometry) {

@@ -9,7 +9,9 @@
 #include <boost/json/object.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,7 +38,8 @@ inline constexpr std::size_t kCellTextBytes = 120;
 [[nodiscard]] std::string multi_polygon(std::vector<grid::Cell> cells, double cell_size_m);
 
 /// A Feature, as one of a collection.
-[[nodiscard]] std::string feature(const boost::json::object& properties, std::string_view geometry);
+[[nodiscard]] std::string feature(const boost::json::object& properties, std::string_view geometry,
+                                  std::optional<std::uint64_t> id = std::nullopt);
 
 /// A whole document: one Feature, or a FeatureCollection of them.
 /// @param members  more that it says of itself

@@ -22,6 +22,9 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kMapYaml: return asks_for_weaving(query) ? Lane::kWeaving : Lane::kServing;
     case Operation::kDifference:
     case Operation::kDifferencePng: return Lane::kSurvey;
+    case Operation::kLandmarks:
+    case Operation::kPointsCsv:
+    case Operation::kPointsPly:
     case Operation::kTrajectory: return Lane::kPaths;
     case Operation::kLog: return Lane::kLog;
     case Operation::kDigest:

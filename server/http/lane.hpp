@@ -18,7 +18,7 @@ enum class Lane {
     kServing,   ///< its own work on a part of a snapshot: tiles (but see look_at_tile()), facts
     kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, first drawings of tiles that
                 ///< show much
-    kPaths,     ///< the disk, and its own work on a part of a log, which may take seconds: paths of robots
+    kPaths,     ///< the disk, and its own work on a part of a log, which may take seconds: paths of robots, landmarks
     kLog,       ///< a small piece of a log: its first one; the others follow there as the reader takes them
     kWeaving,   ///< maps that are to be woven first
     kImporting, ///< as kChanging, with a large body

@@ -35,6 +35,9 @@ Need need_of(Operation operation) noexcept {
     case Operation::kDifferencePng:
     case Operation::kTrajectory:
     case Operation::kFrontiers:
+    case Operation::kLandmarks:
+    case Operation::kPointsCsv:
+    case Operation::kPointsPly:
     case Operation::kPlan:
     case Operation::kCoverage:
     case Operation::kGoal:

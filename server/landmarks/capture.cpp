@@ -15,10 +15,10 @@ bool is_still(const Capture& capture, const Scan& scan) {
     return distance(capture.pose, scan.pose) <= kStillDistance && turn(capture.pose, scan.pose) <= kStillTurn;
 }
 
-/// Whether a robot that began `last` begins another one now.
-bool is_due(const Capture& last, const Scan& scan) {
-    return distance(last.pose, scan.pose) >= kCaptureDistance || turn(last.pose, scan.pose) >= kCaptureTurn ||
-           scan.stamp - last.stamp >= kCaptureAgainAfter;
+/// Whether a robot that began `last` begins another one there.
+bool is_due(const Capture& last, double stamp, const Pose2& pose) {
+    return distance(last.pose, pose) >= kCaptureDistance || turn(last.pose, pose) >= kCaptureTurn ||
+           stamp - last.stamp >= kCaptureAgainAfter;
 }
 
 std::int32_t millimetres(double metres) { return static_cast<std::int32_t>(std::lround(metres * 1000.0)); }
@@ -38,11 +38,18 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
 
 } // namespace
 
+std::vector<Point2> in_metres(std::span<const PointMm> points) {
+    std::vector<Point2> out;
+    out.reserve(points.size());
+    for (const auto& [x, y] : points) out.emplace_back(x * 0.001, y * 0.001);
+    return out;
+}
+
 std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor, Revision revision) {
     std::optional<Capture> ended;
     if (is_open_ && !is_still(*newest_, scan)) ended = end();
     if (!is_open_) {
-        if (newest_ && !is_due(*newest_, scan)) return ended;
+        if (newest_ && !is_due(*newest_, scan.stamp, scan.pose)) return ended;
         newest_ = Capture{scan.pose, scan.stamp, revision, revision, 0, {}};
         is_open_ = true;
     }
@@ -53,17 +60,16 @@ std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor
     return ended;
 }
 
+bool CaptureCutter::needs(double stamp, const Pose2& pose) const noexcept {
+    return is_open_ || !newest_ || is_due(*newest_, stamp, pose);
+}
+
 Capture CaptureCutter::end() {
     is_open_ = false;
     auto points = std::exchange(newest_->points, {});
     Capture ended = *newest_;
     ended.points = std::move(points);
     return ended;
-}
-
-void CaptureCutter::restore(std::optional<Capture> newest, bool is_open) {
-    newest_ = std::move(newest);
-    is_open_ = is_open;
 }
 
 } // namespace scanloom::landmarks

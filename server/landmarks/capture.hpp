@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace scanloom::landmarks {
@@ -40,6 +41,8 @@ struct Capture {
     friend bool operator==(const Capture&, const Capture&) = default;
 };
 
+[[nodiscard]] std::vector<Point2> in_metres(std::span<const PointMm> points);
+
 /// Divides what the lasers of one robot see into captures, scan by scan: a fold, so that the same scans give the same
 /// captures however they came.
 /// Thread  one at a time.
@@ -50,12 +53,11 @@ public:
     /// Pre  the sensor is a laser, and the one that took the scan; revisions rise.
     [[nodiscard]] std::optional<Capture> add(const Scan& scan, const Sensor& sensor, Revision revision);
 
-    /// The last capture that was begun; without points and is_open() where it has ended.
-    [[nodiscard]] const std::optional<Capture>& newest() const noexcept { return newest_; }
-    [[nodiscard]] bool is_open() const noexcept { return is_open_; }
+    /// Whether a scan that was taken there may change anything: told without its readings, as most change nothing.
+    [[nodiscard]] bool needs(double stamp, const Pose2& pose) const noexcept;
 
-    /// Goes on from what newest() and is_open() told.
-    void restore(std::optional<Capture> newest, bool is_open);
+    /// The capture that is being taken; null: none is, the last one has ended.
+    [[nodiscard]] const Capture* open() const noexcept { return is_open_ ? &*newest_ : nullptr; }
 
 private:
     [[nodiscard]] Capture end();

@@ -6,7 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
 
 namespace scanloom::landmarks {
 namespace {
@@ -21,22 +24,73 @@ Point2 per_axis_median(const std::vector<Point2>& points) {
     return {median(x), median(y)};
 }
 
+/// Groups by the squares that they stand in, so that a cloud need not be matched with those that are far away.
+class Squares {
+public:
+    explicit Squares(double threshold) : reach_(threshold), side_(std::max(threshold, 0.5)) {}
+
+    void put(std::uint32_t group, const Point2& place) { groups_[key_of(place.x(), place.y())].push_back(group); }
+
+    void move(std::uint32_t group, const Point2& from, const Point2& to) {
+        const auto before = key_of(from.x(), from.y());
+        if (before == key_of(to.x(), to.y())) return;
+        std::erase(groups_[before], group);
+        put(group, to);
+    }
+
+    /// All that are within the threshold of any of the points, and others around them; rising.
+    [[nodiscard]] std::vector<std::uint32_t> near_to(const std::vector<Point2>& cloud) const {
+        std::vector<std::uint64_t> keys;
+        for (const auto& point : cloud) { // a square is no smaller than the threshold: these are all
+            for (const double y : {point.y() - reach_, point.y(), point.y() + reach_}) {
+                for (const double x : {point.x() - reach_, point.x(), point.x() + reach_}) keys.push_back(key_of(x, y));
+            }
+        }
+        std::ranges::sort(keys);
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+        std::vector<std::uint32_t> found;
+        for (const auto key : keys) {
+            const auto square = groups_.find(key);
+            if (square != groups_.end()) found.insert(found.end(), square->second.begin(), square->second.end());
+        }
+        std::ranges::sort(found);
+        return found;
+    }
+
+private:
+    /// Squares far outside share one, which only means that more is looked at.
+    [[nodiscard]] std::uint64_t key_of(double x, double y) const {
+        const auto number = [&](double metres) {
+            constexpr double kFarthest = 1 << 30;
+            return static_cast<std::uint32_t>(
+                static_cast<std::int32_t>(std::clamp(std::floor(metres / side_), -kFarthest, kFarthest)));
+        };
+        return std::uint64_t{number(y)} << 32 | number(x);
+    }
+
+    const double reach_;
+    const double side_;
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> groups_;
+};
+
 /// Points of different clouds, and where each group of them stands.
 class Groups {
 public:
-    [[nodiscard]] Result<> add(const std::vector<Point2>& cloud, double threshold) {
-        const auto matches = match(medians_, cloud, threshold);
+    explicit Groups(double threshold) : threshold_(threshold), squares_(threshold) {}
+
+    [[nodiscard]] Result<> add(const std::vector<Point2>& cloud, std::size_t number) {
+        const auto near = squares_.near_to(cloud);
+        std::vector<Point2> places;
+        for (const auto group : near) places.push_back(medians_[group]);
+        const auto matches = match(places, cloud, threshold_);
         if (!matches) return matches.error();
         std::vector<bool> joined(cloud.size());
-        for (const auto& [group, point, distance] : *matches) {
-            members_[group].push_back(cloud[point]);
-            medians_[group] = per_axis_median(members_[group]);
-            joined[point] = true;
+        for (const auto& found : *matches) {
+            join(near[found.first], cloud[found.second]);
+            joined[found.second] = true;
         }
         for (std::size_t n = 0; n < cloud.size(); ++n) {
-            if (joined[n]) continue;
-            members_.push_back({cloud[n]});
-            medians_.push_back(cloud[n]);
+            if (!joined[n]) begin(cloud[n], number);
         }
         return {};
     }
@@ -44,13 +98,31 @@ public:
     [[nodiscard]] std::vector<FusedPoint> fused() const {
         std::vector<FusedPoint> points;
         points.reserve(medians_.size());
-        for (std::size_t n = 0; n < medians_.size(); ++n) points.push_back({medians_[n], members_[n].size()});
+        for (std::size_t n = 0; n < medians_.size(); ++n)
+            points.push_back({medians_[n], members_[n].size(), began_[n]});
         return points;
     }
 
 private:
+    void begin(const Point2& point, std::size_t number) {
+        squares_.put(static_cast<std::uint32_t>(medians_.size()), point);
+        members_.push_back({point});
+        medians_.push_back(point);
+        began_.push_back(number);
+    }
+
+    void join(std::uint32_t group, const Point2& point) {
+        members_[group].push_back(point);
+        const auto place = per_axis_median(members_[group]);
+        squares_.move(group, medians_[group], place);
+        medians_[group] = place;
+    }
+
+    const double threshold_;
     std::vector<std::vector<Point2>> members_;
     std::vector<Point2> medians_;
+    std::vector<std::size_t> began_; // with which cloud
+    Squares squares_;
 };
 
 Result<> check(std::span<const std::vector<Point2>> clouds, double threshold) {
@@ -68,9 +140,9 @@ Result<> check(std::span<const std::vector<Point2>> clouds, double threshold) {
 
 Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold) {
     if (auto good = check(clouds, threshold); !good) return good.error();
-    Groups groups;
-    for (const auto& cloud : clouds) {
-        if (auto added = groups.add(cloud, threshold); !added) return added.error();
+    Groups groups(threshold);
+    for (std::size_t n = 0; n < clouds.size(); ++n) {
+        if (auto added = groups.add(clouds[n], n); !added) return added.error();
     }
     return groups.fused();
 }

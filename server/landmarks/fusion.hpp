@@ -11,6 +11,7 @@ namespace scanloom::landmarks {
 struct FusedPoint {
     Point2 position;    ///< metres; of one cloud alone: its very coordinates
     std::size_t clouds; ///< how many of them saw it, 1 or more
+    std::size_t first;  ///< the first of them, by its index
 };
 
 /// One cloud of many. Points of different clouds that correspond become one; all others stay.
@@ -25,7 +26,7 @@ struct FusedPoint {
 /// @return in the order in which the groups began
 /// Post    as many clouds seen, over all fused points, as there are points in all clouds.
 /// Errors  kInvalidField: a threshold that is negative or not finite. Those of check_points().
-/// Cost    n log n of the points so far, for each cloud.
+/// Cost    n log n of its points and of the groups around, for each cloud.
 [[nodiscard]] Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold);
 
 } // namespace scanloom::landmarks

@@ -23,59 +23,30 @@ struct PairSums {
     friend bool operator==(const PairSums&, const PairSums&) = default;
 };
 
-/// What the landmarks of a session are, at one revision.
+/// What the landmarks of a session are, at one moment.
 struct LandmarkState {
     LandmarkView landmarks;
-    std::uint64_t captures = 0; ///< that have ended
+    std::uint64_t captures = 0;
     PairSums sums;
-    Revision revision = 0; ///< of the last capture's end; 0: there is none
 };
 
-/// What a robot is in the middle of, as a checkpoint keeps it.
-struct LandmarkRobot {
-    std::optional<Capture> newest; ///< CaptureCutter::newest()
-    bool is_open = false;
-    std::optional<std::vector<Landmark>> seen_last; ///< by its last capture that has ended, if any has
-
-    friend bool operator==(const LandmarkRobot&, const LandmarkRobot&) = default;
-};
-
-/// Landmarks as a layer of a session's maps: a fold of its log. Robots' scans are cut into captures, the landmarks of
-/// each are found (models: adaptive eps, DBSCAN, medians) and matched with those that are known, and with those of the
-/// robot's capture before.
+/// Landmarks of captures: those of each are found (models: adaptive eps, DBSCAN, medians) and matched with those that
+/// are known, and with those of the robot's capture before.
 /// Thread  one writer; what snapshot() gives is for everybody.
 class LandmarkLayer {
 public:
-    /// Adds a scan of a laser. Robots are numbered from 0; one that was not seen before may be any of them.
-    /// Pre  as CaptureCutter::add().
-    void add(RobotIndex robot, const Scan& scan, const Sensor& sensor, Revision revision);
+    /// Adds the next capture, which ended with that log entry: at its last scan or, where the robot moved on, at a
+    /// later one. Robots are numbered from 0; one that was not seen before may be any of them.
+    void add(RobotIndex robot, const Capture& capture, Revision ended);
 
-    [[nodiscard]] LandmarkState snapshot();
-    [[nodiscard]] std::size_t block_count() const noexcept { return map_.block_count(); }
-
-    /// A second one that goes on from here, with a writer of its own.
-    [[nodiscard]] LandmarkLayer branch();
-
-    /// What a checkpoint keeps besides snapshot(); robots behind the last one have begun no capture.
-    [[nodiscard]] std::vector<LandmarkRobot> robots() const;
-
-    /// Rebuilds a layer from a checkpoint: on a fresh one, first the blocks in their order, then the rest.
-    void restore(detail::LandmarkBlock block) { map_.restore(std::move(block)); }
-    void restore(std::uint64_t captures, const PairSums& sums, Revision revision, std::vector<LandmarkRobot> robots);
+    [[nodiscard]] std::size_t landmark_count() const noexcept { return map_.size(); }
+    [[nodiscard]] LandmarkState snapshot() { return {map_.snapshot(), captures_, sums_}; }
 
 private:
-    struct Robot {
-        CaptureCutter cutter;
-        std::optional<std::vector<Landmark>> seen_last;
-    };
-
-    void add(Robot& robot, const Capture& capture);
-
     LandmarkMap map_;
-    std::vector<Robot> robots_;
+    std::vector<std::optional<std::vector<Landmark>>> seen_last_; // by RobotIndex: in its last capture, if it had any
     std::uint64_t captures_ = 0;
     PairSums sums_;
-    Revision revision_ = 0;
 };
 
 } // namespace scanloom::landmarks

@@ -116,17 +116,4 @@ LandmarkView LandmarkMap::snapshot() {
     return view_;
 }
 
-LandmarkMap LandmarkMap::branch() {
-    is_shared_.assign(blocks_.size(), true);
-    return *this;
-}
-
-void LandmarkMap::restore(detail::LandmarkBlock block) {
-    for (const auto& known : block.landmarks) place(known.id, known.landmark.position);
-    size_ += block.landmarks.size();
-    blocks_.push_back(std::make_shared<detail::LandmarkBlock>(std::move(block)));
-    is_shared_.push_back(false);
-    has_changed_ = true;
-}
-
 } // namespace scanloom::landmarks

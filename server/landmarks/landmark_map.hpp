@@ -73,16 +73,9 @@ public:
     std::size_t add(std::span<const Landmark> seen, Revision revision);
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    [[nodiscard]] std::size_t block_count() const noexcept { return blocks_.size(); }
 
     /// Cheap; what changes next is copied first, a block at a time.
     [[nodiscard]] LandmarkView snapshot();
-
-    /// A second one that goes on from here, with a writer of its own.
-    [[nodiscard]] LandmarkMap branch();
-
-    /// Puts back a block of a checkpoint. Pre: blocks come in their order, all but the last are full.
-    void restore(detail::LandmarkBlock block);
 
 private:
     using CellKey = std::pair<std::int32_t, std::int32_t>; // squares of kTolerance
@@ -96,7 +89,7 @@ private:
     void take_away(std::uint32_t id, const Point2& position);
 
     std::vector<std::shared_ptr<detail::LandmarkBlock>> blocks_;
-    std::vector<bool> is_shared_; // with views or branches: for each block, not to be written any more
+    std::vector<bool> is_shared_;                          // with views: for each block, not to be written any more
     std::map<CellKey, std::vector<std::uint32_t>> ids_in_; // where landmarks are
     std::size_t size_ = 0;
     LandmarkView view_;

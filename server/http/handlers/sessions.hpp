@@ -4,6 +4,7 @@
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/background_check.hpp"
+#include "server/session/landmark_folds.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/tiles/tile_maker.hpp"
@@ -27,6 +28,7 @@ namespace scanloom::http {
 
 /// DELETE /api/v1/sessions/{session}
 [[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves,
-                                              tiles::TileMaker& tiles, const Call& call);
+                                              session::LandmarkFolds& landmarks, tiles::TileMaker& tiles,
+                                              const Call& call);
 
 } // namespace scanloom::http

@@ -33,6 +33,7 @@ public:
         return cutter_.add(scan, kLaser, revision_++);
     }
 
+    [[nodiscard]] double next_stamp() const { return stamp_ + 0.1; }
     void wait(double seconds) { stamp_ += seconds; }
 
 private:
@@ -75,14 +76,14 @@ TEST_F(CaptureTest, OneThatStandsIsPutTogetherUntilItIsFull) {
     EXPECT_THAT(full->points, SizeIs(4 * kCaptureScansMax));
     EXPECT_EQ(full->pose, (Pose2{0.02, 0.0, 0.01}));
     for (int n = 0; n < 100; ++n) EXPECT_FALSE(robot_.scan({0.0, 0.0, 0.0})) << "it has looked";
-    EXPECT_FALSE(cutter_.is_open());
+    EXPECT_EQ(cutter_.open(), nullptr);
 }
 
 TEST_F(CaptureTest, OneThatStandsLooksAgainAfterAWhile) {
     for (std::uint32_t n = 0; n < kCaptureScansMax; ++n) static_cast<void>(robot_.scan({}));
     robot_.wait(kCaptureAgainAfter);
     EXPECT_FALSE(robot_.scan({}));
-    EXPECT_TRUE(cutter_.is_open());
+    EXPECT_NE(cutter_.open(), nullptr);
 }
 
 TEST_F(CaptureTest, MovingOnEndsItAndAStepThatIsTooShortBeginsNone) {
@@ -92,15 +93,37 @@ TEST_F(CaptureTest, MovingOnEndsItAndAStepThatIsTooShortBeginsNone) {
     ASSERT_TRUE(ended);
     EXPECT_EQ(ended->scans, 2U);
     EXPECT_EQ(ended->last, 11U);
-    EXPECT_FALSE(cutter_.is_open());
+    EXPECT_EQ(cutter_.open(), nullptr);
     EXPECT_FALSE(robot_.scan({0.4, 0.0, 0.0}));
-    EXPECT_FALSE(cutter_.is_open());
+    EXPECT_EQ(cutter_.open(), nullptr);
     EXPECT_FALSE(robot_.scan({0.5, 0.0, 0.0}));
-    EXPECT_TRUE(cutter_.is_open());
+    EXPECT_NE(cutter_.open(), nullptr);
     const auto jumped = robot_.scan({7.5, 0.0, 0.0});
     ASSERT_TRUE(jumped);
     EXPECT_EQ(jumped->pose.x, 0.5);
-    EXPECT_TRUE(cutter_.is_open()) << "the next begins at once";
+    EXPECT_NE(cutter_.open(), nullptr) << "the next begins at once";
+}
+
+/// Of a log that is long, few scans have to be looked at.
+TEST_F(CaptureTest, ItIsToldBeforeWhatCanChangeNothing) {
+    const auto scan_at = [&](const Pose2& pose) {
+        const bool needed = cutter_.needs(robot_.next_stamp(), pose);
+        const auto open_before = cutter_.open() != nullptr;
+        const auto ended = robot_.scan(pose);
+        EXPECT_EQ(needed, open_before || ended || cutter_.open() != nullptr);
+        return needed;
+    };
+    EXPECT_TRUE(scan_at({}));
+    EXPECT_TRUE(scan_at({0.1, 0.0, 0.0})) << "ends the first";
+    for (int step = 2; step < 5; ++step) EXPECT_FALSE(scan_at({step * 0.1, 0.0, 0.0}));
+    EXPECT_TRUE(scan_at({0.5, 0.0, 0.0}));
+    EXPECT_TRUE(scan_at({0.6, 0.0, 0.0}));
+    EXPECT_FALSE(scan_at({0.6, 0.0, 0.5}));
+    EXPECT_TRUE(scan_at({0.6, 0.0, 0.7}));
+    EXPECT_TRUE(scan_at({0.6, 0.0, 0.8}));
+    EXPECT_FALSE(scan_at({0.6, 0.0, 0.8}));
+    robot_.wait(kCaptureAgainAfter);
+    EXPECT_TRUE(scan_at({0.6, 0.0, 0.8}));
 }
 
 TEST_F(CaptureTest, PointsAreWhereTheBeamsMetSomethingInTheMap) {
@@ -112,17 +135,6 @@ TEST_F(CaptureTest, PointsAreWhereTheBeamsMetSomethingInTheMap) {
     const auto next = robot_.scan({});
     ASSERT_TRUE(next);
     EXPECT_THAT(next->points, ElementsAre(PointMm{9100, 12'000})) << "range_max is a reading of nothing";
-}
-
-TEST_F(CaptureTest, GoesOnFromWhatItTold) {
-    static_cast<void>(robot_.scan({}));
-    static_cast<void>(robot_.scan({}));
-    CaptureCutter other;
-    other.restore(cutter_.newest(), cutter_.is_open());
-    const Scan away{
-        .seq = 99, .stamp = 200.0, .sensor = 1, .pose = {5.0, 0.0, 0.0}, .ranges = {1000, 1000, 1000, 1000}};
-    EXPECT_EQ(other.add(away, kLaser, 99), cutter_.add(away, kLaser, 99));
-    EXPECT_EQ(other.newest(), cutter_.newest());
 }
 
 } // namespace

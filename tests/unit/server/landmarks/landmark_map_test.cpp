@@ -126,32 +126,17 @@ TEST(LandmarkMap, EqualsAllPairsCompared) {
     }
 }
 
-TEST(LandmarkMap, ViewsAndBranchesStayWhatTheyWere) {
+TEST(LandmarkMap, ViewsStayWhatTheyWere) {
     LandmarkMap map;
     for (int n = 0; n < 100; ++n) map.add(std::vector{at(n, 0)}, 1);
     const auto before = map.snapshot();
-    auto branch = map.branch();
     map.add(std::vector{at(3.1, 0), at(200, 0)}, 2);
-    branch.add(std::vector{at(7.1, 0)}, 3);
     EXPECT_EQ(before.size(), 100U);
     EXPECT_EQ(before[3].seen, 1U);
     EXPECT_EQ(map.snapshot()[3].seen, 2U);
     EXPECT_EQ(map.snapshot()[7].seen, 1U);
     EXPECT_EQ(map.snapshot().size(), 101U);
-    EXPECT_EQ(branch.snapshot()[3].seen, 1U);
-    EXPECT_EQ(branch.snapshot()[7].seen, 2U);
-    EXPECT_EQ(branch.snapshot().size(), 100U);
     EXPECT_EQ(map.snapshot().blocks()[1], before.blocks()[1]) << "what did not change is not copied";
-}
-
-TEST(LandmarkMap, GoesOnFromItsBlocks) {
-    LandmarkMap map;
-    for (int n = 0; n < 70; ++n) map.add(std::vector{at(n, 0)}, static_cast<Revision>(n));
-    LandmarkMap other;
-    for (const auto& block : map.snapshot().blocks()) other.restore(*block);
-    for (auto* each : {&map, &other}) each->add(std::vector{at(3.2, 0), at(69, 1)}, 99);
-    ASSERT_EQ(other.size(), map.size());
-    for (std::size_t id = 0; id < map.size(); ++id) EXPECT_EQ(other.snapshot()[id], map.snapshot()[id]);
 }
 
 } // namespace

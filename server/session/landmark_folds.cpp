@@ -1,0 +1,91 @@
+#include "server/session/landmark_folds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Error not_yet(Revision folded, Revision revision) {
+    return {Errc::kOverloaded,
+            fmt::format("the landmarks of {} of {} log entries are found; ask again, it goes on from "
+                        "there",
+                        folded, revision)};
+}
+
+} // namespace
+
+Result<FoldedLandmarks> LandmarkFolds::up_to(const SessionInfo& session, Revision revision,
+                                             const std::function<bool()>& is_wanted) {
+    const auto kept = find_or_begin(session.id);
+    const std::unique_lock folding(kept->mutex, limits_.patience);
+    if (!folding) {
+        return Error{Errc::kOverloaded, "others have the landmarks of this session found at this moment; ask again"};
+    }
+    try {
+        const auto done = go_on(*kept, revision, is_wanted);
+        account(*kept);
+        if (!done) return done.error();
+        return FoldedLandmarks{kept->layer.snapshot(), kept->captures.revision()};
+    } catch (const std::bad_alloc&) {
+        kept->captures = {}; // of which a part may be missing
+        kept->layer = {};
+        remove(session.id);
+        return Error{Errc::kOverloaded, "there is no memory left for these landmarks; try again later"};
+    }
+}
+
+Result<> LandmarkFolds::go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
+    const auto deadline = Clock::now() + limits_.patience;
+    const auto has_room = [&]() -> Result<> {
+        if (kept.layer.landmark_count() <= limits_.landmarks_max) return {};
+        return Error{Errc::kFull, fmt::format("the session has more than {} landmarks, the most that are kept",
+                                              limits_.landmarks_max)};
+    };
+    const auto add = [&](const landmarks::RobotCapture& ended) {
+        kept.layer.add(ended.robot, ended.capture, kept.captures.revision());
+        return has_room();
+    };
+    const auto ask = [&](Revision read) -> Result<> {
+        if (!is_wanted()) return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
+        if (Clock::now() >= deadline) return not_yet(read, revision);
+        return {};
+    };
+    if (auto room = has_room(); !room) return room;
+    return read_captures(log_, kept.session, kept.captures, revision, add, ask);
+}
+
+std::shared_ptr<LandmarkFolds::Kept> LandmarkFolds::find_or_begin(store::SessionId session) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find(kept_, session, [](const auto& kept) { return kept->session; });
+    if (found == kept_.end()) {
+        kept_.push_front(std::make_shared<Kept>(session));
+    } else {
+        kept_.splice(kept_.begin(), kept_, found);
+    }
+    if (kept_.size() > limits_.kept_max) kept_.pop_back();
+    return kept_.front();
+}
+
+/// Forgets the least recently used until the others have no more than there may be.
+void LandmarkFolds::account(Kept& kept) {
+    const std::lock_guard lock(mutex_);
+    kept.landmarks = kept.layer.landmark_count();
+    std::size_t sum = 0;
+    std::erase_if(kept_, [&](const auto& other) {
+        sum += other->landmarks;
+        return sum > limits_.landmarks_max && other.get() != &kept;
+    });
+}
+
+void LandmarkFolds::remove(store::SessionId session) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(kept_, [&](const auto& kept) { return kept->session == session; });
+}
+
+} // namespace scanloom::session
