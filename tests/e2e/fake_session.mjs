@@ -19,6 +19,8 @@ export class FakeSession {
     this.scan = null;
     /** Features of frontiers.geojson. */
     this.frontiers = [];
+    /** Features of landmarks.geojson, each with the revision of its newest sighting. */
+    this.landmarks = [];
     /** Features of goals.geojson, and how often they were told. */
     this.goals = [];
     this.goalsRevision = 0;
@@ -39,6 +41,23 @@ export class FakeSession {
     }
     this.cover(x, y);
     this.tell();
+  }
+
+  /** A landmark, or its next sighting. */
+  see(id, [x, y], seen, size = [1, 0.5]) {
+    this.revision += 1;
+    const geometry = { type: 'Point', coordinates: [x, y] };
+    const properties = { seen, points: 9, size, spread: 0.1, continuity: 0.5, first: 1, last: this.revision };
+    this.landmarks = this.landmarks.filter((each) => each.id !== id);
+    this.landmarks.push({ type: 'Feature', id, properties, geometry });
+    this.tell();
+  }
+
+  landmarksSince(since) {
+    const { revision } = this;
+    const reset = since > revision;
+    const features = this.landmarks.filter(({ properties }) => reset || properties.last > since);
+    return { type: 'FeatureCollection', revision, reset, features };
   }
 
   /** A scan taken here. */

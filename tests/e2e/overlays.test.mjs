@@ -1,4 +1,4 @@
-/** What lies on the map: robots, scans, frontiers, goals; against a server that does what each test wants. */
+/** What lies on the map: robots, scans, frontiers, landmarks, goals; against a server that does what each test wants. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import {
@@ -86,6 +86,34 @@ describe('on the map', { timeout: 180_000 }, () => {
     session.move('r1', 1, 1, 0);
     await showsAt(...pixelOf(3, 3), await colourOf(page, '--class-frontier'));
     assert.equal(await page.locator('#map b').count(), 0);
+  });
+
+  it('show landmarks, asks for those that are new, and only when wanted', async () => {
+    session.paint(256, 255, 0);
+    session.see(0, [3, 3], 2);
+    await open();
+    await showsColour(page, '--cell-free');
+    assert.deepEqual(server.landmarkQueries, []);
+    const colour = await colourOf(page, '--landmark');
+    await page.check('[data-switch=landmarks]');
+    await showsAt(...pixelOf(3, 3), colour);
+    session.see(1, [9, 9], 3);
+    await showsAt(...pixelOf(9, 9), colour);
+    await showsAt(...pixelOf(3, 3), colour);
+    assert.deepEqual(server.landmarkQueries.slice(0, 2), ['?since=0', '?since=2']);
+    session.see(0, [5, 3], 3);
+    await showsAt(...pixelOf(5, 3), colour);
+    await showsNotAt(...pixelOf(3, 3), colour);
+    await keepPicture(page, 'landmarks');
+    session.landmarks.push({ type: 'Feature', id: '<b>x</b>', properties: { last: 1e9 }, geometry: 'nonsense' });
+    session.move('r1', 1, 1, 0);
+    await page.waitForResponse(/landmarks\.geojson/);
+    session.landmarks.pop();
+    session.see(2, [9, 3], 2);
+    await showsAt(...pixelOf(9, 3), colour);
+    assert.equal(await page.locator('#map b').count(), 0);
+    await page.uncheck('[data-switch=landmarks]');
+    await showsNotAt(...pixelOf(9, 9), colour);
   });
 
   it('show where a robot is going, as soon as it is told, and forget it likewise', async () => {

@@ -269,6 +269,8 @@ describe('tools on the map', { timeout: 280_000 }, () => {
       assert.equal((await download('Paths (GeoJSON)')).bytes.toString(), whole);
       await page.unroute('**/trajectory.geojson');
       assert.equal(JSON.parse((await download('Frontiers (GeoJSON)')).bytes).type, 'FeatureCollection');
+      const landmarks = JSON.parse((await download('Landmarks (GeoJSON)')).bytes);
+      assert.ok(landmarks.captures > 10 && landmarks.features.length === landmarks.landmarks);
       const log = await download('CARMEN log');
       assert.equal(log.name, 'demo.clf');
       assert.equal(log.bytes.toString().match(/^ROBOTLASER1 /gm).length, 1500);

@@ -12,6 +12,7 @@ export interface Settings {
   trails: boolean;
   points: boolean;
   frontiers: boolean;
+  landmarks: boolean;
   /** Where robots are going. */
   goals: boolean;
   /** HIMM counters as numbers. */
@@ -28,6 +29,7 @@ const kDefaults: Settings = {
   trails: true,
   points: true,
   frontiers: false,
+  landmarks: false,
   goals: true,
   counters: false,
   keys: true,
@@ -87,7 +89,7 @@ function read(): Settings {
 
 function sound(kept: Record<string, unknown>): Settings {
   const settings: Settings = { ...kDefaults };
-  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'counters', 'keys'] as const) {
+  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'landmarks', 'counters', 'keys'] as const) {
     const value = kept[key];
     if (typeof value === 'boolean') settings[key] = value;
   }

@@ -10,6 +10,7 @@ export interface Theme {
   ink: string;
   accent: string;
   frontier: string;
+  landmark: string;
   warn: string;
   /** Of ways that nobody has driven yet. */
   way: string;
@@ -36,6 +37,7 @@ export function readTheme(): Theme {
     ink: colour('--ink'),
     accent: colour('--accent'),
     frontier: colour('--class-frontier'),
+    landmark: colour('--landmark'),
     warn: colour('--warn'),
     way: colour('--way'),
   };

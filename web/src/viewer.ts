@@ -1,8 +1,9 @@
 /** One chosen session, from the server's events to everything that shows it. */
 import { fetchFrontiers } from './api/frontiers';
 import { fetchGoals, type Goals } from './api/goals';
+import { Landmarks } from './api/landmarks';
 import type { LiveEvent, LiveRobot } from './api/live';
-import type { Frontier, Robot, Session, TileChange } from './api/types';
+import type { Frontier, Landmark, Robot, Session, TileChange } from './api/types';
 import { kLayers, type LayerName } from './layers/layers';
 import { Feed } from './live/feed';
 import type { Trail, Trails } from './live/trails';
@@ -61,12 +62,16 @@ interface Open {
   robots: Map<number, Robot>;
   frontiers: RevisionWatch<Frontier[]>;
   goals: RevisionWatch<Goals>;
+  landmarks: RevisionWatch<Landmark[]>;
+  /** Landmarks that were told of. */
+  heard: Landmarks;
   readers: CellReaders;
   /** No scan of it was told of yet. */
   isNew: boolean;
 }
 
 const kSource = 'session';
+const kNothingOfThePresent = { points: false, frontiers: false, goals: false, landmarks: false };
 
 export class Viewer {
   private leave = new AbortController();
@@ -115,6 +120,8 @@ export class Viewer {
         opened: () => {
           this.open?.frontiers.doubt();
           this.open?.goals.doubt();
+          this.open?.landmarks.doubt();
+          this.open?.heard.forget();
         },
         event: (event) => this.hear(event),
         tiles: (layer, tiles) => this.showTiles(layer, tiles),
@@ -169,6 +176,7 @@ export class Viewer {
     });
     const { name } = session;
     const { signal } = this.reading;
+    const heard = new Landmarks(name);
     this.open = {
       session: newest(session),
       source,
@@ -176,6 +184,8 @@ export class Viewer {
       robots: new Map(),
       frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
       goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => this.showGoals(all), signal),
+      landmarks: new RevisionWatch((stop) => heard.fetch(stop), (all) => map.showLandmarks(all), signal),
+      heard,
       readers,
       isNew: true,
     };
@@ -192,7 +202,7 @@ export class Viewer {
 
   private hear(event: LiveEvent): void {
     if (!this.open) return;
-    const { robots, frontiers, goals, session } = this.open;
+    const { robots, frontiers, goals, landmarks, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
     if (this.open.isNew && event.scans > 0) {
       this.open.isNew = false;
@@ -200,6 +210,7 @@ export class Viewer {
     }
     frontiers.hear(event.frontiersRevision);
     goals.hear(event.goalsRevision);
+    landmarks.hear(event.revision);
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
@@ -264,12 +275,13 @@ export class Viewer {
     this.showCounters();
   }
 
-  /** Scans, frontiers and goals are told of the present only. */
+  /** Scans, frontiers, goals and landmarks are told of the present only. */
   private chooseOverlays(): void {
     const chosen = this.parts.settings.get();
-    const settings = this.moment ? { ...chosen, points: false, frontiers: false, goals: false } : chosen;
+    const settings = this.moment ? { ...chosen, ...kNothingOfThePresent } : chosen;
     this.parts.map.choose(settings);
     this.open?.frontiers.enable(settings.frontiers);
+    this.open?.landmarks.enable(settings.landmarks);
     this.open?.goals.enable(!this.moment);
     this.parts.explored.setHidden(this.moment !== null);
   }

@@ -34,6 +34,11 @@ export function frontiersPath(session: string, weave: string | null): string {
   return `${sessionPath(session)}/frontiers.geojson${weave === null ? '' : `?${new URLSearchParams({ weave })}`}`;
 }
 
+/** Metres of the map. */
+export function landmarksPath(session: string): string {
+  return `${sessionPath(session)}/landmarks.geojson`;
+}
+
 export function logPath(session: string, format: 'clf' | 'protobuf'): string {
   return `${sessionPath(session)}/log?format=${format}`;
 }

@@ -91,6 +91,14 @@ export interface Trajectory {
   tracks: Track[];
 }
 
+/** A thing in a room, as lidars see it. */
+export interface Landmark {
+  id: number;
+  at: Point;
+  /** By so many captures. */
+  seen: number;
+}
+
 /** Unexplored ground beside free ground, which hangs together. */
 export interface Frontier {
   /** Polygons of rings. */

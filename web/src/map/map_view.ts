@@ -7,7 +7,7 @@ import Kinetic from 'ol/Kinetic';
 import OlMap from 'ol/Map';
 import View from 'ol/View';
 import type { RobotGoal } from '../api/goals';
-import type { Frontier, Point, Robot } from '../api/types';
+import type { Frontier, Landmark, Point, Robot } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import { motionMs } from '../motion';
 import type { RobotColours } from '../robot_colours';
@@ -19,6 +19,7 @@ import type { CellReader } from './cell_reader';
 import { FrontiersLayer } from './frontiers_layer';
 import { GoalsLayer } from './goals_layer';
 import { squareExtent, tileResolutions } from './grid';
+import { LandmarksLayer } from './landmarks_layer';
 import type { MapSource } from './map_source';
 import { kOrder } from './order';
 import { PathLayer } from './path_layer';
@@ -45,6 +46,7 @@ interface Scene {
   labels: CellLabels;
   labelsBeside: CellLabels;
   frontiers: FrontiersLayer;
+  landmarks: LandmarksLayer;
   goals: GoalsLayer;
   paths: PathLayer;
   points: PointsLayer;
@@ -86,31 +88,33 @@ export class MapView {
       labels: new CellLabels(this.map, this.theme),
       labelsBeside: new CellLabels(this.map, this.theme),
       frontiers: new FrontiersLayer(this.theme),
+      landmarks: new LandmarksLayer(this.theme),
       goals: new GoalsLayer(colours, this.theme),
       paths: new PathLayer(colours, this.theme),
       points: new PointsLayer(colours, this.theme),
       robots: new RobotsLayer(colours, this.theme),
     };
-    const { labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, paths, points, robots]) this.map.addLayer(layer);
+    const { labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) this.map.addLayer(layer);
     this.choose(settings);
   }
 
   close(): void {
     if (!this.scene) return;
-    const { main, beside, labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
+    const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.clear();
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, paths, points, robots]) this.map.removeLayer(layer);
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) this.map.removeLayer(layer);
     this.scene = null;
   }
 
   /** Which of the things on top of the map are to be seen. */
-  choose({ robots, trails, points, goals, frontiers }: Settings): void {
+  choose({ robots, trails, points, goals, frontiers, landmarks }: Settings): void {
     this.scene?.robots.layer.setVisible(robots);
     this.scene?.paths.layer.setVisible(trails);
     this.scene?.points.layer.setVisible(points);
     this.scene?.goals.layer.setVisible(goals);
     this.scene?.frontiers.layer.setVisible(frontiers);
+    this.scene?.landmarks.layer.setVisible(landmarks);
   }
 
   show(main: Shown, beside: Shown | null): void {
@@ -162,6 +166,10 @@ export class MapView {
     this.scene?.frontiers.show(frontiers);
   }
 
+  showLandmarks(landmarks: Landmark[]): void {
+    this.scene?.landmarks.show(landmarks);
+  }
+
   /** @param main, beside readers of HIMM counters to be written into the cells of either side; null: none */
   showCounters(main: CellReader | null, beside: CellReader | null): void {
     this.scene?.labels.show(main);
@@ -177,9 +185,9 @@ export class MapView {
   setTheme(theme: Theme): void {
     this.theme = theme;
     if (!this.scene) return;
-    const { main, beside, labels, labelsBeside, frontiers, goals, paths, points, robots } = this.scene;
+    const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.setPalette(theme.cells);
-    for (const overlay of [labels, labelsBeside, frontiers, goals, paths, points, robots]) overlay.setTheme(theme);
+    for (const overlay of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) overlay.setTheme(theme);
   }
 }
 

@@ -8,6 +8,7 @@ export const kOrder = {
   ways: 5,
   trails: 6,
   points: 7,
-  robots: 8,
-  marks: 9,
+  landmarks: 8,
+  robots: 9,
+  marks: 10,
 } as const;

@@ -13,11 +13,12 @@ const kSwitches: [key: Switch, label: string][] = [
   ['points', 'Newest scans'],
   ['goals', 'Goals and ways'],
   ['frontiers', 'Frontiers'],
+  ['landmarks', 'Landmarks'],
   ['counters', 'HIMM counters in cells'],
 ];
 
 /** What is told of the present only. */
-const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers'];
+const kPresentOnly: Switch[] = ['points', 'goals', 'frontiers', 'landmarks'];
 
 export class LayersPanel {
   private readonly fields = {

@@ -155,5 +155,5 @@ export class TimeBar {
 function noteOf(isPast: boolean, date: string): string {
   if (!isPast) return 'The map as it is now.';
   const then = date === '' ? '' : `, ${date}`;
-  return `Map, robots and trails as they were then${then}; newest scans, goals and frontiers are hidden.`;
+  return `Map, robots and trails as they were then${then}; newest scans, goals, frontiers and landmarks are hidden.`;
 }

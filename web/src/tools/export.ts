@@ -3,6 +3,7 @@ import {
   checkFile,
   fetchFile,
   frontiersPath,
+  landmarksPath,
   logPath,
   mapFilePath,
   trajectoryPath,
@@ -199,6 +200,10 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     {
       ...{ label: 'Frontiers (GeoJSON)', note: 'ends of the explored ground' },
       ...{ file: `${session}-frontiers.geojson`, path: frontiersPath(session, weave) },
+    },
+    {
+      ...{ label: 'Landmarks (GeoJSON)', note: 'things seen again and again, metres' },
+      ...{ file: `${session}-landmarks.geojson`, path: landmarksPath(session) },
     },
     {
       ...{ label: 'CARMEN log', note: 'all scans, to replay', file: `${session}.clf` },

@@ -1,0 +1,66 @@
+/** Things that robots saw, those filled that were seen again; from far off only these. */
+import Feature from 'ol/Feature';
+import PointGeometry from 'ol/geom/Point';
+import VectorLayer from 'ol/layer/Vector';
+import VectorSource from 'ol/source/Vector';
+import Circle from 'ol/style/Circle';
+import Fill from 'ol/style/Fill';
+import RegularShape from 'ol/style/RegularShape';
+import Stroke from 'ol/style/Stroke';
+import Style from 'ol/style/Style';
+import type { Landmark } from '../api/types';
+import type { Theme } from '../theme';
+import { kOrder } from './order';
+
+type Role = 'once' | 'again';
+
+/** Metres a pixel: from further off, those that were seen once would only hide the map. */
+const kNear = 0.04;
+
+export class LandmarksLayer {
+  private readonly source = new VectorSource();
+  readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.landmarks });
+
+  constructor(theme: Theme) {
+    this.setTheme(theme);
+  }
+
+  show(landmarks: Landmark[]): void {
+    this.source.clear(true);
+    this.source.addFeatures(landmarks.map(featureOf));
+  }
+
+  setTheme(theme: Theme): void {
+    const near = stylesOf(theme);
+    const far = dotOf(theme);
+    this.layer.setStyle((feature, resolution) => {
+      const role = feature.get('role') as Role;
+      if (resolution <= kNear) return near[role];
+      return role === 'again' ? far : [];
+    });
+  }
+}
+
+function featureOf({ at, seen }: Landmark): Feature {
+  return new Feature({ geometry: new PointGeometry(at), role: seen > 1 ? 'again' : 'once' });
+}
+
+function dotOf({ landmark }: Theme): Style {
+  return new Style({ image: new Circle({ radius: 3, fill: new Fill({ color: landmark }) }) });
+}
+
+function stylesOf({ landmark, halo }: Theme): Record<Role, Style> {
+  const diamond = (radius: number, fill: string, stroke: string): Style =>
+    new Style({
+      image: new RegularShape({
+        points: 4,
+        radius,
+        fill: new Fill({ color: fill }),
+        stroke: new Stroke({ color: stroke, width: 1.5 }),
+      }),
+    });
+  return {
+    once: diamond(4, halo, landmark),
+    again: diamond(6, landmark, halo),
+  };
+}
