@@ -21,7 +21,9 @@ Result<std::shared_ptr<const void>> take_slot(const Service& service, Lane lane)
     }
     if (lane == Lane::kPaths) {
         slot = service.paths.try_take();
-        if (!slot) return Error{Errc::kOverloaded, "too many paths are being read at this moment; try again soon"};
+        if (!slot)
+            return Error{Errc::kOverloaded,
+                         "too many paths, landmarks or clouds of points are being read at this moment; try again soon"};
     }
     if (lane == Lane::kPlanning) {
         slot = service.plans.try_take();
