@@ -30,6 +30,10 @@ std::set<const char*> places_of_values(std::string_view table) {
 /// Input: a damaged table file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view table(reinterpret_cast<const char*>(data), size);
+    for (const auto session : scanloom::store::sessions_removed_in(table)) {
+        scanloom::fuzz::check(table.find(scanloom::store::session_key(session).back()) != std::string_view::npos,
+                              "what is removed is named");
+    }
     const auto places = places_of_values(table);
     if (places.empty()) return 0;
     const auto up_to_last = static_cast<std::size_t>(*places.rbegin() - table.data());
