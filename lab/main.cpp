@@ -16,6 +16,9 @@ int main(int argc, char** argv) try {
         fmt::print(leave->code == scanloom::kExitDone ? stdout : stderr, "{}", leave->text);
         return leave->code;
     }
+    if (const auto* landmarks = std::get_if<scanloom::lab::LandmarkOptions>(&options)) {
+        return scanloom::lab::run(*landmarks);
+    }
     return scanloom::lab::run(std::get<scanloom::lab::ExperimentOptions>(options));
 } catch (const std::exception& error) {
     scanloom::standard_error().write(fmt::format("scanloom-lab: {}\n", error.what()));

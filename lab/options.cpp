@@ -11,8 +11,12 @@ namespace scanloom::lab {
 namespace {
 
 constexpr const char* kAbout =
-    "Measures how good and how fast the maps are, in simulated worlds that are known exactly.\n"
+    "Measures how good and how fast maps and landmarks are, in simulated worlds that are known exactly.\n"
     "Exits 0 when done, 1 when something failed, 2 when it was called wrongly.";
+constexpr const char* kOutHelp = "Directory for report.md, report.html, times.md, times.html and pictures/; made if it "
+                                 "does not exist, what is there "
+                                 "is overwritten";
+constexpr const char* kSeedHelp = "Of the noise; the same seed gives the same report, times excepted";
 constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML, in a section of its command) or in the environment\n"
     "(--seed as SCANLOOM_SEED). A flag beats the environment, which beats the file.";
@@ -20,12 +24,8 @@ constexpr const char* kFooter =
 CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
     auto* experiment = app.add_subcommand(
         "experiment", "The reference experiments: scenes, cell sizes, ray models, noise and starts, as a report");
-    experiment->add_option("--out", options.out,
-                           "Directory for report.md, report.html, times.md, times.html and pictures/; made if it does "
-                           "not exist, what is there is overwritten");
-    experiment->add_option("--seed", options.seed, "Of the noise; the same seed gives the same report, times excepted")
-        ->check(check_whole_number_from(0))
-        ->capture_default_str();
+    experiment->add_option("--out", options.out, kOutHelp);
+    experiment->add_option("--seed", options.seed, kSeedHelp)->check(check_whole_number_from(0))->capture_default_str();
     experiment
         ->add_option("--scans", options.scans, "Scans of each run, 10 to 100000; default: 1500, once around the room")
         ->check(check_within(10, 100'000))
@@ -35,22 +35,43 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
     return experiment;
 }
 
+CLI::App* add_landmarks(CLI::App& app, LandmarkOptions& options) {
+    auto* landmarks = app.add_subcommand(
+        "landmarks", "What a standing lidar finds: landmarks while a door moves, sweeps of tolerance, readings and "
+                     "filter, alignment, as a report, in some seconds");
+    landmarks->add_option("--out", options.out, kOutHelp);
+    landmarks->add_option("--seed", options.seed, kSeedHelp)->check(check_whole_number_from(0))->capture_default_str();
+    landmarks
+        ->add_option("--capture", options.capture,
+                     "File of the bytes that an LD06 sent while it stood still, two turns at least; the report has a "
+                     "part about it")
+        ->check(&check_not_empty)
+        ->type_name("FILE");
+    return landmarks;
+}
+
 } // namespace
 
-std::variant<ExperimentOptions, Leave> parse_options(int argc, const char* const* argv) {
+std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, const char* const* argv) {
     ExperimentOptions experiment_options;
+    LandmarkOptions landmark_options;
     CLI::App app(kAbout, "scanloom-lab");
     app.footer(kFooter);
     app.set_version_flag("--version", fmt::format("scanloom-lab {}", kVersion));
     add_experiment(app, experiment_options);
+    const auto* landmarks = add_landmarks(app, landmark_options);
     app.require_subcommand(1);
     try {
         read_settings_from_environment_and_file(app);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& reason) {
-        return leave_for(app, reason, "say what to do: experiment");
+        return leave_for(app, reason, "say what to do: experiment or landmarks");
     }
-    // not required() by the parser, which would ask for it in words of its own
+    // --out is not required() by the parser, which would ask for it in words of its own
+    if (landmarks->parsed()) {
+        if (landmark_options.out.empty()) return usage_error(app, "landmarks: name a directory with --out");
+        return landmark_options;
+    }
     if (experiment_options.out.empty()) return usage_error(app, "experiment: name a directory with --out");
     return experiment_options;
 }

@@ -16,8 +16,14 @@ struct ExperimentOptions {
     bool quick = false;
 };
 
+struct LandmarkOptions {
+    std::string out;                    ///< directory of the report
+    std::uint64_t seed = 1;             ///< of the noise
+    std::optional<std::string> capture; ///< file of the bytes that an LD06 sent
+};
+
 /// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
 /// which beats the file.
-[[nodiscard]] std::variant<ExperimentOptions, Leave> parse_options(int argc, const char* const* argv);
+[[nodiscard]] std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::lab

@@ -1,5 +1,6 @@
 #include "lab/run.hpp"
 
+#include "lab/landmark_report.hpp"
 #include "lab/output_directory.hpp"
 #include "lab/report.hpp"
 
@@ -55,34 +56,78 @@ Result<> write_document(const OutputDirectory& directory, const std::string& nam
     return directory.write(name + ".html", to_html(document, std::get<Heading>(document.front()).text));
 }
 
+/// Where a report goes.
+struct ReportFiles {
+    OutputDirectory directory;
+    OutputDirectory pictures;
+
+    [[nodiscard]] static Result<ReportFiles> open(const std::string& out) {
+        auto directory = OutputDirectory::open(out);
+        if (!directory) return directory.error();
+        auto pictures = OutputDirectory::open(directory->path() / kPicturesFolder);
+        if (!pictures) return pictures.error();
+        return ReportFiles{std::move(*directory), std::move(*pictures)};
+    }
+
+    [[nodiscard]] Result<> write(const Document& report, const Document& times) const {
+        if (auto written = write_document(directory, kReportFile, report); !written) return written;
+        return write_document(directory, kTimesFile, times);
+    }
+
+    /// JSON.
+    [[nodiscard]] std::string report_name() const {
+        return boost::json::serialize((directory.path() / kReportFile).string() + ".html");
+    }
+};
+
 Result<std::string> run_experiment_of(const ExperimentOptions& options, Console& console) {
     Matrix matrix = options.quick ? quick_matrix() : full_matrix();
     matrix.seed = options.seed;
     matrix.scans = options.scans.value_or(matrix.scans);
-    const auto directory = OutputDirectory::open(options.out);
-    if (!directory) return directory.error();
-    const auto pictures = OutputDirectory::open(directory->path() / kPicturesFolder);
-    if (!pictures) return pictures.error();
+    const auto files = ReportFiles::open(options.out);
+    if (!files) return files.error();
 
     const double begun = steady_seconds();
-    const auto keep = [&](const std::string& file, const tiles::Bytes& png) { return pictures->write(file, png); };
+    const auto keep = [&](const std::string& file, const tiles::Bytes& png) {
+        return files->pictures.write(file, png);
+    };
     const auto results = run_experiment(matrix, {steady_seconds, keep, Progress(console, matrix)});
     if (!results) return results.error();
-    for (const auto& [name, document] :
-         {std::pair{kReportFile, report_of(matrix, *results)},
-          std::pair{kTimesFile, times_report_of(matrix, *results, machine_description())}}) {
-        if (auto written = write_document(*directory, name, document); !written) return written.error();
-    }
+    auto written = files->write(report_of(matrix, *results), times_report_of(matrix, *results, machine_description()));
+    if (!written) return written.error();
     return fmt::format(R"({{"runs":{},"scans":{},"seconds":{:.3f},"report":{}}})", results->size(),
-                       results->size() * matrix.scans, steady_seconds() - begun,
-                       boost::json::serialize((directory->path() / kReportFile).string() + ".html"));
+                       results->size() * matrix.scans, steady_seconds() - begun, files->report_name());
 }
 
-} // namespace
+Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& console) {
+    LandmarkPlan plan{.seed = options.seed};
+    if (options.capture) {
+        auto read = read_ld06_recording(*options.capture);
+        if (!read) return read.error();
+        plan.recorded = std::move(*read);
+    }
+    const auto files = ReportFiles::open(options.out);
+    if (!files) return files.error();
 
-ExitCode run(const ExperimentOptions& options) {
+    const double begun = steady_seconds();
+    const auto keep = [&](const std::string& file, const tiles::Bytes& png) {
+        return files->pictures.write(file, png);
+    };
+    const auto tell = [&](std::string_view doing) { console.progress(doing); };
+    const auto results = run_landmark_experiment(plan, {steady_seconds, keep, tell});
+    if (!results) return results.error();
+    auto written =
+        files->write(landmark_report_of(*results), landmark_times_report_of(*results, machine_description()));
+    if (!written) return written.error();
+    return fmt::format(R"({{"places":{},"recorded_turns":{},"seconds":{:.3f},"report":{}}})", results->places.size(),
+                       results->recorded ? results->recorded->turns : 0, steady_seconds() - begun,
+                       files->report_name());
+}
+
+template <class Options>
+ExitCode run_told(const Options& options, Result<std::string> (*work)(const Options&, Console&)) {
     Console console(standard_error());
-    const auto result = run_experiment_of(options, console);
+    const auto result = work(options, console);
     if (!result) {
         console.note("scanloom-lab: " + result.error().message);
         return kExitFailed;
@@ -91,5 +136,10 @@ ExitCode run(const ExperimentOptions& options) {
     fmt::print("{}\n", *result);
     return kExitDone;
 }
+
+} // namespace
+
+ExitCode run(const ExperimentOptions& options) { return run_told(options, run_experiment_of); }
+ExitCode run(const LandmarkOptions& options) { return run_told(options, run_landmarks_of); }
 
 } // namespace scanloom::lab

@@ -91,8 +91,8 @@ const std::vector<Folder> kFolders = {
 
     // Experiments bring the simulator and the maps together; nothing else does, and nothing includes them.
     {.path = "lab",
-     .may_include = {"common", "server/grid", "server/mapping", "server/tiles", "robot_client/drive",
-                     "robot_client/sim", "robot_client/source"}},
+     .may_include = {"common", "server/grid", "server/landmarks", "server/mapping", "server/tiles",
+                     "robot_client/drive", "robot_client/sim", "robot_client/source"}},
 
     // Load on a server from outside: nothing of the server, and nothing includes it.
     {.path = "load/core",

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "lab/landmark_comparison.hpp"
+#include "lab/lidar_capture.hpp"
+#include "lab/weaving.hpp"
+
+#include "server/landmarks/filter_figures.hpp"
+
+#include <array>
+#include <utility>
+
+/// What the landmark experiment varies while everything else stays.
+namespace scanloom::lab {
+
+/// Metres, 0.1 to 1.0.
+inline constexpr std::array kTolerances{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
+
+struct ToleranceRow {
+    double tolerance = 0.0;
+    landmarks::Metrics metrics;
+};
+
+/// A row for each of kTolerances.
+/// @param pairs  each first with its second; a row's figures are those of the matches of all of them together
+/// Errors  those of compare().
+[[nodiscard]] Result<std::vector<ToleranceRow>>
+sweep_tolerances(std::span<const std::pair<const SeenLandmarks*, const SeenLandmarks*>> pairs);
+
+/// Readings of a capture: turns of the lidar, a scan each.
+inline constexpr std::array<std::size_t, 7> kReadings{50, 100, 200, 300, 500, 700, 1000};
+
+struct ReadingsRow {
+    std::size_t readings = 0;
+    std::size_t points = 0;
+    std::size_t landmarks = 0;
+    double eps = 0.0;             ///< metres, that they were found with
+    std::size_t robot_bytes = 0;  ///< see robot_bytes()
+    std::size_t server_bytes = 0; ///< see clustering_bytes()
+    double milliseconds = 0.0;    ///< to find the landmarks, median of kTimings: the only part that differs each time
+};
+
+inline constexpr int kTimings = 5;
+
+/// A row for each of kReadings that the capture has: of so many scans, from its first on.
+/// Errors  those of see_landmarks().
+[[nodiscard]] Result<std::vector<ReadingsRow>> sweep_readings(const LidarCapture& capture, const Now& now);
+
+/// Beams.
+inline constexpr std::array<std::size_t, 10> kWindows{1, 3, 5, 7, 9, 11, 15, 31, 51, 101};
+
+struct FilterRow {
+    std::size_t window = 1;
+    landmarks::FilterFigures figures; ///< the means over the scans; of the RMSE the root of the mean square
+    double wall_error = 0.0;          ///< metres, see sweep_windows()
+    double corner_error = 0.0;
+};
+
+/// A row for each of kWindows, of the median filter over every scan of a capture.
+///
+/// The errors are the medians of how far filtered readings are from those that a lidar without noise has: of beams at a
+/// corner or an edge, and of the others. A beam is at one when less than four beams from it three neighbouring points
+/// without noise bend by more than 5 cm, |a - 2 b + c|.
+/// Shapes  without_noise: the same beams; all scans full circles whose every beam has a return.
+/// Errors  those of median_filtered().
+[[nodiscard]] Result<std::vector<FilterRow>> sweep_windows(const LidarCapture& capture, const Scan& without_noise);
+
+} // namespace scanloom::lab

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace scanloom::lab {
+
+/// From the least to the most.
+struct ValueRange {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+/// What is published of the landmarks of a real room, for orientation: it was another room, and another lidar.
+inline constexpr ValueRange kPublishedPersistence{0.18, 0.49};
+inline constexpr ValueRange kPublishedStability{0.67, 0.89};
+inline constexpr ValueRange kPublishedContinuity{0.43, 0.46};
+
+inline constexpr double kPublishedTolerance = 0.1;      ///< metres, at which these were taken:
+inline constexpr double kPublishedDistanceMean = 0.018; ///< metres
+inline constexpr double kPublishedDistanceSigma = 0.013;
+
+} // namespace scanloom::lab
