@@ -73,6 +73,32 @@ TEST_F(Lab, WritesTheSameReportTwiceWithEveryPictureItShows) {
     EXPECT_GT(files.size(), 4U);
 }
 
+TEST_F(Lab, ItsLandmarksAreTheSameReportTwice) {
+    const auto first = place_.path() / "first";
+    const auto second = place_.path() / "second";
+    const auto outcome = run({"landmarks", "--seed", "5", "--out", first.string()});
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    EXPECT_EQ(boost::json::parse(outcome.line).at("report").as_string(), (first / "report.html").string());
+    EXPECT_EQ(run({"landmarks", "--seed", "5", "--out", second.string()}).code, 0);
+    const auto files = lasting_files(first);
+    EXPECT_EQ(files, lasting_files(second));
+    EXPECT_EQ(files.size(), 2U + 3U) << "the report's two forms, and a picture for each place";
+    EXPECT_TRUE(fs::exists(first / "times.md") && fs::exists(first / "times.html"));
+}
+
+TEST_F(Lab, ARecordingThatIsNoneMakesNoReportAndExits1) {
+    std::ofstream(place_.path() / "empty") << "";
+    for (const char* file : {"empty", "missing"}) {
+        const auto out = place_.path() / "out";
+        const auto outcome = run({"landmarks", "--out", out.string(), "--capture", (place_.path() / file).string()});
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_EQ(outcome.line, "");
+        EXPECT_THAT(outcome.errors, testing::StartsWith("scanloom-lab: "));
+        EXPECT_THAT(outcome.errors, HasSubstr(file));
+        EXPECT_FALSE(fs::exists(out));
+    }
+}
+
 TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
     std::ofstream(place_.path() / "file") << "no directory";
     const auto outcome = run({"experiment", "--quick", "--out", (place_.path() / "file").string()});
@@ -86,6 +112,7 @@ TEST_F(Lab, WhereItMayNotWriteItSaysSoAndExits1) {
 TEST_F(Lab, CalledWronglyItExits2) {
     EXPECT_EQ(run({}).code, 2);
     EXPECT_EQ(run({"experiment"}).code, 2);
+    EXPECT_EQ(run({"landmarks"}).code, 2);
     EXPECT_EQ(run({"--help"}).code, 0);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::variant<ExperimentOptions, Leave> parse(const std::vector<const char*>& words) {
+std::variant<ExperimentOptions, LandmarkOptions, Leave> parse(const std::vector<const char*>& words) {
     std::vector<const char*> argv{"scanloom-lab"};
     argv.insert(argv.end(), words.begin(), words.end());
     return parse_options(static_cast<int>(argv.size()), argv.data());
@@ -29,15 +29,31 @@ TEST(LabOptionsTest, ExperimentTakesItsDirectoryAndHasDefaults) {
     EXPECT_EQ(other.scans, 50U);
 }
 
+TEST(LabOptionsTest, LandmarksTakesItsDirectoryASeedAndARecording) {
+    const auto options = std::get<LandmarkOptions>(parse({"landmarks", "--out", "d"}));
+    EXPECT_EQ(options.out, "d");
+    EXPECT_EQ(options.seed, 1U);
+    EXPECT_FALSE(options.capture);
+    const auto other =
+        std::get<LandmarkOptions>(parse({"landmarks", "--seed", "7", "--capture", "c.bin", "--out", "d"}));
+    EXPECT_EQ(other.seed, 7U);
+    EXPECT_EQ(other.capture, "c.bin");
+}
+
 TEST(LabOptionsTest, EachMistakeIsOneLineAndAUsageError) {
     const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes{
-        {{}, "say what to do: experiment"},
+        {{}, "say what to do: experiment or landmarks"},
         {{"experiment"}, "experiment: name a directory with --out"},
         {{"experiment", "--out", "d", "--scans", "9"}, "--scans"},
         {{"experiment", "--out", "d", "--scans", "10.5"}, "--scans"},
         {{"experiment", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"experiment", "--out", "d", "--bogus"}, "--bogus"},
-        {{"landmark"}, "say what to do: experiment"},
+        {{"landmark"}, "say what to do: experiment or landmarks"},
+        {{"landmarks"}, "landmarks: name a directory with --out"},
+        {{"landmarks", "--out", "d", "--seed", "-1"}, "--seed"},
+        {{"landmarks", "--out", "d", "--capture", ""}, "--capture"},
+        {{"landmarks", "--out", "d", "--quick"}, "--quick"},
+        {{"experiment", "--out", "d", "--capture", "c.bin"}, "--capture"},
     };
     for (const auto& [words, hint] : mistakes) {
         const auto leave = std::get<Leave>(parse(words));
@@ -51,6 +67,9 @@ TEST(LabOptionsTest, EachMistakeIsOneLineAndAUsageError) {
 TEST(LabOptionsTest, HelpAndVersionAreNotErrors) {
     EXPECT_EQ(std::get<Leave>(parse({"--help"})).code, kExitDone);
     EXPECT_THAT(std::get<Leave>(parse({"--help"})).text, HasSubstr("experiment"));
+    EXPECT_THAT(std::get<Leave>(parse({"--help"})).text, HasSubstr("landmarks"));
+    EXPECT_EQ(std::get<Leave>(parse({"landmarks", "--help"})).code, kExitDone);
+    EXPECT_THAT(std::get<Leave>(parse({"landmarks", "--help"})).text, HasSubstr("--capture"));
     EXPECT_THAT(std::get<Leave>(parse({"--version"})).text, HasSubstr("scanloom-lab "));
 }
 

@@ -1,0 +1,91 @@
+#include "lab/landmark_experiment.hpp"
+
+#include "lab/landmark_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace scanloom::lab {
+namespace {
+
+using Pictures = std::map<std::string, tiles::Bytes>;
+
+struct Made {
+    LandmarkResults results;
+    std::string report;
+    Pictures pictures;
+};
+
+/// As a run with fewer readings makes it, on a machine that takes `tick` seconds for anything.
+Made made_with(LandmarkPlan plan, double tick = 0.001) {
+    plan.readings_max = 50;
+    Made made;
+    double time = 0.0;
+    const auto keep = [&](const std::string& file, const tiles::Bytes& png) -> Result<> {
+        made.pictures[file] = png;
+        return {};
+    };
+    const auto now = [&] { return time += tick; };
+    made.results = run_landmark_experiment(plan, {now, keep, [](std::string_view) {}}).value();
+    made.report = to_markdown(landmark_report_of(made.results));
+    return made;
+}
+
+TEST(LandmarkExperiment, IsTheSameForASeedHoweverLongItTakes) {
+    const auto first = made_with({.seed = 3}, 0.001);
+    const auto again = made_with({.seed = 3}, 0.5);
+    EXPECT_EQ(first.report, again.report);
+    EXPECT_EQ(first.pictures, again.pictures);
+    const auto other = made_with({.seed = 4});
+    EXPECT_NE(first.report, other.report);
+    EXPECT_NE(first.pictures, other.pictures);
+}
+
+TEST(LandmarkExperiment, FindsTheDoorAndTheWayToTheNextPlace) {
+    const auto [results, report, pictures] = made_with({.seed = 1});
+    ASSERT_EQ(results.places.size(), 3U);
+    EXPECT_EQ(pictures.size(), 3U);
+    for (const auto& place : results.places) {
+        const auto& door = place.door.comparison;
+        EXPECT_GE(place.control.metrics.persistence, door.metrics.persistence) << "a door that moves takes landmarks";
+        EXPECT_GE(door.only_first, 1U) << "the wall with the door in it";
+        EXPECT_GE(door.only_second, 2U) << "the leaf, the lobby";
+        EXPECT_EQ(door.metrics.matched + door.only_first, place.door.first.survey.landmarks.size());
+        EXPECT_TRUE(pictures.contains(place.door.picture));
+    }
+    ASSERT_EQ(results.neighbours.size(), 6U);
+    for (const auto& neighbour : results.neighbours) {
+        if (neighbour.alignment.certainty != landmarks::Certainty::kClear) continue;
+        EXPECT_LT(neighbour.position_error, 0.02);
+        EXPECT_LT(neighbour.yaw_error, 0.0087) << "half a degree";
+    }
+    EXPECT_EQ(results.readings.size(), 1U);
+    EXPECT_FALSE(results.recorded);
+}
+
+TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {
+    robot::Random random(2);
+    const auto room = robot::make_room();
+    LandmarkPlan plan;
+    plan.recorded = RecordedCapture{take_capture(room, {}, 7, robot::Noise{}, random), "c.bin", "fine"};
+    const auto [results, report, pictures] = made_with(std::move(plan));
+    ASSERT_TRUE(results.recorded);
+    EXPECT_EQ(results.recorded->turns, 7U);
+    EXPECT_EQ(results.recorded->all.points.size(), 7U * 360U);
+    EXPECT_EQ(results.recorded->halves.first.points.size(), 3U * 360U);
+    EXPECT_EQ(results.recorded->halves.second.points.size(), 4U * 360U);
+    EXPECT_TRUE(pictures.contains("recording.png"));
+}
+
+TEST(LandmarkExperiment, APictureThatCannotBeKeptIsAnError) {
+    const auto keep = [](const std::string&, const tiles::Bytes&) -> Result<> {
+        return Error{Errc::kStoreFailed, "the disk is full"};
+    };
+    const auto results = run_landmark_experiment({}, {[] { return 0.0; }, keep, [](std::string_view) {}});
+    ASSERT_FALSE(results);
+    EXPECT_EQ(results.error().message, "the disk is full");
+}
+
+} // namespace
+} // namespace scanloom::lab
