@@ -85,7 +85,7 @@ std::vector<std::string> door_findings(const LandmarkResults& results) {
             fmt::format("fill is {}, as no step within a cluster is longer than eps and none counts as a break up "
                         "to 2 eps; linearity is {}, walls and furniture being straight; evenness is {}. With such a "
                         "fill the published figure leaves {:.2f} at most for linearity and evenness together: its "
-                        "clusters were less like lines, or were made with another eps.",
+                        "clusters were less like lines, or fill was reckoned otherwise.",
                         part(&Continuity::fill), part(&Continuity::linearity), part(&Continuity::evenness),
                         3.0 * kPublishedContinuity.high - 1.0)),
     };
