@@ -18,10 +18,16 @@ bool is_still(const Capture& capture, const Scan& scan) {
 /// Whether a robot that began `last` begins another one there.
 bool is_due(const Capture& last, double stamp, const Pose2& pose) {
     return distance(last.pose, pose) >= kCaptureDistance || turn(last.pose, pose) >= kCaptureTurn ||
-           stamp - last.stamp >= kCaptureAgainAfter;
+           std::abs(stamp - last.stamp) >= kCaptureAgainAfter;
 }
 
-std::int32_t millimetres(double metres) { return static_cast<std::int32_t>(std::lround(metres * 1000.0)); }
+/// Nothing beyond where millimetres can be counted: no map reaches as far.
+std::optional<PointMm> in_millimetres(double x, double y) {
+    constexpr double kFarthest = 2e6; // metres
+    if (std::abs(x) > kFarthest || std::abs(y) > kFarthest) return std::nullopt;
+    return PointMm{static_cast<std::int32_t>(std::lround(x * 1000.0)),
+                   static_cast<std::int32_t>(std::lround(y * 1000.0))};
+}
 
 void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
     const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
@@ -31,8 +37,9 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit) continue;
         const double direction = T_map_sensor.yaw + beam_angle(angles, beam);
-        capture.points.push_back({millimetres(T_map_sensor.x + reading->metres * std::cos(direction)),
-                                  millimetres(T_map_sensor.y + reading->metres * std::sin(direction))});
+        const auto point = in_millimetres(T_map_sensor.x + reading->metres * std::cos(direction),
+                                          T_map_sensor.y + reading->metres * std::sin(direction));
+        if (point) capture.points.push_back(*point);
     }
 }
 

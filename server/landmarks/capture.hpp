@@ -22,7 +22,8 @@ inline constexpr double kStillTurn = 0.02;     ///< radians
 /// A capture has so many scans at most: more of the same place tell little, and cost as much.
 inline constexpr std::uint32_t kCaptureScansMax = 16;
 
-/// A robot that stands looks again after so many seconds, of its scans' stamps: doors open, people go.
+/// A robot that stands looks again after so many seconds, of its scans' stamps, either way, as clocks are set back:
+/// doors open, people go.
 inline constexpr double kCaptureAgainAfter = 30.0;
 
 /// A point of a capture in whole millimetres, as the readings are that it comes from.

@@ -1,7 +1,6 @@
 #include "server/landmarks/fusion.hpp"
 
 #include "server/landmarks/matching.hpp"
-#include "server/landmarks/median.hpp"
 #include "server/landmarks/point_check.hpp"
 
 #include <fmt/format.h>
@@ -14,15 +13,34 @@
 namespace scanloom::landmarks {
 namespace {
 
-Point2 per_axis_median(const std::vector<Point2>& points) {
-    std::vector<double> x;
-    std::vector<double> y;
-    for (const Point2& point : points) {
-        x.push_back(point.x());
-        y.push_back(point.y());
+/// Numbers in order, and their median.
+class Sorted {
+public:
+    void add(double number) { numbers_.insert(std::ranges::upper_bound(numbers_, number), number); }
+
+    /// Pre: there is one.
+    [[nodiscard]] double median() const {
+        const std::size_t half = numbers_.size() / 2;
+        return numbers_.size() % 2 == 1 ? numbers_[half] : (numbers_[half - 1] + numbers_[half]) / 2.0;
     }
-    return {median(x), median(y)};
-}
+
+    [[nodiscard]] std::size_t size() const noexcept { return numbers_.size(); }
+
+private:
+    std::vector<double> numbers_;
+};
+
+/// Points of different clouds that correspond.
+struct Group {
+    std::size_t began = 0; ///< with which cloud
+    Sorted x;
+    Sorted y;
+
+    void add(const Point2& point) {
+        x.add(point.x());
+        y.add(point.y());
+    }
+};
 
 /// Groups by the squares that they stand in, so that a cloud need not be matched with those that are far away.
 class Squares {
@@ -98,30 +116,30 @@ public:
     [[nodiscard]] std::vector<FusedPoint> fused() const {
         std::vector<FusedPoint> points;
         points.reserve(medians_.size());
-        for (std::size_t n = 0; n < medians_.size(); ++n)
-            points.push_back({medians_[n], members_[n].size(), began_[n]});
+        for (std::size_t n = 0; n < medians_.size(); ++n) {
+            points.push_back({medians_[n], groups_[n].x.size(), groups_[n].began});
+        }
         return points;
     }
 
 private:
     void begin(const Point2& point, std::size_t number) {
         squares_.put(static_cast<std::uint32_t>(medians_.size()), point);
-        members_.push_back({point});
+        groups_.push_back({number, {}, {}});
+        groups_.back().add(point);
         medians_.push_back(point);
-        began_.push_back(number);
     }
 
     void join(std::uint32_t group, const Point2& point) {
-        members_[group].push_back(point);
-        const auto place = per_axis_median(members_[group]);
+        groups_[group].add(point);
+        const Point2 place(groups_[group].x.median(), groups_[group].y.median());
         squares_.move(group, medians_[group], place);
         medians_[group] = place;
     }
 
     const double threshold_;
-    std::vector<std::vector<Point2>> members_;
-    std::vector<Point2> medians_;
-    std::vector<std::size_t> began_; // with which cloud
+    std::vector<Group> groups_;
+    std::vector<Point2> medians_; // of them
     Squares squares_;
 };
 
@@ -138,10 +156,12 @@ Result<> check(std::span<const std::vector<Point2>> clouds, double threshold) {
 
 } // namespace
 
-Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold) {
+Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold,
+                                     const std::function<Result<>()>& ask) {
     if (auto good = check(clouds, threshold); !good) return good.error();
     Groups groups(threshold);
     for (std::size_t n = 0; n < clouds.size(); ++n) {
+        if (auto asked = ask(); !asked) return asked.error();
         if (auto added = groups.add(clouds[n], n); !added) return added.error();
     }
     return groups.fused();

@@ -3,6 +3,7 @@
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,11 @@ struct FusedPoint {
 /// Frames  all clouds in one frame; see transform_points().
 /// @return in the order in which the groups began
 /// Post    as many clouds seen, over all fused points, as there are points in all clouds.
-/// Errors  kInvalidField: a threshold that is negative or not finite. Those of check_points().
-/// Cost    n log n of its points and of the groups around, for each cloud.
-[[nodiscard]] Result<std::vector<FusedPoint>> fuse(std::span<const std::vector<Point2>> clouds, double threshold);
+/// @param ask  before each cloud, as many take seconds; its error ends it
+/// Errors  kInvalidField: a threshold that is negative or not finite. Those of check_points() and of `ask`.
+/// Cost    for each cloud n log n of its points and of the groups around, and of each point that joins a group, its members.
+[[nodiscard]] Result<std::vector<FusedPoint>> fuse(
+    std::span<const std::vector<Point2>> clouds, double threshold,
+    const std::function<Result<>()>& ask = [] { return Result<>(); });
 
 } // namespace scanloom::landmarks

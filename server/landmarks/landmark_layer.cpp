@@ -24,15 +24,15 @@ void add_pair(PairSums& sums, std::span<const Landmark> first, std::span<const L
 
 } // namespace
 
-void LandmarkLayer::add(RobotIndex robot, const Capture& capture, Revision ended) {
-    auto seen = find_landmarks(in_metres(capture.points));
+void LandmarkLayer::add(const RobotCapture& ended) {
+    auto seen = find_landmarks(in_metres(ended.capture.points));
     if (!seen) return; // it lies further out than a map can reach
-    if (seen_last_.size() <= robot) seen_last_.resize(robot + 1);
-    auto& seen_last = seen_last_[robot];
+    if (seen_last_.size() <= ended.robot) seen_last_.resize(ended.robot + 1);
+    auto& seen_last = seen_last_[ended.robot];
     if (seen_last) add_pair(sums_, *seen_last, *seen);
     sums_.landmarks += seen->size();
     for (const auto& landmark : *seen) sums_.continuity += landmark.continuity;
-    map_.add(*seen, ended);
+    map_.add(*seen, ended.ended);
     seen_last = std::move(*seen);
     ++captures_;
 }

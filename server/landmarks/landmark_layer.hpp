@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/landmarks/capture.hpp"
 #include "server/landmarks/landmark_map.hpp"
+#include "server/landmarks/session_captures.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -35,9 +35,8 @@ struct LandmarkState {
 /// Thread  one writer; what snapshot() gives is for everybody.
 class LandmarkLayer {
 public:
-    /// Adds the next capture, which ended with that log entry: at its last scan or, where the robot moved on, at a
-    /// later one. Robots are numbered from 0; one that was not seen before may be any of them.
-    void add(RobotIndex robot, const Capture& capture, Revision ended);
+    /// Adds the next capture. Robots are numbered from 0; one that was not seen before may be any of them.
+    void add(const RobotCapture& ended);
 
     [[nodiscard]] std::size_t landmark_count() const noexcept { return map_.size(); }
     [[nodiscard]] LandmarkState snapshot() { return {map_.snapshot(), captures_, sums_}; }

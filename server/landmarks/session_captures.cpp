@@ -16,13 +16,13 @@ std::optional<RobotCapture> SessionCaptures::add(const LogEntry& entry) {
     if (cutters_.size() <= taken->robot) cutters_.resize(taken->robot + 1);
     auto ended = cutters_[taken->robot].add(taken->scan, sensor->second, revision_);
     if (!ended) return std::nullopt;
-    return RobotCapture{taken->robot, *std::move(ended)};
+    return RobotCapture{taken->robot, *std::move(ended), revision_};
 }
 
 std::vector<RobotCapture> SessionCaptures::open() const {
     std::vector<RobotCapture> captures;
     for (RobotIndex robot = 0; robot < cutters_.size(); ++robot) {
-        if (const auto* open = cutters_[robot].open()) captures.push_back({robot, *open});
+        if (const auto* open = cutters_[robot].open()) captures.push_back({robot, *open, revision_});
     }
     return captures;
 }

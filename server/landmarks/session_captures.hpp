@@ -14,6 +14,7 @@ namespace scanloom::landmarks {
 struct RobotCapture {
     RobotIndex robot = 0;
     Capture capture;
+    Revision ended = 0; ///< log entry at which it ended: its last scan or, where the robot moved on, a later one
 
     friend bool operator==(const RobotCapture&, const RobotCapture&) = default;
 };
@@ -36,7 +37,7 @@ public:
     /// @return the capture that has ended with it
     [[nodiscard]] std::optional<RobotCapture> add(const LogEntry& entry);
 
-    /// Those that are being taken, by robot.
+    /// Those that are being taken, by robot, as if they ended now.
     [[nodiscard]] std::vector<RobotCapture> open() const;
 
 private:

@@ -11,6 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+const Error kTooMany{Errc::kFull, "more landmarks than there may be"};
+
 Error not_yet(Revision folded, Revision revision) {
     return {Errc::kOverloaded,
             fmt::format("the landmarks of {} of {} log entries are found; ask again, it goes on from "
@@ -27,9 +29,16 @@ Result<FoldedLandmarks> LandmarkFolds::up_to(const SessionInfo& session, Revisio
     if (!folding) {
         return Error{Errc::kOverloaded, "others have the landmarks of this session found at this moment; ask again"};
     }
+    if (kept->is_full) return full(session);
     try {
         const auto done = go_on(*kept, revision, is_wanted);
+        if (kept->layer.landmark_count() > limits_.landmarks_max) { // and has ever more
+            kept->is_full = true;
+            kept->captures = {};
+            kept->layer = {};
+        }
         account(*kept);
+        if (kept->is_full) return full(session);
         if (!done) return done.error();
         return FoldedLandmarks{kept->layer.snapshot(), kept->captures.revision()};
     } catch (const std::bad_alloc&) {
@@ -40,23 +49,24 @@ Result<FoldedLandmarks> LandmarkFolds::up_to(const SessionInfo& session, Revisio
     }
 }
 
+Error LandmarkFolds::full(const SessionInfo& session) const {
+    return {Errc::kFull,
+            fmt::format("session '{}' has more than {} landmarks, the most that are kept; points.csv has what "
+                        "its robots saw",
+                        session.name, limits_.landmarks_max)};
+}
+
 Result<> LandmarkFolds::go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
     const auto deadline = Clock::now() + limits_.patience;
-    const auto has_room = [&]() -> Result<> {
-        if (kept.layer.landmark_count() <= limits_.landmarks_max) return {};
-        return Error{Errc::kFull, fmt::format("the session has more than {} landmarks, the most that are kept",
-                                              limits_.landmarks_max)};
-    };
-    const auto add = [&](const landmarks::RobotCapture& ended) {
-        kept.layer.add(ended.robot, ended.capture, kept.captures.revision());
-        return has_room();
+    const auto add = [&](const landmarks::RobotCapture& ended) -> Result<> {
+        kept.layer.add(ended);
+        return kept.layer.landmark_count() <= limits_.landmarks_max ? Result<>() : kTooMany;
     };
     const auto ask = [&](Revision read) -> Result<> {
         if (!is_wanted()) return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
         if (Clock::now() >= deadline) return not_yet(read, revision);
         return {};
     };
-    if (auto room = has_room(); !room) return room;
     return read_captures(log_, kept.session, kept.captures, revision, add, ask);
 }
 

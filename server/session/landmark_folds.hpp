@@ -31,7 +31,8 @@ struct FoldedLandmarks {
 /// the log folded from its beginning; what was folded is kept, and whoever asks again has only what came since.
 ///
 /// The same log gives the same landmarks, whenever and in however many steps they were asked for.
-/// Memory  at most landmarks_max; the least recently asked for are forgotten, and folded anew when they are wanted.
+/// Memory  at most landmarks_max, and what robots are in the middle of; the least recently asked for are forgotten, and
+///         folded anew when they are wanted. Of a session with more than landmarks_max nothing is kept but that.
 /// Thread  any that may wait for the disk; of one session, one at a time folds.
 class LandmarkFolds {
 public:
@@ -56,11 +57,13 @@ private:
         std::timed_mutex mutex;
         landmarks::SessionCaptures captures; // whoever has the mutex
         landmarks::LandmarkLayer layer;      // likewise
+        bool is_full = false;                // likewise: has had more landmarks than there may be
         std::size_t landmarks = 0;           // whoever has that of all
     };
 
     [[nodiscard]] std::shared_ptr<Kept> find_or_begin(store::SessionId session);
     [[nodiscard]] Result<> go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const;
+    [[nodiscard]] Error full(const SessionInfo& session) const;
     void account(Kept& kept);
 
     store::ScanLog& log_;

@@ -6,7 +6,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr Revision kAskEvery = 256; // entries: milliseconds
+constexpr Revision kLookEvery = 256; // entries: milliseconds
 
 const Error kEnd{Errc::kInternal, "the end of what is to be read"};
 
@@ -31,7 +31,7 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
         log.read(session, captures.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
             if (auto added = add(revision, bytes); !added) return added;
             if (revision >= until) return kEnd;
-            return revision % kAskEvery == 0 ? ask(revision) : Result<>();
+            return revision % kLookEvery == 0 ? ask(revision) : Result<>();
         });
     if (read || read.error() == kEnd) return {};
     return read;

@@ -8,6 +8,7 @@ export class RevisionWatch<Thing> {
   private shown = -1;
   private underWay = false;
   private enabled = false;
+  private doubts = 0;
 
   constructor(
     private readonly load: (signal: AbortSignal) => Promise<Thing>,
@@ -28,6 +29,7 @@ export class RevisionWatch<Thing> {
 
   /** What is shown may be of another server's life, whose revisions are not to be compared with these. */
   doubt(): void {
+    this.doubts += 1;
     this.shown = -1;
   }
 
@@ -38,10 +40,11 @@ export class RevisionWatch<Thing> {
   private async fetch(): Promise<void> {
     this.underWay = true;
     const revision = this.wanted;
+    const { doubts } = this;
     try {
       const thing = await this.load(this.signal);
       if (this.signal.aborted) return;
-      this.shown = revision;
+      if (doubts === this.doubts) this.shown = revision;
       this.show(thing);
     } catch {
       // The connection's state is told elsewhere; it is asked for again.

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kLandmarkTextBytes = 320;
 
 /// Which landmarks.
-struct Asked {
+struct LandmarkQuery {
     Revision since = 0;
     std::optional<tiles::Extent> bbox;
     std::uint32_t seen_min = 1;
@@ -83,16 +83,18 @@ Result<Response> get_landmarks(session::SessionRegistry& sessions, session::Land
     const auto snapshot = (*session)->snapshot();
     const auto folded = folds.up_to((*session)->info(), snapshot->revision, [&] { return !sessions.is_draining(); });
     if (!folded) return folded.error();
-    const Asked asked{since_in(*snapshot, *since), *bbox, *seen_min};
-    auto slot = slots.take(folded->state.landmarks.size() * kLandmarkTextBytes);
-    if (!slot) return slot.error();
-    std::vector<std::string> features;
+    const LandmarkQuery asked{since_in(*snapshot, *since), *bbox, *seen_min};
+    std::vector<const landmarks::MapLandmark*> wanted;
     for (const auto& block : folded->state.landmarks.blocks()) {
         if (block->revision <= asked.since) continue;
         for (const auto& one : block->landmarks) {
-            if (asked.wants(one)) features.push_back(feature_of(one));
+            if (asked.wants(one)) wanted.push_back(&one);
         }
     }
+    auto slot = slots.take(wanted.size() * kLandmarkTextBytes);
+    if (!slot) return slot.error();
+    std::vector<std::string> features;
+    for (const auto* one : wanted) features.push_back(feature_of(*one));
     const auto& sums = folded->state.sums;
     return ok_text(kGeoJson, std::move(*slot),
                    collection_document(folded->revision,

@@ -10,8 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,26 +19,28 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::size_t kPointsMax = 1'000'000; // of all captures; 150 MiB while they are fused
+constexpr std::size_t kPointsMax = 1'000'000; // of all captures; 100 MiB while they are fused
 constexpr double kThreshold = 0.05;           // metres
 constexpr double kThresholdMax = 1.0;
 
 /// Which captures, and what becomes of them.
-struct Asked {
+struct CloudQuery {
     Revision since = 0;
-    Revision until = 0;
+    std::optional<Revision> until;
     std::optional<RobotIndex> robot;
     double threshold = kThreshold;
 
     [[nodiscard]] bool wants(const landmarks::RobotCapture& one) const {
-        return one.capture.last > since && one.capture.last <= until && (!robot || one.robot == *robot);
+        return one.ended > since && (!robot || one.robot == *robot);
     }
 };
 
-Result<Revision> until_parameter(const Query& query, Revision newest) {
+/// Nothing where it is the newest revision or later: what robots are in the middle of belongs to it then, too.
+Result<std::optional<Revision>> until_parameter(const Query& query, Revision newest) {
     const auto text = query.find("until");
-    if (!text) return newest;
-    if (const auto revision = parse_integer<Revision>(*text)) return std::min(*revision, newest);
+    if (!text) return std::optional<Revision>();
+    const auto revision = parse_integer<Revision>(*text);
+    if (revision) return *revision < newest ? revision : std::nullopt;
     return Error{Errc::kInvalidField, fmt::format("until is {}; a revision is needed", in_quotes(*text))};
 }
 
@@ -52,14 +53,14 @@ Result<double> threshold_parameter(const Query& query) {
                  fmt::format("threshold is {}; metres from 0 to {:g} are needed", in_quotes(*text), kThresholdMax)};
 }
 
-Result<Asked> asked_for(const mapping::Snapshot& snapshot, const Query& query) {
+Result<CloudQuery> cloud_query(const mapping::Snapshot& snapshot, const Query& query) {
     const auto since = since_parameter(query);
     if (!since) return since.error();
     const auto until = until_parameter(query, snapshot.revision);
     if (!until) return until.error();
     const auto threshold = threshold_parameter(query);
     if (!threshold) return threshold.error();
-    Asked asked{since_in(snapshot, *since), *until, std::nullopt, *threshold};
+    CloudQuery asked{*since, *until, std::nullopt, *threshold};
     if (const auto name = query.find("robot")) {
         const auto robot = guide::find_robot(snapshot, *name);
         if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(*name)), robot.error());
@@ -68,35 +69,69 @@ Result<Asked> asked_for(const mapping::Snapshot& snapshot, const Query& query) {
     return asked;
 }
 
-Error too_many(Revision since, Revision until) {
-    return {Errc::kTooLarge, fmt::format("these captures have more than {} points; ask for a part of them, such as "
-                                         "since={}&until={}, or for one robot's",
-                                         kPointsMax, since, until)};
-}
+/// Those that were asked for, as many as one answer may have the points of.
+class Chosen {
+public:
+    explicit Chosen(const CloudQuery& query) : query_(query) {}
 
-Result<std::vector<landmarks::RobotCapture>> captures_of(store::ScanLog& log, store::SessionId session,
-                                                         const Asked& asked, const session::SessionRegistry& sessions) {
-    std::vector<landmarks::RobotCapture> captures;
-    std::size_t points = 0;
-    Revision fits = asked.since; // the captures up to here do
-    const auto take = [&](const landmarks::RobotCapture& one) -> Result<> {
-        if (!asked.wants(one)) return {};
-        points += one.capture.points.size();
-        if (points > kPointsMax) return too_many(asked.since, fits);
-        fits = one.capture.last;
-        captures.push_back(one);
+    Result<> add(const landmarks::RobotCapture& one) {
+        if (!query_.wants(one)) return {};
+        points_ += one.capture.points.size();
+        if (points_ > kPointsMax) {
+            return Error{Errc::kTooLarge,
+                         fmt::format("these captures have more than {} points; ask for a part of them, "
+                                     "such as since={}&until={}, or for one robot's",
+                                     kPointsMax, query_.since, last_)};
+        }
+        last_ = one.ended;
+        captures_.push_back(one);
         return {};
-    };
-    landmarks::SessionCaptures cut;
-    const auto read = session::read_captures(log, session, cut, asked.until, take, [&](Revision) -> Result<> {
-        if (!sessions.is_draining()) return {};
-        return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
-    });
-    if (!read) return read.error();
-    for (const auto& open : cut.open()) {
-        if (auto taken = take(open); !taken) return taken.error();
     }
-    return captures;
+
+    [[nodiscard]] const std::vector<landmarks::RobotCapture>& captures() const noexcept { return captures_; }
+    [[nodiscard]] std::size_t points() const noexcept { return points_; }
+
+private:
+    const CloudQuery& query_;
+    std::vector<landmarks::RobotCapture> captures_; // as they ended
+    std::size_t points_ = 0;
+    Revision last_ = 0; // of those that fit
+};
+
+/// Says when an answer takes too long: others wait for the same thread.
+class Patience {
+public:
+    explicit Patience(const session::SessionRegistry& sessions) : sessions_(sessions) {}
+
+    Result<> operator()() const {
+        if (sessions_.is_draining()) {
+            return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
+        }
+        if (std::chrono::steady_clock::now() < deadline_) return {};
+        return Error{Errc::kTooLarge,
+                     fmt::format("this takes longer than {} s; ask for a part of it (since, until, robot), "
+                                 "or with a larger threshold",
+                                 kPatience.count())};
+    }
+
+private:
+    static constexpr std::chrono::seconds kPatience{5};
+
+    const session::SessionRegistry& sessions_;
+    const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kPatience;
+};
+
+Result<> choose(store::ScanLog& log, store::SessionId session, const CloudQuery& query, Revision newest,
+                const Patience& patience, Chosen& chosen) {
+    landmarks::SessionCaptures cut;
+    const auto read = session::read_captures(
+        log, session, cut, query.until.value_or(newest),
+        [&](const landmarks::RobotCapture& ended) { return chosen.add(ended); }, [&](Revision) { return patience(); });
+    if (!read || query.until) return read;
+    for (const auto& open : cut.open()) {
+        if (auto added = chosen.add(open); !added) return added;
+    }
+    return {};
 }
 
 } // namespace
@@ -107,15 +142,15 @@ Result<Response> get_points(session::SessionRegistry& sessions, store::ScanLog& 
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
     const auto snapshot = (*session)->snapshot();
-    const auto asked = asked_for(*snapshot, call.query);
-    if (!asked) return asked.error();
-    const auto captures = captures_of(log, (*session)->info().id, *asked, sessions);
-    if (!captures) return captures.error();
-    std::size_t points = 0;
-    for (const auto& one : *captures) points += one.capture.points.size();
-    auto slot = slots.take(points * exchange::kPointTextBytes);
+    const auto query = cloud_query(*snapshot, call.query);
+    if (!query) return query.error();
+    const Patience patience(sessions);
+    Chosen chosen(*query);
+    const auto read = choose(log, (*session)->info().id, *query, snapshot->revision, patience, chosen);
+    if (!read) return read.error();
+    auto slot = slots.take(chosen.points() * exchange::kPointTextBytes);
     if (!slot) return slot.error();
-    const auto cloud = landmarks::fuse_captures(*captures, asked->threshold);
+    const auto cloud = landmarks::fuse_captures(chosen.captures(), query->threshold, patience);
     if (!cloud) return cloud.error();
     if (file == PointFile::kPly) return ok_text("model/ply", std::move(*slot), exchange::points_ply(*cloud));
     std::vector<std::string> names;

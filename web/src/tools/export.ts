@@ -202,7 +202,7 @@ function offersOf(session: string, query: MapQuery): Offer[] {
       ...{ file: `${session}-frontiers.geojson`, path: frontiersPath(session, weave) },
     },
     {
-      ...{ label: 'Landmarks (GeoJSON)', note: 'things seen again and again, metres' },
+      ...{ label: 'Landmarks (GeoJSON)', note: 'things that robots saw, metres' },
       ...{ file: `${session}-landmarks.geojson`, path: landmarksPath(session) },
     },
     {

@@ -73,6 +73,43 @@ TEST_F(ApiPointsTest, OfOneRobotAndOfAPartOfTheLog) {
     EXPECT_THAT(lines("until=0"), SizeIs(0));
 }
 
+/// Also where a capture of a robot that stands has many scans, and another robot's begins and ends meanwhile.
+TEST_F(ApiPointsTest, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
+    create("stand");
+    const auto session = registry_.find("stand");
+    auto standing = testing_support::room_scans(40);
+    for (std::size_t n = 0; n < standing.size(); ++n) {
+        if (n % 20 != 0) standing[n] = standing[n - 1];
+        standing[n].seq = n + 1;
+        standing[n].stamp = static_cast<double>(n);
+    }
+    for (const char* robot : {"r1", "r2"}) {
+        const auto link = join("stand", robot, standing.size());
+        session->submit(link, testing_support::reference_laser(), 0);
+        session->submit(link, standing, 1);
+        link->wait();
+    }
+    const auto seen = [&](const std::string& query) {
+        const std::string text(get("/api/v1/sessions/stand/points.csv" + query).body.bytes());
+        std::vector<std::string> all;
+        boost::split(all, text, boost::is_any_of("\n"));
+        std::size_t sum = 0;
+        for (std::size_t n = 1; n + 1 < all.size(); ++n) {
+            std::vector<std::string> fields;
+            boost::split(fields, all[n], boost::is_any_of(","));
+            sum += std::stoul(fields[4]);
+        }
+        return sum;
+    };
+    const auto whole = seen("");
+    EXPECT_GT(whole, 20'000U);
+    for (int at = 0; at <= 86; ++at) {
+        const auto revision = std::to_string(at);
+        EXPECT_EQ(seen("?until=" + revision) + seen("?since=" + revision), whole) << at;
+    }
+    EXPECT_EQ(seen("?since=1000"), 0U);
+}
+
 TEST_F(ApiPointsTest, PlyHasTheSamePoints) {
     const auto response = get("/api/v1/sessions/a/points.ply");
     EXPECT_EQ(response.get("Content-Type"), "model/ply");

@@ -55,7 +55,7 @@ protected:
     void see(LandmarkLayer& layer, RobotIndex robot, const Pose2& pose) {
         ++revision_;
         const auto ended = cutters_[robot].add(scan(pose), kLaser, revision_);
-        if (ended) layer.add(robot, *ended, revision_);
+        if (ended) layer.add({robot, *ended, revision_});
     }
 
     std::array<CaptureCutter, 5> cutters_;

@@ -44,10 +44,13 @@ TEST_F(SessionCapturesTest, EachRobotHasItsOwn) {
     ASSERT_TRUE(first);
     EXPECT_EQ(first->robot, 0U);
     EXPECT_EQ(first->capture.first, 5U) << "the log's entries count";
+    EXPECT_EQ(first->capture.last, 5U);
+    EXPECT_EQ(first->ended, 7U) << "when the robot had moved on";
     EXPECT_THAT(first->capture.points, ElementsAre(PointMm{1000, 0}));
     const auto open = captures_.open();
     ASSERT_THAT(open, SizeIs(2));
     EXPECT_EQ(open[0].capture.first, 7U);
+    EXPECT_EQ(open[1].ended, 7U) << "now";
     EXPECT_THAT(open[1].capture.points, ElementsAre(PointMm{10'000, 0}));
     EXPECT_EQ(captures_.revision(), 7U);
 }

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 RobotCapture capture(RobotIndex robot, Pose2 pose, Revision last, std::vector<PointMm> points) {
-    return {robot, Capture{.pose = pose, .last = last, .scans = 1, .points = std::move(points)}};
+    return {robot, Capture{.pose = pose, .scans = 1, .points = std::move(points)}, last};
 }
 
 TEST(SessionCloud, PointsOfSeveralCapturesBecomeOneAndTellWhoSawThemFirst) {
@@ -41,6 +41,14 @@ TEST(SessionCloud, PointsOfSeveralCapturesBecomeOneAndTellWhoSawThemFirst) {
 TEST(SessionCloud, OfNothingIsNothingAndABadThresholdIsTold) {
     EXPECT_THAT(fuse_captures({}, 0.05).value(), IsEmpty());
     EXPECT_THAT(fuse_captures(std::vector{capture(0, {}, 1, {})}, 0.05).value(), IsEmpty());
+    const std::vector two{capture(0, {}, 1, {{1000, 0}}), capture(0, {}, 2, {{1000, 0}})};
+    int asked = 0;
+    const auto ended = fuse_captures(two, 0.05, [&]() -> Result<> {
+        if (++asked == 1) return {};
+        return Error{Errc::kShuttingDown, "enough"};
+    });
+    ASSERT_FALSE(ended);
+    EXPECT_EQ(ended.error().message, "enough");
     EXPECT_THAT(fuse_captures({}, -1.0).error().message, HasSubstr("threshold"));
 }
 

@@ -79,7 +79,7 @@ protected:
                 const auto& sensor = sensors[{taken->robot, taken->scan.sensor}];
                 if (sensor.kind != SensorKind::kLaser) continue;
                 const auto ended = cutters[taken->robot].add(taken->scan, sensor, revision);
-                if (ended) layer.add(taken->robot, *ended, revision);
+                if (ended) layer.add({taken->robot, *ended, revision});
             }
         }
         return layer.snapshot();
