@@ -20,7 +20,7 @@ using testing_support::reference_laser;
 using testing_support::room_scans;
 using namespace std::chrono_literals;
 
-const auto kWanted = [] { return true; };
+const auto kGoOn = [] { return true; };
 
 std::vector<landmarks::MapLandmark> all_of(const landmarks::LandmarkState& state) {
     std::vector<landmarks::MapLandmark> all;
@@ -103,25 +103,25 @@ TEST_F(LandmarkFoldsTest, AreThoseOfEveryScanInHoweverManyStepsTheyAreAskedFor) 
     std::mt19937 random(7);
     LandmarkFolds folds(log_);
     for (Revision until = 0; until < end_; until = std::min(end_, until + 1 + random() % 100)) {
-        expect_landmarks(folds.up_to(info_, until, kWanted).value(), until);
+        expect_landmarks(folds.up_to(info_, until, kGoOn).value(), until);
     }
-    expect_landmarks(folds.up_to(info_, end_, kWanted).value(), end_);
-    expect_landmarks(LandmarkFolds(log_).up_to(info_, end_, kWanted).value(), end_);
+    expect_landmarks(folds.up_to(info_, end_, kGoOn).value(), end_);
+    expect_landmarks(LandmarkFolds(log_).up_to(info_, end_, kGoOn).value(), end_);
     EXPECT_GT(all_of(expected(end_)).size(), 5U);
     EXPECT_GT(expected(end_).captures, 20U);
 }
 
 TEST_F(LandmarkFoldsTest, WhoeverAsksForAnEarlierMomentHasWhatIsThere) {
     LandmarkFolds folds(log_);
-    folds.up_to(info_, end_, kWanted).value();
-    EXPECT_EQ(folds.up_to(info_, 10, kWanted).value().revision, end_);
+    folds.up_to(info_, end_, kGoOn).value();
+    EXPECT_EQ(folds.up_to(info_, 10, kGoOn).value().revision, end_);
 }
 
 TEST_F(LandmarkFoldsTest, WhatTakesLongerThanACallerMayWaitGoesOnWhenItIsAskedForAgain) {
     LandmarkFolds folds(log_, {.patience = 0ms});
     int asked = 0;
-    auto folded = folds.up_to(info_, end_, kWanted);
-    for (; !folded; folded = folds.up_to(info_, end_, kWanted)) {
+    auto folded = folds.up_to(info_, end_, kGoOn);
+    for (; !folded; folded = folds.up_to(info_, end_, kGoOn)) {
         EXPECT_EQ(folded.error().code, Errc::kOverloaded);
         EXPECT_THAT(folded.error().message, HasSubstr("of 905 log entries are found; ask again"));
         ASSERT_LT(++asked, 100);
@@ -133,7 +133,7 @@ TEST_F(LandmarkFoldsTest, WhatTakesLongerThanACallerMayWaitGoesOnWhenItIsAskedFo
 TEST_F(LandmarkFoldsTest, ItEndsWhenItIsWantedNoMoreAndGoesOnLater) {
     LandmarkFolds folds(log_);
     EXPECT_EQ(folds.up_to(info_, end_, [] { return false; }).error().code, Errc::kShuttingDown);
-    expect_landmarks(folds.up_to(info_, end_, kWanted).value(), end_);
+    expect_landmarks(folds.up_to(info_, end_, kGoOn).value(), end_);
 }
 
 TEST_F(LandmarkFoldsTest, ADamagedEntryIsToldAndWhatWasBeforeItIsNot) {
@@ -141,26 +141,26 @@ TEST_F(LandmarkFoldsTest, ADamagedEntryIsToldAndWhatWasBeforeItIsNot) {
     append(std::vector<LogEntry>{entries_.back()});
     LandmarkFolds folds(log_);
     for (int n = 0; n < 2; ++n) {
-        const auto folded = folds.up_to(info_, end_, kWanted);
+        const auto folded = folds.up_to(info_, end_, kGoOn);
         ASSERT_FALSE(folded);
         EXPECT_EQ(folded.error().code, Errc::kDataLoss);
         EXPECT_THAT(folded.error().message, HasSubstr("log entry 906"));
     }
-    expect_landmarks(folds.up_to(info_, end_ - 2, kWanted).value(), end_ - 2);
+    expect_landmarks(folds.up_to(info_, end_ - 2, kGoOn).value(), end_ - 2);
 }
 
 TEST_F(LandmarkFoldsTest, ASessionWithTooManyIsRefused) {
     const auto many = all_of(expected(end_)).size();
-    EXPECT_TRUE(LandmarkFolds(log_, {.landmarks_max = many}).up_to(info_, end_, kWanted));
+    EXPECT_TRUE(LandmarkFolds(log_, {.landmarks_max = many}).up_to(info_, end_, kGoOn));
     LandmarkFolds folds(log_, {.landmarks_max = many - 1});
-    for (int n = 0; n < 2; ++n) EXPECT_EQ(folds.up_to(info_, end_, kWanted).error().code, Errc::kFull);
+    for (int n = 0; n < 2; ++n) EXPECT_EQ(folds.up_to(info_, end_, kGoOn).error().code, Errc::kFull);
 }
 
 /// What is kept is told by whether the log is still needed.
 TEST_F(LandmarkFoldsTest, TheLeastRecentlyUsedAreForgottenAndDeletedOnesToo) {
     const auto is_kept = [&](LandmarkFolds& folds, const SessionInfo& session) {
         log_.fail_reading(Error{Errc::kStoreFailed, "the disk is gone"});
-        const bool kept = folds.up_to(session, end_, kWanted).has_value();
+        const bool kept = folds.up_to(session, end_, kGoOn).has_value();
         log_.fail_reading(std::nullopt);
         return kept;
     };
@@ -174,11 +174,11 @@ TEST_F(LandmarkFoldsTest, TheLeastRecentlyUsedAreForgottenAndDeletedOnesToo) {
                                LandmarkFoldsLimits{}}) {
         const bool has_room = limits.kept_max > 1 && limits.landmarks_max >= 2 * many;
         LandmarkFolds folds(log_, limits);
-        folds.up_to(info_, end_, kWanted).value();
-        folds.up_to(second, end_, kWanted).value();
+        folds.up_to(info_, end_, kGoOn).value();
+        folds.up_to(second, end_, kGoOn).value();
         EXPECT_TRUE(is_kept(folds, second));
         EXPECT_EQ(is_kept(folds, info_), has_room);
-        folds.up_to(info_, end_, kWanted).value();
+        folds.up_to(info_, end_, kGoOn).value();
         folds.remove(info_.id);
         EXPECT_FALSE(is_kept(folds, info_));
     }
