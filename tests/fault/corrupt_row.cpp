@@ -55,9 +55,12 @@ bool has_complained(const fs::path& log) {
     return false;
 }
 
-/// Whether the damage is like that of a crash: the end of what was written last is missing, or the session itself, when
-/// its making was a part of that.
-bool is_like_a_crash(const std::string& damage) { return damage.find(".log ends after") != std::string::npos; }
+/// Whether the damage is like that of a crash: the end of what was written last is missing, or a sector of it was never
+/// written, or the session itself is missing, when its making was a part of that. A sector of zeros before the last
+/// write is none: the server refuses to start.
+bool is_like_a_crash(const std::string& damage) {
+    return damage.find(".log ends after") != std::string::npos || damage.find(".log is zero from") != std::string::npos;
+}
 
 class Trial {
 public:
