@@ -36,6 +36,9 @@ TEST(RepairedNames, OfSeveralWithOneNameTheNewestKeepsIt) {
 TEST(RepairedNames, NobodyLosesItsOwnToOneThatIsGiven) {
     EXPECT_THAT(repaired_names({{1, named("kitchen-2")}, {2, named("kitchen")}, {3, named("kitchen")}}),
                 ElementsAre(Pair(1, "kitchen-2"), Pair(2, "kitchen-2-2"), Pair(3, "kitchen")));
+    EXPECT_THAT(repaired_names(
+                    {{1, named("kitchen-2")}, {2, named("kitchen")}, {3, named("kitchen")}, {4, named("kitchen-2-2")}}),
+                testing::Contains(Pair(2, "kitchen-2-2-2")));
     EXPECT_THAT(repaired_names({{7, std::nullopt}, {8, named("session-7")}}),
                 ElementsAre(Pair(7, "session-7-7"), Pair(8, "session-7")));
 }
