@@ -25,6 +25,9 @@ std::string_view name_of(Errc code) noexcept {
     case Errc::kOverloaded: return "overloaded";
     case Errc::kFull: return "full";
     case Errc::kNoPath: return "no_path";
+    case Errc::kAmbiguous: return "ambiguous";
+    case Errc::kUndetermined: return "undetermined";
+    case Errc::kNothingMapped: return "nothing_mapped";
     case Errc::kInternal: return "internal";
     }
     return "unknown";

@@ -33,6 +33,9 @@ enum class Errc {
     kOverloaded,         ///< no room or no time for this now; later there may be
     kFull,               ///< a session or its map holds the most it can; waiting makes no room
     kNoPath,             ///< no way leads there; the message says what is in it
+    kAmbiguous,          ///< several answers are as good as each other; the message names two
+    kUndetermined,       ///< too little is known for an answer
+    kNothingMapped,      ///< there is no map yet that could tell
     kInternal,           ///< a fault of this program
 };
 

@@ -27,6 +27,9 @@ constexpr ErrorCodePair kErrorCodes[] = {
     {Errc::kOverloaded, v1::ERROR_CODE_OVERLOADED},
     {Errc::kFull, v1::ERROR_CODE_SESSION_FULL},
     {Errc::kNoPath, v1::ERROR_CODE_NO_PATH},
+    {Errc::kAmbiguous, v1::ERROR_CODE_AMBIGUOUS},
+    {Errc::kUndetermined, v1::ERROR_CODE_UNDETERMINED},
+    {Errc::kNothingMapped, v1::ERROR_CODE_NOTHING_MAPPED},
     {Errc::kInternal, v1::ERROR_CODE_INTERNAL},
 };
 

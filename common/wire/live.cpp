@@ -1,5 +1,6 @@
 #include "common/wire/live.hpp"
 
+#include "common/wire/point_convert.hpp"
 #include "common/wire/proto_convert.hpp"
 
 #include "scanloom/v1/live.pb.h"
@@ -12,19 +13,6 @@ namespace scanloom::wire {
 namespace {
 
 constexpr int kLayersMax = 16; // four, and some more of a viewer that says one twice
-
-using Differences = google::protobuf::RepeatedField<std::int32_t>;
-
-/// Neighbours are near one another: their differences take a byte or two each.
-void append_differences(const std::vector<PointMm>& points, Differences& out) {
-    out.Reserve(static_cast<int>(2 * points.size()));
-    PointMm before;
-    for (const PointMm& point : points) {
-        out.AddAlreadyReserved(point.x - before.x);
-        out.AddAlreadyReserved(point.y - before.y);
-        before = point;
-    }
-}
 
 void write(const TileChanges& changes, v1::TileChanges& out) {
     out.set_layer(static_cast<v1::Layer>(changes.layer));

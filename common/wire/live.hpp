@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/geometry/point_mm.hpp"
 #include "common/geometry/pose2.hpp"
 #include "common/scan/sensor.hpp"
 
@@ -23,14 +24,6 @@ struct LiveRequest {
     bool points = false;
 
     friend bool operator==(const LiveRequest&, const LiveRequest&) = default;
-};
-
-/// Millimetres.
-struct PointMm {
-    std::int32_t x = 0;
-    std::int32_t y = 0;
-
-    friend bool operator==(const PointMm&, const PointMm&) = default;
 };
 
 struct TileChanges {

@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/error_codes.hpp"
 #include "common/wire/frame_decoder.hpp"
+#include "common/wire/locate_convert.hpp"
 #include "common/wire/proto_convert.hpp"
 #include "common/wire/request_convert.hpp"
 #include "common/wire/session_convert.hpp"
@@ -115,17 +116,15 @@ Result<Message> read_frame(const v1::Frame& frame) {
     case v1::Frame::kPing: return Message(Ping{frame.ping().nonce()});
     case v1::Frame::kPong: return Message(Pong{frame.pong().nonce()});
     case v1::Frame::kGoodbye: return Message(Goodbye{frame.goodbye().reason()});
-    case v1::Frame::kCorrection: {
-        auto pose = from_proto(frame.correction().t_map_odom());
-        if (!pose) return prefixed("correction.T_map_odom.", pose.error());
-        return Message(Correction{*pose, frame.correction().revision()});
-    }
+    case v1::Frame::kCorrection: return as_message("correction.", from_proto(frame.correction()));
     case v1::Frame::kPlanRequest: return as_message("plan_request.", from_proto(frame.plan_request()));
     case v1::Frame::kPlanReply: return as_message("plan_reply.", from_proto(frame.plan_reply()));
     case v1::Frame::kGoalRequest: return as_message("goal_request.", from_proto(frame.goal_request()));
     case v1::Frame::kGoalReply: return as_message("goal_reply.", from_proto(frame.goal_reply()));
     case v1::Frame::kCoverageRequest: return as_message("coverage_request.", from_proto(frame.coverage_request()));
     case v1::Frame::kCoverageReply: return as_message("coverage_reply.", from_proto(frame.coverage_reply()));
+    case v1::Frame::kLocateRequest: return as_message("locate_request.", from_proto(frame.locate_request()));
+    case v1::Frame::kLocateReply: return as_message("locate_reply.", from_proto(frame.locate_reply()));
     case v1::Frame::kCompressedScanBatch:
         return Message(CompressedScanBatch{frame.compressed_scan_batch().size(), frame.compressed_scan_batch().zstd()});
     case v1::Frame::BODY_NOT_SET: break;
@@ -177,16 +176,15 @@ struct ToProto {
     void operator()(const Ping& ping) const { frame.mutable_ping()->set_nonce(ping.nonce); }
     void operator()(const Pong& pong) const { frame.mutable_pong()->set_nonce(pong.nonce); }
     void operator()(const Goodbye& goodbye) const { frame.mutable_goodbye()->set_reason(goodbye.reason); }
-    void operator()(const Correction& correction) const {
-        to_proto(correction.T_map_odom, *frame.mutable_correction()->mutable_t_map_odom());
-        frame.mutable_correction()->set_revision(correction.revision);
-    }
+    void operator()(const Correction& correction) const { to_proto(correction, *frame.mutable_correction()); }
     void operator()(const PlanRequest& request) const { to_proto(request, *frame.mutable_plan_request()); }
     void operator()(const PlanReply& reply) const { to_proto(reply, *frame.mutable_plan_reply()); }
     void operator()(const GoalRequest& request) const { to_proto(request, *frame.mutable_goal_request()); }
     void operator()(const GoalReply& reply) const { to_proto(reply, *frame.mutable_goal_reply()); }
     void operator()(const CoverageRequest& request) const { to_proto(request, *frame.mutable_coverage_request()); }
     void operator()(const CoverageReply& reply) const { to_proto(reply, *frame.mutable_coverage_reply()); }
+    void operator()(const LocateRequest& request) const { to_proto(request, *frame.mutable_locate_request()); }
+    void operator()(const LocateReply& reply) const { to_proto(reply, *frame.mutable_locate_reply()); }
     void operator()(const CompressedScanBatch& batch) const {
         frame.mutable_compressed_scan_batch()->set_size(batch.size);
         frame.mutable_compressed_scan_batch()->set_zstd(batch.zstd);
@@ -212,7 +210,9 @@ std::string_view name_of(const Message& message) noexcept {
                                            "goal_reply",
                                            "coverage_request",
                                            "coverage_reply",
-                                           "compressed_scan_batch"};
+                                           "compressed_scan_batch",
+                                           "locate_request",
+                                           "locate_reply"};
     static_assert(std::size(kNames) == std::variant_size_v<Message>);
     return kNames[message.index()];
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/geometry/point_mm.hpp"
 #include "common/geometry/pose2.hpp"
 #include "common/scan/scan.hpp"
 #include "common/scan/sensor.hpp"
@@ -99,9 +100,13 @@ struct Goodbye {
     friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
+/// Where a robot's odometry frame is, as the server has found it.
 struct Correction {
     Pose2 T_map_odom;
     std::uint64_t revision = 0;
+    double explained = 0.0;      ///< part of what the robot saw, 0 to 1
+    double position_sigma = 0.0; ///< metres, in the direction least known
+    double yaw_sigma = 0.0;      ///< radians
 
     friend bool operator==(const Correction&, const Correction&) = default;
 };
@@ -205,9 +210,37 @@ struct CoverageReply {
     friend bool operator==(const CoverageReply&, const CoverageReply&) = default;
 };
 
-using Message =
-    std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction, PlanRequest,
-                 PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply, CompressedScanBatch>;
+inline constexpr std::size_t kLocatePointsMin = 20;
+inline constexpr std::size_t kLocatePointsMax = 32'768; ///< so that every request fits a frame
+
+/// Around a point of the map, along each axis.
+struct Near {
+    Point2 point{0.0, 0.0};
+    double radius = 0.0; ///< metres
+
+    friend bool operator==(const Near&, const Near&) = default;
+};
+
+struct LocateRequest {
+    std::uint64_t id = 0;
+    std::vector<PointMm> points; ///< odometry frame, within kCoordinateMax
+    Point2 from{0.0, 0.0};       ///< metres, odometry frame: where they were seen from
+    std::optional<Near> near;    ///< none: anywhere
+
+    friend bool operator==(const LocateRequest&, const LocateRequest&) = default;
+};
+
+struct LocateReply {
+    std::uint64_t id = 0;
+    std::uint64_t revision = 0;
+    Result<Correction> correction;
+
+    friend bool operator==(const LocateReply&, const LocateReply&) = default;
+};
+
+using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, Ping, Pong, Goodbye, Correction,
+                             PlanRequest, PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply,
+                             CompressedScanBatch, LocateRequest, LocateReply>;
 
 /// Name of the frame a message travels in, as proto/ spells it ("scan_batch").
 [[nodiscard]] std::string_view name_of(const Message& message) noexcept;

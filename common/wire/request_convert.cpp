@@ -1,13 +1,11 @@
 #include "common/wire/request_convert.hpp"
 
-#include "common/scan/limits.hpp"
-#include "common/wire/error_codes.hpp"
+#include "common/wire/point_convert.hpp"
 #include "common/wire/proto_convert.hpp"
 
 #include <fmt/format.h>
 #include <google/protobuf/repeated_field.h>
 
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,28 +14,6 @@ namespace scanloom::wire {
 namespace {
 
 using Coordinates = google::protobuf::RepeatedField<double>;
-
-Result<> check_coordinate(std::string_view field, double metres) {
-    if (!std::isfinite(metres)) return invalid_field(fmt::format("{} is {}; a finite number is needed", field, metres));
-    if (std::abs(metres) > kCoordinateMax) {
-        return invalid_field(
-            fmt::format("{} is {:g}; at most {:g} either way is allowed", field, metres, kCoordinateMax));
-    }
-    return {};
-}
-
-/// Of lengths, costs and areas.
-Result<> check_size(std::string_view field, double size) {
-    if (std::isfinite(size) && size >= 0.0) return {};
-    return invalid_field(fmt::format("{} is {}; a finite number from 0 on is needed", field, size));
-}
-
-Result<> check(std::string_view field, const v1::Point& point) {
-    if (auto ok = check_coordinate(fmt::format("{}.x", field), point.x()); !ok) return ok;
-    return check_coordinate(fmt::format("{}.y", field), point.y());
-}
-
-Point2 value_of(const v1::Point& point) { return {point.x(), point.y()}; }
 
 template <class Request>
 Result<> read_start(const Request& proto, std::optional<Point2>& start) {
@@ -125,15 +101,6 @@ Result<Coverage> read_coverage(const v1::Coverage& proto) {
     return Coverage{std::move(*path), proto.free_area(), proto.covered_area(), std::move(*runs), proto.cell_size()};
 }
 
-Error value_of(const v1::Refusal& refusal) { return {to_errc(refusal.code()), refusal.message()}; }
-
-Error without_outcome() { return invalid_field("outcome is absent; a reply tells what was found, or why nothing was"); }
-
-void write(const Point2& point, v1::Point& out) {
-    out.set_x(point.x());
-    out.set_y(point.y());
-}
-
 void write(const std::vector<Point2>& points, Coordinates& out) {
     out.Reserve(static_cast<int>(2 * points.size()));
     for (const Point2& point : points) {
@@ -151,7 +118,7 @@ void write(const Path& path, v1::Path& out) {
 void write(const Goal& goal, v1::Goal& out) {
     out.set_exploration(static_cast<v1::Exploration>(goal.exploration));
     if (goal.path) write(*goal.path, *out.mutable_path());
-    if (goal.target) write(*goal.target, *out.mutable_target());
+    if (goal.target) write_point(*goal.target, *out.mutable_target());
     out.set_given_up(goal.given_up);
     out.set_in_danger(goal.in_danger);
 }
@@ -166,11 +133,6 @@ void write(const Coverage& coverage, v1::Coverage& out) {
         out.add_unreachable(run.count);
     }
     out.set_cell_size(coverage.cell_size);
-}
-
-void write(const Error& refusal, v1::Refusal& out) {
-    out.set_code(to_code(refusal.code));
-    out.set_message(refusal.message);
 }
 
 } // namespace
@@ -233,8 +195,8 @@ Result<CoverageReply> from_proto(const v1::CoverageReply& proto) {
 
 void to_proto(const PlanRequest& request, v1::PlanRequest& out) {
     out.set_id(request.id);
-    if (request.start) write(*request.start, *out.mutable_start());
-    write(request.goal, *out.mutable_goal());
+    if (request.start) write_point(*request.start, *out.mutable_start());
+    write_point(request.goal, *out.mutable_goal());
     out.set_allow_unknown(request.allow_unknown);
     if (request.body_radius) out.set_body_radius(*request.body_radius);
     if (request.danger_cost) out.set_danger_cost(*request.danger_cost);
@@ -246,13 +208,13 @@ void to_proto(const PlanReply& reply, v1::PlanReply& out) {
     if (reply.path) {
         write(*reply.path, *out.mutable_path());
     } else {
-        write(reply.path.error(), *out.mutable_refusal());
+        write_refusal(reply.path.error(), *out.mutable_refusal());
     }
 }
 
 void to_proto(const GoalRequest& request, v1::GoalRequest& out) {
     out.set_id(request.id);
-    if (request.start) write(*request.start, *out.mutable_start());
+    if (request.start) write_point(*request.start, *out.mutable_start());
     if (request.body_radius) out.set_body_radius(*request.body_radius);
     out.set_frontier_size_min(request.frontier_size_min);
 }
@@ -263,13 +225,13 @@ void to_proto(const GoalReply& reply, v1::GoalReply& out) {
     if (reply.goal) {
         write(*reply.goal, *out.mutable_goal());
     } else {
-        write(reply.goal.error(), *out.mutable_refusal());
+        write_refusal(reply.goal.error(), *out.mutable_refusal());
     }
 }
 
 void to_proto(const CoverageRequest& request, v1::CoverageRequest& out) {
     out.set_id(request.id);
-    if (request.start) write(*request.start, *out.mutable_start());
+    if (request.start) write_point(*request.start, *out.mutable_start());
     if (request.body_radius) out.set_body_radius(*request.body_radius);
     if (request.spacing) out.set_spacing(*request.spacing);
     write(request.region, *out.mutable_region());
@@ -281,7 +243,7 @@ void to_proto(const CoverageReply& reply, v1::CoverageReply& out) {
     if (reply.coverage) {
         write(*reply.coverage, *out.mutable_coverage());
     } else {
-        write(reply.coverage.error(), *out.mutable_refusal());
+        write_refusal(reply.coverage.error(), *out.mutable_refusal());
     }
 }
 

@@ -3,6 +3,7 @@
 #include "common/app/option_checks.hpp"
 #include "common/scan/limits.hpp"
 #include "robot_client/source/range_median.hpp"
+#include "robot_client/uplink/limits.hpp"
 #include "robot_client/uplink/server_address.hpp"
 
 #include <CLI/CLI.hpp>
@@ -15,8 +16,8 @@
 namespace scanloom::robot {
 namespace {
 
-/// X,Y,YAW, the yaw as it was written.
-std::optional<Pose2> to_pose(const std::string& text) {
+/// Three numbers with commas between them, none larger than coordinates are.
+std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
     std::array<double, 3> numbers{};
     const auto words = CLI::detail::split(text, ',');
     if (words.size() != numbers.size()) return std::nullopt;
@@ -25,7 +26,14 @@ std::optional<Pose2> to_pose(const std::string& text) {
             return std::nullopt;
         }
     }
-    return Pose2{numbers[0], numbers[1], numbers[2]};
+    return numbers;
+}
+
+/// X,Y,YAW, the yaw as it was written.
+std::optional<Pose2> to_pose(const std::string& text) {
+    const auto numbers = to_numbers(text);
+    if (!numbers) return std::nullopt;
+    return Pose2{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
 std::string check_pose(const std::string& text) {
@@ -39,6 +47,19 @@ std::string check_pose(const std::string& text) {
 Pose2 checked_pose(const std::string& text) {
     const Pose2 pose = *to_pose(text);
     return {pose.x, pose.y, normalize_angle(pose.yaw)};
+}
+
+std::string check_near(const std::string& text) {
+    const auto numbers = to_numbers(text);
+    if (!numbers) return fmt::format("'{}' is not X,Y,RADIUS in metres", text);
+    if ((*numbers)[2] > 0.0 && (*numbers)[2] <= kNearRadiusMax) return {};
+    return fmt::format("a radius of {:g} m cannot be; give more than 0 and at most {:g}", (*numbers)[2],
+                       kNearRadiusMax);
+}
+
+wire::Near checked_near(const std::string& text) {
+    const auto numbers = *to_numbers(text);
+    return {{numbers[0], numbers[1]}, numbers[2]};
 }
 
 std::string check_window(const std::string& text) {
@@ -59,7 +80,8 @@ std::string check_confidence(const std::string& text) {
 void add_poses(CLI::App& ld06, Ld06Options& options) {
     ld06.add_option_function<std::string>(
             "--pose", [&](const std::string& text) { options.pose = checked_pose(text); },
-            "X,Y,YAW of a robot that stands: metres, and radians counter-clockwise")
+            "X,Y,YAW of a robot that stands: metres, and radians counter-clockwise. With --locate: where it stands "
+            "first, in case nothing is mapped yet; default there: 0,0,0")
         ->check(check_pose);
     ld06.add_option("--poses", options.poses,
                     "File of lines: t x y yaw, '-' = stdin. t counts seconds from the first packet of a file, for a "
@@ -71,6 +93,34 @@ void add_poses(CLI::App& ld06, Ld06Options& options) {
         ->check(check_pose);
 }
 
+void add_locating(CLI::App& ld06, Ld06Options& options) {
+    ld06.add_flag(
+        "--locate", options.locate,
+        "For a lidar without odometry that is carried from place to place: the server tells from what it sees "
+        "where it stands. What it sees on its way is dropped. A capture file is sent once more by each run");
+    ld06.add_option_function<std::string>(
+            "--near", [&](const std::string& text) { options.near = checked_near(text); },
+            "X,Y,RADIUS in metres, with --locate: it stands no farther from there, along either axis. Default: "
+            "anywhere in the map")
+        ->check(check_near);
+}
+
+/// What is wrong with saying where the robot is; empty: nothing.
+std::string complaint_about_places(const Ld06Options& options) {
+    if (options.near && !options.locate) return "ld06: --near is of --locate; give both, or neither";
+    if (options.locate && !options.poses.empty()) {
+        return "ld06: --locate asks the server where the robot is and --poses says it; leave one of them out";
+    }
+    if (options.locate && options.speed > 0.0) {
+        return "ld06: with --locate a capture file is read as fast as the server takes it; leave --speed out";
+    }
+    if (!options.locate && options.pose.has_value() != options.poses.empty()) {
+        return "ld06: say where the robot is, either with --pose X,Y,YAW or with --poses FILE, or have the server tell "
+               "with --locate";
+    }
+    return {};
+}
+
 } // namespace
 
 CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
@@ -78,6 +128,7 @@ CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
     ld06->add_option("INPUT", options.input, "Serial device (/dev/ttyUSB0), tcp://HOST:PORT (ser2net), or capture file")
         ->configurable(false);
     add_poses(*ld06, options);
+    add_locating(*ld06, options);
     ld06->add_option("--min-range", options.range_min, "Metres; shorter readings are invalid. Default: 0.02")
         ->check(check_within(0.0, kRangeMax));
     ld06->add_option("--min-confidence", options.confidence_min, "0 to 255; readings of less are invalid. Default: 100")
@@ -100,10 +151,7 @@ std::string complaint_about(const Ld06Options& options) {
     if (options.input.starts_with(kTcpScheme) && !parse_server_address(options.input.substr(kTcpScheme.size()))) {
         return fmt::format("ld06: '{}' is not tcp://HOST:PORT", options.input);
     }
-    if (options.pose.has_value() != options.poses.empty()) {
-        return "ld06: say where the robot is, either with --pose X,Y,YAW or with --poses FILE";
-    }
-    return {};
+    return complaint_about_places(options);
 }
 
 } // namespace scanloom::robot

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/geometry/pose2.hpp"
+#include "common/wire/messages.hpp"
 
 #include <optional>
 #include <string>
@@ -19,8 +20,10 @@ inline constexpr std::string_view kTcpScheme = "tcp://";
 /// An LD06 lidar, or what one sent; see Ld06ScanOptions for the readings.
 struct Ld06Options {
     std::string input;               ///< a capture file, a serial device, or tcp://HOST:PORT
-    std::optional<Pose2> pose;       ///< of a robot that stands; else `poses`
+    std::optional<Pose2> pose;       ///< of a robot that stands; else `poses`, or `locate`
     std::string poses;               ///< a file of poses; "-": stdin
+    bool locate = false;             ///< the server tells the place, `pose` only that of the first if nothing is mapped
+    std::optional<wire::Near> near;  ///< with `locate`: where it must be; none: anywhere in the map
     Pose2 mount;                     ///< T_robot_sensor
     std::optional<double> range_min; ///< metres
     std::optional<int> confidence_min;

@@ -2,8 +2,10 @@
 
 #include "robot_client/source/ld06_capture.hpp"
 #include "robot_client/source/ld06_live.hpp"
+#include "robot_client/source/locating_source.hpp"
 #include "robot_client/source/pose_feed.hpp"
 #include "robot_client/source/pose_lines.hpp"
+#include "robot_client/source/replayed_source.hpp"
 #include "robot_client/uplink/server_address.hpp"
 
 #include <fmt/format.h>
@@ -49,6 +51,24 @@ Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
     return lines;
 }
 
+/// A lidar that asks where it stands: its own poses are its origin.
+void locate(PreparedSource& prepared, const Ld06Options& ld06, std::unique_ptr<LiveSource> turns, Console& console) {
+    auto locating = std::make_unique<LocatingSource>(std::move(turns), ld06.pose.value_or(Pose2{}),
+                                                     [&console](const std::string& text) { console.note(text); });
+    prepared.locating = locating.get();
+    prepared.near = ld06.near;
+    prepared.live = std::move(locating);
+}
+
+Result<PreparedSource> prepare_located_capture(const Ld06Options& ld06, const Ld06ScanOptions& scan, Console& console) {
+    auto capture = Ld06Capture::open(ld06.input, scan, Pose2{});
+    if (!capture) return capture.error();
+    auto recording = std::make_unique<Ld06Capture>(std::move(*capture));
+    PreparedSource prepared;
+    locate(prepared, ld06, std::make_unique<ReplayedSource>(std::move(recording)), console);
+    return prepared;
+}
+
 Result<PreparedSource> prepare_capture(const Ld06Options& ld06, const Ld06ScanOptions& scan, Console& console) {
     Ld06Poses poses = ld06.pose.value_or(Pose2{});
     std::optional<std::size_t> skipped;
@@ -76,7 +96,9 @@ bool is_regular_standard_input() {
 /// Poses of a device that come while it is read, or that are known from the begin.
 Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::optional<std::size_t>& skipped,
                         Console& console) {
-    if (ld06.pose) {
+    if (ld06.locate) {
+        live.poses = Pose2{};
+    } else if (ld06.pose) {
         live.poses = *ld06.pose;
     } else if (ld06.poses == kStandardInput && !is_regular_standard_input()) {
         live.poses = PoseTimeline();
@@ -99,7 +121,12 @@ Result<PreparedSource> prepare_device(const Ld06Options& ld06, const Ld06ScanOpt
     live.scan = scan;
     PreparedSource prepared;
     if (auto added = add_live_poses(ld06, live, prepared.skipped_lines, console); !added) return added.error();
-    prepared.live = std::make_unique<Ld06Live>(std::move(live));
+    auto turns = std::make_unique<Ld06Live>(std::move(live));
+    if (ld06.locate) {
+        locate(prepared, ld06, std::move(turns), console);
+    } else {
+        prepared.live = std::move(turns);
+    }
     return prepared;
 }
 
@@ -119,11 +146,16 @@ Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Optio
         return prepare_device(ld06, *scan, SerialDevice{ld06.input}, console);
     }
     if (std::filesystem::is_regular_file(status)) {
-        if (options.spool.empty()) return prepare_capture(ld06, *scan, console);
+        if (options.spool.empty()) {
+            return ld06.locate ? prepare_located_capture(ld06, *scan, console) : prepare_capture(ld06, *scan, console);
+        }
         return Error{Errc::kInvalidField,
-                     fmt::format("{}: a capture file is a recording and needs no --spool: the same command again "
-                                 "continues behind what is stored; leave --spool out",
-                                 ld06.input)};
+                     fmt::format("{}: a capture file is a recording and needs no --spool: {}; leave "
+                                 "--spool out",
+                                 ld06.input,
+                                 ld06.locate ? "it can be read again"
+                                             : "the same command again continues behind what is "
+                                               "stored")};
     }
     return Error{Errc::kNotFound,
                  std::filesystem::exists(status)

@@ -4,6 +4,7 @@
 #include "robot_client/app/progress.hpp"
 #include "robot_client/source/exploring_source.hpp"
 #include "robot_client/source/live_source.hpp"
+#include "robot_client/source/locating_source.hpp"
 #include "robot_client/source/source.hpp"
 
 #include <memory>
@@ -21,6 +22,8 @@ struct PreparedSource {
     std::string fingerprint;              ///< for Hello.source
     std::string_view order;               ///< of a log's scans: "file" or "time", a literal; else empty
     ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
+    LocatingSource* locating = nullptr;   ///< likewise
+    std::optional<wire::Near> near;       ///< of `locating`: where it must be
     std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
 
     /// Those of the source.

@@ -7,6 +7,7 @@
 #include "robot_client/app/summary.hpp"
 #include "robot_client/uplink/guidance.hpp"
 #include "robot_client/uplink/live_feed.hpp"
+#include "robot_client/uplink/location.hpp"
 #include "robot_client/uplink/recording_feed.hpp"
 #include "robot_client/uplink/uplink.hpp"
 #include "robot_client/uplink/waiting_robot.hpp"
@@ -140,6 +141,7 @@ ExitCode run(const RobotOptions& options) {
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kWayClearance));
+    if (prepared->locating != nullptr) prepared->locating->ask_with(located_by(uplink, prepared->near));
     std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);

@@ -3,6 +3,7 @@
 #include "common/scan/limits.hpp"
 #include "robot_client/client/checks.hpp"
 #include "robot_client/client/worker.hpp"
+#include "robot_client/source/seen_points.hpp"
 #include "robot_client/uplink/waiting_robot.hpp"
 
 #include <fmt/format.h>
@@ -41,6 +42,25 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     uplink.conversation.hello.body_radius = options.body_radius;
     uplink.on_trouble = told_once(options.tell);
     return uplink;
+}
+
+/// What a robot saw that asks where it is.
+/// Errors  kInvalidField, kTooLarge: what no server would take.
+Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans) {
+    static_assert(Client::kLocatePointsMin == kSeenPointsMin);
+    if (!sensor) return Error{Errc::kInvalidField, "scans need their sensor"};
+    if (sensor->kind != SensorKind::kLaser) {
+        return Error{Errc::kInvalidField, "only what lasers see tells where a robot is; give the scans of one"};
+    }
+    SeenPoints seen;
+    for (std::size_t n = 0; n < scans.size(); ++n) {
+        if (auto ok = check(*sensor, scans[n]); !ok) return prefixed(fmt::format("scans[{}]: ", n), ok.error());
+        seen.add(scans[n], *sensor);
+    }
+    if (seen.count() >= kSeenPointsMin) return seen;
+    return Error{Errc::kInvalidField, fmt::format("the scans met something {} times; {} are needed to tell where they "
+                                                  "were taken",
+                                                  seen.count(), kSeenPointsMin)};
 }
 
 Path from_wire(wire::Path path, std::uint64_t revision) {
@@ -126,6 +146,21 @@ Result<Coverage> Client::coverage(milliseconds patience, const CoverageOptions& 
         from_wire(std::move(found->path), revision), found->free_area, found->covered_area, {}, found->cell_size};
     for (const auto& run : found->unreachable) coverage.unreachable.push_back({run.j, run.i, run.count});
     return coverage;
+}
+
+Result<Location> Client::locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
+                                milliseconds patience, const LocateOptions& options) {
+    auto seen = seen_from(sensor, scans);
+    if (!seen) return seen.error();
+    wire::LocateRequest request;
+    request.points = seen->points();
+    request.from = seen->from();
+    if (options.near) request.near = wire::Near{options.near->point, options.near->radius};
+    auto reply = worker_->ask(std::move(request), patience);
+    if (!reply) return reply.error();
+    const auto& found = std::get<wire::LocateReply>(*reply).correction;
+    if (!found) return found.error();
+    return Location{found->T_map_odom, found->explained, found->position_sigma, found->yaw_sigma, found->revision};
 }
 
 ClientStatus Client::status() const { return worker_->status(); }

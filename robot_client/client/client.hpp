@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -105,6 +106,26 @@ struct ExplorationGoal {
     std::uint32_t given_up = 0; ///< cells of frontiers that count no more, as robots looked at them in vain
 };
 
+/// What locate() keeps to.
+struct LocateOptions {
+    /// The robot is no more than `radius` metres from there, along each axis of the map. Around (x(), y()), metres.
+    struct Near {
+        Point2 point{0.0, 0.0};
+        double radius = 0.0; ///< more than 0, at most 1000
+    };
+    std::optional<Near> near = {}; ///< none: anywhere in the map
+};
+
+/// Where a robot's odometry frame is in the map: a scan's pose is T_map_odom times that of the robot in its odometry
+/// frame (pose2.hpp: compose()).
+struct Location {
+    Pose2 T_map_odom;
+    double explained = 0.0;      ///< part of what the robot saw that lies on what the map has, 0 to 1
+    double position_sigma = 0.0; ///< metres, of where the sensor was, in the direction least known
+    double yaw_sigma = 0.0;      ///< radians
+    std::uint64_t revision = 0;  ///< of the session's maps it was found on
+};
+
 /// A robot's link to a Scanloom server, for the robot's own program.
 ///
 ///     const auto robot = Client::start(options).value();
@@ -113,8 +134,8 @@ struct ExplorationGoal {
 ///
 /// Scans are handed over and forgotten: a thread of the client's own sends them, keeps what is not stored, connects
 /// again when the link breaks, and resumes behind what the server has. Nothing waits for the network but flush(),
-/// close() and the questions plan(), next_goal() and coverage(), each for as long as its caller has patience. What is
-/// not done by then is kTimeout, and goes on without the caller: scans are sent, a question is forgotten.
+/// close() and the questions plan(), next_goal(), coverage() and locate(), each for as long as its caller has patience.
+/// What is not done by then is kTimeout, and goes on without the caller: scans are sent, a question is forgotten.
 ///
 /// Units   metres, radians counter-clockwise, seconds; ranges in whole millimetres (scan.hpp).
 /// Frames  those of Scan and Sensor: every scan comes with the robot's pose in the map frame.
@@ -162,6 +183,17 @@ public:
 
     /// A way over all free ground, or that of a region.
     [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
+
+    /// Where the robot is, told from what a laser saw from one place: for robots without odometry, and such that have
+    /// lost their way. No scan needs to have been handed over before; these are not.
+    /// Frames  Scan::pose is that of the robot in its odometry frame here; of a robot without odometry the origin.
+    /// Shapes  a scan or some, ten are plenty; all of `sensor`, with kLocatePointsMin returns among them. Of more than
+    ///         32,768 returns some are taken, evenly.
+    /// Errors  the server's are kAmbiguous: several places look alike; kUndetermined: too little of what is seen is in
+    ///         the map; kNothingMapped: no laser has seen anything yet.
+    [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
+                                          std::chrono::milliseconds patience, const LocateOptions& options = {});
+    static constexpr std::size_t kLocatePointsMin = 20;
 
     /// Waits, as the destructor does, while the disk of the spool stands still.
     [[nodiscard]] ClientStatus status() const;

@@ -48,7 +48,7 @@ except ImportError as missing:
     raise ImportError("scanloom_client needs protobuf; install python3-protobuf, or protobuf with pip") from missing
 
 __version__ = "0.1.0"
-__all__ = ["BufferFull", "Client", "Coverage", "Goal", "Path", "ScanloomError", "Sensor", "Status", "Timing"]
+__all__ = ["BufferFull", "Client", "Coverage", "Goal", "Location", "Path", "ScanloomError", "Sensor", "Status", "Timing"]
 
 Point = Tuple[float, float]
 Pose = Tuple[float, float, float]
@@ -130,6 +130,20 @@ class Coverage:
 
 
 @dataclasses.dataclass(frozen=True)
+class Location:
+    """Where a robot's odometry frame is in the map: at(odometry) is the pose to send a scan with."""
+
+    T_map_odom: Pose
+    explained: float  # part of what the robot saw that lies on what the map has, 0 to 1
+    position_sigma: float  # metres, of where the sensor was, in the direction least known
+    yaw_sigma: float  # radians
+    revision: int  # of the session's maps it was found on
+
+    def at(self, odometry: Pose = (0.0, 0.0, 0.0)) -> Pose:
+        return _compose(self.T_map_odom, odometry)
+
+
+@dataclasses.dataclass(frozen=True)
 class Status:
     """How far a Client is."""
 
@@ -160,42 +174,44 @@ class Timing:
 
 # What protoc makes of proto/scanloom/v1/frame.proto, compressed: robot_client/python/embed_protocol.py writes it.
 _PROTOCOL = """
-eNq1Wc2TG1cRj1bfrZV2NPslr53gKCGYTcUhdiAFVAr0tZawVlI9aZ04B6ZmR+PdwZJmMpJsb3KBG1e45w/gQBUnuFNcOXHgX+BPgBN093sjzczKLlKB
-k6a7f/0++nX3636CP+XhYG6Zs4nrTt9/9sH79H3X892FqxcC/t1nH1S/D+mBO7fv6duQeFFJ3E7cSYjEC6KuKluSutI1SF6ZzytJpumz+hiKZzPnietP
-a7OLiT3X9yD9xPHnCzWEJPRbkHdmlm9P7dlCDbdmkI7lLlFCAxeFJKp3oNR64U0cy1mosQ8gY/IXDp7EIRRV/QkUhwvb8+yxAuqQWs6cYA38rR9BZmxP
-FuYc50/eKde3NBxAcqp/TgDUbTPYww8gu5Sb4hEK947uhkx1N7Lh9msiAOs/hJytVsybLNy7GVGMbgc1V3Caci63wEaITxnZHk2pwPU86nmm5cwuql9t
-QXloz+au37Tnlu94C8edkc3mzOStFIWi9Hch9dSZjXmdpXuH0dkY8hDFgkFkz5k5tXlpecHf+h1IT/nQUrxePTICu5KQAP391bGlGRqdbG334DzxqHKm
-Z/uLpW9XMnyEK1q/CXkfYbYxdWaVrBQy49SZhYTmi0ouLDRfVH+zBakhTkxePLc/Z3ukBH2SA84X5tRTrimJkOmSEdO9AykP9/eKjbNcvws5d+xO7YV/
-pXa+CbvCkIfyYue46eSdrPRQydHfhoIzW+D8zsJBQBYBRQaE2SFL5/4rS1c/hDyZpG4urEv9O2gFJGR0Fe6Voz6B30LKjz8BWLsIGv1w2OoN+8J42Ok1
-jbPecNBqdE46rab2mr6PPhkSdmvDltAScfaw36sJbaue/GcicZ7h7HQf/rEDNyKZy57P0aM3Ja+/FTEDSHHDnT1xLvTbkLfsycSYO1/YMg1QuBFriJxf
-JxJ6FcAzXMtaeo4twyDRxqzk9RWLMHginvHEt6XnJ9pbIu2dIEmyW5D1DM930D1SLEyKjDcgmqQVSHvsommWpdAl0EHXEvRP9ux2miTmC5LcA909R9ez
-JraxuHSspzPckvTxdkaUA9koEJHOHSie47Eaq3hhr29nxTaxa4pLyI8oNq6MqYs5r5LnqN+PnLAwr05J2M5R0MhvUnwLwESbTJcTc2FXADVz7bwI8ZQ1
-L52F4ZtjZzmvFHgRIPLIE8wizHehNPZdz5i5hm/jsmaVbR6sILaJ33MFcwl6DKVLZzo11pdGEaHp9rYoEr8TsMPYsR1gS4wtSmzTDmF/DIeM3WDnHV5z
-SewToL/J1h+AzspRg2ustyM0ktVjRv8YKnN3ZvqbJiyzoiYOGLFxxvuwK9WjU+qsWRZlFsbn/BD2pNLavdnfdllLV1qDwM+V870FhUCL3HaPwbsiL8HK
-d8MgHHGfQXsrkBzpp7BtTcz53Ji7S9+yKwfsa5WIrzUIMGR5e18UrDVJI7wHmhwhFKCHPNeBKLFkEI7SbwcTqlitMPRQgIQGAYvGlDDpAcHAN9hZKqLM
-wjYdfmjsd2EnpMTDH7HCDVFcKQQzvAPbY0rXvkGJZl65ycgjUZDcBjFV0CqcipdbvOKbQqmvQqa+DWCs8li9CIWQSejuV1uuA+QMlY3qOcjIQwy+zBf1
-fdjd4IJ1DUpR1+IJV2mCJ1zHOZPrKK+XYceIBjSzooG7Zq3is34EFeMlYcgrvR5l9Ztww3hZJNUPYM/YECf1Q9g3NoVCvQTbRsjbozTKd6BohH24vgtl
-I+6SIZQ6BVrHBher66AZMS9i5bCz8FlEvOL4S8gFOVm/Afui9tg47Tdb3dgVW4U31qJO71FLDFuGul2ZifftIeyuMXXRQnG7dqptRQUjUSPtWldLHv8c
-CqEgxduu0sDLe4hX9ZlotGJLOIKDiLTfaJwNar3GY3nVR2Ttzulp/Kr/1dtwGL7qn/hYYW646I9e0socvbxQqP4rC+kTGg8vivQlmtpVRX20GGuTBGsE
-CdG/B9nn9sTCykxV8nsR9CdSRpW4gul90GV9iI6+Kr9VMf/GhvI6VKTjMOX5tcr9IwDSMs6pOFPF5sG1moxLNxwgP1/VcW9D0rSeqpJTi2jUrKeIJTFZ
-w/Z9rF4yG6zRIglZgyFYGaY8bDG4FokXhgMUIJIBDHQRmNsEdBUQf8m+F647Pr+yuRaJ2/eBlJF9FQybK7Bc37cttitsqG8bKzHqhcB4C297E7Skb3++
-tLE1LbBy9EYaIEBIOWoXvDVJB6HUvckV1yzxg5DKKKWD8AKC5r1wzclq3uKGeR8gIDTvxZqkeZU6zVvaMK9UVvNeBITewfvTfWb7JnZCwdw7rH4rZjAJ
-Ws+/Y0VZegNKoaFoHdqG9nQ9kFxL0Qoz9EewjyHi+RiXmIBDTl3msW7HxgqQYffeta6zMXllLN+6f8+q/Ju2lxWKrGcgde6Or6q/3YI0BzbWnhqnA8ud
-GLg0yg+qId4J+I8km5pB3z13ZQufF5LAsj2r8orqggOS8Av3qT3jEEU8E1jM42JsqpjTm/r5cLMiFJIaTmviUAWb4aEUxY2orKWyki8pagppm0EVkVNt
-DhBzXUPQ5RaCVf+YgKzKX/rrmGPkUgxnzAbJYyaRnM4YCxUN74CFMV765jleudQ2b3HbXCJ+U7KH2EG/C5mJM3UWc5XxdiPb7bJIKIj+JhZsvj3GSuL8
-aoHNaoqHLEhenVj04vDFfDFm4+UEf1e/gIwcCDde4iuCyyIuReVZbjOXOjysRek1gOqBOQO2GJBjBgnfw9KamlkDiwXpjQyTnb7GooHts5/R48HHsLvB
-MWmZqw6zKPh7tXSacVst/ReQxNSrfwsKYVPKFwgYr82IANPzJlSnrG0NikWAuOmS10xXfQppTt+Y4VMWFg88TSmWORjRQKlgDLn3FPeGIavcPiDp6c6n
-5wlaIk+XE2tG9Rak6AKgIJi5M0tOlhGSYKn7UumbkFV5njwcQ2CughI9XFLVzwDWWR0vDRjhKWEJNnanG29x9aQyOjW9PmLoJcm3nzkcttKYK7r6Fr14
-Ohher3jxrP4Md2AuLmmBHoFXT4+SIv7Enl0sLpWKosgJLHe+UE+l/F3tQ1bYT5Zzc/K/OZrqL7egELq39BJsqShOCfyiJzqslf3gMTJuKtyAkAB60qLr
-QwXvJiDLsQEsmphOnxvL2dOZ+1zmvJzYZuaZ5MXTUnpjWiJUUP+SoTLqAQZUr4S8DcmL6ZBa9asE5Fe37zUDvOL4uVTBk1VbjpUqKOBShY4eSxVfHpsq
-wqKlijpSKlUUjBozd7mgBFv9XQIKoSv+GxxRzKrJzVY9hvIT350tHDSQTI6OPCS86AIB50fV9YQvhr8mIEVr1X8EBXqYdn1zEdyT8Qa+tZaLMBibcWnW
-rZeYVRn1GDK4qwt78QqXUwjsfXIXzjN7Ziw9tZUs02cepXhnphxC3RU5Z9Zkmn1jVSF9Xd8IhUP5Ws1FvsHx8I184y8J2ImVYP93/3h99X+BerVMiIBB
-Ys7DF2SStExzkroWhvTeEPzv8IcE5IJtrI4/8erjx3OjLtgwMc+rzJkjRg1pvuNoPLwEWS5zaEHxGHIbCssZfliXfC2l6B8dEWbRDOsH4LScIXj+rf4+
-AcVIzfq1vOM+5IL6VnnI/sZqmF+cA8N8E085/nsK8qtrgbrtlhDY3Tewa4914m/AUUh2Wuue9MVpq2mciNppC7vxqJy5xqjfN7o18aClbdFjQnTss8Gg
-L0Y4Ar0MdPo9LUlvASFMp/eo1u3gDJ1Wt6mlYjOc9R72+p/0jGFryNppLHFuhuSKj0TvpNtpjLQM/Z8QAvTPRkb/xOiLZkto2djoDdFqdkZG69NGq9XE
-/efQgfWQfNQ5beEAWp7eOUJ80Rp0aw1UgNiAwXKarW4LN60VYqsZjvoCzVbrdFG4HbPEsH02GnV6D4wm7lgrxlTPerWzUbsvOp+haokedMK7ROt2+zXa
-w05srZ3eqCV6ta6mxdei1npy1u1q5djOe31jUBu1NT22xmbttPZg5Q+7x19CIZTKeYZPB92+qI1o6Khv7YEWFj7o1+hpic4zxB3VHrZ6Rv2x0R+10WPQ
-pSqwFwY0+qcDMq6WjLwB/Qea5uEm
+eNq1Wc2TG1cRj1YfK7VW2tnZD8trJzhKCM6m4hAnkAIqBfpaS1hf9aR1Yg5MzY7Gu4OlmclIa3uTC0euUFxTnDlQBRe4cKK4cuKf4E/gQkF3vzfSzKzs
+wmU4abr797769ddrwZ8KcDC3THfqebMPnnz4AX3f8QNv4enFkH/nyYfV70B26M3tu/oWpJ5VUrdSt1Mi9Yyoy8qGpC51DdKX5tNKmmn6rD6E0onrPPKC
+Wc09m9pzfQ+yj5xgvlBTSEK/CQXHtQJ7ZrsLNd2KQWMs7wIlNHFJSKJ6G8qtZ/7UsZyFmvsAciZ/4eRpnEJR1R9CabSwfd+eKKAOmQvXCffA3/oh5Cb2
+dGHOcf307Z36hoYTSE71LymAum2GZ/gubF7IQ/EMxbuHdyKquhM7cPs1EYL170HeVjvmQxbv3ogNjB8HRy7htORcHoGVkFwydjxaUoHrBRznm5bjnlW/
+3oCdke3OvaBpz63A8ReO55LO5szko5SEovT3IPPYcSe8z/Lda/HVGHIfxYJBpE/XnNm8tYLgb/02ZGd8aRnerx6bgU1JSID+wfLasgyNL7bSe3ifeFV5
+07eDxUVgV3J8hUtavwGFAGG2MXPcyqYUMqPnuBGh+aySjwrNZ9VfbkBmhAuTFc/tL1gfGUGfZIDzhTnzlWlKIqK6dEx170DGx/O94OAs1+9A3pt4M3sR
+XKqTr8MuMWShvNk5Hjp9e1NaqOTob0PRcRe4vrNwELCJgBIDouyIpvP/laarH0OBVFI3F9a5/i3UAhLSu4p3d+I2gd9Cyo8+A1iZCCr92qjVHw2Ecb/T
+bxon/dGw1egcd1pN7TV9H20yIuzWRi2hpZLs0aBfE9pGPf3PVOo0x9HpI/jHNlyPRS57PkeLXhe8/l7CCCDFDc995Jzpt6Bg2dOpMXe+tGUYIHcj1gg5
+v0il9CqAb3iWdeE7tnSDVBujkj9QLMLgjfjGo8CWlp9qb4isf4wkyW7Cpm/4gYPmkWFhWuT8IdEkrUDWZxPNsiyDJoEGupKgfbJlt7MkMZ+R5C7o3ima
+njW1jcW5Yz128UjSxts5sRPKxqGIxtyG0ileq7H0F7b69qbYInZNcQn5CfnGpTHzMOZVCuz1+7EbFuZlj4TtPDmN/KaBbwGYqJPZxdRc2BXAkfl2QUR4
+SpvnzsIIzIlzMa8UeRMgCsgTzCLMu1CeBJ5vuJ4R2Lgtt7LFkxXFFvH7nmAuQY+gfO7MZsYqaZQQmm1viRLxOyE7ip3YIbbM2JLENu0I9gdwjbFr9LzN
+ey6LfQIM1un6Q9B5cFzhGo/bFhrJ6gmlfwqVueeawboFd3igJg4YsXbFj2BXDo8vqfPIHbHDwuSaH8OeHLQyb7a3XR6lq1HD0M6V8b0FxXAUme0eg3dF
+QYKV7UZBOOM+g/aWIDnTj2DLmprzuTH3LgLLrhywrVVittYgwIjl7X1RtFYkzfA+aHKGiINe47UORJklw6iXfjNcUPlqhaHXBEho6LCoTAmTFhBOfJ2N
+pSJ2WNimy4/M/R5sRwbx9Ic84LooLQeEK7wDWxMK14FBgWZeucHIQ1GU3AYxldMqnPKXm7zjG0INX7pMfQvAWMaxegmKEZVQ7ldHrgPkDRWN6nnIyUsM
+v8xn9X3YXWOCdQ3KcdPiBZdhghdc+TmTKy+v78C2EXdoZsUdd8Va+mf9ECrGc9yQd3rVy+o34LrxPE+qH8CescZP6tdg31jnCvUybBkRa4/TKN+GkhG1
+4fou7BhJk4yg1C3QPtaYWF0HzUhYEQ+OGgvfRcwqjr6CfBiT9euwL2oPjd6g2eomUmwV3liJOv0HLTFqGSq7MhPz7TXYXWHqooXidq2nbcQFY1Gj0bWu
+lj76KRQjTorZrtLA5D3CVH0iGq3EFg7hICYdNBonw1q/8VCm+pis3en1kqn+1+/CtWiqfxRghbkm0R8+5ylz+PxCofqvPGSPaT5MFNlzVLWnivp4MdYm
+CdYIEqJ/Gzaf2lMLKzNVye/F0J9JGVXiCqYPQJf1IRr6svxWxfwba8rrSJGO0+zMr1TunwDQKOOUijNVbB5cqcm4dMMJCvNlHfc2pE3rsSo5tdiImvUY
+sSQmbdhBgNVLbo02WiQhbTAEK8OMj08MrkWSheEQBYhkAAM9BObXAT0FxF/S75nnTU4vba5Fkvq9J2WkXwXDxxVYXhDYFusV1tS3jaUYx0XAmIW3/Clq
+MrC/uLDxaVrkwfGMNESAkHIcXfRXJF2EGu5PL7lmSV6EHIxSugg/JGjdM8+cLtctrVn3HgIi656tSFpXDad1y2vWlYPVumchoXcwf3pP7MDEl1C49jYP
+v5lQmASt1t+24iy9AeXIVLQPbc3zdDWR3EvJijL0B7CPLuIH6JcYgCNGvcNz3UrMFSKj5r1rXWXT5qaehZlpeUp9zea6DFmdsTSNMuiSlpPQ+XbXXFI4
+hTxdcboiMYDmrMD66K5V+TepeFMosp6DzKk3uaz+agOyHFyw/tU4JFne1ED1UIxSj/LtkP9AsulBGninnmwjFIQk8OmwqWKbeomHJOEX3mPb5TCBeCbw
+QYGbsalqz67rKUQfTEIh6dFrTR2qonM8laL4MSzruU3JlxQ9TOmYYSWTV08tIOaqjqEEG4FV/5iCTRVD9dcxzsmtGM6EFVLAaCY5nQkWSxrmoYUxuQjM
+U0z79HTf4Kd7mfhNyR7hK/49yE2dmbOYq6i7G79DFgkF0d/EojGwJ1jNnF4u8MGc4SmLklcnFnU9vpwvJqy8vODv6peQkxPhwcucprg043JY3uUWc+mV
+ifUwdSSoJpkzYIMBeWaQ8H0s7+lBbWDBIj2CYbLboLFoaAds69TA+BR21zgHbXP5yi0J/l5unVbcUlv/GaQx/OvfgGJUlbILApOVGhFg+v6UaqWVrkGx
+CJBUXfqK6qqPIcspBLNMxsIChpcpJ6IXIxooFYwh857h2TBsKLMPSWofBtQioS3ycnmxYlRvQoaSEDmB67mWXCwnJMFS77nSN2FT5RqycHSBuXJKtHBJ
+Vf+cAlilFsxcMMZrwjpw4s3WlhKqrzPumf4AMdTOCuwnDvut1OaSppNRD9B0XNX5S4kVA182Zd+j3g76xtw5m5my1SBKIXdETDKyS/OpQmRl2wsZLKy+
+RY1dBz34BY3d6o9RSebinHTgE3jZYZUU8ae2e7Y4V0MURXZmefOF2jl/VwewKexHF3Nz+r+5/erPN6AYSc96GTZUoMgI/KJOJD4JgrDnmrwMPICQAOrc
+UZZU8WEdkOX4zi2ZGLGfGhfuY9d7KsNqXmwx80TykpEvuzbyESos80lROdVnAvUkRN6a+Mh0ZFj16xQUlkXGFQW8yMCoIsObVUdOVGQo4IqMrh4rskBe
+m6o14xWZulKqyBSM3p/exYJiePW3KShGKplXuKKEVtPrtXoEO48Cz104qCAZfx15SZhLQwGHYPW4i+aev6UgQ3vVvw9FcjUvMBdhKk72KVoruYiC0TOl
+Wjeeo1al1CPI4anO7MULTE4h8ImXP3Oe2K5x4aujbDJ94pODO64yCJWO8o7bZJptY1kIvqxtRNxh50ppSbbB/vBKtvHXFGwnKs3/u328vvxbRDVnUyJk
+kJhD/RmpJCvDnKSuuCG1VcK/V36fgnx4jOX1p158/Xhv9Ng3TEwlKnLmiVFDmtMozYd5luUyhhYVjyG3oHjh4od1zpkvQ39ciSiLVlj1uVXoD7vc1d+l
+oBQrzV/KOj6CfFjGKwvZX1v0c2M9VMwrWcpvcL+xav3Kflf5if/EW+YnDOzo9rMXBXaSE861zeA5f90wjuRsIJGwLhRV/QPGuchj4KX0GX/Apl/mAfsq
+Wj36XRYKy2RLrZqWEANhNAbNZBvnDTiMyHq17vFA9FpN41jUei0tlZAz1xgPBka3Ju61tA3qRMXnPhkOB2KMM1BbqTPoa2lqJEUwnf6DWreDK3Ra3aaW
+Saxw0r/fH3zWN0atEY/OYm16IyJXfCT6x91OY6zl6M+oCGBwMjYGx8ZANFtC20zM3hCtZmdstD5vtFpNPH8eb12PyMedXgsn0ArUJIvwRWvYrTVwACQm
+DLfTbHVbeGitmNjNaDwQqLZap4vCrYQmRu2T8bjTv2c08cRaKTH0pF87GbcHovMTHFqmbmD0lKjd7qBGZ9hO7LXTH7dEv9bVtORe1F6PT7pdbSdx8v7A
+GNbGbU1P7LFZ69XuLe1hF0u2vYi01qt37p0MTkba3pXdN1Ehotfp4xb3MThfjy02btO5e7XhEMUHR19BMZJ2earPh92BqI1pw3GL3QMtKrw3qFG3k6wk
+wh3X7rf6Rv2hgSuhHaKh0sYjgMagN6Qr09KxtuR/AH7On5o=
 """
 
 
@@ -241,6 +257,9 @@ _SCANS_OF_A_ROBOT_MAX = 1_000_000_000  # three years of ten a second
 _NO_RETURN = 0xFFFFFFFF  # millimetres: nothing within range
 _COORDINATE_MAX = 1e6  # metres
 _REGION_CORNERS_MAX = 4096
+_LOCATE_POINTS_MIN = 20
+_LOCATE_POINTS_MAX = 32_768
+_NEAR_RADIUS_MAX = 1000.0  # metres
 _TOKEN_BYTES_MAX = 8192  # a hello has room for more
 _FULL_TURN = 2.0 * math.pi + 1e-6
 _SERVER_TEXT_MAX = 500  # characters that are shown
@@ -360,6 +379,12 @@ def _region(region: Any) -> List[float]:
     return [_finite("region", coordinate, _COORDINATE_MAX) for corner in corners for coordinate in corner]
 
 
+def _compose(T_a_b: Pose, T_b_c: Pose) -> Pose:
+    (x, y, yaw), (dx, dy, turn) = T_a_b, T_b_c
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    return x + cos * dx - sin * dy, y + sin * dx + cos * dy, math.remainder(yaw + turn, 2.0 * math.pi)
+
+
 def _check_count(field: str, count: int) -> None:
     if not 1 <= count <= _BEAMS_MAX:
         raise ValueError(f"{field} has {count} beams; 1 to {_BEAMS_MAX} are needed")
@@ -436,6 +461,54 @@ def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry:
     elif len(own) != len(scan.ranges):
         raise ValueError(f"ranges has {len(scan.ranges)} beams for {len(own)} angles")
     return bytes(scan.SerializeToString())
+
+
+def _described_laser(sensor: Sensor) -> Any:
+    description = _SensorDescription.FromString(sensor._description)
+    if description.kind != _messages["SensorKind"].values_by_name["SENSOR_KIND_LASER"].number:
+        raise ValueError(f"{sensor.name} is no laser; only what lasers see tells where a robot is")
+    return description
+
+
+def _points_seen(sensor: Any, scan: Any) -> List[Tuple[int, int]]:
+    """Where a laser met something, in whole millimetres in the frame of the scan's pose."""
+    pose, mount = ((part.x, part.y, part.yaw) for part in (scan.pose, sensor.mount))
+    x, y, yaw = _compose(pose, mount)
+    own = scan.angles.explicit.angles or sensor.angles.explicit.angles
+    uniform = sensor.angles.uniform
+    points = []
+    for beam, millimetres in enumerate(scan.ranges):
+        metres = millimetres * 0.001
+        if millimetres in (0, _NO_RETURN) or not sensor.range_min <= metres < sensor.range_max:
+            continue
+        direction = yaw + (own[beam] if own else uniform.first + beam * uniform.increment)
+        met = x + metres * math.cos(direction), y + metres * math.sin(direction)
+        if max(map(abs, met)) <= _COORDINATE_MAX:
+            points.append((round(met[0] * 1000.0), round(met[1] * 1000.0)))
+    return points
+
+
+def _set_points(points: List[Tuple[int, int]], message: Any) -> None:
+    """All of them, or _LOCATE_POINTS_MAX taken evenly from all."""
+    if len(points) < _LOCATE_POINTS_MIN:
+        raise ValueError(f"the scans met something {len(points)} times; {_LOCATE_POINTS_MIN} are needed to tell where "
+                         "they were taken")
+    count = min(len(points), _LOCATE_POINTS_MAX)
+    before = (0, 0)
+    for point in (points[n * len(points) // count] for n in range(count)):
+        message.points.extend((point[0] - before[0], point[1] - before[1]))
+        before = point
+
+
+def _set_near(near: Optional[Point], radius: Optional[float], message: Any) -> None:
+    if (near is None) != (radius is None):
+        raise ValueError("near and radius go together; give both, or neither")
+    if near is None:
+        return
+    _set_point("near", near, message.near)
+    message.radius = _finite("radius", radius)
+    if not 0.0 < message.radius <= _NEAR_RADIUS_MAX:
+        raise ValueError(f"radius is {radius}; more than 0 and at most {_NEAR_RADIUS_MAX:g} m are possible")
 
 
 def _hello(session: str, robot: str, token: str, source: str, cell_size: Optional[float],
@@ -586,13 +659,22 @@ class _Conversation:
             self._on_welcome(frame.welcome, now)
         elif kind == "ack" and self.link.is_welcome:
             self._on_ack(frame.ack, now)
-        elif not (kind in ("plan_reply", "goal_reply", "coverage_reply") and self._on_reply(kind, frame)):
+        elif not (kind in ("plan_reply", "goal_reply", "coverage_reply", "locate_reply") and
+                  self._on_reply(kind, frame)):
             raise _retry("MALFORMED_FRAME", f"the server sent an unexpected {kind or 'frame of an unknown kind'}")
 
     def _on_error(self, error: Any, now: float) -> None:
         code = _enum_name("ErrorCode", error.code, "ERROR_CODE_")
         message = _shown(error.message) or f"the server ended the link with the error {code} and did not say why"
+        if code == "MALFORMED_FRAME" and self._is_locating():
+            message += ("; a server of an earlier version cannot tell a robot where it is: update it, or say where the "
+                        "robot is")
         raise ScanloomError(code, message, self._may_pass(now) if code == "REPLACED" else error.retryable)
+
+    def _is_locating(self) -> bool:
+        """Whether the server was asked on this link where the robot is, and has not answered yet."""
+        return any(self.link and id <= self.link.request and request.frame.WhichOneof("body") == "locate_request"
+                   for id, request in self.requests.items())
 
     def _may_pass(self, now: float) -> bool:
         """An earlier link whose hello arrived late replaces one, too; another program of the same name does it again
@@ -1037,12 +1119,15 @@ class Client:
 
     def _encoded(self, sensor: Sensor, ranges: Any, pose: Any, stamp: Optional[float], odometry: Any, intensities: Any,
                  angles: Any) -> Tuple[Sensor, bytes]:
+        self._check_sensor(sensor)
+        stamp = time.time() if stamp is None else stamp
+        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
+
+    def _check_sensor(self, sensor: Any) -> None:
         if not isinstance(sensor, Sensor):
             raise ValueError(f"sensor is {sensor!r}; what laser() or sonar() gave is needed")
         if sensor.id >= len(self._sensors) or self._sensors[sensor.id] is not sensor:
             raise ValueError(f"{sensor.name} is not a sensor of this client")
-        stamp = time.time() if stamp is None else stamp
-        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
 
     def _take(self, sensor: Sensor, encoded: bytes, block: bool, timeout: Optional[float]) -> None:
         with self._changed:
@@ -1124,6 +1209,40 @@ class Client:
         return Coverage(path=_path(reply.coverage.path, reply.revision), free_area=reply.coverage.free_area,
                         covered_area=reply.coverage.covered_area, cell_size=reply.coverage.cell_size,
                         unreachable=list(zip(runs[0::3], runs[1::3], runs[2::3])))
+
+    def locate(self, sensor: Sensor, scans: Sequence[Sequence[float]], *, odometry: Pose = (0.0, 0.0, 0.0),
+               angles: Optional[Sequence[Sequence[float]]] = None, near: Optional[Point] = None,
+               radius: Optional[float] = None, timeout: Optional[float] = None) -> Location:
+        """Where the robot is, told from what a laser saw from one place. No scan needs to have been sent before.
+
+        scans     the ranges of some turns, as send() takes them; ten are plenty
+        odometry  of the robot in its odometry frame, where they were taken; a robot without stands at its origin
+        angles    of each scan's beams, where they are not the sensor's
+        near      the robot is no more than radius metres from there, along each axis; None: anywhere in the map
+
+        Raises ScanloomError with AMBIGUOUS where several places look alike, UNDETERMINED where too little of what is
+        seen is in the map, NOTHING_MAPPED where no laser has seen anything yet, and TIMEOUT as plan() does.
+        """
+        frame = _Frame()
+        request = frame.locate_request
+        if angles is not None and len(angles) != len(scans):
+            raise ValueError(f"angles are those of {len(angles)} scans; {len(scans)} are given")
+        self._check_sensor(sensor)
+        laser = _described_laser(sensor)
+        _set_pose("odometry", odometry, _Scan().odometry)  # so that it is refused by its own name
+        points: List[Tuple[int, int]] = []
+        for number, ranges in enumerate(scans):
+            own = None if angles is None else angles[number]
+            points += _points_seen(laser, _Scan.FromString(
+                _encode_scan(sensor, ranges, odometry, 0.0, None, None, own)))
+        _set_points(points, request)
+        mount = laser.mount
+        _set_point("from", _compose(odometry, (mount.x, mount.y, mount.yaw))[:2], getattr(request, "from"))
+        _set_near(near, radius, request)
+        found = self._ask(frame, timeout).correction
+        pose = found.T_map_odom
+        return Location((pose.x, pose.y, pose.yaw), found.explained, found.position_sigma, found.yaw_sigma,
+                        found.revision)
 
     def _ask(self, frame: Any, timeout: Optional[float]) -> Any:
         patience = _patience(timeout)

@@ -1,15 +1,10 @@
 #include "robot_client/source/ld06_remarks.hpp"
 
+#include "robot_client/source/counted.hpp"
+
 #include <fmt/format.h>
 
 namespace scanloom::robot {
-namespace {
-
-std::string counted(std::uint64_t count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
-} // namespace
 
 std::string ld06_remarks(const Ld06Counts& counts, const Ld06Turns& turns, const Ld06Losses& losses) {
     std::string text = fmt::format("{}, {}", counted(counts.crc_failures + counts.implausible, "damaged packet"),

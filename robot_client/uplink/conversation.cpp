@@ -87,6 +87,10 @@ std::optional<wire::LinkError> Conversation::receive(const wire::Message& messag
 
 wire::LinkError Conversation::on_error(wire::LinkError failure, Time now) {
     failure = in_plain_text(std::move(failure));
+    if (failure.error.code == Errc::kMalformed && requests_.is_locating()) {
+        failure.error.message += "; a server of an earlier version cannot tell a robot where it is: update it, or say "
+                                 "where the robot is";
+    }
     if (failure.error.code != Errc::kReplaced) return failure;
     failure.retryable = replacements_.may_pass(now);
     if (!failure.retryable) {

@@ -1,24 +1,14 @@
 #include "robot_client/uplink/guidance.hpp"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include "robot_client/uplink/asking.hpp"
 
-#include <memory>
-#include <optional>
+#include <utility>
 
 namespace scanloom::robot {
 
 namespace asio = boost::asio;
 
 namespace {
-
-/// What is waited for. The uplink may hear the answer when nobody waits any more.
-struct Pending {
-    asio::steady_timer answered;
-    std::optional<Result<wire::Goal>> goal;
-};
 
 NextStop as_stop(wire::Goal goal) {
     switch (goal.exploration) {
@@ -31,19 +21,12 @@ NextStop as_stop(wire::Goal goal) {
 }
 
 asio::awaitable<Result<NextStop>> ask(Uplink& uplink, double body_radius_m) {
-    co_await uplink.until_applied();
-    const auto pending = std::make_shared<Pending>(
-        Pending{asio::steady_timer(co_await asio::this_coro::executor, asio::steady_timer::time_point::max()), {}});
-    wire::GoalRequest request;
-    request.body_radius = body_radius_m;
-    const auto asked = uplink.ask(request, [pending](const Reply& reply) {
-        pending->goal = std::get<wire::GoalReply>(reply).goal;
-        pending->answered.cancel();
-    });
-    if (!asked) co_return Error{Errc::kOverloaded, "too many questions to the server are open"};
-    while (!pending->goal) co_await pending->answered.async_wait(asio::as_tuple(asio::use_awaitable));
-    if (!*pending->goal) co_return pending->goal->error();
-    co_return as_stop(std::move(**pending->goal));
+    Request request = wire::GoalRequest{.body_radius = body_radius_m};
+    Result<Reply> reply = co_await ask_once_applied(uplink, std::move(request));
+    if (!reply) co_return reply.error();
+    auto& goal = std::get<wire::GoalReply>(*reply).goal;
+    if (!goal) co_return goal.error();
+    co_return as_stop(std::move(*goal));
 }
 
 } // namespace

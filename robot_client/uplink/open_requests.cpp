@@ -1,5 +1,6 @@
 #include "robot_client/uplink/open_requests.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace scanloom::robot {
@@ -9,6 +10,7 @@ std::optional<Reply> as_reply(const wire::Message& message) {
     if (const auto* plan = std::get_if<wire::PlanReply>(&message)) return *plan;
     if (const auto* goal = std::get_if<wire::GoalReply>(&message)) return *goal;
     if (const auto* coverage = std::get_if<wire::CoverageReply>(&message)) return *coverage;
+    if (const auto* location = std::get_if<wire::LocateReply>(&message)) return *location;
     return std::nullopt;
 }
 
@@ -55,6 +57,11 @@ bool OpenRequests::answer(const wire::Message& message) {
     open_.erase(asked);
     if (answered) answered(*reply);
     return true;
+}
+
+bool OpenRequests::is_locating() const {
+    return std::any_of(open_.begin(), open_.upper_bound(sent_),
+                       [](const auto& one) { return std::holds_alternative<wire::LocateRequest>(one.second.request); });
 }
 
 } // namespace scanloom::robot

@@ -13,10 +13,10 @@ namespace scanloom::robot {
 
 /// What a robot may ask of the server: see proto/scanloom/v1/frame.proto. Pre: points are finite and within
 /// common/scan/limits.hpp. The id is given when it is asked.
-using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest>;
+using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
 
 /// The reply to a request is of the same kind.
-using Reply = std::variant<wire::PlanReply, wire::GoalReply, wire::CoverageReply>;
+using Reply = std::variant<wire::PlanReply, wire::GoalReply, wire::CoverageReply, wire::LocateReply>;
 using Answered = std::function<void(const Reply&)>;
 
 /// Requests that are not answered yet. They outlive links: what was asked on a link that broke is asked again.
@@ -41,6 +41,9 @@ public:
     /// Hands a reply to whoever asked, who may ask again at once.
     /// @return false for a message that answers none of them.
     [[nodiscard]] bool answer(const wire::Message& message);
+
+    /// Whether the server was asked on the present link where the robot is, and has not answered yet.
+    [[nodiscard]] bool is_locating() const;
 
 private:
     struct Open {

@@ -73,8 +73,8 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
                         .pages_max = options.map_memory_bytes / mapping::kPageBytes,
                         .idle_after = options.idle_after}),
       check_(*log_, sessions_, checking_.get_executor()),
-      weaves_(*log_, reweaving_.get_executor(), weaves_within(options.weave_memory_bytes)),
-      desk_(planning_.get_executor(), goals_, sessions_),
+      weaves_(*log_, reweaving_.get_executor(), weaves_within(options.weave_memory_bytes)), locator_(*log_),
+      desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}),
       api_(sessions_, weaves_, goals_, *log_, metrics_, {gate_, audit_, logins_}, std::move(web),
            options.tile_cache_bytes),
       hangup_(io_, SIGHUP), patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
@@ -93,6 +93,7 @@ void Server::join_pools() {
     showing_.join();
     awaiting_.join();
     planning_.join();
+    locating_.join();
     reweaving_.join();
     changing_.join();
     reading_.join();
@@ -134,6 +135,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
     std::unique_ptr<Server> server(new Server(options, limits, std::move(*log), std::move(*web)));
     if (!options.tokens.empty()) server->gate_.replace(std::move(tokens));
     server->api_.set_background_check(server->check_);
+    server->api_.set_locator(server->locator_);
     server->log_->on_unreadable(
         [check = &server->check_](store::SessionId session, const Error& why) { check->note(session, why); });
     if (!options.backups.empty()) {

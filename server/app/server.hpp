@@ -43,6 +43,7 @@ using OpenLog =
 ///   reweaving      maps woven once more, with other settings: with a lower priority than all else
 ///   awaiting       answers that wait for such maps
 ///   planning       ways through maps, for robots and people: one search at a time
+///   locating       robots that ask where they are: one at a time
 ///   changing       creating and deleting sessions, making backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
 ///   reading        sessions that come back to memory: reads them from the store
@@ -96,6 +97,7 @@ private:
     boost::asio::thread_pool reweaving_{2};
     boost::asio::thread_pool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
     boost::asio::thread_pool planning_{1};
+    boost::asio::thread_pool locating_{1};
     boost::asio::thread_pool changing_{2};
     boost::asio::thread_pool checkpointing_{1};
     boost::asio::thread_pool reading_{2};
@@ -107,6 +109,7 @@ private:
     session::BackgroundCheck check_;
     session::Weaves weaves_;
     guide::GoalBook goals_;
+    guide::Locator locator_;
     ingest::RequestDesk desk_;
     http::Api api_;
     std::shared_ptr<sockets::PortTls> robot_tls_; // none: the port speaks plainly, as the next

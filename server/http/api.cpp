@@ -185,7 +185,7 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kListSessions: return list_sessions(sessions_, check_, call);
     case Operation::kCreateSession: return create_session(sessions_, doorman_, call);
     case Operation::kGetSession: return get_session(sessions_, check_, call);
-    case Operation::kDeleteSession: return delete_session(sessions_, weaves_, landmarks_, tiles_, call);
+    case Operation::kDeleteSession: return delete_session(sessions_, {weaves_, landmarks_, locator_, tiles_}, call);
     case Operation::kImportMap: return import_map(sessions_, doorman_, call);
     case Operation::kTilePng: return get_tile(maps_, tiles_, call, tiles::TileFormat::kPng);
     case Operation::kTileBin: return get_tile(maps_, tiles_, call, tiles::TileFormat::kCodes);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/guide/goal_book.hpp"
+#include "server/guide/locator.hpp"
 #include "server/http/answer_slots.hpp"
 #include "server/http/doorman.hpp"
 #include "server/http/handlers/health.hpp"
@@ -11,7 +12,7 @@
 #include "server/http/web_files.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/background_check.hpp"
-#include "server/session/landmark_folds.hpp"
+#include "server/session/capture_folds.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/store/backups.hpp"
@@ -48,6 +49,9 @@ public:
     /// Where backups are made; without, there are none. Pre  nobody asks yet.
     void set_backups(store::Backups& backups) { backups_ = &backups; }
 
+    /// It forgets sessions that are deleted. Pre  nobody asks yet.
+    void set_locator(guide::Locator& locator) { locator_ = &locator; }
+
     /// What it finds is told, too. Pre  nobody asks yet.
     void set_background_check(const session::BackgroundCheck& check) { check_ = &check; }
 
@@ -83,6 +87,7 @@ private:
     RobotPort robots_;
     store::Backups* backups_ = nullptr;
     const session::BackgroundCheck* check_ = nullptr;
+    guide::Locator* locator_ = nullptr;
     std::atomic<bool> recovered_ = false;
 };
 

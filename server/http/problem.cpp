@@ -32,6 +32,9 @@ std::string_view title_of(Errc code) {
     case Errc::kOverloaded: return "Too busy now";
     case Errc::kFull: return "Full";
     case Errc::kNoPath: return "No way there";
+    case Errc::kAmbiguous: return "Not to be told apart";
+    case Errc::kUndetermined: return "Not to be told";
+    case Errc::kNothingMapped: return "Nothing mapped yet";
     case Errc::kInternal: return "The server failed";
     }
     return "Failed";
@@ -76,6 +79,9 @@ Status status_of(Errc code) noexcept {
     case Errc::kOverloaded: return Status::service_unavailable;
     case Errc::kFull: return Status::insufficient_storage;
     case Errc::kNoPath: return Status::conflict;
+    case Errc::kAmbiguous: return Status::conflict;
+    case Errc::kUndetermined: return Status::conflict;
+    case Errc::kNothingMapped: return Status::conflict;
     case Errc::kInternal: return Status::internal_server_error;
     }
     return Status::internal_server_error;

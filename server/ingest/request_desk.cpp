@@ -1,7 +1,5 @@
 #include "server/ingest/request_desk.hpp"
 
-#include "server/guide/patience.hpp"
-
 #include <boost/asio/post.hpp>
 #include <fmt/format.h>
 
@@ -12,10 +10,11 @@
 namespace scanloom::ingest {
 
 std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
-    auto slot = slots_.try_take();
+    const bool asks_where = std::holds_alternative<wire::LocateRequest>(request);
+    auto slot = (asks_where ? locating_slots_ : slots_).try_take();
     if (!slot) return Error{Errc::kOverloaded, "too many robots ask at this moment; ask again soon"};
-    boost::asio::post(planning_, [this, asker = std::move(asker), request = std::move(request), done = std::move(done),
-                                  slot = std::move(slot)]() mutable {
+    boost::asio::post(asks_where ? locating_ : planning_, [this, asker = std::move(asker), request = std::move(request),
+                                                           done = std::move(done), slot = std::move(slot)]() mutable {
         std::string frame;
         wire::encode(meet(request, asker), frame);
         done(std::move(frame), std::move(slot));
@@ -25,9 +24,10 @@ std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
 
 /// While the server shuts down no search is begun: it would have to be waited for.
 wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
-    if (sessions_.is_draining()) return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
+    if (services_.sessions.is_draining())
+        return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
     try {
-        return reply_to(request, asker, goals_, guide::Patience(sessions_));
+        return reply_to(request, asker, services_);
     } catch (const std::bad_alloc&) {
         return refusal_of(request, {Errc::kOverloaded, "there is no memory for this search now; ask again later"});
     } catch (const std::exception& failure) {

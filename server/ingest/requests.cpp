@@ -1,5 +1,6 @@
 #include "server/ingest/requests.hpp"
 
+#include "server/guide/patience.hpp"
 #include "server/guide/robots.hpp"
 #include "server/planning/coverage.hpp"
 #include "server/planning/grid_path.hpp"
@@ -23,6 +24,9 @@ wire::GoalReply reply(const wire::GoalRequest& to, Revision revision, Result<wir
 }
 wire::CoverageReply reply(const wire::CoverageRequest& to, Revision revision, Result<wire::Coverage> coverage) {
     return {to.id, revision, std::move(coverage)};
+}
+wire::LocateReply reply(const wire::LocateRequest& to, Revision revision, Result<wire::Correction> correction) {
+    return {to.id, revision, std::move(correction)};
 }
 
 /// Of cells by rows.
@@ -52,7 +56,7 @@ struct Search {
     const Asker& asker;
     const mapping::Snapshot& maps;
     guide::GoalBook& goals;
-    const planning::MayGoOn& may_go_on;
+    const guide::Patience may_go_on;
     const Point2& start;
 
     /// The body that is asked for, else the asker's own.
@@ -117,8 +121,8 @@ std::optional<guide::Way> way_of(const Result<wire::Coverage>& coverage, Revisio
 }
 
 template <class Kind>
-wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBook& goals,
-                         const planning::MayGoOn& may_go_on) {
+wire::Message reply_from(const Kind& request, const Asker& asker, const Services& services) {
+    guide::GoalBook& goals = services.goals;
     const auto maps = asker.session->snapshot();
     auto start = request.start;
     if (!start) {
@@ -126,11 +130,26 @@ wire::Message reply_from(const Kind& request, const Asker& asker, guide::GoalBoo
         if (!pose) return reply(request, maps->revision, pose.error());
         start = Point2(pose->x, pose->y);
     }
-    auto found = Search{asker, *maps, goals, may_go_on, *start}(request);
+    auto found = Search{asker, *maps, goals, guide::Patience(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // of goals the book knows
         goals.ways().give_way(asker.session, asker.robot, way_of(found, maps->revision), guide::WayBook::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));
+}
+
+wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker, const Services& services) {
+    const auto points = landmarks::in_metres(request.points);
+    std::optional<landmarks::Neighbourhood> near;
+    if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
+    const guide::Patience patience(services.sessions, guide::Patience::Clock::now() + guide::Patience::kTime,
+                                   "say near which place it is");
+    const auto located =
+        services.locator.locate(*asker.session, {.points = points, .from = request.from}, near, patience);
+    if (!located) return reply(request, asker.session->snapshot()->revision, located.error());
+    const auto& found = located->alignment;
+    return reply(request, located->revision,
+                 wire::Correction{found.T_first_second, located->revision, found.explained, found.position_sigma,
+                                  found.yaw_sigma});
 }
 
 } // namespace
@@ -139,12 +158,12 @@ std::optional<Request> as_request(wire::Message&& message) {
     if (auto* plan = std::get_if<wire::PlanRequest>(&message)) return std::move(*plan);
     if (auto* goal = std::get_if<wire::GoalRequest>(&message)) return std::move(*goal);
     if (auto* coverage = std::get_if<wire::CoverageRequest>(&message)) return std::move(*coverage);
+    if (auto* locate = std::get_if<wire::LocateRequest>(&message)) return std::move(*locate);
     return std::nullopt;
 }
 
-wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals,
-                       const planning::MayGoOn& may_go_on) {
-    return std::visit([&](const auto& kind) { return reply_from(kind, asker, goals, may_go_on); }, request);
+wire::Message reply_to(const Request& request, const Asker& asker, const Services& services) {
+    return std::visit([&](const auto& kind) { return reply_from(kind, asker, services); }, request);
 }
 
 wire::Message refusal_of(const Request& request, const Error& why) {

@@ -3,8 +3,9 @@
 #include "common/error/error.hpp"
 #include "common/wire/messages.hpp"
 #include "server/guide/goal_book.hpp"
-#include "server/planning/coverage.hpp"
+#include "server/guide/locator.hpp"
 #include "server/session/session.hpp"
+#include "server/session/session_registry.hpp"
 
 #include <memory>
 #include <optional>
@@ -13,7 +14,7 @@
 /// What robots ask for on their links, and the replies.
 namespace scanloom::ingest {
 
-using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest>;
+using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
 
 /// Nothing when the message is no request, which it then still is.
 [[nodiscard]] std::optional<Request> as_request(wire::Message&& message);
@@ -24,10 +25,16 @@ struct Asker {
     RobotIndex robot = 0;
 };
 
+/// Who meets them. All outlive whoever has this.
+struct Services {
+    guide::GoalBook& goals;
+    guide::Locator& locator;
+    const session::SessionRegistry& sessions;
+};
+
 /// Searches the session's newest maps: takes milliseconds, and seconds where they are huge.
 /// Post  the reply fits a frame.
-[[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, guide::GoalBook& goals,
-                                     const planning::MayGoOn& may_go_on);
+[[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, const Services& services);
 
 /// The reply to a request that is not met.
 [[nodiscard]] wire::Message refusal_of(const Request& request, const Error& why);

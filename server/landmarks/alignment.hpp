@@ -3,9 +3,11 @@
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace scanloom::landmarks {
 
@@ -14,6 +16,8 @@ struct CloudView {
     std::span<const Point2> points; ///< metres, in any frame
     Point2 from{0.0, 0.0};          ///< where the sensor was, in that frame
 };
+
+inline constexpr std::size_t kViewPointsMin = 20; ///< points of a view that is aligned
 
 struct AlignmentSettings {
     double distance_max = 5.0; ///< metres between the places that the two were seen from, along each axis of the first
@@ -44,6 +48,11 @@ struct Alignment {
     double yaw_sigma = 0.0;      ///< radians
 };
 
+/// Whether a view can be aligned.
+/// Errors  kInvalidField, naming the view: a point, or where it was seen from (see check_points()); fewer than
+///         kViewPointsMin points.
+[[nodiscard]] Result<> check_view(std::string_view name, const CloudView& view);
+
 /// How two views of one place lie on each other, without any guess: all poses are looked at, the best ones refined, and
 /// judged by what both views saw and by what they saw through.
 ///
@@ -54,8 +63,7 @@ struct Alignment {
 ///            one place at all no alignment can tell: rooms may be equal.
 /// Units      the sigmas are those of the fit, by the residuals and the surface's directions; things that moved and
 ///            rivals are not in them.
-/// Errors     kInvalidField: a point, or where it was seen from (see check_points()); a distance_max that is not more
-///            than 0 and at most 100; a view of fewer than 20 points.
+/// Errors     those of check_view(); kInvalidField: a distance_max that is not more than 0 and at most 100.
 /// Cost       n log n of the points, and some tens of milliseconds.
 [[nodiscard]] Result<Alignment> align(const CloudView& first, const CloudView& second,
                                       const AlignmentSettings& settings = {});

@@ -31,6 +31,7 @@ Horizon::Horizon(std::span<const Point2> points, const Point2& from) : from_(fro
         Reach& reach = reaches_[sector_of(point - from)];
         const double range = (point - from).norm();
         reach = {std::min(reach.nearest, range), std::max(reach.furthest, range)};
+        reach_ = std::max(reach_, range);
     }
 }
 
@@ -53,7 +54,13 @@ Horizon::Verdict Horizon::at(const Point2& place) const {
     return range > around.furthest + kDepth ? Verdict::kHidden : Verdict::kUnknown;
 }
 
-Evidence evidence_of(const Surface& surface, const Horizon& horizon, std::span<const Surfel> second,
+bool is_open(std::span<const Horizon* const> horizons, const Point2& place) {
+    return std::ranges::any_of(horizons, [&](const Horizon* horizon) {
+        return horizon->reaches(place) && horizon->at(place) == Horizon::Verdict::kOpen;
+    });
+}
+
+Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons, std::span<const Surfel> second,
                      const Pose2& T_first_second) {
     Evidence evidence{.elements = second.size()};
     const Pose2 rotation{0.0, 0.0, T_first_second.yaw};
@@ -61,7 +68,7 @@ Evidence evidence_of(const Surface& surface, const Horizon& horizon, std::span<c
         const Point2 place = transform(T_first_second, there.position);
         if (is_matched(surface, there, place, rotation)) {
             ++evidence.matched;
-        } else if (horizon.at(place) == Horizon::Verdict::kOpen) {
+        } else if (is_open(horizons, place)) {
             ++evidence.contradicted;
         }
     }

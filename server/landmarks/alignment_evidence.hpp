@@ -21,6 +21,11 @@ public:
         kUnknown, ///< about as far as what is seen that way, or nothing is
     };
     [[nodiscard]] Verdict at(const Point2& place) const;
+    [[nodiscard]] const Point2& from() const noexcept { return from_; }
+    [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, to the furthest that was seen
+    /// Whether anything as far away was seen at all, whichever way: quicker told than at(), which is kOpen for no
+    /// other.
+    [[nodiscard]] bool reaches(const Point2& place) const { return (place - from_).squaredNorm() < reach_ * reach_; }
 
 private:
     static constexpr std::size_t kSectors = 360;
@@ -32,6 +37,7 @@ private:
     [[nodiscard]] static std::size_t sector_of(const Point2& offset);
 
     Point2 from_;
+    double reach_ = 0.0;
     std::array<Reach, kSectors> reaches_;
 };
 
@@ -46,9 +52,13 @@ struct Evidence {
     }
 };
 
-/// Of a second view's elements in a pose, what a first view says.
+/// Of a second view's elements in a pose, what a first one says, which was seen from where the horizons are: what any
+/// of them looked through, and nothing of the surface is at, contradicts.
 /// Pre  the surface has elements.
-[[nodiscard]] Evidence evidence_of(const Surface& surface, const Horizon& horizon, std::span<const Surfel> second,
-                                   const Pose2& T_first_second);
+[[nodiscard]] Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons,
+                                   std::span<const Surfel> second, const Pose2& T_first_second);
+
+/// Whether somebody has looked through a place.
+[[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);
 
 } // namespace scanloom::landmarks

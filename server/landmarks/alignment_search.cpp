@@ -10,26 +10,17 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr int kRotations = 120;          // of a full turn
-constexpr double kCell = 0.15;           // metres, of translations
-constexpr std::size_t kSurfelsMax = 250; // of each cloud
-constexpr double kAlike = 0.85;          // cosine between normals of like direction
-constexpr std::size_t kPeaksMax = 6;     // of one rotation
-constexpr double kApart = 0.3;           // metres between hypotheses of like rotation
+constexpr int kRotations = 120;      // of a full turn
+constexpr double kCell = 0.15;       // metres, of translations
+constexpr double kAlike = 0.85;      // cosine between normals of like direction
+constexpr std::size_t kPeaksMax = 6; // of one rotation
+constexpr double kApart = 0.3;       // metres between hypotheses of like rotation
 constexpr double kTurned = 7.0 * std::numbers::pi / 180.0;
 
 struct Peak {
     Pose2 pose;
     int votes;
 };
-
-/// Evenly among the cloud's rows.
-std::vector<Surfel> sample(std::span<const Surfel> surfels) {
-    if (surfels.size() <= kSurfelsMax) return {surfels.begin(), surfels.end()};
-    std::vector<Surfel> some;
-    for (std::size_t n = 0; n < kSurfelsMax; ++n) some.push_back(surfels[n * surfels.size() / kSurfelsMax]);
-    return some;
-}
 
 std::vector<Surfel> rotated(std::span<const Surfel> surfels, double yaw) {
     const Pose2 rotation{0.0, 0.0, yaw};
@@ -62,7 +53,7 @@ public:
     }
 
     /// The squares of 2 x 2 cells with the most votes, none beside a better one.
-    [[nodiscard]] std::vector<Peak> peaks(double yaw) const {
+    [[nodiscard]] std::vector<Peak> peaks(double yaw, std::size_t count_max) const {
         std::vector<Peak> all;
         for (int y = 1; y + 2 < side_; ++y) {
             for (int x = 1; x + 2 < side_; ++x) {
@@ -72,7 +63,7 @@ public:
             }
         }
         std::ranges::stable_sort(all, std::greater(), &Peak::votes);
-        if (all.size() > kPeaksMax) all.resize(kPeaksMax);
+        if (all.size() > count_max) all.resize(count_max);
         return all;
     }
 
@@ -98,19 +89,8 @@ bool is_near(const Pose2& a, const Pose2& b) {
     return std::hypot(a.x - b.x, a.y - b.y) < kApart && std::abs(normalize_angle(a.yaw - b.yaw)) < kTurned;
 }
 
-} // namespace
-
-std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second, double distance_max,
-                                   std::size_t count_max) {
-    const auto here = sample(first);
-    const auto there = sample(second);
-    Ballot ballot(distance_max);
-    std::vector<Peak> peaks;
-    for (int n = 0; n < kRotations; ++n) {
-        const double yaw = normalize_angle(2.0 * std::numbers::pi * n / kRotations);
-        ballot.vote(here, rotated(there, yaw));
-        std::ranges::copy(ballot.peaks(yaw), std::back_inserter(peaks));
-    }
+/// Of peaks that are near each other the one with the most votes.
+std::vector<Pose2> likeliest(std::vector<Peak> peaks, std::size_t count_max) {
     std::ranges::stable_sort(peaks, std::greater(), &Peak::votes);
     std::vector<Pose2> hypotheses;
     for (const Peak& peak : peaks) {
@@ -120,6 +100,36 @@ std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<cons
         if (is_new) hypotheses.push_back(peak.pose);
     }
     return hypotheses;
+}
+
+} // namespace
+
+std::vector<Surfel> sample(std::span<const Surfel> surfels, std::size_t count_max) {
+    if (surfels.size() <= count_max) return {surfels.begin(), surfels.end()};
+    std::vector<Surfel> some;
+    for (std::size_t n = 0; n < count_max; ++n) some.push_back(surfels[n * surfels.size() / count_max]);
+    return some;
+}
+
+std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second, double distance_max,
+                                   std::size_t count_max, std::size_t first_max) {
+    const auto here = sample(first, first_max);
+    const auto there = sample(second, kSurfelsMax);
+    Ballot ballot(distance_max);
+    std::vector<Peak> peaks;
+    for (int n = 0; n < kRotations; ++n) {
+        const double yaw = normalize_angle(2.0 * std::numbers::pi * n / kRotations);
+        ballot.vote(here, rotated(there, yaw));
+        std::ranges::copy(ballot.peaks(yaw, kPeaksMax), std::back_inserter(peaks));
+    }
+    return likeliest(std::move(peaks), count_max);
+}
+
+std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second, double yaw,
+                                     double distance_max, std::size_t count_max, std::size_t first_max) {
+    Ballot ballot(distance_max);
+    ballot.vote(sample(first, first_max), rotated(sample(second, kSurfelsMax), yaw));
+    return likeliest(ballot.peaks(yaw, count_max), count_max);
 }
 
 } // namespace scanloom::landmarks

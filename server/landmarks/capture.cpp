@@ -21,13 +21,8 @@ bool is_due(const Capture& last, double stamp, const Pose2& pose) {
            std::abs(stamp - last.stamp) >= kCaptureAgainAfter;
 }
 
-/// Nothing beyond where millimetres can be counted: no map reaches as far.
-std::optional<PointMm> in_millimetres(double x, double y) {
-    constexpr double kFarthest = 2e6; // metres
-    if (std::abs(x) > kFarthest || std::abs(y) > kFarthest) return std::nullopt;
-    return PointMm{static_cast<std::int32_t>(std::lround(x * 1000.0)),
-                   static_cast<std::int32_t>(std::lround(y * 1000.0))};
-}
+/// Where millimetres can be counted, metres: no map reaches as far.
+constexpr double kFarthest = 2e6;
 
 void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
     const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
@@ -37,9 +32,9 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit) continue;
         const double direction = T_map_sensor.yaw + beam_angle(angles, beam);
-        const auto point = in_millimetres(T_map_sensor.x + reading->metres * std::cos(direction),
-                                          T_map_sensor.y + reading->metres * std::sin(direction));
-        if (point) capture.points.push_back(*point);
+        const Point2 met(T_map_sensor.x + reading->metres * std::cos(direction),
+                         T_map_sensor.y + reading->metres * std::sin(direction));
+        if (met.cwiseAbs().maxCoeff() <= kFarthest) capture.points.push_back(in_millimetres(met));
     }
 }
 
@@ -48,7 +43,7 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
 std::vector<Point2> in_metres(std::span<const PointMm> points) {
     std::vector<Point2> out;
     out.reserve(points.size());
-    for (const auto& [x, y] : points) out.emplace_back(x * 0.001, y * 0.001);
+    for (const PointMm& point : points) out.push_back(in_metres(point));
     return out;
 }
 
@@ -57,7 +52,8 @@ std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor
     if (is_open_ && !is_still(*newest_, scan)) ended = end();
     if (!is_open_) {
         if (newest_ && !is_due(*newest_, scan.stamp, scan.pose)) return ended;
-        newest_ = Capture{scan.pose, scan.stamp, revision, revision, 0, {}};
+        const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
+        newest_ = Capture{scan.pose, scan.stamp, revision, revision, 0, {}, {T_map_sensor.x, T_map_sensor.y}};
         is_open_ = true;
     }
     newest_->last = revision;

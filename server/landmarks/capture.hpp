@@ -1,9 +1,9 @@
 #pragma once
 
+#include "common/geometry/point_mm.hpp"
 #include "common/scan/log_entry.hpp"
 #include "common/scan/sensor.hpp"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,9 +26,6 @@ inline constexpr std::uint32_t kCaptureScansMax = 16;
 /// doors open, people go.
 inline constexpr double kCaptureAgainAfter = 30.0;
 
-/// A point of a capture in whole millimetres, as the readings are that it comes from.
-using PointMm = std::array<std::int32_t, 2>;
-
 /// What a robot saw from one place: one scan of a robot that drives on (a keyframe), up to kCaptureScansMax of one that
 /// stands still.
 struct Capture {
@@ -38,6 +35,7 @@ struct Capture {
     Revision last = 0;
     std::uint32_t scans = 0;
     std::vector<PointMm> points; ///< map frame; where its lasers met something
+    Point2 from{0.0, 0.0};       ///< metres, map frame: where the laser was that took the first scan
 
     friend bool operator==(const Capture&, const Capture&) = default;
 };

@@ -38,7 +38,8 @@ public:
     /// Adds the next capture. Robots are numbered from 0; one that was not seen before may be any of them.
     void add(const RobotCapture& ended);
 
-    [[nodiscard]] std::size_t landmark_count() const noexcept { return map_.size(); }
+    /// Landmarks.
+    [[nodiscard]] std::size_t size() const noexcept { return map_.size(); }
     [[nodiscard]] LandmarkState snapshot() { return {map_.snapshot(), captures_, sums_}; }
 
 private:

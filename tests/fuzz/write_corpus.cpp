@@ -104,7 +104,7 @@ std::vector<wire::Message> messages() {
         wire::Ping{42},
         wire::Pong{42},
         wire::Goodbye{"done"},
-        wire::Correction{{1.0, 2.0, 3.0}, 9},
+        wire::Correction{{1.0, 2.0, 3.0}, 9, 0.9, 0.002, 0.001},
         wire::PlanRequest{1, Point2(1.0, 2.0), {3.0, 4.0}, true, 0.2, 2.0},
         wire::PlanReply{1, 9, wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}},
         wire::PlanReply{1, 9, Error{Errc::kNoPath, "the goal (3, 4) is inside an obstacle"}},
@@ -115,6 +115,9 @@ std::vector<wire::Message> messages() {
         wire::CoverageRequest{3, Point2(1.0, 2.0), 0.2, 0.4, {{0.0, 0.0}, {4.0, 0.0}, {0.0, 4.0}}},
         wire::CoverageReply{3, 9, wire::Coverage{wire::Path{{{1.0, 2.0}, {3.0, 4.0}}, 2.9, 3.5}, 8.0, 7.5}},
         compressed(),
+        wire::LocateRequest{4, std::vector<PointMm>(20, PointMm{1200, -350}), {0.1, 0.2}, wire::Near{{3.0, 4.0}, 5.0}},
+        wire::LocateReply{4, 9, wire::Correction{{1.0, 2.0, 3.0}, 9, 0.9, 0.002, 0.001}},
+        wire::LocateReply{4, 9, Error{Errc::kAmbiguous, "another pose, 3.10 m and 180 degrees away, explains 91 %"}},
     };
 }
 

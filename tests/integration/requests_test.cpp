@@ -385,7 +385,7 @@ TEST_F(RequestsTest, NoSearchIsBegunWhileTheServerShutsDown) {
     auto go_on = hold_searches();
     std::promise<std::string> told;
     guide::GoalBook goals;
-    RequestDesk desk(ingest.planning(), goals, ingest.sessions());
+    RequestDesk desk(ingest.planning(), ingest.planning(), {goals, ingest.locator(), ingest.sessions()});
     ASSERT_FALSE(desk.ask({session, 0}, plan_to({2.5, 0.2}),
                           [&](std::string frame, const std::shared_ptr<const void>&) { told.set_value(frame); }));
     std::thread draining([&] { ingest.sessions().drain(); });

@@ -18,7 +18,8 @@ class RunningIngest {
 public:
     explicit RunningIngest(store::ScanLog& log, const IngestConfig& config = {},
                            std::size_t requests_max = RequestDesk::kRequestsMax)
-        : sessions_(log, {pool(), now}), desk_(planning_.get_executor(), goals_, sessions_, requests_max) {
+        : sessions_(log, {pool(), now}), locator_(log),
+          desk_(planning_.get_executor(), locating_.get_executor(), {goals_, locator_, sessions_}, requests_max) {
         if (auto recovered = sessions_.recover(); !recovered) throw ErrorException(recovered.error());
         server_ = std::make_unique<IngestServer>(
             io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
@@ -37,6 +38,7 @@ public:
         sessions_.drain();
         for (auto& thread : io_threads_) thread.join();
         planning_.join();
+        locating_.join();
         may_wait_.join();
         compute_.join();
     }
@@ -47,7 +49,9 @@ public:
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }
     [[nodiscard]] guard::Gate& gate() { return gate_; }
     [[nodiscard]] guide::GoalBook& goals() { return goals_; }
+    [[nodiscard]] guide::Locator& locator() { return locator_; }
     [[nodiscard]] boost::asio::any_io_executor planning() { return planning_.get_executor(); }
+    [[nodiscard]] boost::asio::any_io_executor locating() { return locating_.get_executor(); }
     [[nodiscard]] boost::asio::any_io_executor may_wait() { return may_wait_.get_executor(); }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
 
@@ -68,9 +72,11 @@ private:
     guard::Audit audit_{metrics_.refusals()};
     boost::asio::thread_pool may_wait_{2};
     boost::asio::thread_pool planning_{1};
+    boost::asio::thread_pool locating_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     guide::GoalBook goals_;
+    guide::Locator locator_;
     RequestDesk desk_;
     std::unique_ptr<IngestServer> server_;
     std::vector<std::thread> io_threads_;

@@ -4,7 +4,7 @@
 #include "server/http/answer_slots.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
-#include "server/session/landmark_folds.hpp"
+#include "server/session/capture_folds.hpp"
 #include "server/session/session_registry.hpp"
 
 namespace scanloom::http {

@@ -119,16 +119,16 @@ Result<Response> get_session(const session::SessionRegistry& sessions, const ses
     return damage ? *damage : session::no_such_session(name);
 }
 
-Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves,
-                                session::LandmarkFolds& landmarks, tiles::TileMaker& tiles, const Call& call) {
+Result<Response> delete_session(session::SessionRegistry& sessions, const Forgetful& forgetful, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto& name = call.arguments["session"];
     const auto info = sessions.info(name);
     if (auto removed = sessions.remove(name); !removed) return removed.error();
     if (info) {
-        weaves.remove_all(info->id);
-        landmarks.remove(info->id);
-        tiles.forget(session_tag(*info));
+        forgetful.weaves.remove_all(info->id);
+        forgetful.landmarks.remove(info->id);
+        if (forgetful.locator != nullptr) forgetful.locator->remove(info->id);
+        forgetful.tiles.forget(session_tag(*info));
     }
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }

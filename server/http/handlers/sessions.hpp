@@ -1,10 +1,11 @@
 #pragma once
 
+#include "server/guide/locator.hpp"
 #include "server/http/doorman.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
 #include "server/session/background_check.hpp"
-#include "server/session/landmark_folds.hpp"
+#include "server/session/capture_folds.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
 #include "server/tiles/tile_maker.hpp"
@@ -26,9 +27,16 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> get_session(const session::SessionRegistry& sessions,
                                            const session::BackgroundCheck* check, const Call& call);
 
+/// Who forgets a session that is deleted.
+struct Forgetful {
+    session::Weaves& weaves;
+    session::LandmarkFolds& landmarks;
+    guide::Locator* locator; ///< null: nobody asks where they are
+    tiles::TileMaker& tiles;
+};
+
 /// DELETE /api/v1/sessions/{session}
-[[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, session::Weaves& weaves,
-                                              session::LandmarkFolds& landmarks, tiles::TileMaker& tiles,
+[[nodiscard]] Result<Response> delete_session(session::SessionRegistry& sessions, const Forgetful& forgetful,
                                               const Call& call);
 
 } // namespace scanloom::http

@@ -48,10 +48,7 @@ wire::TileChanges changes_of(const mapping::Snapshot& maps, mapping::Layer layer
 }
 
 /// Poses are within kCoordinateMax.
-wire::PointMm point_of(const Pose2& pose) {
-    return {static_cast<std::int32_t>(std::lround(pose.x * 1000.0)),
-            static_cast<std::int32_t>(std::lround(pose.y * 1000.0))};
-}
+PointMm point_of(const Pose2& pose) { return in_millimetres({pose.x, pose.y}); }
 
 } // namespace
 

@@ -6,11 +6,6 @@
 #include <cmath>
 
 namespace scanloom::live {
-namespace {
-
-std::int32_t millimetres(double metres) { return static_cast<std::int32_t>(std::lround(metres * 1000.0)); }
-
-} // namespace
 
 wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride) {
     const Scan& scan = folded.scan;
@@ -23,8 +18,7 @@ wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit || hits++ % stride != 0) continue;
         const double direction = out.origin.yaw + beam_angle(angles, beam);
-        out.points.push_back(
-            {millimetres(reading->metres * std::cos(direction)), millimetres(reading->metres * std::sin(direction))});
+        out.points.push_back(in_millimetres(reading->metres * Point2(std::cos(direction), std::sin(direction))));
     }
     return out;
 }

@@ -39,6 +39,8 @@ public:
         thread_ = std::jthread([this] { io_.run(); });
     }
     [[nodiscard]] std::string address() const { return fmt::format("127.0.0.1:{}", server_.port()); }
+    /// Pre: it does not run yet.
+    void go_by(LinkScript script) { server_.continue_with(std::move(script)); }
     /// Pre: the client is closed.
     [[nodiscard]] const FakeServer& fake() const noexcept { return server_; }
 

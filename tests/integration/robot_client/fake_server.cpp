@@ -120,6 +120,7 @@ asio::awaitable<bool> FakeServer::answer(Link& link, const wire::Message& messag
         co_return false;
     }
     if (const auto* plan = std::get_if<wire::PlanRequest>(&message)) co_return co_await meet(link, *plan);
+    if (const auto* locate = std::get_if<wire::LocateRequest>(&message)) co_return co_await meet(link, *locate);
     if (const auto* batch = std::get_if<wire::ScanBatch>(&message)) co_return co_await take(link, *batch, frame_bytes);
     co_return true;
 }
@@ -151,6 +152,19 @@ asio::awaitable<bool> FakeServer::meet(Link& link, const wire::PlanRequest& requ
     if (link.script.hang_up_after_requests == ++link.requests) co_return false;
     const wire::Path path{{Point2(0.0, 0.0), request.goal}, request.goal.norm(), request.goal.norm()};
     const wire::Message reply = wire::PlanReply{request.id, 1, path};
+    co_return co_await link.send(reply);
+}
+
+asio::awaitable<bool> FakeServer::meet(Link& link, const wire::LocateRequest& request) {
+    locates_.push_back(request);
+    if (link.script.hang_up_after_requests == ++link.requests) co_return false;
+    if (!link.script.knows_locating) {
+        const wire::Message error = wire::LinkError{
+            {Errc::kMalformed, "a frame without a body this program knows; it may come from a newer version"}, false};
+        co_await link.send(error);
+        co_return false;
+    }
+    const wire::Message reply = wire::LocateReply{request.id, stored_.size(), link.script.location};
     co_return co_await link.send(reply);
 }
 

@@ -26,6 +26,8 @@ struct LinkScript {
     std::optional<std::uint64_t> silent_after_scans = {};  ///< nothing is said from then on; 0: no welcome
     std::optional<std::uint64_t> stop_reading_after_scans = {};
     std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
+    bool knows_locating = true;                               ///< else the question is a frame without a body to it
+    Result<wire::Correction> location = wire::Correction{};   ///< what it answers to that
     std::string session_id = "f1";
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches
@@ -52,6 +54,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
     [[nodiscard]] const std::vector<wire::Hello>& hellos() const noexcept { return hellos_; }
     [[nodiscard]] const std::vector<wire::PlanRequest>& plans() const noexcept { return plans_; }
+    [[nodiscard]] const std::vector<wire::LocateRequest>& locates() const noexcept { return locates_; }
     /// Batches that came compressed, of all.
     [[nodiscard]] std::uint64_t compressed_batches() const noexcept { return compressed_batches_; }
     [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
@@ -75,6 +78,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> answer(Link& link, const wire::Message& message,
                                                       std::size_t frame_bytes);
     [[nodiscard]] boost::asio::awaitable<bool> meet(Link& link, const wire::PlanRequest& request);
+    [[nodiscard]] boost::asio::awaitable<bool> meet(Link& link, const wire::LocateRequest& request);
     [[nodiscard]] boost::asio::awaitable<bool> take(Link& link, const wire::ScanBatch& batch, std::size_t frame_bytes);
 
     boost::asio::io_context& io_;
@@ -88,6 +92,7 @@ private:
     std::vector<std::string> faults_;
     std::vector<wire::Hello> hellos_;
     std::vector<wire::PlanRequest> plans_;
+    std::vector<wire::LocateRequest> locates_;
     std::uint64_t compressed_batches_ = 0;
     std::uint64_t batches_ = 0;
     int goodbyes_ = 0;

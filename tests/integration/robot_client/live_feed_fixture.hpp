@@ -113,7 +113,7 @@ protected:
 
     /// A program from its start to its end, or until it is killed; `meanwhile` is called once all is set up.
     Result<> run(
-        ScriptedSource& source, std::unique_ptr<Spool> spool, const std::function<void()>& meanwhile = [] {}) {
+        LiveSource& source, std::unique_ptr<Spool> spool, const std::function<void()>& meanwhile = [] {}) {
         asio::io_context robot(1);
         LiveFeed feed(source, std::move(spool), options_);
         Uplink uplink(robot, uplink_options(), feed);

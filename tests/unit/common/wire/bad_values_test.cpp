@@ -1,6 +1,7 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/messages.hpp"
 #include "tests/unit/common/wire/example_messages.hpp"
+#include "tests/unit/common/wire/refusals.hpp"
 
 #include "scanloom/v1/frame.pb.h"
 
@@ -13,23 +14,6 @@
 /// Every value a frame can spoil, and the error that names it.
 namespace scanloom::wire {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-void expect_refused(std::string_view body, Errc code, const std::string& beginning) {
-    const auto decoded = decode(body);
-    ASSERT_FALSE(decoded) << "instead of: " << beginning;
-    EXPECT_EQ(decoded.error().code, code) << decoded.error().message;
-    EXPECT_THAT(decoded.error().message, testing::StartsWith(beginning));
-}
-
-template <class Value>
-struct Spoilt {
-    void (*spoil)(Value&);
-    const char* beginning;
-    Errc code = Errc::kInvalidField;
-};
 
 TEST(BadHello, IsRefusedByTheNameOfItsField) {
     const Spoilt<Hello> kSpoilt[] = {
@@ -243,10 +227,6 @@ TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
     expect_refused(body_of(ScanBatch{}), Errc::kInvalidField, "scan_batch.scans is empty;");
     expect_refused(body_of(ScanBatch{std::vector<Scan>(kScansPerBatchMax + 1, example_scan())}), Errc::kTooLarge,
                    "scan_batch.scans has 1025 scans, at most 1024");
-}
-
-TEST(BadCorrection, IsRefusedByTheNameOfItsField) {
-    expect_refused(body_of(Correction{{0.0, kNan, 0.0}, 1}), Errc::kInvalidField, "correction.T_map_odom.y is nan;");
 }
 
 TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {

@@ -97,6 +97,15 @@ inline GoalRequest example_goal_request() {
 
 inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2(-1e6, 1e6), 17, true}; }
 
+inline LocateRequest example_locate_request() {
+    LocateRequest request{20, {}, {0.25, -0.5}, Near{{-1e6, 12.5}, 1000.0}};
+    for (std::int32_t n = 0; n < 20; ++n)
+        request.points.push_back({n % 2 == 0 ? 1'000'000'000 : -1'000'000'000, 7 * n});
+    return request;
+}
+
+inline Correction example_correction() { return {{1.0, 2.0, -0.5}, 99, 0.875, 0.003, 0.001}; }
+
 inline CoverageRequest example_coverage_request() {
     return {.id = 19,
             .start = Point2(1.5, -2.5),

@@ -26,14 +26,16 @@ std::vector<Message> one_of_each() {
             Ping{0xFEDCBA9876543210U},
             Pong{42},
             Goodbye{"every scan is acknowledged"},
-            Correction{{1.0, 2.0, -0.5}, 99},
+            example_correction(),
             example_plan_request(),
             PlanReply{17, 99, example_path()},
             example_goal_request(),
             GoalReply{18, 99, example_goal()},
             example_coverage_request(),
             CoverageReply{19, 99, example_coverage()},
-            CompressedScanBatch{5000, std::string("\x28\xb5\x2f\xfd\x00", 5)}};
+            CompressedScanBatch{5000, std::string("\x28\xb5\x2f\xfd\x00", 5)},
+            example_locate_request(),
+            LocateReply{20, 99, example_correction()}};
 }
 
 TEST(Messages, EveryKindSurvivesTheWire) {

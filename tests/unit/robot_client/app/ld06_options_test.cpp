@@ -61,6 +61,28 @@ TEST(Ld06OptionsOf, ACommandLineWithoutThemAreTheDefaults) {
     EXPECT_EQ(options.reopen_for, 60.0);
 }
 
+TEST(Ld06OptionsOf, ALidarThatAsksWhereItIsAreTaken) {
+    const auto bare = std::get<Ld06Options>(parsed({"/dev/ttyUSB0", "--locate"}).source);
+    EXPECT_TRUE(bare.locate);
+    EXPECT_FALSE(bare.pose || bare.near);
+    const auto told = std::get<Ld06Options>(parsed({"f", "--locate", "--near=-1,2.5,4", "--pose", "1,2,3"}).source);
+    EXPECT_EQ(told.near, (wire::Near{{-1.0, 2.5}, 4.0}));
+    EXPECT_EQ(told.pose, (Pose2{1.0, 2.0, 3.0}));
+}
+
+TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
+    EXPECT_THAT(refused({"f", "--locate", "--poses", "p"}), HasSubstr("leave one of them out"));
+    EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near is of --locate"));
+    EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
+    EXPECT_THAT(refused({"f"}), HasSubstr("or have the server tell with --locate"));
+    for (const auto* near : {"", "1,2", "1,2,3,4", "1,2,x", "nan,0,1"}) {
+        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("is not X,Y,RADIUS in metres")) << near;
+    }
+    for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001"}) {
+        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("more than 0 and at most 1000")) << near;
+    }
+}
+
 TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
     for (const auto* pose : {"0,0,90", "0,0,-90", "0,0,6.2832"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("yaw is in radians")) << pose;
@@ -137,12 +159,28 @@ TEST_F(PreparedLd06, ADeviceAndAnAddressAreRead) {
     }
 }
 
+TEST_F(PreparedLd06, WhatAsksWhereItIsIsLiveWhateverItIs) {
+    for (const auto& input : {std::string("/dev/null"), std::string("tcp://127.0.0.1:4001"), capture()}) {
+        const auto prepared = prepare({input, "--locate", "--near", "1,2,3"});
+        ASSERT_TRUE(prepared) << prepared.error().message;
+        ASSERT_TRUE(prepared->live);
+        EXPECT_EQ(prepared->locating, prepared->live.get());
+        EXPECT_EQ(prepared->near, (wire::Near{{1.0, 2.0}, 3.0}));
+        EXPECT_FALSE(prepared->source);
+        EXPECT_EQ(prepared->fingerprint, "") << "its scans depend on what it is told";
+        EXPECT_EQ(prepared->live->can_wait(), input == capture());
+        EXPECT_THAT(prepared->remarks(), HasSubstr("carried 0 times, 0 turns while carried or not located"));
+    }
+}
+
 TEST_F(PreparedLd06, WhatIsNeitherIsAnError) {
     EXPECT_THAT(prepare({"/dev/nonexistent", "--pose", "0,0,0"}).error().message, HasSubstr("no such device or file"));
     EXPECT_THAT(prepare({"/tmp", "--pose", "0,0,0"}).error().message, HasSubstr("neither a serial device nor a file"));
     EXPECT_THAT(prepare({capture(), "--poses", "/nonexistent"}).error().message, HasSubstr("no such file"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--spool", "/tmp/none"}).error().message,
                 HasSubstr("a capture file is a recording and needs no --spool"));
+    EXPECT_THAT(prepare({capture(), "--locate", "--spool", "/tmp/none"}).error().message,
+                HasSubstr("needs no --spool: it can be read again; leave --spool out"));
     EXPECT_THAT(prepare({capture(), "--pose", "0,0,0", "--min-range", "13"}).error().message,
                 HasSubstr("--min-range is 13 m, but --max-range only 12 m"));
 }

@@ -112,7 +112,7 @@ TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
         {{-9.0, 0.0}, {0.0, 0.0}},  // behind the wall
         {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly before it
     };
-    const auto evidence = evidence_of(surface, horizon, things, {});
+    const auto evidence = evidence_of(surface, std::vector{&horizon}, things, {});
     EXPECT_EQ(evidence.elements, 5U);
     EXPECT_EQ(evidence.matched, 1U);
     EXPECT_EQ(evidence.contradicted, 1U);

@@ -1,5 +1,5 @@
+#include "robot_client/sim/standing_robot.hpp"
 #include "server/landmarks/alignment.hpp"
-#include "tests/unit/server/landmarks/standing_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 namespace scanloom::landmarks {
 namespace {
 
-using namespace testing_support;
 using robot::Box;
+using robot::TwoCaptures;
 using testing::HasSubstr;
 
 constexpr double kDegree = std::numbers::pi / 180.0;

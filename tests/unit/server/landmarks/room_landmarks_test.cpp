@@ -1,6 +1,5 @@
-#include "robot_client/sim/laser.hpp"
+#include "robot_client/sim/standing_robot.hpp"
 #include "server/landmarks/landmark.hpp"
-#include "tests/unit/server/landmarks/standing_robot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@ namespace {
 /// What a standing lidar sees, in the map frame.
 std::vector<Point2> capture(const robot::World& world, const Pose2& place, int turns) {
     robot::Random random(1);
-    auto points = testing_support::standing_capture(world, place, turns, random);
+    auto points = robot::standing_capture(world, place, turns, random);
     for (auto& point : points) point = transform(place, point);
     return points;
 }

@@ -262,13 +262,13 @@ TEST(ScanPoints, AreWhereTheBeamsEndedAtSomething) {
     const auto points = points_of(folded, 1);
     EXPECT_NEAR(points.origin.x, 5.0, 1e-9);
     EXPECT_NEAR(points.origin.y, 6.0, 1e-9);
-    EXPECT_THAT(points.points, ElementsAre(wire::PointMm{0, 2'000}, wire::PointMm{-3'000, 0}));
+    EXPECT_THAT(points.points, ElementsAre(PointMm{0, 2'000}, PointMm{-3'000, 0}));
     EXPECT_EQ(points.stamp, 7.5);
 
     scan.ranges = {400, 10'000, 1'000, 9'999}; // nearer than range_min, farther than range_max
     const mapping::FoldedScan bounds{1, std::make_shared<const Sensor>(sensor), scan};
-    EXPECT_THAT(points_of(bounds, 1).points, ElementsAre(wire::PointMm{0, -1'000}, wire::PointMm{9'999, 0}));
-    EXPECT_THAT(points_of(bounds, 2).points, ElementsAre(wire::PointMm{0, -1'000}));
+    EXPECT_THAT(points_of(bounds, 1).points, ElementsAre(PointMm{0, -1'000}, PointMm{9'999, 0}));
+    EXPECT_THAT(points_of(bounds, 2).points, ElementsAre(PointMm{0, -1'000}));
 }
 
 } // namespace

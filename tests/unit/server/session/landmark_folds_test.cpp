@@ -1,4 +1,4 @@
-#include "server/session/landmark_folds.hpp"
+#include "server/session/capture_folds.hpp"
 
 #include "common/wire/log_codec.hpp"
 #include "tests/support/log_reading.hpp"
@@ -151,8 +151,8 @@ TEST_F(LandmarkFoldsTest, ADamagedEntryIsToldAndWhatWasBeforeItIsNot) {
 
 TEST_F(LandmarkFoldsTest, ASessionWithTooManyIsRefused) {
     const auto many = all_of(expected(end_)).size();
-    EXPECT_TRUE(LandmarkFolds(log_, {.landmarks_max = many}).up_to(info_, end_, kGoOn));
-    LandmarkFolds folds(log_, {.landmarks_max = many - 1});
+    EXPECT_TRUE(LandmarkFolds(log_, {.size_max = many}).up_to(info_, end_, kGoOn));
+    LandmarkFolds folds(log_, {.size_max = many - 1});
     for (int n = 0; n < 2; ++n) EXPECT_EQ(folds.up_to(info_, end_, kGoOn).error().code, Errc::kFull);
 }
 
@@ -170,9 +170,10 @@ TEST_F(LandmarkFoldsTest, TheLeastRecentlyUsedAreForgottenAndDeletedOnesToo) {
         store::append_and_wait(log_, second.id, revision, {wire::encode_entry(entries_[revision - 1])}).value();
     }
     const auto many = all_of(expected(end_)).size();
-    for (const auto& limits : {LandmarkFoldsLimits{.kept_max = 1}, LandmarkFoldsLimits{.landmarks_max = 2 * many - 1},
-                               LandmarkFoldsLimits{}}) {
-        const bool has_room = limits.kept_max > 1 && limits.landmarks_max >= 2 * many;
+    for (const auto& limits : {CaptureFoldsLimits<landmarks::LandmarkLayer>{.kept_max = 1},
+                               CaptureFoldsLimits<landmarks::LandmarkLayer>{.size_max = 2 * many - 1},
+                               CaptureFoldsLimits<landmarks::LandmarkLayer>{}}) {
+        const bool has_room = limits.kept_max > 1 && limits.size_max >= 2 * many;
         LandmarkFolds folds(log_, limits);
         folds.up_to(info_, end_, kGoOn).value();
         folds.up_to(second, end_, kGoOn).value();

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "common/geometry/pose2.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace scanloom {
+
+/// A point in whole millimetres, as the readings are that it comes from.
+struct PointMm {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+
+    friend bool operator==(const PointMm&, const PointMm&) = default;
+};
+
+/// The nearest one; `metres` within 2e6 of the origin, as far as millimetres can be counted.
+[[nodiscard]] inline PointMm in_millimetres(const Point2& metres) noexcept {
+    return {static_cast<std::int32_t>(std::lround(metres.x() * 1000.0)),
+            static_cast<std::int32_t>(std::lround(metres.y() * 1000.0))};
+}
+
+[[nodiscard]] inline Point2 in_metres(const PointMm& point) noexcept { return {point.x * 0.001, point.y * 0.001}; }
+
+} // namespace scanloom

@@ -1,0 +1,44 @@
+#include "robot_client/uplink/asking.hpp"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace scanloom::robot {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// What is waited for. The uplink may hear the answer when nobody waits any more.
+struct Pending {
+    asio::steady_timer answered;
+    std::optional<Reply> reply;
+};
+
+} // namespace
+
+asio::awaitable<Result<Reply>> ask_once_applied(Uplink& uplink, Request request) {
+    co_await uplink.until_applied();
+    const auto pending = std::make_shared<Pending>(
+        Pending{asio::steady_timer(co_await asio::this_coro::executor, asio::steady_timer::time_point::max()), {}});
+    const auto asked = uplink.ask(std::move(request), [pending](const Reply& reply) {
+        pending->reply = reply;
+        pending->answered.cancel();
+    });
+    if (!asked) co_return Error{Errc::kOverloaded, "too many questions to the server are open"};
+    try {
+        while (!pending->reply) co_await pending->answered.async_wait(asio::as_tuple(asio::use_awaitable));
+    } catch (...) { // cancelled
+        uplink.abandon(*asked);
+        throw;
+    }
+    co_return std::move(*pending->reply);
+}
+
+} // namespace scanloom::robot

@@ -1,0 +1,68 @@
+#include "server/landmarks/alignment_candidates.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr double kSlideStep = 0.05; // metres
+constexpr int kSlideSteps = 12;     // to either side
+
+constexpr double kContradiction = 2.0; // matches that one contradiction outweighs
+
+void by_score(std::vector<Candidate>& candidates) {
+    std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
+}
+
+} // namespace
+
+bool is_distinct(const Pose2& a, const Pose2& b) {
+    return std::hypot(a.x - b.x, a.y - b.y) > kDistinctDistance ||
+           std::abs(normalize_angle(a.yaw - b.yaw)) > kDistinctTurn;
+}
+
+WeakDirection weak_direction(const LineFit& fit) {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    const Eigen::Matrix2d translation = fit.normal_matrix.topLeftCorner<2, 2>();
+    axes.computeDirect(translation / std::max(1.0, static_cast<double>(fit.used)));
+    return {axes.eigenvectors().col(0), axes.eigenvalues()[0]};
+}
+
+double Candidate::score() const {
+    const Evidence all = both();
+    return static_cast<double>(all.matched) - kContradiction * static_cast<double>(all.contradicted);
+}
+
+Candidate judged(const Seen& first, const Seen& second, const Pose2& start) {
+    Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start)};
+    candidate.second_in_first = evidence_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
+    candidate.first_in_second =
+        evidence_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
+    return candidate;
+}
+
+void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates) {
+    const Pose2 from = best.pose();
+    const Point2 along = weak_direction(best.fit).direction;
+    for (int step = -kSlideSteps; step <= kSlideSteps; ++step) {
+        const Point2 slid = kSlideStep * step * along;
+        candidates.push_back(judged(first, second, {from.x + slid.x(), from.y + slid.y(), from.yaw}));
+    }
+}
+
+void rank(std::vector<Candidate>& candidates) {
+    if (candidates.empty()) return;
+    by_score(candidates);
+    const Pose2 winner = candidates.front().pose();
+    const auto same = std::ranges::stable_partition(
+        candidates, [&](const Candidate& candidate) { return !is_distinct(candidate.pose(), winner); });
+    const auto fittest = std::ranges::max_element(candidates.begin(), same.begin(), {},
+                                                  [](const Candidate& candidate) { return candidate.fit.agreement; });
+    std::iter_swap(candidates.begin(), fittest);
+}
+
+} // namespace scanloom::landmarks

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "server/landmarks/alignment.hpp"
+#include "server/landmarks/alignment_evidence.hpp"
+#include "server/landmarks/refinement.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace scanloom::landmarks {
+
+/// What was seen from one place or from several, in one frame, for others to be laid on.
+struct Seen {
+    Surface surface;
+    std::vector<const Horizon*> horizons; ///< of the places it was seen from; they must outlive it
+};
+
+/// The direction in which lines hold a pose least, and how much, of the elements used.
+struct WeakDirection {
+    Point2 direction;
+    double held;
+};
+[[nodiscard]] WeakDirection weak_direction(const LineFit& fit);
+
+/// Whether two poses are further apart than kDistinctDistance or kDistinctTurn.
+[[nodiscard]] bool is_distinct(const Pose2& a, const Pose2& b);
+
+/// A refined pose, and what speaks for it.
+struct Candidate {
+    LineFit fit;
+    Evidence second_in_first;
+    Evidence first_in_second;
+
+    [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
+    [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
+    [[nodiscard]] double score() const;
+};
+
+/// The candidate that a start leads to, which is off by a few centimetres: see settle().
+/// Pre  both have surface elements; the second's frame has its origin where it was seen from.
+[[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
+
+/// Adds what `best` becomes when it is slid along the direction that is held least, as a pose that slides along a
+/// corridor comes to rest at whatever is near.
+void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
+
+/// By score, the best first; of those that say the same as the best, the one that fits best before all others.
+void rank(std::vector<Candidate>& candidates);
+
+} // namespace scanloom::landmarks

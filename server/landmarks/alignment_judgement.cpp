@@ -1,0 +1,167 @@
+#include "server/landmarks/alignment_judgement.hpp"
+
+#include <Eigen/Dense>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr double kMargin = 0.05;       // of the best score, by which it must be better than that of any rival,
+constexpr double kMarginElements = 30; // and at least so many: a door is 1.2 m, seen from both sides
+constexpr double kHeld = 0.02;         // of the elements used: less holds the pose in no direction
+constexpr double kElementsMin = 40;
+constexpr double kContradictedMax = 0.15; // of what is matched or contradicted
+
+constexpr double kOverlapMin = 0.3; // of two views
+constexpr double kSigmaMax = 0.006; // metres, likewise
+
+constexpr double kFoundMin = 0.5;        // of a view that is laid on a map
+constexpr double kSigmaInMapMax = 0.033; // metres: the map is no better itself
+constexpr double kOutOfPlaceMax = 0.06;  // of a view: stands where a map is free
+
+/// On a map a pose that explains less than the best is a rival, too, unless the best explains this much of the view,
+constexpr double kAllFound = 0.97;
+constexpr double kRivalFoundMin = 0.3;    // if it explains so much,
+constexpr double kHardlyMore = 0.002;     // hardly more than the best is contradicted,
+constexpr double kElsewhere = 0.5;        // and it is so far away, in metres,
+constexpr double kTurnedElsewhere = 0.17; // or in radians, for the best itself to be no part of it
+
+/// Neighbouring surface elements come from the same points: so many of them tell what one alone does.
+constexpr double kShared = 6.0;
+
+double share(std::size_t part, std::size_t all) {
+    return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
+}
+
+/// The part that overlaps of what has to.
+double overlap_of(const Candidate& candidate, LaidOn first) {
+    const Evidence of = first == LaidOn::kView ? candidate.both() : candidate.second_in_first;
+    return share(of.matched, of.elements);
+}
+
+double contradicted_of(const Candidate& candidate) {
+    const Evidence both = candidate.both();
+    return share(both.contradicted, both.matched + both.contradicted);
+}
+
+bool overlaps(const Candidate& candidate, LaidOn first, double overlap_min) {
+    return overlap_of(candidate, first) >= overlap_min && static_cast<double>(candidate.both().matched) >= kElementsMin;
+}
+
+/// Puts in what is known of the fit, of n residuals and 3 unknowns.
+void add_sigmas(const LineFit& fit, Alignment& alignment) {
+    const double held = 1e-6 * std::max(1.0, static_cast<double>(fit.used)); // else it would be infinite
+    const Eigen::Matrix3d covariance =
+        kShared * fit.rms * fit.rms * (fit.normal_matrix + held * Eigen::Matrix3d::Identity()).inverse();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+    axes.computeDirect(covariance.topLeftCorner<2, 2>());
+    alignment.position_sigma = std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+    alignment.yaw_sigma = std::sqrt(std::max(0.0, covariance(2, 2)));
+}
+
+std::optional<std::string> undetermined(const Candidate& best, LaidOn first) {
+    const double percent = 100.0 * overlap_of(best, first);
+    if (first == LaidOn::kView && !overlaps(best, first, kOverlapMin)) {
+        return fmt::format("only {:.0f} % of the two views overlap, {} surface elements: take captures that are nearer "
+                           "to each other, or of more turns",
+                           percent, best.both().matched);
+    }
+    if (first == LaidOn::kMap && !overlaps(best, first, kFoundMin)) {
+        return fmt::format("only {:.0f} % of what is seen is in the map, {} surface elements: go where more of it has "
+                           "been mapped, or take more turns",
+                           percent, best.both().matched);
+    }
+    const double alone = share(best.second_in_first.contradicted, best.second_in_first.elements);
+    if (first == LaidOn::kMap && alone > kOutOfPlaceMax) {
+        return fmt::format(
+            "{:.0f} % of what is seen stands where the map is free: it may be another place, or much has "
+            "moved",
+            100.0 * alone);
+    }
+    if (contradicted_of(best) > kContradictedMax) {
+        return fmt::format("{:.0f} % of what both could see is in one of the two alone: it may not be the same place, "
+                           "or much of it has moved",
+                           100.0 * contradicted_of(best));
+    }
+    return std::nullopt;
+}
+
+bool is_elsewhere(const Pose2& a, const Pose2& b) {
+    return std::hypot(a.x - b.x, a.y - b.y) > kElsewhere || std::abs(normalize_angle(a.yaw - b.yaw)) > kTurnedElsewhere;
+}
+
+/// Whether the truth may be there, in a part of the map that is not complete, and the best is what merely looks alike.
+bool may_be_unfinished(const Candidate& other, const Candidate& best) {
+    return overlap_of(best, LaidOn::kMap) < kAllFound && overlaps(other, LaidOn::kMap, kRivalFoundMin) &&
+           contradicted_of(other) <= contradicted_of(best) + kHardlyMore && is_elsewhere(other.pose(), best.pose());
+}
+
+/// Of the candidates, the best that is distinct from the first and may be the truth as well.
+const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first) {
+    const Candidate& best = candidates.front();
+    const double near = best.score() - std::max(kMargin * best.score(), kMarginElements);
+    for (const Candidate& other : candidates) {
+        if (!is_distinct(other.pose(), best.pose())) continue;
+        if (other.score() >= near) return &other;
+        if (first == LaidOn::kMap && may_be_unfinished(other, best)) return &other;
+    }
+    return nullptr;
+}
+
+std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first) {
+    const Pose2 apart = compose(inverse(best.pose()), rival.pose());
+    return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, explains {:.0f} % where this one explains "
+                       "{:.0f} %: take a capture where more can be told apart",
+                       std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
+                       100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first));
+}
+
+} // namespace
+
+Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
+    if (candidates.empty()) {
+        return {.why = first == LaidOn::kView
+                           ? "no pose lays anything of one view on the other: take captures that are nearer to each "
+                             "other"
+                           : "no pose lays what is seen on the map: go where it has been mapped"};
+    }
+    const Candidate& best = candidates.front();
+    Alignment alignment{.T_first_second = best.pose(),
+                        .certainty = Certainty::kClear,
+                        .explained = share(best.second_in_first.matched, best.second_in_first.elements),
+                        .contradicted = share(best.second_in_first.contradicted, best.second_in_first.elements),
+                        .rms = best.fit.rms};
+    add_sigmas(best.fit, alignment);
+    if (auto why = undetermined(best, first)) {
+        alignment.certainty = Certainty::kUndetermined;
+        alignment.why = std::move(*why);
+        return alignment;
+    }
+    const auto [direction, held] = weak_direction(best.fit);
+    const Candidate* rival = rival_of(candidates, first);
+    if (rival) alignment.rival = rival->pose();
+    if (held < kHeld) {
+        alignment.certainty = Certainty::kAmbiguous;
+        alignment.why = fmt::format("hardly anything holds the pose along ({:.2f}, {:.2f}), as in a corridor: take a "
+                                    "capture that shows where it ends",
+                                    direction.x(), direction.y());
+    } else if (rival) {
+        alignment.certainty = Certainty::kAmbiguous;
+        alignment.why = rivalled(best, *rival, first);
+    } else if (alignment.position_sigma > (first == LaidOn::kView ? kSigmaMax : kSigmaInMapMax)) {
+        alignment.certainty = Certainty::kUndetermined;
+        alignment.why = fmt::format("along ({:.2f}, {:.2f}) the place is known to within {:.0f} cm only, as what both "
+                                    "show is little or far away: take captures of more turns, or nearer to things",
+                                    direction.x(), direction.y(), std::ceil(300.0 * alignment.position_sigma));
+    }
+    return alignment;
+}
+
+} // namespace scanloom::landmarks

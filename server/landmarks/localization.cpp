@@ -1,0 +1,180 @@
+#include "server/landmarks/localization.hpp"
+
+#include "server/landmarks/alignment_candidates.hpp"
+#include "server/landmarks/alignment_judgement.hpp"
+#include "server/landmarks/alignment_search.hpp"
+#include "server/landmarks/reference_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace scanloom::landmarks {
+namespace {
+
+constexpr double kHalfExtentMax = 100.0; // metres
+constexpr std::size_t kHypotheses = 48;
+constexpr std::size_t kRepetitions = 12;     // of each quarter turn
+constexpr std::size_t kMapSurfelsMax = 4000; // that stand for all
+constexpr std::size_t kViewSurfelsMax = 4000;
+constexpr double kBeyond = 1.0; // metres that are looked at beyond what the view shows
+
+/// Metres between two places along the axis where it is more.
+double apart(const Point2& a, const Point2& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// Of the views those that may show something of what is seen from within the neighbourhood.
+ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near, double reach) {
+    ReferenceViews some;
+    std::ranges::copy_if(views, std::back_inserter(some), [&](const auto& view) {
+        return std::ranges::any_of(view->points, [&](const PointMm& point) {
+            return apart(in_metres(point), near.middle) <= near.radius + reach;
+        });
+    });
+    return some;
+}
+
+/// A view of a room has some hundred surface elements: of one that has far more, evenly chosen ones stand for all.
+std::vector<Surfel> some_surfels_of(const std::vector<Point2>& points) {
+    return sample(surfels_of(points), kViewSurfelsMax);
+}
+
+/// A view, and the map that it is laid on.
+class Search {
+public:
+    /// @param within  in the map's own frame
+    Search(const ReferenceMap& map, const Neighbourhood& within, const Horizon& horizon,
+           const std::vector<Point2>& points);
+
+    [[nodiscard]] std::vector<Pose2> hypotheses() const;
+    /// Where things repeat, the truth may have fewer votes than what it is taken for; but walls stand alike.
+    [[nodiscard]] std::vector<Pose2> repetitions(double yaw) const;
+    /// Adds what comes of one, where a sensor may be.
+    void add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const;
+    void add_slid_of_the_best(std::vector<Candidate>& candidates) const;
+
+private:
+    [[nodiscard]] std::vector<Pose2> in_map(std::vector<Pose2> poses) const;
+    [[nodiscard]] bool is_possible(const Candidate& candidate) const {
+        return map_.is_possible({candidate.pose().x, candidate.pose().y});
+    }
+
+    const ReferenceMap& map_;
+    Neighbourhood within_;
+    Seen second_;
+    double reach_;
+    std::vector<Surfel> near_; // what may be seen from within, from its middle
+};
+
+Search::Search(const ReferenceMap& map, const Neighbourhood& within, const Horizon& horizon,
+               const std::vector<Point2>& points)
+    : map_(map), within_(within), second_{Surface(some_surfels_of(points)), {&horizon}},
+      reach_(horizon.reach() + kBeyond) {
+    for (Surfel surfel : map_.surfels()) {
+        if (apart(surfel.position, within_.middle) > within_.radius + reach_) continue;
+        surfel.position -= within_.middle;
+        near_.push_back(surfel);
+    }
+}
+
+std::vector<Pose2> Search::hypotheses() const {
+    return in_map(find_hypotheses(near_, second_.surface.surfels(), within_.radius, kHypotheses, kMapSurfelsMax));
+}
+
+std::vector<Pose2> Search::repetitions(double yaw) const {
+    return in_map(
+        find_translations(near_, second_.surface.surfels(), yaw, within_.radius, kRepetitions, kMapSurfelsMax));
+}
+
+std::vector<Pose2> Search::in_map(std::vector<Pose2> poses) const {
+    for (Pose2& pose : poses) pose = {pose.x + within_.middle.x(), pose.y + within_.middle.y(), pose.yaw};
+    return poses;
+}
+
+void Search::add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const {
+    const Seen first = map_.around({hypothesis.x, hypothesis.y}, reach_);
+    if (first.surface.surfels().empty()) return;
+    candidates.push_back(judged(first, second_, settle(first.surface, second_.surface.surfels(), hypothesis)));
+    if (!is_possible(candidates.back())) candidates.pop_back();
+}
+
+void Search::add_slid_of_the_best(std::vector<Candidate>& candidates) const {
+    if (candidates.empty()) return;
+    const Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
+    const auto begin = static_cast<std::ptrdiff_t>(candidates.size());
+    add_slid(map_.around({best.pose().x, best.pose().y}, reach_), second_, best, candidates);
+    const auto impossible = std::remove_if(candidates.begin() + begin, candidates.end(),
+                                           [&](const Candidate& candidate) { return !is_possible(candidate); });
+    candidates.erase(impossible, candidates.end());
+}
+
+/// Of the map's own frame; no more of it than there is.
+Neighbourhood in_frame_of(const ReferenceMap& map, const std::optional<Neighbourhood>& near) {
+    if (!near) return {{0.0, 0.0}, map.half_extent()};
+    const Point2 middle = near->middle - map.middle();
+    return {middle, std::min(near->radius, map.half_extent() + apart(middle, {0.0, 0.0}))};
+}
+
+/// Another place may be mapped.
+std::string nothing_there(const std::optional<Neighbourhood>& near) {
+    if (!near) return "all that the session's lasers have seen has gone since: go where it has been mapped";
+    return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say near which place it is",
+                       near->radius, near->middle.x(), near->middle.y());
+}
+
+} // namespace
+
+Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, const std::optional<Neighbourhood>& near,
+                         const std::function<Result<>()>& ask) {
+    if (auto good = check_view("what is seen", view); !good) return good.error();
+    std::vector<Point2> points;
+    for (const Point2& point : view.points) points.push_back(point - view.from);
+    const Horizon horizon(points, {0.0, 0.0});
+
+    const ReferenceMap map(near ? views_near(views, *near, horizon.reach() + kBeyond) : views);
+    if (views.empty()) {
+        return Error{Errc::kNothingMapped,
+                     "no laser of this session has seen anything yet; send the first scans from a pose that is known"};
+    }
+    if (map.is_empty()) return Alignment{.why = nothing_there(near)};
+    const Neighbourhood within = in_frame_of(map, near);
+    if (within.radius > kHalfExtentMax) {
+        return Error{Errc::kTooLarge,
+                     fmt::format("{:.0f} m of the map would have to be looked at, and at most {:.0f} m "
+                                 "are: say near which place it is, and how near",
+                                 2.0 * within.radius, 2.0 * kHalfExtentMax)};
+    }
+    if (auto go_on = ask(); !go_on) return go_on.error();
+    const Search search(map, within, horizon, points);
+    std::vector<Candidate> candidates;
+    for (const Pose2& hypothesis : search.hypotheses()) {
+        if (auto go_on = ask(); !go_on) return go_on.error();
+        search.add(hypothesis, candidates);
+    }
+    if (!candidates.empty()) {
+        const double yaw = std::ranges::max_element(candidates, {}, &Candidate::score)->pose().yaw;
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            for (const Pose2& hypothesis : search.repetitions(yaw + quarter * 0.5 * std::numbers::pi)) {
+                if (auto go_on = ask(); !go_on) return go_on.error();
+                search.add(hypothesis, candidates);
+            }
+        }
+    }
+    search.add_slid_of_the_best(candidates);
+    std::erase_if(candidates, [&](const Candidate& candidate) {
+        return apart({candidate.pose().x, candidate.pose().y}, within.middle) > within.radius;
+    });
+    rank(candidates);
+    Alignment found = judge(candidates, LaidOn::kMap);
+    const auto in_map = [&](const Pose2& pose) {
+        return compose({map.middle().x(), map.middle().y(), 0.0}, compose(pose, {-view.from.x(), -view.from.y(), 0.0}));
+    };
+    found.T_first_second = in_map(found.T_first_second);
+    if (found.rival) found.rival = in_map(*found.rival);
+    return found;
+}
+
+} // namespace scanloom::landmarks

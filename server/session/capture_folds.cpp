@@ -1,0 +1,109 @@
+#include "server/session/capture_folds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace scanloom::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const Error kTooMany{Errc::kFull, "more than there may be"};
+
+Error not_yet(std::string_view what, Revision folded, Revision revision) {
+    return {Errc::kOverloaded, fmt::format("the {} of {} of {} log entries are found; ask again, it goes on from there",
+                                           what, folded, revision)};
+}
+
+} // namespace
+
+template <class Layer>
+Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Revision revision,
+                                                 const std::function<bool()>& is_wanted) {
+    const auto kept = find_or_begin(session.id);
+    const std::unique_lock folding(kept->mutex, limits_.patience);
+    if (!folding) {
+        return Error{Errc::kOverloaded,
+                     fmt::format("others have the {} of this session found at this moment; ask again",
+                                 FoldedInto<Layer>::kWhat)};
+    }
+    if (kept->is_full) return full(session);
+    try {
+        const auto done = go_on(*kept, revision, is_wanted);
+        if (kept->layer.size() > limits_.size_max) { // and has ever more
+            kept->is_full = true;
+            kept->captures = {};
+            kept->layer = {};
+        }
+        account(*kept);
+        if (kept->is_full) return full(session);
+        if (!done) return done.error();
+        return Folded<Layer>{kept->layer.snapshot(), kept->captures.open(), kept->captures.revision()};
+    } catch (const std::bad_alloc&) {
+        kept->captures = {}; // of which a part may be missing
+        kept->layer = {};
+        remove(session.id);
+        return Error{Errc::kOverloaded,
+                     fmt::format("there is no memory left for these {}; try again later", FoldedInto<Layer>::kWhat)};
+    }
+}
+
+template <class Layer>
+Error CaptureFolds<Layer>::full(const SessionInfo& session) const {
+    return {Errc::kFull, fmt::format("session '{}' has more than {} {}, the most that are kept; {}", session.name,
+                                     limits_.size_max, FoldedInto<Layer>::kWhat, FoldedInto<Layer>::kInstead)};
+}
+
+template <class Layer>
+Result<> CaptureFolds<Layer>::go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const {
+    const auto deadline = Clock::now() + limits_.patience;
+    const auto add = [&](const landmarks::RobotCapture& ended) -> Result<> {
+        kept.layer.add(ended);
+        return kept.layer.size() <= limits_.size_max ? Result<>() : kTooMany;
+    };
+    const auto ask = [&](Revision read) -> Result<> {
+        if (!is_wanted()) return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
+        if (Clock::now() >= deadline) return not_yet(FoldedInto<Layer>::kWhat, read, revision);
+        return {};
+    };
+    return read_captures(log_, kept.session, kept.captures, revision, add, ask);
+}
+
+template <class Layer>
+auto CaptureFolds<Layer>::find_or_begin(store::SessionId session) -> std::shared_ptr<Kept> {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find(kept_, session, [](const auto& kept) { return kept->session; });
+    if (found == kept_.end()) {
+        kept_.push_front(std::make_shared<Kept>(session));
+    } else {
+        kept_.splice(kept_.begin(), kept_, found);
+    }
+    if (kept_.size() > limits_.kept_max) kept_.pop_back();
+    return kept_.front();
+}
+
+/// Forgets the least recently used until the others have no more than there may be.
+template <class Layer>
+void CaptureFolds<Layer>::account(Kept& kept) {
+    const std::lock_guard lock(mutex_);
+    kept.size = kept.layer.size();
+    std::size_t sum = 0;
+    std::erase_if(kept_, [&](const auto& other) {
+        sum += other->size;
+        return sum > limits_.size_max && other.get() != &kept;
+    });
+}
+
+template <class Layer>
+void CaptureFolds<Layer>::remove(store::SessionId session) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(kept_, [&](const auto& kept) { return kept->session == session; });
+}
+
+template class CaptureFolds<landmarks::LandmarkLayer>;
+template class CaptureFolds<landmarks::ReferenceLayer>;
+
+} // namespace scanloom::session

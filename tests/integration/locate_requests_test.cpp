@@ -1,0 +1,168 @@
+#include "tests/integration/ingest_fixture.hpp"
+#include "tests/support/room_scans.hpp"
+
+#include <boost/asio/post.hpp>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <future>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+/// Robots that ask where they are.
+namespace scanloom::ingest {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::room_range;
+
+constexpr std::uint32_t kBeams = 720;
+
+Sensor round_laser() {
+    Sensor sensor;
+    sensor.id = 1;
+    sensor.name = "laser";
+    sensor.mount = {0.1, 0.0, 0.0};
+    sensor.angles = UniformAngles{0.0, 2.0 * std::numbers::pi / kBeams, kBeams};
+    sensor.range_max = 20.0;
+    return sensor;
+}
+
+/// What is seen of the room from there, beam by beam, in metres.
+std::vector<double> room_from(const Pose2& T_room_laser) {
+    std::vector<double> ranges;
+    for (std::uint32_t n = 0; n < kBeams; ++n) {
+        const double direction = T_room_laser.yaw + n * 2.0 * std::numbers::pi / kBeams;
+        ranges.push_back(room_range({T_room_laser.x, T_room_laser.y}, direction));
+    }
+    return ranges;
+}
+
+Scan room_scan(std::uint64_t seq, const Pose2& T_map_robot) {
+    Scan scan{.seq = seq, .stamp = static_cast<double>(seq), .sensor = 1, .pose = T_map_robot};
+    for (const double metres : room_from(compose(T_map_robot, round_laser().mount))) {
+        scan.ranges.push_back(static_cast<RangeMm>(std::lround(metres * 1e3)));
+    }
+    return scan;
+}
+
+/// What a lidar that stands there asks, in its own frame.
+wire::LocateRequest question_from(const Pose2& T_room_laser, std::uint64_t id = 1) {
+    wire::LocateRequest request{.id = id};
+    const auto ranges = room_from(T_room_laser);
+    for (std::uint32_t n = 0; n < kBeams; ++n) {
+        const double angle = n * 2.0 * std::numbers::pi / kBeams;
+        request.points.push_back({static_cast<std::int32_t>(std::lround(ranges[n] * 1e3 * std::cos(angle))),
+                                  static_cast<std::int32_t>(std::lround(ranges[n] * 1e3 * std::sin(angle)))});
+    }
+    return request;
+}
+
+constexpr Pose2 kTruth{2.0, 1.5, 0.7};
+
+class LocateRequestsTest : public IngestTest {
+protected:
+    /// A robot that has sent scans from two places, each fewer than make a capture full.
+    std::unique_ptr<RobotSocket> mapping(const std::string& name = "mapper") {
+        auto robot = welcomed(port(), hello(name));
+        robot->send(round_laser());
+        robot->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4}), room_scan(2, {1.0, 2.0, -2.0})}});
+        robot->wait_for_ack(2);
+        return robot;
+    }
+};
+
+TEST_F(LocateRequestsTest, ALidarWithoutOdometryIsToldWhereItStands) {
+    auto& ingest = start();
+    const auto mapper = mapping();
+    const auto carried = welcomed(port(), hello("carried"));
+    carried->send(question_from(kTruth, 7));
+    const auto reply = carried->receive_kind<wire::LocateReply>();
+    EXPECT_EQ(reply.id, 7U);
+    EXPECT_EQ(reply.revision, ingest.snapshot("lab")->revision);
+    ASSERT_TRUE(reply.correction) << reply.correction.error().message;
+    EXPECT_NEAR(reply.correction->T_map_odom.x, kTruth.x, 0.02);
+    EXPECT_NEAR(reply.correction->T_map_odom.y, kTruth.y, 0.02);
+    EXPECT_NEAR(reply.correction->T_map_odom.yaw, kTruth.yaw, 0.005);
+    EXPECT_EQ(reply.correction->revision, reply.revision);
+    EXPECT_GT(reply.correction->explained, 0.9);
+    EXPECT_LT(reply.correction->position_sigma, 0.01);
+}
+
+TEST_F(LocateRequestsTest, NothingIsStoredOfTheQuestion) {
+    auto& ingest = start();
+    const auto mapper = mapping();
+    const auto carried = welcomed(port(), hello("carried"));
+    const auto before = ingest.snapshot("lab")->revision;
+    carried->send(question_from(kTruth));
+    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
+    EXPECT_EQ(ingest.snapshot("lab")->revision, before);
+}
+
+TEST_F(LocateRequestsTest, WhatTheMapCannotTellIsRefusedAndTheLinkGoesOn) {
+    start();
+    const auto carried = welcomed(port(), hello("carried"));
+    carried->send(question_from(kTruth, 1));
+    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
+
+    const auto mapper = mapping();
+    auto elsewhere = question_from(kTruth, 2);
+    for (auto& point : elsewhere.points) point = {point.x / 3, point.y / 3}; // a small room
+    carried->send(elsewhere);
+    EXPECT_EQ(carried->receive_kind<wire::LocateReply>().correction.error().code, Errc::kUndetermined);
+
+    auto wall = question_from(kTruth, 3);
+    for (std::size_t n = 0; n < wall.points.size(); ++n) wall.points[n] = {static_cast<std::int32_t>(n), 1000};
+    carried->send(wall);
+    const auto refused = carried->receive_kind<wire::LocateReply>().correction.error();
+    EXPECT_TRUE(refused.code == Errc::kAmbiguous || refused.code == Errc::kUndetermined) << refused.message;
+
+    auto far = question_from(kTruth, 4);
+    far.near = wire::Near{{500.0, 0.0}, 10.0};
+    carried->send(far);
+    const auto nothing = carried->receive_kind<wire::LocateReply>().correction.error();
+    EXPECT_EQ(nothing.code, Errc::kUndetermined);
+    EXPECT_THAT(nothing.message, HasSubstr("within 10 m of (500, 0)"));
+
+    auto near = question_from(kTruth, 5);
+    near.near = wire::Near{{1.5, 1.0}, 2.0};
+    carried->send(near);
+    EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
+}
+
+TEST_F(LocateRequestsTest, ManyThatAskWhereTheyAreLeaveRoomForThoseThatAskForWays) {
+    auto& ingest = start();
+    const auto mapper = mapping();
+    std::promise<void> go_on;
+    boost::asio::post(ingest.locating(), [wait = go_on.get_future().share()] { wait.wait(); });
+    std::vector<std::unique_ptr<RobotSocket>> carried;
+    for (std::size_t n = 0; n < RequestDesk::kLocatingMax / 4; ++n) { // four of each at a time
+        carried.push_back(welcomed(port(), hello("carried" + std::to_string(n))));
+        for (std::uint64_t id = 1; id <= 4; ++id) carried.back()->send(question_from(kTruth, id));
+        carried.back()->send(wire::Ping{n});
+        EXPECT_EQ(carried.back()->receive_kind<wire::Pong>().nonce, n);
+    }
+    const auto late = welcomed(port(), hello("late"));
+    late->send(question_from(kTruth));
+    EXPECT_EQ(late->receive_kind<wire::LocateReply>().correction.error().code, Errc::kOverloaded);
+    mapper->send(wire::PlanRequest{.id = 9, .goal = {1.0, 2.5}});
+    EXPECT_TRUE(mapper->receive_kind<wire::PlanReply>().path);
+    go_on.set_value();
+}
+
+TEST_F(LocateRequestsTest, ANewRobotIsFoundInWhatItMappedItself) {
+    start();
+    const auto robot = welcomed(port(), hello("r"));
+    robot->send(round_laser());
+    robot->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4})}});
+    robot->wait_for_ack(1);
+    robot->send(question_from({-1.0, -1.8, 2.5}));
+    const auto reply = robot->receive_kind<wire::LocateReply>();
+    EXPECT_TRUE(reply.correction) << reply.correction.error().message;
+}
+
+} // namespace
+} // namespace scanloom::ingest

@@ -1,0 +1,77 @@
+#include "server/landmarks/localization.hpp"
+#include "server/landmarks/session_captures.hpp"
+#include "tests/support/whole_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+/// Robots are found in the maps that they made themselves of real buildings, of what they saw at other times.
+namespace scanloom::landmarks {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kAsked = 20;  // of each log
+constexpr std::size_t kLeftOut = 3; // captures before and behind the one that is asked for
+
+std::filesystem::path path_of(const std::string& file) {
+    return std::filesystem::path(SCANLOOM_SOURCE_DIR) / "../shared/data/logs" / file;
+}
+
+std::vector<Capture> captures_of(const robot::WholeLog& log) {
+    SessionCaptures cutter;
+    std::vector<Capture> captures;
+    const auto add = [&](LogEntry entry) {
+        if (auto ended = cutter.add(entry)) captures.push_back(std::move(ended->capture));
+    };
+    std::shared_ptr<const Sensor> described;
+    for (const auto& [sensor, scan] : log.observations) {
+        if (sensor != described) add(SensorDescribed{0, *sensor});
+        described = sensor;
+        add(ScanTaken{0, scan});
+    }
+    return captures;
+}
+
+ReferenceViews all_but(const std::vector<Capture>& captures, std::size_t asked) {
+    ReferenceViews map;
+    for (std::size_t n = 0; n < captures.size(); ++n) {
+        if (n + kLeftOut >= asked && n <= asked + kLeftOut) continue;
+        map.push_back(std::make_shared<const ReferenceView>(ReferenceView{captures[n].from, captures[n].points, n}));
+    }
+    return map;
+}
+
+class RealLocalization : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealLocalization, IsRightWhereItIsClearAndMostlyItIs) {
+    if (!std::filesystem::exists(path_of(GetParam()))) {
+        GTEST_SKIP() << "recorded data, no part of the project, are not on this machine: " << path_of(GetParam());
+    }
+    const auto log = robot::read_whole_log(path_of(GetParam()), {}, [](const robot::SkippedLine&) {});
+    ASSERT_TRUE(log) << log.error().message;
+    const auto captures = captures_of(*log);
+    std::size_t clear = 0;
+    for (std::size_t n = 0; n < kAsked; ++n) {
+        const std::size_t asked = (2 * n + 1) * captures.size() / (2 * kAsked);
+        const Capture& capture = captures[asked];
+        std::vector<Point2> seen = in_metres(capture.points); // and where the robot was is not told
+        for (Point2& point : seen) point = transform(inverse(capture.pose), point);
+        const Point2 from = transform(inverse(capture.pose), capture.from);
+        const auto found = locate(all_but(captures, asked), {.points = seen, .from = from});
+        ASSERT_TRUE(found) << found.error().message;
+        if (found->certainty != Certainty::kClear) continue;
+        ++clear;
+        const Pose2 off = compose(inverse(capture.pose), found->T_first_second);
+        EXPECT_LT(std::hypot(off.x, off.y), 0.2) << "capture " << asked << ": the logs' own poses are as good as that";
+        EXPECT_LT(std::abs(off.yaw), 3.0 * kDegree) << "capture " << asked;
+    }
+    EXPECT_GE(clear, kAsked * 6 / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RealLocalization, testing::Values("intel-corrected.log.gz", "fr079-corrected.log.gz"));
+
+} // namespace
+} // namespace scanloom::landmarks

@@ -1,0 +1,93 @@
+#include "tests/integration/robot_client/client_fixture.hpp"
+
+/// A robot's own program asks where the robot is.
+namespace scanloom::robot {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+class ClientLocate : public ClientFixture {
+protected:
+    std::unique_ptr<Client> client_of(LinkScript script) {
+        server_in_the_test_.go_by(std::move(script));
+        server_in_the_test_.run();
+        auto made = options();
+        made.server = server_in_the_test_.address();
+        return Client::start(made).value();
+    }
+
+    static std::vector<Scan> scans() {
+        std::vector<Scan> made(10, numbered(0));
+        for (auto& scan : made) {
+            scan.pose = {1.0, 2.0, 0.0};
+            scan.ranges.front() = kNoReturn;
+        }
+        return made;
+    }
+
+    ServerInTheTest server_in_the_test_;
+};
+
+TEST_F(ClientLocate, TellsWhatTheServerFound) {
+    const auto client = client_of({.location = wire::Correction{{1.0, 2.0, 3.0}, 7, 0.9, 0.01, 0.02}});
+    const auto location = client->locate(laser(), scans(), 20s, {.near = {{{4.0, 5.0}, 6.0}}});
+    ASSERT_TRUE(location) << location.error().message;
+    EXPECT_EQ(location->T_map_odom, (Pose2{1.0, 2.0, 3.0}));
+    EXPECT_EQ(location->explained, 0.9);
+    EXPECT_EQ(location->position_sigma, 0.01);
+    EXPECT_EQ(location->yaw_sigma, 0.02);
+    EXPECT_EQ(location->revision, 7U);
+    EXPECT_TRUE(client->close(20s));
+    ASSERT_EQ(server_in_the_test_.fake().locates().size(), 1U);
+    const auto& asked = server_in_the_test_.fake().locates()[0];
+    EXPECT_EQ(asked.points.size(), 10U * 199U);
+    EXPECT_EQ(asked.from, Point2(1.0, 2.0));
+    EXPECT_EQ(asked.near, (wire::Near{{4.0, 5.0}, 6.0}));
+    EXPECT_TRUE(server_in_the_test_.fake().stored().empty()) << "what is asked with is not stored";
+}
+
+TEST_F(ClientLocate, TellsWhatTheMapCannot) {
+    const Error refusal{Errc::kUndetermined, "too little of this is in the map"};
+    const auto client = client_of({.location = refusal});
+    EXPECT_EQ(client->locate(laser(), scans(), 20s).error(), refusal);
+    send(*client, 1, 1);
+    EXPECT_TRUE(client->close(20s));
+}
+
+TEST_F(ClientLocate, OfAServerOfAnEarlierVersionSaysSo) {
+    const auto client = client_of({.knows_locating = false});
+    EXPECT_THAT(client->locate(laser(), scans(), 20s).error().message, HasSubstr("a server of an earlier version"));
+}
+
+TEST_F(ClientLocate, WithoutAServerIsLate) {
+    const auto client = Client::start(options()).value();
+    EXPECT_EQ(client->locate(laser(), scans(), 1ms).error().code, Errc::kTimeout);
+}
+
+TEST_F(ClientLocate, WhatNoServerTakesIsRefusedByNameAndDisturbsNothing) {
+    const auto client = client_of({});
+    const auto refused = [&](const std::shared_ptr<const Sensor>& sensor, const std::vector<Scan>& given,
+                             const char* told, const LocateOptions& within = {}) {
+        const auto location = client->locate(sensor, given, 20s, within);
+        ASSERT_FALSE(location) << told;
+        EXPECT_EQ(location.error().code, Errc::kInvalidField);
+        EXPECT_THAT(location.error().message, HasSubstr(told));
+    };
+    refused(nullptr, scans(), "scans need their sensor");
+    refused(laser(), {}, "met something 0 times; 20 are needed");
+    Sensor sonar = *laser();
+    sonar.kind = SensorKind::kSonar;
+    refused(std::make_shared<const Sensor>(sonar), scans(), "only what lasers see");
+    auto wrong = scans();
+    wrong[3].pose.x = std::numeric_limits<double>::quiet_NaN();
+    refused(laser(), wrong, "scans[3]: ");
+    refused(laser(), scans(), "radius is 0 m", {.near = {{{0.0, 0.0}, 0.0}}});
+    refused(laser(), scans(), "near.x is 2e+06", {.near = {{{2e6, 0.0}, 1.0}}});
+    EXPECT_TRUE(client->locate(laser(), scans(), 20s));
+    EXPECT_TRUE(client->close(20s));
+    EXPECT_EQ(server_in_the_test_.fake().locates().size(), 1U);
+}
+
+} // namespace
+} // namespace scanloom::robot

@@ -1,0 +1,134 @@
+#include "robot_client/source/locating_source.hpp"
+#include "robot_client/source/replayed_source.hpp"
+#include "robot_client/uplink/location.hpp"
+#include "tests/integration/robot_client/live_feed_fixture.hpp"
+#include "tests/support/recorded_source.hpp"
+#include "tests/unit/robot_client/source/carried_lidar.hpp"
+
+#include <boost/asio/experimental/awaitable_operators.hpp>
+
+/// A robot asks its server where it is, over a real link.
+namespace scanloom::robot {
+namespace {
+
+using namespace asio::experimental::awaitable_operators;
+using testing::HasSubstr;
+
+const wire::Near kNear{{1.0, 2.0}, 5.0};
+
+class LocationTest : public LiveFeedTest {
+protected:
+    void serve(LinkScript script) { server_.continue_with(std::move(script)); }
+
+    static std::vector<PointMm> points() {
+        std::vector<PointMm> made;
+        for (std::int32_t n = 0; n < 25; ++n) made.push_back({n, -n});
+        return made;
+    }
+
+    /// Asks within a run of the robot's program, and ends that.
+    asio::awaitable<void> ask(Uplink& uplink, ScriptedSource& source) {
+        const Locate locate = located_by(uplink, kNear);
+        answer_ = co_await locate(points(), Point2(0.5, 0.25));
+        source.end();
+    }
+
+    Result<> run_and_ask(ScriptedSource& source) {
+        return run(source, nullptr,
+                   [&] { asio::co_spawn(uplink_->executor(), ask(*uplink_, source), [](std::exception_ptr) {}); });
+    }
+
+    std::optional<Result<Located>> answer_;
+};
+
+TEST_F(LocationTest, IsWhatTheServerAnswers) {
+    serve({.location = wire::Correction{{1.0, 2.0, 3.0}, 7, 0.9, 0.01, 0.02}});
+    ScriptedSource source;
+    ASSERT_TRUE(run_and_ask(source));
+    ASSERT_TRUE(answer_ && *answer_);
+    EXPECT_EQ((*answer_)->T_map_odom, (Pose2{1.0, 2.0, 3.0}));
+    EXPECT_EQ((*answer_)->explained, 0.9);
+    EXPECT_EQ((*answer_)->position_sigma, 0.01);
+    EXPECT_EQ((*answer_)->yaw_sigma, 0.02);
+    ASSERT_EQ(server_.locates().size(), 1U);
+    EXPECT_EQ(server_.locates()[0].points, points());
+    EXPECT_EQ(server_.locates()[0].from, Point2(0.5, 0.25));
+    EXPECT_EQ(server_.locates()[0].near, kNear);
+}
+
+TEST_F(LocationTest, IsAskedForOnceTheScansBeforeAreInTheMaps) {
+    serve({});
+    ScriptedSource source;
+    source.allow(40);
+    source.on_given = [&](std::uint64_t given) {
+        if (given == 40) asio::co_spawn(uplink_->executor(), ask(*uplink_, source), [](std::exception_ptr) {});
+    };
+    server_.on_stored = [&](std::size_t) { EXPECT_TRUE(server_.locates().empty()); };
+    ASSERT_TRUE(run(source, nullptr));
+    EXPECT_TRUE(answer_ && *answer_);
+    EXPECT_EQ(server_.locates().size(), 1U);
+    expect_stored(40);
+}
+
+TEST_F(LocationTest, ARefusalIsTheServersOwn) {
+    const Error refusal{Errc::kAmbiguous, "here or there"};
+    serve({.location = refusal});
+    ScriptedSource source;
+    ASSERT_TRUE(run_and_ask(source));
+    ASSERT_TRUE(answer_);
+    EXPECT_EQ(answer_->error(), refusal);
+}
+
+TEST_F(LocationTest, OfAServerThatCannotTellEndsTheLinkWithWhatToDo) {
+    serve({.knows_locating = false});
+    ScriptedSource source;
+    const auto outcome = run_and_ask(source);
+    ASSERT_FALSE(outcome);
+    EXPECT_THAT(outcome.error().message, HasSubstr("update it, or say where the robot is"));
+    EXPECT_FALSE(answer_);
+}
+
+TEST_F(LocationTest, ThatNobodyWaitsForAnyMoreLeavesRoomForOthers) {
+    serve({.hang_up_after_requests = 1});
+    ScriptedSource source;
+    const auto leave = [&]() -> asio::awaitable<void> {
+        const Locate locate = located_by(*uplink_, std::nullopt);
+        const auto until_asked = [&]() -> asio::awaitable<void> {
+            while (server_.locates().empty()) co_await asio::post(asio::use_awaitable);
+        };
+        co_await (locate(points(), Point2(0.0, 0.0)) || until_asked());
+        serve({});
+        co_await ask(*uplink_, source);
+    };
+    ASSERT_TRUE(run(source, nullptr, [&] {
+        asio::co_spawn(uplink_->executor(), leave(), [](std::exception_ptr failed) { EXPECT_FALSE(failed); });
+    }));
+    EXPECT_TRUE(answer_ && *answer_);
+    EXPECT_EQ(server_.locates().size(), 2U) << "what was abandoned is not asked again on the next link";
+}
+
+TEST_F(LocationTest, OfACarriedLidarIsAskedForAtEachPlaceAndAllThatIsSentHasIt) {
+    const Pose2 T_map_odom{1.0, 2.0, 0.5};
+    serve({.location = wire::Correction{T_map_odom, 7, 0.9, 0.01, 0.02}});
+    CarriedLidar lidar;
+    auto turns = lidar.turns_at(kHere, 20);
+    for (auto& turn : lidar.turns_between(kHere, kThere, 30)) turns.push_back(std::move(turn));
+    for (auto& turn : lidar.turns_at(kThere, 20)) turns.push_back(std::move(turn));
+    std::vector<std::size_t> stored_when_asked;
+    server_.on_stored = [&](std::size_t stored) {
+        if (server_.locates().size() > stored_when_asked.size()) stored_when_asked.push_back(stored - 1);
+    };
+    LocatingSource source(std::make_unique<ReplayedSource>(std::make_unique<RecordedSource>(std::move(turns))), {},
+                          options_.tell);
+    const auto outcome = run(source, nullptr, [&] { source.ask_with(located_by(*uplink_, std::nullopt)); });
+    ASSERT_TRUE(outcome) << outcome.error().message;
+    EXPECT_EQ(server_.faults(), std::vector<std::string>());
+    EXPECT_EQ(server_.locates().size(), 2U);
+    EXPECT_EQ(stored_when_asked, (std::vector<std::size_t>{0, 17}));
+    ASSERT_EQ(server_.stored().size(), 17U + 20U);
+    for (const Scan& scan : server_.stored()) EXPECT_EQ(scan.pose, T_map_odom);
+    EXPECT_EQ(source.remarks(), "carried 1 time, 33 turns while carried or not located");
+}
+
+} // namespace
+} // namespace scanloom::robot

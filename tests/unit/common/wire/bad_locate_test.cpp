@@ -1,0 +1,86 @@
+#include "tests/unit/common/wire/example_messages.hpp"
+#include "tests/unit/common/wire/refusals.hpp"
+
+#include "scanloom/v1/frame.pb.h"
+
+#include <string>
+
+/// What can be wrong with asking where a robot is, and with the answer.
+namespace scanloom::wire {
+namespace {
+
+TEST(BadCorrection, IsRefusedByTheNameOfItsField) {
+    const Spoilt<Correction> kSpoilt[] = {
+        {[](Correction& c) { c.T_map_odom.y = kNan; }, "T_map_odom.y is nan;"},
+        {[](Correction& c) { c.explained = 1.01; }, "explained is 1.01;"},
+        {[](Correction& c) { c.explained = kNan; }, "explained is nan;"},
+        {[](Correction& c) { c.position_sigma = -0.1; }, "position_sigma is -0.1;"},
+        {[](Correction& c) { c.yaw_sigma = kInfinity; }, "yaw_sigma is inf;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        Correction correction = example_correction();
+        spoilt.spoil(correction);
+        expect_refused(body_of(correction), spoilt.code, std::string("correction.") + spoilt.beginning);
+        expect_refused(body_of(LocateReply{1, 2, correction}), spoilt.code,
+                       std::string("locate_reply.correction.") + spoilt.beginning);
+    }
+}
+
+TEST(BadLocateRequest, IsRefusedByTheNameOfItsField) {
+    const Spoilt<LocateRequest> kSpoilt[] = {
+        {[](LocateRequest& r) { r.points.resize(19); }, "locate_request.points has 19 points; at least 20"},
+        {[](LocateRequest& r) { r.points.resize(kLocatePointsMax + 1); },
+         "locate_request.points has 32769 points, at most 32768", Errc::kTooLarge},
+        {[](LocateRequest& r) {
+             r.points[3] = {0, 1'000'000'001};
+         },
+         "locate_request.points[7] leads to 1000000001 mm; at most 1000000000"},
+        {[](LocateRequest& r) { r.from.x() = kNan; }, "locate_request.from.x is nan;"},
+        {[](LocateRequest& r) { r.near->point.y() = -kInfinity; }, "locate_request.near.y is -inf;"},
+        {[](LocateRequest& r) { r.near->radius = 0.0; }, "locate_request.radius is 0 m;"},
+        {[](LocateRequest& r) { r.near->radius = 1000.5; }, "locate_request.radius is 1000.5 m;"},
+        {[](LocateRequest& r) { r.near->radius = kNan; }, "locate_request.radius is nan m;"},
+    };
+    for (const auto& spoilt : kSpoilt) {
+        LocateRequest request = example_locate_request();
+        spoilt.spoil(request);
+        expect_refused(body_of(request), spoilt.code, spoilt.beginning);
+    }
+}
+
+/// A sender of another make may send what none of ours can.
+TEST(BadLocateRequest, OfAnotherMakeIsRefusedAsWell) {
+    v1::Frame frame;
+    ASSERT_TRUE(frame.ParseFromString(body_of(example_locate_request())));
+    auto& request = *frame.mutable_locate_request();
+    request.mutable_points()->RemoveLast();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.points has 39 numbers;");
+
+    request.clear_points();
+    for (int n = 0; n < 40; ++n) request.add_points(2'147'483'647); // sums far beyond 32 bits
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.points[0] leads to 2147483647 mm;");
+
+    request.clear_points();
+    for (int n = 0; n < 40; ++n) request.add_points(1);
+    request.clear_near();
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_request.radius is there, but near is not;");
+
+    frame.mutable_locate_reply()->set_id(1);
+    expect_refused(frame.SerializeAsString(), Errc::kInvalidField, "locate_reply.outcome is absent;");
+}
+
+TEST(LocateRequest, TheLargestFitsAFrame) {
+    LocateRequest request = example_locate_request();
+    request.points.clear();
+    for (std::size_t n = 0; n < kLocatePointsMax; ++n) {
+        const std::int32_t far = n % 2 == 0 ? 1'000'000'000 : -1'000'000'000;
+        request.points.push_back({far, -far});
+    }
+    const auto decoded = decode(body_of(request));
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(*decoded, Message(request));
+    EXPECT_LE(body_of(request).size(), std::size_t{1} << 20);
+}
+
+} // namespace
+} // namespace scanloom::wire

@@ -1,0 +1,228 @@
+#include "robot_client/source/halts.hpp"
+
+#include "tests/unit/robot_client/source/carried_lidar.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace scanloom::robot {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Pose2 kFirstPlace{1.0, 2.0, 0.5};
+const Located kLocated{{3.0, 4.0, 1.0}, 0.93, 0.02, 0.01};
+const Error kRefusal{Errc::kAmbiguous, "it may be here or there"};
+
+class HaltsTest : public testing::Test {
+protected:
+    void add(std::vector<Observation> turns) {
+        for (auto& turn : turns) {
+            EXPECT_FALSE(halts_.question()) << "it is answered before the next turn";
+            halts_.add(std::move(turn));
+        }
+    }
+    void stand(const Pose2& place, std::size_t turns) { add(lidar_.turns_at(place, turns)); }
+    void walk(const Pose2& from, const Pose2& to, std::size_t turns) { add(lidar_.turns_between(from, to, turns)); }
+
+    std::vector<Scan> given() {
+        std::vector<Scan> scans;
+        while (auto turn = halts_.take()) scans.push_back(std::move(turn->scan));
+        return scans;
+    }
+
+    CarriedLidar lidar_;
+    Halts halts_{kFirstPlace};
+};
+
+TEST_F(HaltsTest, AreAskedAboutOnceTenTurnsInARowAreAlike) {
+    stand(kHere, 9);
+    EXPECT_FALSE(halts_.question());
+    stand(kHere, 1);
+    const auto question = halts_.question();
+    ASSERT_TRUE(question);
+    EXPECT_EQ(question->points().size(), 3600U);
+    EXPECT_EQ(question->from(), Point2(0.0, 0.0));
+    EXPECT_THAT(given(), IsEmpty());
+}
+
+TEST_F(HaltsTest, GiveTheirTurnsWhereTheyWereLocated) {
+    stand(kHere, 10);
+    halts_.answer(kLocated);
+    EXPECT_THAT(halts_.take_news(),
+                ElementsAre("located at (3.00, 4.00), yaw 1.00: 93 % of what the lidar sees is in the "
+                            "map; known within 2.0 cm and 0.57 degrees"));
+    auto scans = given();
+    ASSERT_EQ(scans.size(), 7U) << "the newest three may be of a movement's begin";
+    for (std::size_t n = 0; n < scans.size(); ++n) {
+        EXPECT_EQ(scans[n].pose, kLocated.T_map_odom);
+        EXPECT_NEAR(scans[n].stamp, 1000.0 + 0.1 * static_cast<double>(n), 1e-9);
+    }
+    stand(kHere, 5);
+    EXPECT_EQ(given().size(), 5U);
+    halts_.end();
+    scans = given();
+    ASSERT_EQ(scans.size(), 3U) << "it stood to the end";
+    EXPECT_NEAR(scans.back().stamp, 1001.4, 1e-9);
+    EXPECT_EQ(halts_.given(), 15U);
+    EXPECT_EQ(halts_.dropped(), 0U);
+    EXPECT_EQ(halts_.carried(), 0U);
+}
+
+TEST_F(HaltsTest, GiveNothingOfAMovementAndOfTheTurnsBeforeIt) {
+    stand(kHere, 10);
+    halts_.answer(kLocated);
+    stand(kHere, 10);
+    static_cast<void>(halts_.take_news());
+    const std::size_t before = given().size();
+    walk(kHere, kThere, 30);
+    EXPECT_THAT(halts_.take_news(),
+                ElementsAre(HasSubstr("the lidar is moved: nothing is sent until it stands again")));
+    EXPECT_THAT(given(), IsEmpty());
+    EXPECT_EQ(halts_.carried(), 1U);
+    stand(kThere, 9);
+    EXPECT_FALSE(halts_.question());
+    stand(kThere, 1);
+    EXPECT_TRUE(halts_.question());
+    halts_.answer(Located{{5.0, 6.0, 0.0}, 0.9, 0.01, 0.01});
+    halts_.end();
+    const auto scans = given();
+    EXPECT_EQ(scans.size(), 10U);
+    EXPECT_EQ(scans.front().pose, (Pose2{5.0, 6.0, 0.0}));
+    EXPECT_EQ(before, 17U);
+    EXPECT_EQ(halts_.dropped(), 3U + 30U);
+}
+
+TEST_F(HaltsTest, AreNotBegunByALidarOnItsWay) {
+    walk(kHere, kThere, 40);
+    walk(kThere, {2.0, 0.0, -1.0}, 40);
+    EXPECT_EQ(halts_.carried(), 0U) << "it never stood";
+    EXPECT_THAT(halts_.take_news(), IsEmpty());
+    EXPECT_GE(halts_.dropped(), 75U);
+}
+
+TEST_F(HaltsTest, GoOnWhilePeopleWalkBy) {
+    stand(kHere, 10);
+    halts_.answer(kLocated);
+    for (int n = 0; n < 30; ++n) {
+        const Point2 at{kHere.x + 0.6, kHere.y - 1.5 + 0.1 * n};
+        lidar_.world().walkers = {{.loop = {at, {at.x(), at.y() + 1.0}}}};
+        stand(kHere, 1);
+    }
+    halts_.end();
+    EXPECT_EQ(given().size(), 40U);
+    EXPECT_EQ(halts_.carried(), 0U);
+}
+
+TEST_F(HaltsTest, GoOnBehindTurnsOfWhichNothingWasSeen) {
+    stand(kHere, 5);
+    const auto covered = [&] {
+        auto turns = lidar_.turns_at(kHere, 3);
+        for (auto& turn : turns) std::ranges::fill(turn.scan.ranges, kInvalidRange);
+        add(std::move(turns));
+    };
+    covered();
+    stand(kHere, 5);
+    EXPECT_TRUE(halts_.question());
+    halts_.answer(kLocated);
+    covered();
+    stand(kHere, 3);
+    halts_.end();
+    EXPECT_EQ(given().size(), 13U);
+    EXPECT_EQ(halts_.dropped(), 6U);
+}
+
+TEST_F(HaltsTest, AreInTheFrameOfTheOdometry) {
+    const Pose2 odometry{0.5, -0.25, 1.0};
+    auto turns = lidar_.turns_at(kHere, 10);
+    for (auto& turn : turns) turn.scan.pose = odometry;
+    add(std::move(turns));
+    EXPECT_LT((halts_.question()->from() - Point2(0.5, -0.25)).norm(), 1e-12);
+    halts_.answer(kLocated);
+    EXPECT_EQ(given().front().pose, compose(kLocated.T_map_odom, odometry));
+}
+
+TEST_F(HaltsTest, TheFirstOneIsWhereItWasSaidToBeIfNothingIsMapped) {
+    const Error nothing{Errc::kNothingMapped, "no laser has seen anything yet"};
+    auto turns = lidar_.turns_at(kHere, 10);
+    for (auto& turn : turns) turn.scan.pose = {5.0, 5.0, -2.0};
+    add(std::move(turns));
+    halts_.answer(nothing);
+    EXPECT_THAT(
+        halts_.take_news(),
+        ElementsAre("nothing is mapped yet: the lidar is taken to stand at (1.00, 2.00), yaw 0.50, and its next "
+                    "places are found from there"));
+    const auto scans = given();
+    ASSERT_EQ(scans.size(), 7U);
+    EXPECT_NEAR(scans[0].pose.x, kFirstPlace.x, 1e-12);
+    EXPECT_NEAR(scans[0].pose.y, kFirstPlace.y, 1e-12);
+    EXPECT_NEAR(scans[0].pose.yaw, kFirstPlace.yaw, 1e-12);
+    EXPECT_FALSE(halts_.refusal());
+
+    walk(kHere, kThere, 30);
+    stand(kThere, 10);
+    static_cast<void>(halts_.take_news());
+    halts_.answer(nothing);
+    EXPECT_THAT(halts_.take_news(), ElementsAre(HasSubstr("; the pose that was given was that of the first place;")));
+    halts_.end();
+    EXPECT_THAT(given(), IsEmpty()) << "only one place is the first";
+}
+
+TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainAfterTenSeconds) {
+    stand(kHere, 10);
+    halts_.answer(kRefusal);
+    EXPECT_EQ(halts_.refusal(), kRefusal);
+    stand(kHere, 99); // to 9.9 s after the turn that was asked about last
+    EXPECT_EQ(halts_.dropped(), 10U + 89U);
+    stand(kHere, 1);
+    ASSERT_TRUE(halts_.question());
+    halts_.answer(kLocated);
+    halts_.end();
+    const auto scans = given();
+    EXPECT_EQ(scans.size(), 10U);
+    EXPECT_NEAR(scans.front().stamp, 1010.0, 1e-6) << "newer ones than those that were refused";
+    EXPECT_EQ(halts_.carried(), 0U);
+}
+
+TEST_F(HaltsTest, ThatWereRefusedAreAskedAboutAgainWhenTheClockWasSetBack) {
+    stand(kHere, 10);
+    halts_.answer(kRefusal);
+    lidar_.let_time_pass(-500.0);
+    stand(kHere, 10);
+    EXPECT_TRUE(halts_.question());
+}
+
+TEST_F(HaltsTest, ElsewhereAreAskedAboutAtOnce) {
+    stand(kHere, 10);
+    halts_.answer(kRefusal);
+    walk(kHere, kThere, 30);
+    stand(kThere, 10);
+    EXPECT_TRUE(halts_.question());
+    EXPECT_EQ(halts_.carried(), 1U);
+}
+
+TEST_F(HaltsTest, EachTellASentenceOnce) {
+    const std::string told =
+        "it may be here or there; nothing is sent from here; asking again in 10 s, or at another place";
+    const auto ask = [&](const Error& refusal) {
+        stand(kHere, 10);
+        lidar_.let_time_pass(10.0);
+        halts_.answer(refusal);
+        return halts_.take_news();
+    };
+    EXPECT_THAT(ask(kRefusal), ElementsAre(told));
+    EXPECT_THAT(ask(kRefusal), IsEmpty());
+    EXPECT_THAT(ask({Errc::kOverloaded, "busy"}), ElementsAre(HasSubstr("busy; nothing is sent")));
+    EXPECT_THAT(ask(kRefusal), IsEmpty());
+    walk(kHere, kThere, 30);
+    walk(kThere, kHere, 30);
+    static_cast<void>(halts_.take_news());
+    EXPECT_THAT(ask(kRefusal), ElementsAre(told));
+}
+
+} // namespace
+} // namespace scanloom::robot

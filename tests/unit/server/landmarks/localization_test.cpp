@@ -1,0 +1,236 @@
+#include "robot_client/sim/standing_robot.hpp"
+#include "server/landmarks/localization.hpp"
+#include "tests/unit/server/landmarks/located_robot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace scanloom::landmarks {
+namespace {
+
+using namespace testing_support;
+using robot::Box;
+using testing::HasSubstr;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double metres_off(const Pose2& pose, const Pose2& truth) { return std::hypot(pose.x - truth.x, pose.y - truth.y); }
+double degrees_off(const Pose2& pose, const Pose2& truth) {
+    return std::abs(normalize_angle(pose.yaw - truth.yaw)) / kDegree;
+}
+
+void expect_right(const Alignment& found, const Pose2& truth, const std::string& where = "") {
+    EXPECT_EQ(found.certainty, Certainty::kClear) << where << ": " << found.why;
+    EXPECT_LT(metres_off(found.T_first_second, truth), 0.02) << where;
+    EXPECT_LT(degrees_off(found.T_first_second, truth), 0.5) << where;
+}
+
+/// What is clear is right; how many are.
+int clear_of(const robot::World& world, int seeds, int places) {
+    int clear = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        const auto mapped = mapped_world(world, places, static_cast<std::uint64_t>(seed));
+        const auto found = locate(as_references(mapped.map), {.points = mapped.seen}).value();
+        EXPECT_EQ(found.why.empty(), found.certainty == Certainty::kClear);
+        if (found.certainty != Certainty::kClear) continue;
+        ++clear;
+        expect_right(found, mapped.truth, world.name + ", seed " + std::to_string(seed));
+        EXPECT_LT(metres_off(found.T_first_second, mapped.truth), 6.0 * found.position_sigma);
+        EXPECT_GT(found.explained, 0.5);
+    }
+    return clear;
+}
+
+TEST(Localization, InARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 20, 3), 19); }
+
+TEST(Localization, InAnOfficeOfEqualRoomsIsFoundOrSaidNotToBeKnown) {
+    auto office = robot::make_office();
+    office.starts = {{-15.0, -10.0, 15.0, 10.0}};
+    EXPECT_GE(clear_of(office, 12, 6), 10);
+}
+
+TEST(Localization, InAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 10, 6), 4); }
+
+/// A scene by chance on which an earlier locate() was wrong.
+struct HardScene {
+    robot::World world;
+    int places;
+    std::uint64_t seed;
+};
+
+/// Nothing is behind where the robot stands: it was taken for a place where it cannot be, and the next best won.
+TEST(Localization, WhereNothingIsBehindTheRobotItIsFoundAllTheSame) {
+    for (const auto& [world, places, seed] : {HardScene{robot::make_hall(), 1, 123}, {robot::make_hall(), 4, 168}}) {
+        const auto mapped = mapped_world(world, places, seed);
+        expect_right(locate(as_references(mapped.map), {.points = mapped.seen}).value(), mapped.truth,
+                     world.name + ", seed " + std::to_string(seed));
+    }
+}
+
+/// The true place is not mapped as a whole, and another one looks alike that is.
+TEST(Localization, WhatLooksAlikeElsewhereIsNotTakenForAPlaceThatIsMappedInPart) {
+    auto office = robot::make_office();
+    office.starts = {{-15.0, -10.0, 15.0, 10.0}};
+    for (const auto& [world, places, seed] : {HardScene{office, 12, 101}, {robot::make_hall(), 1, 144}}) {
+        const auto mapped = mapped_world(world, places, seed);
+        const auto found = locate(as_references(mapped.map), {.points = mapped.seen}).value();
+        EXPECT_EQ(found.certainty, Certainty::kAmbiguous) << world.name << ", seed " << seed;
+        EXPECT_GT(metres_off(found.T_first_second, mapped.truth), 1.0) << "it is no example any more";
+        EXPECT_THAT(found.why, HasSubstr("another pose"));
+    }
+}
+
+/// A wide room with things in it that tell its corners apart, and what else is asked for.
+robot::World furnished(std::vector<Box> things = {}) {
+    things.insert(things.end(), {{-4.0, -4.0, 4.0, -3.0},
+                                 {-4.0, 2.5, 4.0, 3.5},
+                                 {-4.0, -4.0, -3.5, 3.5},
+                                 {3.5, -4.0, 4.0, 3.5},
+                                 {-3.5, -3.0, -2.5, -2.4},
+                                 {1.0, 2.0, 2.2, 2.5}});
+    return robot::make_world("furnished", std::move(things), {{-3.4, -2.9, 3.4, 2.4}});
+}
+
+ReferenceViews map_of(const robot::World& world, const std::vector<Pose2>& places) {
+    robot::Random random(3);
+    ReferenceViews map;
+    for (const Pose2& place : places) map.push_back(reference_view(world, place, random));
+    return map;
+}
+
+const std::vector<Pose2> kPlaces = {{0.0, 0.0, 0.0}, {-2.0, 1.0, 1.0}, {2.0, -1.0, 2.0}};
+constexpr Pose2 kTruth{1.0, 0.7, -2.0};
+
+std::vector<Point2> seen_at(const robot::World& world, const Pose2& place) {
+    robot::Random random(4);
+    return standing_capture(world, place, 10, random);
+}
+
+TEST(Localization, TakesTheFrameInWhichItIsAskedIntoTheMaps) {
+    const auto world = furnished();
+    const Pose2 T_odom_robot{40.0, -7.0, 1.2};
+    std::vector<Point2> points;
+    for (const Point2& point : seen_at(world, kTruth)) points.push_back(transform(T_odom_robot, point));
+    const auto found = locate(map_of(world, kPlaces), {.points = points, .from = {40.0, -7.0}}).value();
+    EXPECT_EQ(found.certainty, Certainty::kClear) << found.why;
+    const Pose2 robot = compose(found.T_first_second, T_odom_robot);
+    EXPECT_LT(metres_off(robot, kTruth), 0.02);
+    EXPECT_LT(degrees_off(robot, kTruth), 0.5);
+}
+
+TEST(Localization, FarFromTheMapsOriginIsAsGood) {
+    const auto world = furnished();
+    ReferenceViews far;
+    for (const auto& view : map_of(world, kPlaces)) {
+        ReferenceView moved = *view;
+        moved.from += Point2(500'000.0, -300'000.0);
+        for (auto& point : moved.points) point = {point.x + 500'000'000, point.y - 300'000'000};
+        far.push_back(std::make_shared<const ReferenceView>(std::move(moved)));
+    }
+    const auto found = locate(far, {.points = seen_at(world, kTruth)}).value();
+    expect_right(found, {kTruth.x + 500'000.0, kTruth.y - 300'000.0, kTruth.yaw});
+}
+
+TEST(Localization, InOneOfTwoEqualRoomsIsAmbiguousUntilItIsSaidWhich) {
+    const auto world = furnished();
+    auto map = map_of(world, kPlaces);
+    for (const auto& view : map_of(world, kPlaces)) {
+        ReferenceView other = *view;
+        other.from.x() += 20.0;
+        for (auto& point : other.points) point.x += 20'000;
+        map.push_back(std::make_shared<const ReferenceView>(std::move(other)));
+    }
+    const auto seen = seen_at(world, kTruth);
+    const auto found = locate(map, {.points = seen}).value();
+    EXPECT_EQ(found.certainty, Certainty::kAmbiguous);
+    EXPECT_THAT(found.why, HasSubstr("another pose, 20.0"));
+    ASSERT_TRUE(found.rival);
+    EXPECT_NEAR(std::abs(found.rival->x - found.T_first_second.x), 20.0, 0.05);
+
+    const Neighbourhood first{{0.0, 0.0}, 5.0};
+    const Neighbourhood second{{21.0, 1.0}, 5.0};
+    expect_right(locate(map, {.points = seen}, first).value(), kTruth, "the first");
+    expect_right(locate(map, {.points = seen}, second).value(), {kTruth.x + 20.0, kTruth.y, kTruth.yaw}, "the second");
+}
+
+TEST(Localization, InAnotherPlaceIsSaidNotToBeKnown) {
+    const auto office = robot::make_office();
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        robot::Random random(seed);
+        const auto seen = standing_capture(robot::make_room(), free_place(robot::make_room(), random), 10, random);
+        const auto found = locate(as_references(mapped_world(office, 8, seed).map), {.points = seen}).value();
+        EXPECT_NE(found.certainty, Certainty::kClear) << "seed " << seed;
+    }
+}
+
+TEST(Localization, WhatHasGoneFromTheMapDoesNotMatter) {
+    const auto before = furnished({{-1.5, -1.8, 0.5, -1.2}, {2.4, 1.0, 3.0, 2.0}});
+    const auto after = furnished();
+    robot::Random random(5);
+    ReferenceViews map = {reference_view(before, kPlaces[0], random)};
+    for (const Pose2& place : kPlaces) map.push_back(reference_view(after, place, random));
+    const auto found = locate(map, {.points = seen_at(after, kTruth)}).value();
+    expect_right(found, kTruth);
+    EXPECT_LT(found.contradicted, 0.01);
+}
+
+TEST(Localization, ThatIsNotWantedAnyMoreEnds) {
+    int asked = 0;
+    const auto not_wanted = [&]() -> Result<> {
+        return ++asked < 3 ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+    };
+    const auto found = locate(map_of(furnished(), kPlaces), {.points = seen_at(furnished(), kTruth)}, {}, not_wanted);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, Errc::kShuttingDown);
+    EXPECT_EQ(asked, 3);
+}
+
+TEST(Localization, WhereNothingWasSeenIsToldFromWhereItIsNotKnown) {
+    const auto seen = seen_at(furnished(), kTruth);
+    const auto nowhere = locate({}, {.points = seen});
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().code, Errc::kNothingMapped);
+    EXPECT_THAT(nowhere.error().message, HasSubstr("no laser of this session has seen anything yet"));
+
+    const auto elsewhere = locate(map_of(furnished(), kPlaces), {.points = seen}, Neighbourhood{{100.0, 0.0}, 5.0});
+    ASSERT_TRUE(elsewhere) << "another place is mapped: it must not be taken for the first";
+    EXPECT_EQ(elsewhere->certainty, Certainty::kUndetermined);
+    EXPECT_THAT(elsewhere->why, HasSubstr("within 5 m of (100, 0)"));
+}
+
+TEST(Localization, InAMapThatIsTooWideNeedsANeighbourhood) {
+    auto map = map_of(furnished(), kPlaces);
+    ReferenceView far = *map.front();
+    far.from.x() += 300.0;
+    for (auto& point : far.points) point.x += 300'000;
+    map.push_back(std::make_shared<const ReferenceView>(std::move(far)));
+    const auto seen = seen_at(furnished(), kTruth);
+    const auto anywhere = locate(map, {.points = seen});
+    ASSERT_FALSE(anywhere);
+    EXPECT_EQ(anywhere.error().code, Errc::kTooLarge);
+    EXPECT_THAT(anywhere.error().message, HasSubstr("307 m of the map"));
+    expect_right(locate(map, {.points = seen}, Neighbourhood{{0.0, 0.0}, 10.0}).value(), kTruth);
+    expect_right(locate(map, {.points = seen}, Neighbourhood{{0.0, 0.0}, 100.0}).value(), kTruth);
+}
+
+TEST(Localization, OfWhatIsNoViewIsRefused) {
+    const auto map = map_of(furnished(), kPlaces);
+    EXPECT_THAT(locate(map, {.points = std::vector<Point2>(19, {1.0, 1.0})}).error().message,
+                HasSubstr("what is seen has 19 points; 20 or more"));
+    std::vector<Point2> points(30, {1.0, 1.0});
+    points[7].x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(locate(map, {.points = points}).error().code, Errc::kInvalidField);
+    // of one point, however often it was seen, no pose can be told
+    const auto point = locate(map, {.points = std::vector<Point2>(50, {1.0, 1.0})}).value();
+    EXPECT_EQ(point.certainty, Certainty::kUndetermined);
+    std::vector<Point2> line;
+    for (int n = 0; n < 200; ++n) line.emplace_back(0.02 * n - 2.0, 1.0);
+    EXPECT_NE(locate(map, {.points = line}).value().certainty, Certainty::kClear);
+}
+
+} // namespace
+} // namespace scanloom::landmarks
