@@ -1,9 +1,10 @@
 #pragma once
 
+#include "lab/alignment_trials.hpp"
 #include "lab/landmark_sweeps.hpp"
 #include "lab/ld06_recording.hpp"
+#include "lab/ways_to_align.hpp"
 
-#include "server/landmarks/alignment.hpp"
 #include "server/tiles/bytes.hpp"
 
 #include <functional>
@@ -28,6 +29,8 @@ struct PlaceResult {
     Pose2 place;        ///< T_map_lidar
     CapturePair door;   ///< first with the door closed, then with it open
     Comparison control; ///< the closed capture with another one, the door still closed: what noise alone changes
+    WaysToAlign door_ways;
+    WaysToAlign control_ways;
 };
 
 /// Two places beside each other.
@@ -36,9 +39,7 @@ struct NeighbourResult {
     std::size_t to = 0;
     bool door_moved = false; ///< closed in the first, open in the second; or else closed in both
     Comparison comparison;   ///< in the map frame, by the true poses
-    landmarks::Alignment alignment;
-    double position_error = 0.0; ///< metres, of the alignment from the truth
-    double yaw_error = 0.0;      ///< radians
+    WaysToAlign ways;
 };
 
 /// What a recording shows.
@@ -48,6 +49,7 @@ struct RecordedResult {
     std::size_t turns = 0;
     SeenLandmarks all;
     CapturePair halves; ///< the first half of the turns and the second
+    WaysToAlign ways;   ///< of the halves, the truth being that it stood still
 };
 
 struct LandmarkResults {
@@ -57,6 +59,7 @@ struct LandmarkResults {
     std::vector<ToleranceRow> tolerances;
     std::vector<ReadingsRow> readings;
     std::vector<FilterRow> windows;
+    std::optional<TrialResults> trials;
     std::optional<RecordedResult> recorded;
 };
 
@@ -68,8 +71,10 @@ struct LandmarkSurroundings {
 };
 
 struct LandmarkPlan {
-    std::uint64_t seed = 1;                       ///< of the noise
+    std::uint64_t seed = 1;                       ///< of the noise, and of the scenes
     std::size_t readings_max = kReadings.back();  ///< of the sweep of readings; less takes less time
+    std::size_t scenes = kScenes;                 ///< of each kind; 0: the report has no part about them
+    std::size_t captures_max = kMapSizes.back();  ///< of a map that a view is located in; fewer take less time
     std::optional<RecordedCapture> recorded = {}; ///< absent: the report has no part about one
 };
 

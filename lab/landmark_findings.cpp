@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace scanloom::lab {
 namespace {
+
+constexpr const char* kDoorOpened = ", door opened";
 
 std::string range_text(std::span<const double> values, int digits = 2) {
     if (values.empty()) return "nothing";
@@ -43,6 +44,46 @@ std::string against(std::string_view what, std::span<const double> values, const
                             published.low, published.high);
     return place == "within" ? text + "." : fmt::format("{}: {}", text, why);
 }
+
+/// "1 to 2, door opened"
+std::string named(const NeighbourResult& neighbour) {
+    return way_name(neighbour) + (neighbour.door_moved ? kDoorOpened : "");
+}
+
+/// Errors of poses, and of how many that were asked for.
+class Errors {
+public:
+    void add(const PoseError* error) {
+        ++asked_;
+        if (!error) return;
+        millimetres_.push_back(error->millimetres());
+        degrees_.push_back(error->degrees());
+    }
+
+    /// "5 of 6 transforms, off by 0.4 to 2.1 mm and 0.01 to 0.30 degrees"
+    [[nodiscard]] std::string text() const {
+        if (millimetres_.empty()) return fmt::format("none of {} transforms", asked_);
+        return fmt::format("{} of {} transforms, off by {} mm and {} degrees", millimetres_.size(), asked_,
+                           range_text(millimetres_, 1), range_text(degrees_));
+    }
+
+private:
+    std::size_t asked_ = 0;
+    std::vector<double> millimetres_;
+    std::vector<double> degrees_;
+};
+
+/// Both ways of some pairs of captures.
+struct WaysErrors {
+    Errors by_landmarks;
+    Errors by_surfaces; ///< that are clear
+
+    void add(const WaysToAlign& ways) {
+        const auto& [alignment, error] = ways.by_surfaces;
+        by_landmarks.add(ways.by_landmarks.fit ? &ways.by_landmarks.fit->error : nullptr);
+        by_surfaces.add(alignment.certainty == landmarks::Certainty::kClear ? &error : nullptr);
+    }
+};
 
 } // namespace
 
@@ -137,21 +178,49 @@ std::vector<std::string> alignment_findings(const LandmarkResults& results) {
     double position = 0.0;
     double yaw = 0.0;
     for (const NeighbourResult& neighbour : results.neighbours) {
-        if (neighbour.alignment.certainty != landmarks::Certainty::kClear) {
-            findings.push_back(fmt::format("{} to {}{}: {}", place_name(neighbour.from), place_name(neighbour.to),
-                                           neighbour.door_moved ? ", door opened" : "", neighbour.alignment.why));
+        const auto& [alignment, error] = neighbour.ways.by_surfaces;
+        if (alignment.certainty != landmarks::Certainty::kClear) {
+            findings.push_back(named(neighbour) + ": " + alignment.why);
             continue;
         }
         ++clear;
-        position = std::max(position, neighbour.position_error);
-        yaw = std::max(yaw, neighbour.yaw_error);
+        position = std::max(position, error.millimetres());
+        yaw = std::max(yaw, error.degrees());
     }
     findings.insert(findings.begin(),
                     clear == 0 ? std::string("None is clear.")
                                : fmt::format("{} of {} are clear, and these are off by {:.1f} mm and {:.2f} degrees at "
                                              "most.",
-                                             clear, results.neighbours.size(), 1e3 * position,
-                                             yaw * 180.0 / std::numbers::pi));
+                                             clear, results.neighbours.size(), position, yaw));
+    return findings;
+}
+
+std::vector<std::string> ways_findings(const LandmarkResults& results) {
+    WaysErrors same;
+    WaysErrors next;
+    std::vector<std::string> refusals;
+    const auto note = [&](WaysErrors& errors, const WaysToAlign& ways, const std::string& name) {
+        errors.add(ways);
+        const std::string& refusal = ways.by_landmarks.refusal;
+        if (!refusal.empty()) refusals.push_back(fmt::format("{}: refused by landmarks: {}.", name, refusal));
+    };
+    for (std::size_t n = 0; n < results.places.size(); ++n) {
+        note(same, results.places[n].door_ways, place_name(n) + kDoorOpened);
+        note(same, results.places[n].control_ways, place_name(n));
+    }
+    for (const NeighbourResult& neighbour : results.neighbours) note(next, neighbour.ways, named(neighbour));
+    std::vector<std::string> findings{
+        fmt::format("Of one place landmarks tell {}; surfaces {}. The medians of the same clusters hardly move there. "
+                    "But matching needs both sets in one frame to within the tolerance, {} m, and had the true poses: "
+                    "landmarks refine a pose that is nearly known and do not find one.",
+                    same.by_landmarks.text(), same.by_surfaces.text(), landmarks::kTolerance),
+        fmt::format("Of one place and the next landmarks tell {}; surfaces {}. Other parts of a wall are seen from "
+                    "there, and the median of a cluster is the middle of what was seen, not of the wall: few landmarks "
+                    "match even by the true poses, and those that do need not be the same part of a thing.",
+                    next.by_landmarks.text(), next.by_surfaces.text()),
+        "So align() uses surface elements: a wall lies on the same line from wherever it is seen, and every piece of "
+        "it that both saw counts."};
+    findings.insert(findings.end(), refusals.begin(), refusals.end());
     return findings;
 }
 

@@ -26,6 +26,9 @@ namespace scanloom::lab {
 /// How far alignments are from the truth at most, and what those say that are not clear.
 [[nodiscard]] std::vector<std::string> alignment_findings(const LandmarkResults& results);
 
+/// What matched landmarks alone tell of poses, why surfaces are used instead, and each refusal.
+[[nodiscard]] std::vector<std::string> ways_findings(const LandmarkResults& results);
+
 /// The halves of a recording beside what is published.
 [[nodiscard]] std::string recording_finding(const RecordedResult& recorded);
 

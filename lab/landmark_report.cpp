@@ -4,6 +4,7 @@
 #include "lab/landmark_findings.hpp"
 #include "lab/landmark_tables.hpp"
 #include "lab/report.hpp"
+#include "lab/trial_report.hpp"
 
 #include "server/landmarks/median_filter.hpp"
 
@@ -45,6 +46,12 @@ Items definitions() {
         "continuity: the mean of a cluster's linearity, evenness of spacing and fill, here over the landmarks of both "
         "captures.",
     }};
+}
+
+/// As it was called, where that was not by default.
+std::string scenes_option(const LandmarkResults& results) {
+    const std::size_t scenes = results.trials ? results.trials->scenes : 0;
+    return scenes == kScenes ? "" : fmt::format(" --scenes {}", scenes);
 }
 
 void add_doors(Document& document, const LandmarkResults& results) {
@@ -101,6 +108,16 @@ void add_neighbours(Document& document, const LandmarkResults& results) {
                                   "capture's surface."},
                         alignment_table(results),
                         Items{alignment_findings(results)},
+                        Heading{2, "Alignment by landmarks alone"},
+                        Paragraph{fmt::format(
+                            "The transform of the landmarks that were matched above, in the map frame and by the true "
+                            "poses, beside that of the surfaces, which are told no pose; of a place with itself, and "
+                            "of one place with the next. Agreeing are the pairs that the transform brings within half "
+                            "the tolerance, {} m, of each other; rms: of these. Off by: where the second lidar would "
+                            "be.",
+                            kAgreeingDistance)},
+                        ways_table(results),
+                        Items{ways_findings(results)},
                     });
 }
 
@@ -116,6 +133,8 @@ void add_recording(Document& document, const RecordedResult& recorded) {
             recording_table(recorded),
             halves_table(recorded),
             Paragraph{recording_finding(recorded)},
+            Paragraph{"The halves, aligned by their landmarks and by their surfaces; off by: from standing still."},
+            halves_ways_table(recorded),
             Paragraph{kPictureKey},
             Picture{fmt::format("{}/{}", kPicturesFolder, recorded.halves.picture),
                     fmt::format("first and second half of {}, recorded from a real LD06", recorded.name)},
@@ -128,10 +147,11 @@ Document landmark_report_of(const LandmarkResults& results) {
     Document document{
         Heading{1, "Landmarks of a standing lidar"},
         Paragraph{"What the server finds in the captures of a lidar that stands still: its landmarks, how they persist "
-                  "when a door is moved, how they depend on tolerance, number of readings and filter, and how captures "
-                  "of different places are aligned. Made by"},
-        Code{fmt::format("./scanloom build && build/bin/scanloom-lab landmarks --out docs/landmarks --seed {}{}",
-                         results.seed, results.recorded ? " --capture " + results.recorded->name : "")},
+                  "when a door is moved, how they depend on tolerance, number of readings and filter, how captures "
+                  "of different places are aligned, and how views are found in maps. Made by"},
+        Code{fmt::format("./scanloom build && build/bin/scanloom-lab landmarks --out docs/landmarks --seed {}{}{}",
+                         results.seed, scenes_option(results),
+                         results.recorded ? " --capture " + results.recorded->name : "")},
         Paragraph{"The same seed gives the same bytes. How long it took is in a file of its own, because it differs "
                   "each time:"},
         Link{"Times", kTimesFile},
@@ -142,13 +162,14 @@ Document landmark_report_of(const LandmarkResults& results) {
     };
     add_doors(document, results);
     add_neighbours(document, results);
+    if (results.trials) add_trials(document, *results.trials);
     add_sweeps(document, results);
     if (results.recorded) add_recording(document, *results.recorded);
     return document;
 }
 
 Document landmark_times_report_of(const LandmarkResults& results, std::string_view machine) {
-    return {
+    Document document{
         Heading{1, "Times of the landmark experiment"},
         Paragraph{fmt::format("Milliseconds to find the landmarks of a capture, the adaptive eps included: the median "
                               "of {} times. One thread. Measured on: {}.",
@@ -156,6 +177,8 @@ Document landmark_times_report_of(const LandmarkResults& results, std::string_vi
         Link{"The report", kReportFile},
         readings_times_table(results),
     };
+    if (results.trials) add_trial_times(document, *results.trials);
+    return document;
 }
 
 } // namespace scanloom::lab

@@ -10,11 +10,15 @@ namespace scanloom::lab {
 namespace {
 
 constexpr const char* kNone = "-";
+constexpr const char* kOpened = "opened";
+constexpr const char* kClosed = "closed in both";
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 std::string share(std::optional<double> value) { return value ? fmt::format("{:.2f}", *value) : kNone; }
 std::string metres(std::optional<double> value) { return value ? fmt::format("{:.3f}", *value) : kNone; }
 std::string whole(std::size_t value) { return fmt::format("{}", value); }
+std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metres); }
+std::string degrees(const PoseError& error) { return fmt::format("{:.2f}", error.degrees()); }
 std::string range_text(const ValueRange& span) { return fmt::format("{:.2f} to {:.2f}", span.low, span.high); }
 
 std::vector<std::string> joined(std::vector<std::string> front, const std::vector<std::string>& back) {
@@ -42,11 +46,7 @@ std::vector<std::string> comparison_cells(const Comparison& comparison) {
             share(continuity.mean())};
 }
 
-std::string way_name(const NeighbourResult& neighbour) {
-    return fmt::format("{} to {}", place_name(neighbour.from), place_name(neighbour.to));
-}
-
-const char* door_text(const NeighbourResult& neighbour) { return neighbour.door_moved ? "opened" : "closed in both"; }
+const char* door_text(const NeighbourResult& neighbour) { return neighbour.door_moved ? kOpened : kClosed; }
 
 const char* certainty_text(landmarks::Certainty certainty) {
     switch (certainty) {
@@ -62,16 +62,37 @@ std::vector<std::string> seen_cells(std::string name, std::size_t turns, const S
             whole(seen.survey.landmarks.size())};
 }
 
+const std::vector<std::string> kWaysHead{
+    "pairs", "agreeing", "rms mm", "landmarks off by mm", "deg", "surfaces' verdict", "surfaces off by mm", "deg"};
+
+std::vector<std::string> ways_cells(const WaysToAlign& ways) {
+    const auto& [pairs, fit, refusal] = ways.by_landmarks;
+    const auto& [alignment, error] = ways.by_surfaces;
+    const auto of_fit = [&](auto text) { return fit ? text(*fit) : std::string(kNone); };
+    return {whole(pairs),
+            fit ? whole(fit->agreeing) : "refused",
+            of_fit([](const LandmarkFit& f) { return millimetres(f.rms); }),
+            of_fit([](const LandmarkFit& f) { return millimetres(f.error.metres); }),
+            of_fit([](const LandmarkFit& f) { return degrees(f.error); }),
+            certainty_text(alignment.certainty),
+            millimetres(error.metres),
+            degrees(error)};
+}
+
 } // namespace
 
 std::string place_name(std::size_t index) { return whole(index + 1); }
+
+std::string way_name(const NeighbourResult& neighbour) {
+    return fmt::format("{} to {}", place_name(neighbour.from), place_name(neighbour.to));
+}
 
 Table door_table(const LandmarkResults& results) {
     Table table{joined({"place", "door"}, kComparisonHead), {}};
     for (std::size_t n = 0; n < results.places.size(); ++n) {
         const PlaceResult& place = results.places[n];
-        table.rows.push_back(joined({place_name(n), "opened"}, comparison_cells(place.door.comparison)));
-        table.rows.push_back(joined({place_name(n), "closed in both"}, comparison_cells(place.control)));
+        table.rows.push_back(joined({place_name(n), kOpened}, comparison_cells(place.door.comparison)));
+        table.rows.push_back(joined({place_name(n), kClosed}, comparison_cells(place.control)));
     }
     table.rows.push_back({"published", "", "", "", "", range_text(kPublishedPersistence),
                           range_text(kPublishedStability), "", "", "", "", "", range_text(kPublishedContinuity)});
@@ -130,13 +151,24 @@ Table alignment_table(const LandmarkResults& results) {
                  "contradicted", "3 sigma mm"},
                 {}};
     for (const NeighbourResult& neighbour : results.neighbours) {
-        const landmarks::Alignment& found = neighbour.alignment;
+        const auto& [found, error] = neighbour.ways.by_surfaces;
         table.rows.push_back({way_name(neighbour), door_text(neighbour), certainty_text(found.certainty),
                               metres(found.T_first_second.x), metres(found.T_first_second.y),
-                              fmt::format("{:.2f}", kDegrees * found.T_first_second.yaw),
-                              fmt::format("{:.1f}", 1e3 * neighbour.position_error),
-                              fmt::format("{:.2f}", kDegrees * neighbour.yaw_error), share(found.explained),
-                              share(found.contradicted), fmt::format("{:.1f}", 3e3 * found.position_sigma)});
+                              fmt::format("{:.2f}", kDegrees * found.T_first_second.yaw), millimetres(error.metres),
+                              degrees(error), share(found.explained), share(found.contradicted),
+                              millimetres(3.0 * found.position_sigma)});
+    }
+    return table;
+}
+
+Table ways_table(const LandmarkResults& results) {
+    Table table{joined({"places", "door"}, kWaysHead), {}};
+    for (std::size_t n = 0; n < results.places.size(); ++n) {
+        table.rows.push_back(joined({place_name(n), kOpened}, ways_cells(results.places[n].door_ways)));
+        table.rows.push_back(joined({place_name(n), kClosed}, ways_cells(results.places[n].control_ways)));
+    }
+    for (const NeighbourResult& neighbour : results.neighbours) {
+        table.rows.push_back(joined({way_name(neighbour), door_text(neighbour)}, ways_cells(neighbour.ways)));
     }
     return table;
 }
@@ -151,5 +183,7 @@ Table recording_table(const RecordedResult& recorded) {
 Table halves_table(const RecordedResult& recorded) {
     return {kComparisonHead, {comparison_cells(recorded.halves.comparison)}};
 }
+
+Table halves_ways_table(const RecordedResult& recorded) { return {kWaysHead, {ways_cells(recorded.ways)}}; }
 
 } // namespace scanloom::lab

@@ -9,6 +9,9 @@ namespace scanloom::lab {
 /// A place of kDoorRoomPlaces as people number them: "1".
 [[nodiscard]] std::string place_name(std::size_t index);
 
+/// The places of a way: "1 to 2".
+[[nodiscard]] std::string way_name(const NeighbourResult& neighbour);
+
 /// For each place the door moved, and nothing moved; and what is published.
 [[nodiscard]] Table door_table(const LandmarkResults& results);
 
@@ -21,8 +24,12 @@ namespace scanloom::lab {
 [[nodiscard]] Table window_table(const LandmarkResults& results);
 [[nodiscard]] Table alignment_table(const LandmarkResults& results);
 
+/// The transform of the matched landmarks beside that of the surfaces, for all pairs of captures.
+[[nodiscard]] Table ways_table(const LandmarkResults& results);
+
 /// The whole recording, its halves and what they have in common.
 [[nodiscard]] Table recording_table(const RecordedResult& recorded);
 [[nodiscard]] Table halves_table(const RecordedResult& recorded);
+[[nodiscard]] Table halves_ways_table(const RecordedResult& recorded);
 
 } // namespace scanloom::lab

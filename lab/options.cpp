@@ -38,9 +38,17 @@ CLI::App* add_experiment(CLI::App& app, ExperimentOptions& options) {
 CLI::App* add_landmarks(CLI::App& app, LandmarkOptions& options) {
     auto* landmarks = app.add_subcommand(
         "landmarks", "What a standing lidar finds: landmarks while a door moves, sweeps of tolerance, readings and "
-                     "filter, alignment, as a report, in some seconds");
+                     "filter, alignment and locating, as a report, in some minutes");
     landmarks->add_option("--out", options.out, kOutHelp);
     landmarks->add_option("--seed", options.seed, kSeedHelp)->check(check_whole_number_from(0))->capture_default_str();
+    landmarks
+        ->add_option(
+            "--scenes", options.scenes,
+            "Scenes of each world and map on which alignment and locating are tried, 0 (the report has no part "
+            "about them) to 10000")
+        ->check(check_within(0, 10'000))
+        ->check(check_whole_number_from(0))
+        ->capture_default_str();
     landmarks
         ->add_option("--capture", options.capture,
                      "File of the bytes that an LD06 sent while it stood still, two turns at least; the report has a "

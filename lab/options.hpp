@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lab/trials.hpp"
+
 #include "common/app/program.hpp"
 
 #include <cstdint>
@@ -19,6 +21,7 @@ struct ExperimentOptions {
 struct LandmarkOptions {
     std::string out;                    ///< directory of the report
     std::uint64_t seed = 1;             ///< of the noise
+    std::size_t scenes = kScenes;       ///< of each kind
     std::optional<std::string> capture; ///< file of the bytes that an LD06 sent
 };
 

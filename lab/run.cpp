@@ -100,7 +100,7 @@ Result<std::string> run_experiment_of(const ExperimentOptions& options, Console&
 }
 
 Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& console) {
-    LandmarkPlan plan{.seed = options.seed};
+    LandmarkPlan plan{.seed = options.seed, .scenes = options.scenes};
     if (options.capture) {
         auto read = read_ld06_recording(*options.capture);
         if (!read) return read.error();
@@ -119,9 +119,9 @@ Result<std::string> run_landmarks_of(const LandmarkOptions& options, Console& co
     auto written =
         files->write(landmark_report_of(*results), landmark_times_report_of(*results, machine_description()));
     if (!written) return written.error();
-    return fmt::format(R"({{"places":{},"recorded_turns":{},"seconds":{:.3f},"report":{}}})", results->places.size(),
-                       results->recorded ? results->recorded->turns : 0, steady_seconds() - begun,
-                       files->report_name());
+    return fmt::format(R"({{"places":{},"scenes":{},"recorded_turns":{},"seconds":{:.3f},"report":{}}})",
+                       results->places.size(), plan.scenes, results->recorded ? results->recorded->turns : 0,
+                       steady_seconds() - begun, files->report_name());
 }
 
 template <class Options>

@@ -3,6 +3,7 @@
 #include "lab/landmark_experiment.hpp"
 
 #include "tests/unit/lab/drawn_clouds.hpp"
+#include "tests/unit/lab/drawn_trials.hpp"
 
 namespace scanloom::lab {
 
@@ -16,30 +17,44 @@ inline Comparison drawn_comparison() {
     return comparison;
 }
 
-/// One place, one way, a row in each sweep, and a recording.
+/// 4 of 5 pairs agree; the surfaces are clear.
+inline WaysToAlign drawn_ways() {
+    WaysToAlign ways;
+    ways.by_landmarks = {.pairs = 5, .fit = LandmarkFit{4, 0.006, {0.008, 0.02}}, .refusal = {}};
+    ways.by_surfaces.alignment.certainty = landmarks::Certainty::kClear;
+    ways.by_surfaces.alignment.T_first_second = {1.0, -0.5, 0.1};
+    ways.by_surfaces.error = {0.012, 0.01};
+    return ways;
+}
+
+/// One place, one way, a row in each sweep, some trials, and a recording.
 inline LandmarkResults drawn_landmark_results() {
     LandmarkResults results;
     results.seed = 7;
     Comparison control = drawn_comparison();
     control.metrics.persistence = 1.0;
-    results.places.push_back({{1.5, -2.0, 0.0}, {seen_bars({}), seen_bars({}), drawn_comparison(), "p.png"}, control});
+    results.places.push_back({{1.5, -2.0, 0.0},
+                              {seen_bars({}), seen_bars({}), drawn_comparison(), "p.png"},
+                              control,
+                              drawn_ways(),
+                              drawn_ways()});
     NeighbourResult neighbour;
     neighbour.to = 1;
     neighbour.comparison = drawn_comparison();
     neighbour.comparison.metrics.persistence = 0.25;
-    neighbour.alignment.certainty = landmarks::Certainty::kClear;
-    neighbour.alignment.T_first_second = {1.0, -0.5, 0.1};
-    neighbour.position_error = 0.012;
-    neighbour.yaw_error = 0.01;
+    neighbour.ways = drawn_ways();
+    neighbour.ways.by_landmarks = {.pairs = 1, .fit = {}, .refusal = "too few pairs"};
     results.neighbours.push_back(neighbour);
     results.tolerances.push_back({0.1, drawn_comparison().metrics});
     results.readings.push_back({50, 18000, 9, 0.15, 74941, 1166716, 6.5});
     results.windows.push_back({1, {0.0, 0.0, std::nullopt}, 0.015, 0.018});
+    results.trials = drawn_trial_results();
     results.recorded = RecordedResult{"c.bin",
                                       "0 damaged packets",
                                       9,
                                       seen_bars({{0.0, 0.0}}),
-                                      {seen_bars({}), seen_bars({}), drawn_comparison(), "r.png"}};
+                                      {seen_bars({}), seen_bars({}), drawn_comparison(), "r.png"},
+                                      drawn_ways()};
     return results;
 }
 

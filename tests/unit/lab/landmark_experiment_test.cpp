@@ -2,12 +2,15 @@
 
 #include "lab/landmark_report.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
 
 namespace scanloom::lab {
 namespace {
+
+using testing::HasSubstr;
 
 using Pictures = std::map<std::string, tiles::Bytes>;
 
@@ -17,9 +20,12 @@ struct Made {
     Pictures pictures;
 };
 
-/// As a run with fewer readings makes it, on a machine that takes `tick` seconds for anything.
-Made made_with(LandmarkPlan plan, double tick = 0.001) {
+/// As a run with fewer readings and with `scenes` of a kind makes it, on a machine that takes `tick` seconds for
+/// anything.
+Made made_with(LandmarkPlan plan, double tick = 0.001, std::size_t scenes = 0) {
     plan.readings_max = 50;
+    plan.scenes = scenes;
+    plan.captures_max = 1;
     Made made;
     double time = 0.0;
     const auto keep = [&](const std::string& file, const tiles::Bytes& png) -> Result<> {
@@ -56,12 +62,33 @@ TEST(LandmarkExperiment, FindsTheDoorAndTheWayToTheNextPlace) {
     }
     ASSERT_EQ(results.neighbours.size(), 6U);
     for (const auto& neighbour : results.neighbours) {
-        if (neighbour.alignment.certainty != landmarks::Certainty::kClear) continue;
-        EXPECT_LT(neighbour.position_error, 0.02);
-        EXPECT_LT(neighbour.yaw_error, 0.0087) << "half a degree";
+        const auto& [alignment, error] = neighbour.ways.by_surfaces;
+        if (alignment.certainty != landmarks::Certainty::kClear) continue;
+        EXPECT_LT(error.metres, 0.02);
+        EXPECT_LT(error.degrees(), 0.5);
     }
     EXPECT_EQ(results.readings.size(), 1U);
     EXPECT_FALSE(results.recorded);
+    EXPECT_FALSE(results.trials);
+    EXPECT_THAT(report, HasSubstr("--scenes 0"));
+}
+
+TEST(LandmarkExperiment, TriesScenesOfEveryWorldAndDrawsOneThatWasFound) {
+    const auto [results, report, pictures] = made_with({.seed = 1}, 0.001, 2);
+    ASSERT_TRUE(results.trials);
+    const auto& [scenes, aligned, located, strangers, picture] = *results.trials;
+    EXPECT_EQ(aligned.size(), 3U);
+    ASSERT_EQ(located.size(), 3U);
+    ASSERT_EQ(strangers.size(), 1U);
+    for (const auto& row : aligned) EXPECT_EQ(row.trials.each.size(), 2U) << row.world;
+    for (const auto& row : aligned) EXPECT_EQ(row.trials.count(Verdict::kWrong), 0U) << row.world;
+    for (const auto& row : located) EXPECT_EQ(row.trials.count(Verdict::kWrong), 0U) << row.map;
+    EXPECT_EQ(strangers[0].seen, "room");
+    EXPECT_EQ(strangers[0].map, "office");
+    EXPECT_EQ(picture.has_value(), located[1].trials.count(Verdict::kRight) > 0);
+    EXPECT_EQ(pictures.contains("located.png"), picture.has_value());
+    EXPECT_THAT(report, HasSubstr("--scenes 2"));
+    EXPECT_THAT(report, HasSubstr("## Locating in a map"));
 }
 
 TEST(LandmarkExperiment, ComparesTheHalvesOfARecording) {

@@ -58,9 +58,26 @@ TEST(LandmarkFindings, AlignmentsThatAreNotClearSayWhyAndCountForNoError) {
     auto results = drawn_landmark_results();
     EXPECT_THAT(alignment_findings(results), ElementsAre("1 of 1 are clear, and these are off by 12.0 mm and 0.57 "
                                                          "degrees at most."));
-    results.neighbours[0].alignment.certainty = landmarks::Certainty::kAmbiguous;
-    results.neighbours[0].alignment.why = "another pose does as well.";
+    auto& alignment = results.neighbours[0].ways.by_surfaces.alignment;
+    alignment.certainty = landmarks::Certainty::kAmbiguous;
+    alignment.why = "another pose does as well.";
     EXPECT_THAT(alignment_findings(results), ElementsAre("None is clear.", "1 to 2: another pose does as well."));
+}
+
+TEST(LandmarkFindings, TransformsOfLandmarksAreToldOfOnePlaceAndOfTwoAndSoAreRefusals) {
+    auto results = drawn_landmark_results();
+    results.places[0].control_ways.by_landmarks.fit->error = {0.001, 0.0};
+    const auto findings = ways_findings(results);
+    ASSERT_EQ(findings.size(), 4U);
+    EXPECT_THAT(findings[0],
+                HasSubstr("Of one place landmarks tell 2 of 2 transforms, off by 1.0 to 8.0 mm and 0.00 to 1.15 "
+                          "degrees; surfaces 2 of 2 transforms, off by 12.0 mm and 0.57 degrees. "));
+    EXPECT_THAT(findings[1],
+                HasSubstr("landmarks tell none of 1 transforms; surfaces 1 of 1 transforms, off by 12.0 mm"));
+    EXPECT_EQ(findings[3], "1 to 2: refused by landmarks: too few pairs.");
+    results.neighbours[0].ways.by_surfaces.alignment.certainty = landmarks::Certainty::kUndetermined;
+    EXPECT_THAT(ways_findings(results)[1],
+                HasSubstr("landmarks tell none of 1 transforms; surfaces none of 1 transforms. "));
 }
 
 TEST(LandmarkFindings, HalvesOfARecordingStandBesideWhatIsPublished) {

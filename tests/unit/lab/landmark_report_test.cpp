@@ -19,6 +19,9 @@ TEST(LandmarkReport, ItsTablesHoldTheFigures) {
     EXPECT_THAT(text, HasSubstr("| published |  |  |  |  | 0.18 to 0.49 | 0.67 to 0.89 |"));
     EXPECT_THAT(text, HasSubstr("| 1 to 2 | closed in both | 4 | 4 | 2 | 0.25 |"));
     EXPECT_THAT(text, HasSubstr("| 1 to 2 | closed in both | clear | 1.000 | -0.500 | 5.73 | 12.0 | 0.57 |"));
+    EXPECT_THAT(text, HasSubstr("| 1 | opened | 5 | 4 | 6.0 | 8.0 | 1.15 | clear | 12.0 | 0.57 |"));
+    EXPECT_THAT(text, HasSubstr("| 1 to 2 | closed in both | 1 | refused | - | - | - | clear | 12.0 | 0.57 |"));
+    EXPECT_THAT(text, HasSubstr("1 to 2: refused by landmarks: too few pairs."));
     EXPECT_THAT(text, HasSubstr("| 0.1 | 4 | 0.50 | 0.75 | 0.020 | 0.013 |"));
     EXPECT_THAT(text, HasSubstr("| published, 0.1 |  |  |  | 0.018 | 0.013 |"));
     EXPECT_THAT(text, HasSubstr("| 50 | 18000 | 0.150 | 9 | 74941 | 1166716 |"));
@@ -39,15 +42,27 @@ TEST(LandmarkReport, ItsTablesHaveRowsAsLongAsTheirHeads) {
 TEST(LandmarkReport, HasAPartAboutARecordingWhereThereIsOne) {
     auto results = drawn_landmark_results();
     const auto with = to_markdown(landmark_report_of(results));
-    EXPECT_THAT(with, HasSubstr("--seed 7 --capture c.bin"));
+    EXPECT_THAT(with, HasSubstr("--seed 7 --scenes 2 --capture c.bin"));
     EXPECT_THAT(with, HasSubstr("| whole | 9 | 11 |"));
     EXPECT_THAT(with, HasSubstr("| first half | 4 |"));
     EXPECT_THAT(with, HasSubstr("| second half | 5 |"));
+    EXPECT_THAT(with, HasSubstr("| 5 | 4 | 6.0 | 8.0 | 1.15 | clear |"));
     EXPECT_THAT(with, HasSubstr("(pictures/r.png)"));
     results.recorded.reset();
     const auto without = to_markdown(landmark_report_of(results));
     EXPECT_THAT(without, Not(HasSubstr("--capture")));
     EXPECT_THAT(without, Not(HasSubstr("A recording")));
+}
+
+TEST(LandmarkReport, HasAPartAboutManyScenesWhereTheyWereTried) {
+    auto results = drawn_landmark_results();
+    EXPECT_THAT(to_markdown(landmark_report_of(results)), HasSubstr("| room | 2 | 1 | 0 | 1 | 0 |"));
+    EXPECT_THAT(to_markdown(landmark_times_report_of(results, "")), HasSubstr("| alignment, room |"));
+    results.trials->scenes = kScenes;
+    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("--scenes"))) << "as by default";
+    results.trials.reset();
+    EXPECT_THAT(to_markdown(landmark_report_of(results)), Not(HasSubstr("How sure")));
+    EXPECT_THAT(to_markdown(landmark_times_report_of(results, "")), Not(HasSubstr("| alignment, room |")));
 }
 
 TEST(LandmarkReport, DoesNotDependOnHowLongItTook) {

@@ -33,10 +33,12 @@ TEST(LabOptionsTest, LandmarksTakesItsDirectoryASeedAndARecording) {
     const auto options = std::get<LandmarkOptions>(parse({"landmarks", "--out", "d"}));
     EXPECT_EQ(options.out, "d");
     EXPECT_EQ(options.seed, 1U);
+    EXPECT_EQ(options.scenes, 100U);
     EXPECT_FALSE(options.capture);
-    const auto other =
-        std::get<LandmarkOptions>(parse({"landmarks", "--seed", "7", "--capture", "c.bin", "--out", "d"}));
+    const auto other = std::get<LandmarkOptions>(
+        parse({"landmarks", "--seed", "7", "--scenes", "0", "--capture", "c.bin", "--out", "d"}));
     EXPECT_EQ(other.seed, 7U);
+    EXPECT_EQ(other.scenes, 0U);
     EXPECT_EQ(other.capture, "c.bin");
 }
 
@@ -52,6 +54,8 @@ TEST(LabOptionsTest, EachMistakeIsOneLineAndAUsageError) {
         {{"landmarks"}, "landmarks: name a directory with --out"},
         {{"landmarks", "--out", "d", "--seed", "-1"}, "--seed"},
         {{"landmarks", "--out", "d", "--capture", ""}, "--capture"},
+        {{"landmarks", "--out", "d", "--scenes", "10001"}, "--scenes"},
+        {{"landmarks", "--out", "d", "--scenes", "1.5"}, "--scenes"},
         {{"landmarks", "--out", "d", "--quick"}, "--quick"},
         {{"experiment", "--out", "d", "--capture", "c.bin"}, "--capture"},
     };

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "lab/alignment_trials.hpp"
+#include "lab/document.hpp"
+
+#include <string>
+#include <vector>
+
+/// The part of the landmark report about many scenes: what came of them, as tables and sentences.
+namespace scanloom::lab {
+
+void add_trials(Document& document, const TrialResults& results);
+
+/// How long they took.
+void add_trial_times(Document& document, const TrialResults& results);
+
+/// How many are right, and each wrong one with its seed and its error.
+[[nodiscard]] std::vector<std::string> alignment_trial_findings(const TrialResults& results);
+[[nodiscard]] std::vector<std::string> locating_trial_findings(const TrialResults& results);
+[[nodiscard]] std::vector<std::string> stranger_findings(const TrialResults& results);
+
+} // namespace scanloom::lab
