@@ -59,9 +59,9 @@ TEST(PointsSeen, OfTooManyAreTakenEvenly) {
     const auto points = seen.points();
     ASSERT_EQ(points.size(), kSeenPointsMax);
     for (std::size_t n = 1; n < points.size(); ++n) {
-        EXPECT_LE(std::abs(points[n][0] - points[n - 1][0]), 3000) << "none but every third one is left out";
+        EXPECT_LE(std::abs(points[n].x - points[n - 1].x), 3000) << "none but every third one is left out";
     }
-    EXPECT_GT(points.back()[0], 1000 * (static_cast<std::int32_t>(scans) - 3));
+    EXPECT_GT(points.back().x, 1000 * (static_cast<std::int32_t>(scans) - 3));
 }
 
 } // namespace
