@@ -16,17 +16,22 @@
 namespace scanloom::robot {
 namespace {
 
-/// Three numbers with commas between them, none larger than coordinates are.
+/// Three finite numbers with commas between them.
 std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
     std::array<double, 3> numbers{};
     const auto words = CLI::detail::split(text, ',');
     if (words.size() != numbers.size()) return std::nullopt;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (!CLI::detail::lexical_cast(words[i], numbers[i]) || !(std::abs(numbers[i]) <= kCoordinateMax)) {
-            return std::nullopt;
-        }
+        if (!CLI::detail::lexical_cast(words[i], numbers[i]) || !std::isfinite(numbers[i])) return std::nullopt;
     }
     return numbers;
+}
+
+/// What is wrong with a place; empty: nothing.
+std::string complaint_about_place(double x, double y) {
+    const double farthest = std::abs(x) > std::abs(y) ? x : y;
+    if (std::abs(farthest) <= kCoordinateMax) return {};
+    return fmt::format("{:g} m is beyond the map, which reaches {:g} m either way", farthest, kCoordinateMax);
 }
 
 /// X,Y,YAW, the yaw as it was written.
@@ -39,6 +44,7 @@ std::optional<Pose2> to_pose(const std::string& text) {
 std::string check_pose(const std::string& text) {
     const auto pose = to_pose(text);
     if (!pose) return fmt::format("'{}' is not X,Y,YAW in metres and radians", text);
+    if (auto complaint = complaint_about_place(pose->x, pose->y); !complaint.empty()) return complaint;
     if (std::abs(pose->yaw) <= 2.0 * std::numbers::pi) return {};
     return fmt::format("yaw is in radians, and {:g} of them are more than a full turn; 90 degrees are 1.570796",
                        pose->yaw);
@@ -52,9 +58,10 @@ Pose2 checked_pose(const std::string& text) {
 std::string check_near(const std::string& text) {
     const auto numbers = to_numbers(text);
     if (!numbers) return fmt::format("'{}' is not X,Y,RADIUS in metres", text);
-    if ((*numbers)[2] > 0.0 && (*numbers)[2] <= kNearRadiusMax) return {};
-    return fmt::format("a radius of {:g} m cannot be; give more than 0 and at most {:g}", (*numbers)[2],
-                       kNearRadiusMax);
+    const auto [x, y, radius] = *numbers;
+    if (auto complaint = complaint_about_place(x, y); !complaint.empty()) return complaint;
+    if (radius >= kNearRadiusMin && radius <= kNearRadiusMax) return {};
+    return fmt::format("a radius of {:g} m cannot be; give {:g} to {:g}", radius, kNearRadiusMin, kNearRadiusMax);
 }
 
 wire::Near checked_near(const std::string& text) {

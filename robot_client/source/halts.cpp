@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -125,7 +126,9 @@ std::optional<Observation> Halts::take() {
 }
 
 void Halts::tell(std::string sentence) {
-    if (!told_.insert(sentence).second) return;
+    if (std::ranges::find(told_, sentence) != told_.end()) return;
+    told_.push_back(sentence);
+    if (told_.size() > kToldMax) told_.pop_front();
     news_.push_back(std::move(sentence));
 }
 

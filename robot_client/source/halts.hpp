@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -50,7 +49,7 @@ public:
     /// The next turn to give, with its pose in the map.
     [[nodiscard]] std::optional<Observation> take();
 
-    /// Sentences for people that are new; each is told once a halt.
+    /// Sentences for people that are new; each is told once a halt, or again after many others.
     [[nodiscard]] std::vector<std::string> take_news();
 
     [[nodiscard]] bool is_located() const noexcept { return T_map_odom_.has_value(); }
@@ -63,6 +62,8 @@ public:
     [[nodiscard]] const std::optional<Error>& refusal() const noexcept { return refusal_; }
 
 private:
+    static constexpr std::size_t kToldMax = 32; // a refused halt may last for days
+
     void leave();
     void drop_held();
     void release(std::size_t held_back);
@@ -77,7 +78,7 @@ private:
     std::optional<Pose2> T_map_odom_;  ///< of this halt
     std::optional<double> refused_at_; ///< stamp, seconds: of this halt
     std::optional<Error> refusal_;
-    std::set<std::string> told_; ///< of this halt
+    std::deque<std::string> told_; ///< of this halt, the newest kToldMax
     std::vector<std::string> news_;
     std::uint64_t given_ = 0;
     std::uint64_t carried_ = 0;

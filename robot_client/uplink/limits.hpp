@@ -11,6 +11,7 @@ inline constexpr double kMemoryMibMax = 1e5;
 inline constexpr double kBatchDelayMax = 60.0;   ///< seconds
 inline constexpr double kCellSizeMin = 0.01;     ///< metres
 inline constexpr double kCellSizeMax = 1.0;      ///< metres
+inline constexpr double kNearRadiusMin = 0.1;    ///< metres; less is known of no place
 inline constexpr double kNearRadiusMax = 1000.0; ///< metres
 
 } // namespace scanloom::robot

@@ -16,22 +16,35 @@ landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> fo
     return views;
 }
 
+const Error kBegun{Errc::kOverloaded,
+                   "nothing is mapped yet, and another robot has just been told so: the map begins where that one "
+                   "stands; ask again soon"};
+
 } // namespace
 
-Result<Located> Locator::locate(const session::Session& session, const landmarks::CloudView& view,
+Result<Located> Locator::locate(const session::Session& session, RobotIndex robot, const landmarks::CloudView& view,
                                 const std::optional<landmarks::Neighbourhood>& near,
                                 const std::function<Result<>()>& ask) {
     auto folded = folds_.up_to(session.info(), session.snapshot()->revision, [&] { return ask().has_value(); });
     if (!folded) return folded.error();
     const Revision revision = folded->revision;
     auto found = landmarks::locate(views_of(std::move(*folded)), view, near, ask);
-    if (!found) return found.error();
+    if (!found) {
+        const bool is_empty = found.error().code == Errc::kNothingMapped;
+        if (is_empty && !first_places_.take(session.info().id, robot, FirstPlaces::Clock::now())) return kBegun;
+        return found.error();
+    }
     switch (found->certainty) {
     case landmarks::Certainty::kClear: return Located{std::move(*found), revision};
     case landmarks::Certainty::kAmbiguous: return Error{Errc::kAmbiguous, std::move(found->why)};
     case landmarks::Certainty::kUndetermined: break;
     }
     return Error{Errc::kUndetermined, std::move(found->why)};
+}
+
+void Locator::remove(store::SessionId session) {
+    folds_.remove(session);
+    first_places_.remove(session);
 }
 
 } // namespace scanloom::guide

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "server/guide/first_places.hpp"
 #include "server/landmarks/localization.hpp"
 #include "server/session/capture_folds.hpp"
 #include "server/session/session.hpp"
@@ -23,20 +24,24 @@ class Locator {
 public:
     explicit Locator(store::ScanLog& log) : folds_(log) {}
 
-    /// @param view  what the robot sees, odometry frame
-    /// @param near  where in the map to look; none: everywhere
-    /// @param ask   now and then; its error ends it
+    /// @param robot  who asks
+    /// @param view   what the robot sees, odometry frame
+    /// @param near   where in the map to look; none: everywhere
+    /// @param ask    now and then; its error ends it
     /// Errors  kAmbiguous, kUndetermined: the map does not tell, and the message says why; those of landmarks::locate(),
     ///         CaptureFolds::up_to() and of `ask`.
-    [[nodiscard]] Result<Located> locate(const session::Session& session, const landmarks::CloudView& view,
+    ///         kNothingMapped is for one robot at a time (see FirstPlaces), and kOverloaded meanwhile for all others.
+    [[nodiscard]] Result<Located> locate(const session::Session& session, RobotIndex robot,
+                                         const landmarks::CloudView& view,
                                          const std::optional<landmarks::Neighbourhood>& near,
                                          const std::function<Result<>()>& ask);
 
     /// The session is deleted: forgets it.
-    void remove(store::SessionId session) { folds_.remove(session); }
+    void remove(store::SessionId session);
 
 private:
     session::ReferenceFolds folds_;
+    FirstPlaces first_places_;
 };
 
 } // namespace scanloom::guide

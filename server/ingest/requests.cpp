@@ -144,7 +144,7 @@ wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker,
     const guide::Patience patience(services.sessions, guide::Patience::Clock::now() + guide::Patience::kTime,
                                    "say near which place it is");
     const auto located =
-        services.locator.locate(*asker.session, {.points = points, .from = request.from}, near, patience);
+        services.locator.locate(*asker.session, asker.robot, {.points = points, .from = request.from}, near, patience);
     if (!located) return reply(request, asker.session->snapshot()->revision, located.error());
     const auto& found = located->alignment;
     return reply(request, located->revision,

@@ -28,7 +28,8 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
     std::vector<Candidate> candidates;
     const auto& here = first.surface.surfels();
     const auto& there = second.surface.surfels();
-    for (const Pose2& hypothesis : find_hypotheses(here, there, distance_max, kHypotheses)) {
+    const auto hypotheses = find_hypotheses(here, there, distance_max, kHypotheses).value(); // nobody ends it
+    for (const Pose2& hypothesis : hypotheses) {
         candidates.push_back(judged(first, second, settle(first.surface, there, hypothesis)));
     }
     if (candidates.empty()) return candidates;

@@ -75,7 +75,7 @@ std::optional<std::string> undetermined(const Candidate& best, LaidOn first) {
     }
     if (first == LaidOn::kMap && !overlaps(best, first, kFoundMin)) {
         return fmt::format("only {:.0f} % of what is seen is in the map, {} surface elements: go where more of it has "
-                           "been mapped, or take more turns",
+                           "been mapped",
                            percent, best.both().matched);
     }
     const double alone = share(best.second_in_first.contradicted, best.second_in_first.elements);
@@ -118,7 +118,7 @@ const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first
 std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first) {
     const Pose2 apart = compose(inverse(best.pose()), rival.pose());
     return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, explains {:.0f} % where this one explains "
-                       "{:.0f} %: take a capture where more can be told apart",
+                       "{:.0f} %: look from where more can be told apart",
                        std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
                        100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first));
 }
@@ -149,8 +149,8 @@ Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
     if (rival) alignment.rival = rival->pose();
     if (held < kHeld) {
         alignment.certainty = Certainty::kAmbiguous;
-        alignment.why = fmt::format("hardly anything holds the pose along ({:.2f}, {:.2f}), as in a corridor: take a "
-                                    "capture that shows where it ends",
+        alignment.why = fmt::format("hardly anything holds the pose along ({:.2f}, {:.2f}), as in a corridor: look "
+                                    "from where its end can be seen",
                                     direction.x(), direction.y());
     } else if (rival) {
         alignment.certainty = Certainty::kAmbiguous;
@@ -158,7 +158,7 @@ Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
     } else if (alignment.position_sigma > (first == LaidOn::kView ? kSigmaMax : kSigmaInMapMax)) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = fmt::format("along ({:.2f}, {:.2f}) the place is known to within {:.0f} cm only, as what both "
-                                    "show is little or far away: take captures of more turns, or nearer to things",
+                                    "show is little or far away: look for more turns, or from nearer to things",
                                     direction.x(), direction.y(), std::ceil(300.0 * alignment.position_sigma));
     }
     return alignment;

@@ -50,7 +50,7 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
     }
     if (fit.used.size() < 2) {
         return Error{Errc::kInvalidField,
-                     fmt::format("{} pairs with weight do not determine a transform: give 2 or more", fit.used.size())};
+                     fmt::format("pairs with weight: {}; a transform is determined by 2 or more", fit.used.size())};
     }
     first_centre /= weights;
     second_centre /= weights;
@@ -141,9 +141,9 @@ Result<PairAlignment> align_pairs_robustly(std::span<const PointPair> pairs, dou
         weighted, [](double weight) { return weight > 0.0; }, &PointPair::weight);
     if (static_cast<std::size_t>(agreeing) < kAgreeingMin) {
         return Error{Errc::kInvalidField,
-                     fmt::format("{} pairs agree on a transform within {:g} m; {} are needed: give "
+                     fmt::format("pairs that agree on a transform within {:g} m: {}; {} are needed: give "
                                  "more pairs or a larger inlier_distance",
-                                 agreeing, inlier_distance, kAgreeingMin)};
+                                 inlier_distance, agreeing, kAgreeingMin)};
     }
     return least_squares(weighted);
 }

@@ -111,13 +111,15 @@ std::vector<Surfel> sample(std::span<const Surfel> surfels, std::size_t count_ma
     return some;
 }
 
-std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second, double distance_max,
-                                   std::size_t count_max, std::size_t first_max) {
+Result<std::vector<Pose2>> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second,
+                                           double distance_max, std::size_t count_max, std::size_t first_max,
+                                           const std::function<Result<>()>& ask) {
     const auto here = sample(first, first_max);
     const auto there = sample(second, kSurfelsMax);
     Ballot ballot(distance_max);
     std::vector<Peak> peaks;
     for (int n = 0; n < kRotations; ++n) {
+        if (auto go_on = ask(); !go_on) return go_on.error();
         const double yaw = normalize_angle(2.0 * std::numbers::pi * n / kRotations);
         ballot.vote(here, rotated(there, yaw));
         std::ranges::copy(ballot.peaks(yaw, kPeaksMax), std::back_inserter(peaks));

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "common/error/error.hpp"
 #include "server/landmarks/alignment_surfels.hpp"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,12 +22,13 @@ inline constexpr std::size_t kSurfelsMax = 250;
 /// @param distance_max  metres that the second frame's origin may be from the first's, along each axis
 /// @param count_max     so many hypotheses at most
 /// @param first_max     so many surface elements of the first stand for all at most; of the second kSurfelsMax
+/// @param ask           before each rotation; its error ends it
 /// Cost    rotations by pairs of those that stand for all.
 /// Source  Ballard, Generalizing the Hough transform to detect arbitrary shapes (1981); Olson, Real-time correlative scan
 ///         matching (2009), for looking everywhere.
-[[nodiscard]] std::vector<Pose2> find_hypotheses(std::span<const Surfel> first, std::span<const Surfel> second,
-                                                 double distance_max, std::size_t count_max,
-                                                 std::size_t first_max = kSurfelsMax);
+[[nodiscard]] Result<std::vector<Pose2>> find_hypotheses(
+    std::span<const Surfel> first, std::span<const Surfel> second, double distance_max, std::size_t count_max,
+    std::size_t first_max = kSurfelsMax, const std::function<Result<>()>& ask = [] { return Result<>(); });
 
 /// Likewise of one rotation alone: where things repeat, most of the places they may be taken for.
 [[nodiscard]] std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second,

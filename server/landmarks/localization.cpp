@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scanloom::landmarks {
@@ -49,7 +50,7 @@ public:
     Search(const ReferenceMap& map, const Neighbourhood& within, const Horizon& horizon,
            const std::vector<Point2>& points);
 
-    [[nodiscard]] std::vector<Pose2> hypotheses() const;
+    [[nodiscard]] Result<std::vector<Pose2>> hypotheses(const std::function<Result<>()>& ask) const;
     /// Where things repeat, the truth may have fewer votes than what it is taken for; but walls stand alike.
     [[nodiscard]] std::vector<Pose2> repetitions(double yaw) const;
     /// Adds what comes of one, where a sensor may be.
@@ -80,8 +81,10 @@ Search::Search(const ReferenceMap& map, const Neighbourhood& within, const Horiz
     }
 }
 
-std::vector<Pose2> Search::hypotheses() const {
-    return in_map(find_hypotheses(near_, second_.surface.surfels(), within_.radius, kHypotheses, kMapSurfelsMax));
+Result<std::vector<Pose2>> Search::hypotheses(const std::function<Result<>()>& ask) const {
+    auto found = find_hypotheses(near_, second_.surface.surfels(), within_.radius, kHypotheses, kMapSurfelsMax, ask);
+    if (!found) return found;
+    return in_map(std::move(*found));
 }
 
 std::vector<Pose2> Search::repetitions(double yaw) const {
@@ -111,11 +114,11 @@ void Search::add_slid_of_the_best(std::vector<Candidate>& candidates) const {
     candidates.erase(impossible, candidates.end());
 }
 
-/// Of the map's own frame; no more of it than there is.
-Neighbourhood in_frame_of(const ReferenceMap& map, const std::optional<Neighbourhood>& near) {
-    if (!near) return {{0.0, 0.0}, map.half_extent()};
-    const Point2 middle = near->middle - map.middle();
-    return {middle, std::min(near->radius, map.half_extent() + apart(middle, {0.0, 0.0}))};
+/// From the middle of what there is; no more than there is.
+Neighbourhood within(const Extent& extent, const std::optional<Neighbourhood>& near) {
+    if (!near) return {{0.0, 0.0}, extent.half};
+    const Point2 middle = near->middle - extent.middle;
+    return {middle, std::min(near->radius, extent.half + apart(middle, {0.0, 0.0}))};
 }
 
 /// Another place may be mapped.
@@ -134,23 +137,28 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
     for (const Point2& point : view.points) points.push_back(point - view.from);
     const Horizon horizon(points, {0.0, 0.0});
 
-    const ReferenceMap map(near ? views_near(views, *near, horizon.reach() + kBeyond) : views);
     if (views.empty()) {
         return Error{Errc::kNothingMapped,
                      "no laser of this session has seen anything yet; send the first scans from a pose that is known"};
     }
-    if (map.is_empty()) return Alignment{.why = nothing_there(near)};
-    const Neighbourhood within = in_frame_of(map, near);
-    if (within.radius > kHalfExtentMax) {
+    const ReferenceViews some = near ? views_near(views, *near, horizon.reach() + kBeyond) : views;
+    const auto extent = extent_of(some);
+    if (!extent) return Alignment{.why = nothing_there(near)};
+    const Neighbourhood where = within(*extent, near);
+    if (where.radius > kHalfExtentMax) {
         return Error{Errc::kTooLarge,
                      fmt::format("{:.0f} m of the map would have to be looked at, and at most {:.0f} m "
                                  "are: say near which place it is, and how near",
-                                 2.0 * within.radius, 2.0 * kHalfExtentMax)};
+                                 2.0 * where.radius, 2.0 * kHalfExtentMax)};
     }
-    if (auto go_on = ask(); !go_on) return go_on.error();
-    const Search search(map, within, horizon, points);
+    const auto map = ReferenceMap::of(some, extent->middle, ask);
+    if (!map) return map.error();
+    if (map->is_empty()) return Alignment{.why = nothing_there(near)};
+    const Search search(*map, where, horizon, points);
+    const auto hypotheses = search.hypotheses(ask);
+    if (!hypotheses) return hypotheses.error();
     std::vector<Candidate> candidates;
-    for (const Pose2& hypothesis : search.hypotheses()) {
+    for (const Pose2& hypothesis : *hypotheses) {
         if (auto go_on = ask(); !go_on) return go_on.error();
         search.add(hypothesis, candidates);
     }
@@ -165,12 +173,13 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
     }
     search.add_slid_of_the_best(candidates);
     std::erase_if(candidates, [&](const Candidate& candidate) {
-        return apart({candidate.pose().x, candidate.pose().y}, within.middle) > within.radius;
+        return apart({candidate.pose().x, candidate.pose().y}, where.middle) > where.radius;
     });
     rank(candidates);
     Alignment found = judge(candidates, LaidOn::kMap);
     const auto in_map = [&](const Pose2& pose) {
-        return compose({map.middle().x(), map.middle().y(), 0.0}, compose(pose, {-view.from.x(), -view.from.y(), 0.0}));
+        return compose({map->middle().x(), map->middle().y(), 0.0},
+                       compose(pose, {-view.from.x(), -view.from.y(), 0.0}));
     };
     found.T_first_second = in_map(found.T_first_second);
     if (found.rival) found.rival = in_map(*found.rival);

@@ -6,6 +6,11 @@
 #include <numbers>
 
 namespace scanloom::landmarks {
+namespace {
+
+std::size_t size_of(const ReferenceView& view) { return view.points.size() + ReferenceLayer::kViewItself; }
+
+} // namespace
 
 ReferenceView reference_view_of(const RobotCapture& capture) {
     ReferenceView view{.from = capture.capture.from, .points = {}, .ended = capture.ended};
@@ -24,9 +29,9 @@ void ReferenceLayer::add(const RobotCapture& ended) {
                        static_cast<std::int64_t>(std::floor(turns * kDirections)) % kDirections};
     ReferenceViews& views = places_[key];
     views.push_back(std::make_shared<const ReferenceView>(reference_view_of(ended)));
-    points_ += views.back()->points.size();
+    size_ += size_of(*views.back());
     if (views.size() <= kViewsOfAPlace) return;
-    points_ -= views.front()->points.size();
+    size_ -= size_of(*views.front());
     views.erase(views.begin());
 }
 

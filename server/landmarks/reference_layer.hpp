@@ -34,17 +34,20 @@ public:
     static constexpr std::size_t kViewsOfAPlace = 2;    ///< in each direction
     static constexpr std::size_t kPointsOfAView = 4096; ///< of more points every so many-th stays
 
+    /// The memory that a view takes beside its points while somebody is located, in points.
+    static constexpr std::size_t kViewItself = 720;
+
     void add(const RobotCapture& ended);
 
-    /// Points of all that are kept.
-    [[nodiscard]] std::size_t size() const noexcept { return points_; }
+    /// Points of all views that are kept, and kViewItself for each.
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] ReferenceViews snapshot() const;
 
 private:
     using PlaceKey = std::array<std::int64_t, 3>; // row, column, direction
 
     std::map<PlaceKey, ReferenceViews> places_; // each the oldest first
-    std::size_t points_ = 0;
+    std::size_t size_ = 0;
 };
 
 } // namespace scanloom::landmarks

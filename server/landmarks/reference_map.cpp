@@ -11,23 +11,31 @@ constexpr double kBeenThere = 0.3; // metres from where somebody saw from
 
 } // namespace
 
-ReferenceMap::ReferenceMap(std::span<const std::shared_ptr<const ReferenceView>> views) {
+std::optional<Extent> extent_of(ReferenceViewSpan views) {
     Eigen::AlignedBox2d bounds;
     for (const auto& view : views) {
-        for (const auto& [x, y] : view->points) bounds.extend(Point2(x * 0.001, y * 0.001));
+        for (const PointMm& point : view->points) bounds.extend(in_metres(point));
     }
-    if (bounds.isEmpty()) return;
-    middle_ = bounds.center();
-    half_extent_ = 0.5 * bounds.sizes().maxCoeff();
+    if (bounds.isEmpty()) return std::nullopt;
+    return Extent{bounds.center(), 0.5 * bounds.sizes().maxCoeff()};
+}
+
+Result<ReferenceMap> ReferenceMap::of(ReferenceViewSpan views, const Point2& middle,
+                                      const std::function<Result<>()>& ask) {
+    ReferenceMap map(middle);
     std::vector<Point2> all;
-    horizons_.reserve(views.size());
+    map.horizons_.reserve(views.size());
     for (const auto& view : views) {
+        if (auto go_on = ask(); !go_on) return go_on.error();
         const auto begin = static_cast<std::ptrdiff_t>(all.size());
-        for (const auto& [x, y] : view->points) all.push_back(Point2(x * 0.001, y * 0.001) - middle_);
-        horizons_.emplace_back(std::span<const Point2>(all.begin() + begin, all.end()), view->from - middle_);
+        for (const PointMm& point : view->points) all.push_back(in_metres(point) - middle);
+        map.horizons_.emplace_back(std::span<const Point2>(all.begin() + begin, all.end()), view->from - middle);
     }
-    surfels_ = surfels_of(all);
-    std::erase_if(surfels_, [&](const Surfel& surfel) { return has_gone(surfel.position); });
+    for (const Surfel& surfel : surfels_of(all)) {
+        if (auto go_on = ask(); !go_on) return go_on.error();
+        if (!map.has_gone(surfel.position)) map.surfels_.push_back(surfel);
+    }
+    return map;
 }
 
 bool ReferenceMap::has_gone(const Point2& place) const {

@@ -3,10 +3,22 @@
 #include "server/landmarks/alignment_candidates.hpp"
 #include "server/landmarks/reference_layer.hpp"
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace scanloom::landmarks {
+
+using ReferenceViewSpan = std::span<const std::shared_ptr<const ReferenceView>>;
+
+/// How far what was seen reaches: a square, of which at least two opposite sides were seen.
+struct Extent {
+    Point2 middle{0.0, 0.0}; ///< metres, map frame
+    double half = 0.0;       ///< metres from the middle to each side
+};
+/// None where nothing was seen.
+[[nodiscard]] std::optional<Extent> extent_of(ReferenceViewSpan views);
 
 /// What robots saw from many places as one surface, without what has gone since: what more of them looked through than
 /// saw.
@@ -14,13 +26,15 @@ namespace scanloom::landmarks {
 /// Thread  any, once it is made.
 class ReferenceMap {
 public:
+    /// @param middle  what its own frame's origin is to be, in the map frame
+    /// @param ask     now and then; its error ends it
     /// Cost  n log n of the points, and of each surface element the views around.
-    explicit ReferenceMap(std::span<const std::shared_ptr<const ReferenceView>> views);
+    [[nodiscard]] static Result<ReferenceMap> of(
+        ReferenceViewSpan views, const Point2& middle,
+        const std::function<Result<>()>& ask = [] { return Result<>(); });
 
     [[nodiscard]] bool is_empty() const noexcept { return surfels_.empty(); }
     [[nodiscard]] const Point2& middle() const noexcept { return middle_; } ///< metres, map frame
-    /// Metres from the middle to the furthest surface, along either axis.
-    [[nodiscard]] double half_extent() const noexcept { return half_extent_; }
     [[nodiscard]] const std::vector<Surfel>& surfels() const noexcept { return surfels_; }
 
     /// What there is within `radius` metres of a place, and who looked at it. This must outlive it.
@@ -30,10 +44,11 @@ public:
     [[nodiscard]] bool is_possible(const Point2& place) const;
 
 private:
+    explicit ReferenceMap(const Point2& middle) : middle_(middle) {}
+
     [[nodiscard]] bool has_gone(const Point2& place) const;
 
-    Point2 middle_{0.0, 0.0};
-    double half_extent_ = 0.0;
+    Point2 middle_;
     std::vector<Horizon> horizons_;
     std::vector<Surfel> surfels_;
 };

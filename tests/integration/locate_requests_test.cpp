@@ -133,6 +133,24 @@ TEST_F(LocateRequestsTest, WhatTheMapCannotTellIsRefusedAndTheLinkGoesOn) {
     EXPECT_TRUE(carried->receive_kind<wire::LocateReply>().correction);
 }
 
+TEST_F(LocateRequestsTest, OfTwoThatAskWhileNothingIsMappedTheMapBeginsWithOne) {
+    start();
+    const auto first = welcomed(port(), hello("first"));
+    const auto second = welcomed(port(), hello("second"));
+    first->send(question_from(kTruth, 1));
+    EXPECT_EQ(first->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
+    second->send(question_from(kTruth, 1));
+    const auto refused = second->receive_kind<wire::LocateReply>().correction.error();
+    EXPECT_EQ(refused.code, Errc::kOverloaded) << "it asks again";
+    EXPECT_THAT(refused.message, HasSubstr("the map begins where that one stands"));
+
+    first->send(round_laser());
+    first->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4})}});
+    first->wait_for_ack(1);
+    second->send(question_from(kTruth, 2));
+    EXPECT_TRUE(second->receive_kind<wire::LocateReply>().correction);
+}
+
 TEST_F(LocateRequestsTest, ManyThatAskWhereTheyAreLeaveRoomForThoseThatAskForWays) {
     auto& ingest = start();
     const auto mapper = mapping();

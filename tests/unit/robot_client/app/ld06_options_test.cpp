@@ -75,12 +75,13 @@ TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--near", "0,0,1"}), HasSubstr("--near is of --locate"));
     EXPECT_THAT(refused({"f", "--locate", "--speed", "1"}), HasSubstr("leave --speed out"));
     EXPECT_THAT(refused({"f"}), HasSubstr("or have the server tell with --locate"));
-    for (const auto* near : {"", "1,2", "1,2,3,4", "1,2,x", "nan,0,1"}) {
+    for (const auto* near : {"", "1,2", "1,2,3,4", "1,2,x", "nan,0,1", "0,0,inf"}) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("is not X,Y,RADIUS in metres")) << near;
     }
-    for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001"}) {
-        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("more than 0 and at most 1000")) << near;
+    for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001", "0,0,1e9", "0,0,1e-300"}) {
+        EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("give 0.1 to 1000")) << near;
     }
+    EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2e+06 m is beyond the map"));
 }
 
 TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
@@ -96,7 +97,7 @@ TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
     EXPECT_THAT(refused({"--pose", "0,0,0"}), HasSubstr("name the INPUT"));
     EXPECT_THAT(refused({"f"}), HasSubstr("say where the robot is"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--poses", "p"}), HasSubstr("say where the robot is"));
-    for (const auto* pose : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1e7,0,0", "1 2 3"}) {
+    for (const auto* pose : {"", "1,2", "1,2,3,4", "1,2,x", "1,2,nan", "1,inf,0", "1 2 3"}) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("is not X,Y,YAW")) << pose;
     }
@@ -106,6 +107,7 @@ TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
     for (const auto* confidence : {"-1", "256", "x"}) {
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--min-confidence", confidence}), HasSubstr("from 0 to 255"));
     }
+    EXPECT_THAT(refused({"f", "--pose", "1e7,0,0"}), HasSubstr("1e+07 m is beyond the map, which reaches 1e+06 m"));
     EXPECT_THAT(refused({"tcp://lidar", "--pose", "0,0,0"}), HasSubstr("'tcp://lidar' is not tcp://HOST:PORT"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--reopen-for", "-1"}), HasSubstr("--reopen-for"));
 }

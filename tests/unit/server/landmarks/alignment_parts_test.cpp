@@ -65,7 +65,7 @@ TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
         const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
         const auto first = surfels_of(odd_room(random));
         const auto second = surfels_of(seen_from(place, odd_room(random)));
-        const auto hypotheses = find_hypotheses(first, second, 5.0, 5);
+        const auto hypotheses = find_hypotheses(first, second, 5.0, 5).value();
         const bool found = std::ranges::any_of(hypotheses, [&](const Pose2& pose) {
             return metres_off(pose, place) < 0.3 && degrees_off(pose, place) < 4.0;
         });

@@ -179,14 +179,21 @@ TEST(Localization, WhatHasGoneFromTheMapDoesNotMatter) {
 }
 
 TEST(Localization, ThatIsNotWantedAnyMoreEnds) {
-    int asked = 0;
-    const auto not_wanted = [&]() -> Result<> {
-        return ++asked < 3 ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
-    };
-    const auto found = locate(map_of(furnished(), kPlaces), {.points = seen_at(furnished(), kTruth)}, {}, not_wanted);
-    ASSERT_FALSE(found);
-    EXPECT_EQ(found.error().code, Errc::kShuttingDown);
-    EXPECT_EQ(asked, 3);
+    const auto map = map_of(furnished(), kPlaces);
+    const auto seen = seen_at(furnished(), kTruth);
+    int often = 0;
+    ASSERT_TRUE(locate(map, {.points = seen}, {}, [&] { return ++often, Result<>(); }));
+    // Of the views, the surface elements, the rotations, the hypotheses: whichever it is at.
+    for (const int last : {1, 2, often / 4, often / 2, 3 * often / 4, often - 100, often - 50, often - 1, often}) {
+        int asked = 0;
+        const auto not_wanted = [&]() -> Result<> {
+            return ++asked < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+        };
+        const auto found = locate(map, {.points = seen}, {}, not_wanted);
+        ASSERT_FALSE(found) << last << " of " << often;
+        EXPECT_EQ(found.error().code, Errc::kShuttingDown);
+        EXPECT_EQ(asked, last);
+    }
 }
 
 TEST(Localization, WhereNothingWasSeenIsToldFromWhereItIsNotKnown) {
@@ -213,6 +220,12 @@ TEST(Localization, InAMapThatIsTooWideNeedsANeighbourhood) {
     ASSERT_FALSE(anywhere);
     EXPECT_EQ(anywhere.error().code, Errc::kTooLarge);
     EXPECT_THAT(anywhere.error().message, HasSubstr("307 m of the map"));
+    const auto at_once = []() -> Result<> {
+        ADD_FAILURE() << "it is refused before any work is done";
+        return {};
+    };
+    EXPECT_FALSE(locate(map, {.points = seen}, {}, at_once));
+    EXPECT_FALSE(locate(map, {.points = seen}, Neighbourhood{{0.0, 0.0}, 1000.0}, at_once));
     expect_right(locate(map, {.points = seen}, Neighbourhood{{0.0, 0.0}, 10.0}).value(), kTruth);
     expect_right(locate(map, {.points = seen}, Neighbourhood{{0.0, 0.0}, 100.0}).value(), kTruth);
 }

@@ -12,6 +12,8 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using namespace testing_support;
 
+constexpr std::size_t kView = ReferenceLayer::kViewItself;
+
 RobotCapture capture_at(const Pose2& pose, Revision ended, std::size_t points = 3) {
     return {.robot = 0,
             .capture = {.pose = pose, .points = std::vector<PointMm>(points), .from = {pose.x, pose.y}},
@@ -28,7 +30,7 @@ TEST(ReferenceLayer, OfAPlaceTheNewestTwoAreKept) {
     ReferenceLayer layer;
     for (Revision n = 1; n <= 5; ++n) layer.add(capture_at({0.1, 0.2, 0.3}, n, 10 * n));
     EXPECT_THAT(kept_in(layer), ElementsAre(4, 5));
-    EXPECT_EQ(layer.size(), 90U);
+    EXPECT_EQ(layer.size(), 90U + 2 * kView);
     layer.add(capture_at({0.6, 0.2, 0.3}, 6));
     layer.add(capture_at({-0.1, 0.2, 0.3}, 7));
     layer.add(capture_at({0.1, -0.2, 0.3}, 8));
@@ -47,11 +49,11 @@ TEST(ReferenceLayer, OfALaserThatSeesForwardEveryDirectionIsKept) {
 TEST(ReferenceLayer, OfAViewOfManyPointsSomeStandForAll) {
     ReferenceLayer layer;
     layer.add(capture_at({0.1, 0.2, 0.3}, 1, 4096));
-    EXPECT_EQ(layer.size(), 4096U);
+    EXPECT_EQ(layer.size(), kView + 4096U);
     layer.add(capture_at({5.1, 0.2, 0.3}, 2, 4097));
-    EXPECT_EQ(layer.size(), 4096U + 2049U);
+    EXPECT_EQ(layer.size(), 2 * kView + 4096U + 2049U);
     layer.add(capture_at({9.1, 0.2, 0.3}, 3, 65'536));
-    EXPECT_EQ(layer.size(), 4096U + 2049U + 4096U);
+    EXPECT_EQ(layer.size(), 3 * kView + 4096U + 2049U + 4096U);
 }
 
 TEST(ReferenceLayer, WhatSawNothingTellsNothing) {
@@ -82,6 +84,9 @@ protected:
         return robot::make_world("room", std::move(solids), {{-3.0, -3.0, 3.0, 3.0}});
     }
 
+    /// With its origin where nothing is, as nothing depends on it.
+    static ReferenceMap map_of(const ReferenceViews& views) { return ReferenceMap::of(views, {0.5, -0.25}).value(); }
+
     [[nodiscard]] static bool has_surface_at(const ReferenceMap& map, const Point2& place) {
         return std::ranges::any_of(map.surfels(), [&](const Surfel& surfel) {
             return (surfel.position + map.middle() - place).norm() < 0.15;
@@ -94,27 +99,34 @@ protected:
 };
 
 TEST_F(ReferenceMapTest, WhatMoreLookedThroughThanSawHasGone) {
-    const ReferenceMap then(ReferenceViews{views_.front()});
+    const auto then = map_of({views_.front()});
     EXPECT_TRUE(has_surface_at(then, {-0.2, 0.0}));
-    const ReferenceMap now(views_);
+    const auto now = map_of(views_);
     EXPECT_FALSE(has_surface_at(now, {-0.2, 0.0}));
     EXPECT_TRUE(has_surface_at(now, {-3.0, 0.0}));
     EXPECT_TRUE(has_surface_at(now, {3.0, 0.3}));
-    EXPECT_NEAR(now.half_extent(), 3.0, 0.1);
+}
+
+TEST_F(ReferenceMapTest, ItsExtentIsASquareAroundAllThatWasSeen) {
+    const auto extent = extent_of(views_);
+    ASSERT_TRUE(extent);
+    EXPECT_NEAR(extent->half, 3.0, 0.1);
+    EXPECT_NEAR(extent->middle.norm(), 0.0, 0.1);
+    EXPECT_FALSE(extent_of({}));
 }
 
 TEST_F(ReferenceMapTest, ASensorMayBeWhereSomebodyHasLookedAndNotBehindWalls) {
-    const ReferenceMap map(views_);
+    const auto map = map_of(views_);
     const auto possible = [&](double x, double y) { return map.is_possible(Point2(x, y) - map.middle()); };
     EXPECT_TRUE(possible(1.0, -1.0));
     EXPECT_TRUE(possible(-2.0, 0.0)) << "where somebody has been";
     EXPECT_FALSE(possible(-3.5, 0.0));
     EXPECT_FALSE(possible(0.0, 5.0));
-    EXPECT_FALSE(ReferenceMap(ReferenceViews{}).is_possible({0.0, 0.0}));
+    EXPECT_FALSE(map_of({}).is_possible({0.0, 0.0}));
 }
 
 TEST_F(ReferenceMapTest, AroundAPlaceIsWhatIsNearAndWhoMayHaveSeenIt) {
-    const ReferenceMap map(views_);
+    const auto map = map_of(views_);
     const Point2 corner = Point2(-3.0, -3.0) - map.middle();
     const auto seen = map.around(corner, 1.0);
     EXPECT_FALSE(seen.surface.surfels().empty());
