@@ -23,7 +23,9 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::append;
 using testing_support::Bytes;
+using testing_support::bytes_of;
 
 constexpr std::size_t kBeams = 450; // of a turn of an LD06
 constexpr std::size_t kBeamsOfAPacket = 12;
