@@ -62,7 +62,7 @@ Bytes carried(const robot::World& world, const std::vector<Stand>& stands) {
 
 constexpr Pose2 kFirst{-3.5, -3.0, 0.3};
 constexpr Pose2 kSecond{-3.4, 0.0, 0.5};
-constexpr Pose2 kThird{-2.0, -2.5, -2.0};
+constexpr Pose2 kThird{-3.0, -1.5, -2.0};
 
 class LocatingProgramTest : public testing::Test {
 protected:
@@ -109,8 +109,8 @@ TEST_F(LocatingProgramTest, FromItsFirstPlaceOnEachIsFound) {
     EXPECT_THAT(summary_, HasSubstr("carried 1 time"));
     expect_near(pose_of(0), kSecond);
 
-    ASSERT_EQ(send("another", carried(room_, {{kThird, 20}}), {"--near", "-2,-2,2"}), 0) << said_;
-    EXPECT_THAT(said_, AllOf(HasSubstr("located at (-2."), Not(HasSubstr("nothing is mapped"))));
+    ASSERT_EQ(send("another", carried(room_, {{kThird, 20}}), {"--near", "-3,-1,2"}), 0) << said_;
+    EXPECT_THAT(said_, AllOf(HasSubstr("located at (-3."), Not(HasSubstr("nothing is mapped"))));
     expect_near(pose_of(1), kThird);
 }
 
@@ -119,7 +119,8 @@ TEST_F(LocatingProgramTest, NothingIsSentFromElsewhere) {
     EXPECT_EQ(send("lost", carried(robot::make_office(), {{{-12.0, 7.0, 0.0}, 20}}), {}), 1);
     EXPECT_THAT(said_, HasSubstr("nothing is sent from here"));
     EXPECT_THAT(summary_, HasSubstr(R"("error":"no scan was sent: )"));
-    EXPECT_EQ(server_.get_json("/api/v1/sessions/lab").at("scans").to_number<int>(), 20);
+    EXPECT_EQ(server_.get_json("/api/v1/sessions/lab").at("scans").to_number<int>(), 18)
+        << "the first and the last turn are parts";
 }
 
 } // namespace
