@@ -145,10 +145,11 @@ TEST_F(LocateRequestsTest, OfTwoThatAskWhileNothingIsMappedTheMapBeginsWithOne) 
     EXPECT_THAT(refused.message, HasSubstr("the map begins where that one stands"));
 
     first->send(round_laser());
-    first->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4})}});
-    first->wait_for_ack(1);
+    first->send(wire::ScanBatch{{room_scan(1, {-2.0, -1.0, 0.4}), room_scan(2, {1.0, 2.0, -2.0})}});
+    first->wait_for_ack(2);
     second->send(question_from(kTruth, 2));
-    EXPECT_TRUE(second->receive_kind<wire::LocateReply>().correction);
+    const auto reply = second->receive_kind<wire::LocateReply>();
+    EXPECT_TRUE(reply.correction) << reply.correction.error().message;
 }
 
 TEST_F(LocateRequestsTest, ManyThatAskWhereTheyAreLeaveRoomForThoseThatAskForWays) {
