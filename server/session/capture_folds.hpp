@@ -4,6 +4,7 @@
 #include "server/landmarks/landmark_layer.hpp"
 #include "server/landmarks/reference_layer.hpp"
 #include "server/session/log_captures.hpp"
+#include "server/session/patient_mutex.hpp"
 #include "server/session/session_info.hpp"
 #include "server/store/scan_log.hpp"
 
@@ -81,7 +82,7 @@ private:
         explicit Kept(store::SessionId of) : session(of) {}
 
         const store::SessionId session;
-        std::timed_mutex mutex;
+        PatientMutex mutex;
         landmarks::SessionCaptures captures; // whoever has the mutex
         Layer layer;                         // likewise
         bool is_full = false;                // likewise: has had more than there may be
