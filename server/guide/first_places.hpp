@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
-#include "server/store/scan_log.hpp"
+#include "server/session/session_info.hpp"
 
 #include <chrono>
 #include <map>
