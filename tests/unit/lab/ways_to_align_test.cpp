@@ -81,7 +81,7 @@ TEST_F(WaysToAlignTest, TooFewPairsAreARefusalAndTheSurfacesSpeakAllTheSame) {
     const auto ways = align_both_ways({first, second, kPlace, {2.6, 1.8, 0.3}}, {}).value();
     EXPECT_EQ(ways.by_landmarks.pairs, 0U);
     EXPECT_FALSE(ways.by_landmarks.fit);
-    EXPECT_THAT(ways.by_landmarks.refusal, HasSubstr("0 pairs"));
+    EXPECT_THAT(ways.by_landmarks.refusal, HasSubstr("pairs with weight: 0;"));
     EXPECT_EQ(ways.by_surfaces.alignment.certainty, landmarks::Certainty::kClear) << ways.by_surfaces.alignment.why;
     EXPECT_LT(ways.by_surfaces.error.metres, 0.02);
 }
