@@ -73,6 +73,21 @@ TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
     }
 }
 
+TEST(Hypotheses, AreSoughtAsLongAsSomebodyWantsThem) {
+    std::mt19937 random(5);
+    const auto room = surfels_of(odd_room(random));
+    for (const int last : {1, 2, 60, 120}) { // of 120 rotations
+        int asked = 0;
+        const auto not_wanted = [&]() -> Result<> {
+            return ++asked < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+        };
+        const auto found = find_hypotheses(room, room, 5.0, 5, kSurfelsMax, not_wanted);
+        ASSERT_FALSE(found) << last;
+        EXPECT_EQ(found.error().code, Errc::kShuttingDown);
+        EXPECT_EQ(asked, last);
+    }
+}
+
 TEST(Refinement, BringsANearPoseToTheTruth) {
     std::mt19937 random(3);
     const Surface first(surfels_of(odd_room(random)));

@@ -107,6 +107,21 @@ TEST_F(ReferenceMapTest, WhatMoreLookedThroughThanSawHasGone) {
     EXPECT_TRUE(has_surface_at(now, {3.0, 0.3}));
 }
 
+TEST_F(ReferenceMapTest, IsMadeAsLongAsSomebodyWantsIt) {
+    int often = 0;
+    const auto map = ReferenceMap::of(views_, {0.0, 0.0}, [&] { return ++often, Result<>(); });
+    ASSERT_TRUE(map);
+    ASSERT_GE(often, static_cast<int>(views_.size() + map->surfels().size()));
+    for (const int last : {1, static_cast<int>(views_.size()) + 1, often}) {
+        int asked = 0;
+        const auto not_wanted = [&]() -> Result<> {
+            return ++asked < last ? Result<>() : Error{Errc::kShuttingDown, "the server is shutting down"};
+        };
+        EXPECT_FALSE(ReferenceMap::of(views_, {0.0, 0.0}, not_wanted)) << last << " of " << often;
+        EXPECT_EQ(asked, last);
+    }
+}
+
 TEST_F(ReferenceMapTest, ItsExtentIsASquareAroundAllThatWasSeen) {
     const auto extent = extent_of(views_);
     ASSERT_TRUE(extent);
