@@ -157,6 +157,14 @@ TEST(Localization, InOneOfTwoEqualRoomsIsAmbiguousUntilItIsSaidWhich) {
     expect_right(locate(map, {.points = seen}, second).value(), {kTruth.x + 20.0, kTruth.y, kTruth.yaw}, "the second");
 }
 
+TEST(Localization, JustBeyondTheNeighbourhoodIsNotInIt) {
+    const auto map = map_of(furnished(), kPlaces);
+    const auto seen = seen_at(furnished(), kTruth);
+    const auto beside = [&](double by) { return Neighbourhood{{kTruth.x - by, kTruth.y}, 2.0}; };
+    expect_right(locate(map, {.points = seen}, beside(1.9)).value(), kTruth);
+    EXPECT_NE(locate(map, {.points = seen}, beside(2.1)).value().certainty, Certainty::kClear);
+}
+
 TEST(Localization, InAnotherPlaceIsSaidNotToBeKnown) {
     const auto office = robot::make_office();
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
