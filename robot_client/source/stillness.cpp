@@ -64,7 +64,7 @@ TurnProfile profile_of(const Scan& scan, const Sensor& sensor) {
         if (reading && reading->is_hit) met[direction_of(beam_angle(angles, beam))].push_back(reading->metres);
     }
     TurnProfile profile;
-    std::ranges::transform(met, profile.begin(), median_of);
+    std::ranges::transform(met, profile.begin(), [](std::vector<double>& ranges) { return median_of(ranges); });
     return profile;
 }
 

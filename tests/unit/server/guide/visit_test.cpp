@@ -51,10 +51,10 @@ TEST(Visit, OfATargetAtHandIsALookFromWhereTheRobotStands) {
 }
 
 /// A scan a second, looking away; the robot asks from second 2 on.
-mapping::RobotState standing(int seconds, int away_at = -1) {
+mapping::RobotState standing(int until, int away_at = -1) {
     mapping::Trajectory trajectory;
     auto robot = robot_at({1.0, 1.0, 3.0});
-    for (int second = 0; second <= seconds; ++second) {
+    for (int second = 0; second <= until; ++second) {
         robot.stamp = second;
         trajectory.append({0, robot.stamp, second == away_at ? Pose2{9.0, 9.0, 0.0} : *robot.pose});
     }
