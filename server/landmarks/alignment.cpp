@@ -67,8 +67,8 @@ Result<Alignment> align(const CloudView& first, const CloudView& second, const A
     const auto there = around(second);
     const Horizon from_here(here, {0.0, 0.0});
     const Horizon from_there(there, {0.0, 0.0});
-    const Seen seen_here{Surface(surfels_of(here)), {&from_here}};
-    const Seen seen_there{Surface(surfels_of(there)), {&from_there}};
+    const Seen seen_here{Surface(surfels_of(CloudView{here})), {&from_here}};
+    const Seen seen_there{Surface(surfels_of(CloudView{there})), {&from_there}};
     Alignment alignment = judge(find_candidates(seen_here, seen_there, settings.distance_max), LaidOn::kView);
     alignment.T_first_second = with_origins(alignment.T_first_second, first.from, second.from);
     if (alignment.rival) alignment.rival = with_origins(*alignment.rival, first.from, second.from);

@@ -2,20 +2,14 @@
 
 #include "common/error/error.hpp"
 #include "common/geometry/pose2.hpp"
+#include "server/landmarks/cloud_view.hpp"
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
 namespace scanloom::landmarks {
-
-/// What was seen from one place, in some turns of a lidar that stood still.
-struct CloudView {
-    std::span<const Point2> points; ///< metres, in any frame
-    Point2 from{0.0, 0.0};          ///< where the sensor was, in that frame
-};
 
 inline constexpr std::size_t kViewPointsMin = 20; ///< points of a view that is aligned
 

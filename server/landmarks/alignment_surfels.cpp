@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -13,6 +14,7 @@ namespace {
 constexpr int kStraightPointsMin = 5;
 constexpr double kStraight = 0.15; // variance across a straight surface, of that along it, at most
 constexpr double kExtent = 4e-4;   // square metres, of variance along a straight surface, at least
+constexpr double kAround = 0.03;   // of the distance: how far around points belong to a line
 
 using CellKey = std::pair<std::int64_t, std::int64_t>; // (y, x)
 
@@ -21,16 +23,19 @@ struct Moments {
     int count = 0;
     Point2 sum{0.0, 0.0};
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+    double distances = 0.0; // from where they were seen
 
-    void add(const Point2& point) {
+    void add(const Point2& point, double distance) {
         ++count;
         sum += point;
         squares += point * point.transpose();
+        distances += distance;
     }
     void add(const Moments& other) {
         count += other.count;
         sum += other.sum;
         squares += other.squares;
+        distances += other.distances;
     }
     [[nodiscard]] Point2 mean() const { return sum / count; }
     [[nodiscard]] Eigen::Matrix2d covariance() const { return squares / count - mean() * mean().transpose(); }
@@ -38,11 +43,18 @@ struct Moments {
 
 using Cells = std::map<CellKey, Moments>;
 
-Moments around(const Cells& cells, CellKey key) {
+/// Squares to each side that belong to the line through these points.
+std::int64_t reach_of(const Moments& moments) {
+    const double distance = moments.distances / moments.count;
+    return std::max<std::int64_t>(1, std::llround(kAround * distance / kSurfelSpacing));
+}
+
+/// Those of the squares up to `reach` from one.
+Moments around(const Cells& cells, CellKey key, std::int64_t reach) {
     Moments all;
-    for (std::int64_t y = key.first - 1; y <= key.first + 1; ++y) {
-        for (auto cell = cells.lower_bound({y, key.second - 1}); cell != cells.end(); ++cell) {
-            if (cell->first > CellKey{y, key.second + 1}) break;
+    for (std::int64_t y = key.first - reach; y <= key.first + reach; ++y) {
+        for (auto cell = cells.lower_bound({y, key.second - reach}); cell != cells.end(); ++cell) {
+            if (cell->first > CellKey{y, key.second + reach}) break;
             all.add(cell->second);
         }
     }
@@ -51,7 +63,7 @@ Moments around(const Cells& cells, CellKey key) {
 
 Surfel surfel(const Cells& cells, CellKey key, const Moments& moments) {
     Surfel surfel{.position = moments.mean()};
-    const Moments all = around(cells, key);
+    const Moments all = around(cells, key, reach_of(moments));
     if (all.count < kStraightPointsMin) return surfel;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(all.covariance());
@@ -63,17 +75,20 @@ Surfel surfel(const Cells& cells, CellKey key, const Moments& moments) {
 
 } // namespace
 
-std::vector<Surfel> surfels_of(std::span<const Point2> points) {
+std::vector<Surfel> surfels_of(std::span<const CloudView> views) {
     std::vector<Surfel> surfels;
-    if (points.empty()) return surfels;
-    const Point2 origin = points.front();
+    const auto any = std::ranges::find_if(views, [](const CloudView& view) { return !view.points.empty(); });
+    if (any == views.end()) return surfels;
+    const Point2 origin = any->points.front();
     constexpr double kCellsPerMetre = 1.0 / kSurfelSpacing;
     Cells cells;
-    for (const Point2& point : points) {
-        const Point2 offset = point - origin;
-        cells[{static_cast<std::int64_t>(std::floor(offset.y() * kCellsPerMetre)),
-               static_cast<std::int64_t>(std::floor(offset.x() * kCellsPerMetre))}]
-            .add(offset);
+    for (const CloudView& view : views) {
+        for (const Point2& point : view.points) {
+            const Point2 offset = point - origin;
+            cells[{static_cast<std::int64_t>(std::floor(offset.y() * kCellsPerMetre)),
+                   static_cast<std::int64_t>(std::floor(offset.x() * kCellsPerMetre))}]
+                .add(offset, (point - view.from).norm());
+        }
     }
     for (const auto& [key, moments] : cells) {
         surfels.push_back(surfel(cells, key, moments));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/geometry/pose2.hpp"
+#include "server/landmarks/cloud_view.hpp"
 
 #include <span>
 #include <vector>
@@ -17,10 +17,15 @@ struct Surfel {
     [[nodiscard]] bool is_straight() const { return normal.x() != 0.0 || normal.y() != 0.0; }
 };
 
-/// The surface elements of a cloud, by rows.
-/// Pre   the points pass check_points().
+/// The surface elements of what was seen from some places, all in one frame, by rows.
+///
+/// A line is told from the points around: the further away they were seen, the further around, at least a square to
+/// each side and 3 % of the distance. Far off, neighbouring beams meet a wall further apart than a square is wide, and
+/// noise of their angles smears each across its direction: the points of one square show the beam, not the wall.
+/// Pre   the points, and where they were seen from, pass check_points().
 /// Cost  n log n.
-[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const Point2> points);
+[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const CloudView> views);
+[[nodiscard]] inline std::vector<Surfel> surfels_of(const CloudView& view) { return surfels_of({&view, 1}); }
 
 [[nodiscard]] Surfel transformed(const Pose2& T_a_b, const Surfel& surfel_b);
 

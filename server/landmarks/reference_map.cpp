@@ -23,15 +23,17 @@ std::optional<Extent> extent_of(ReferenceViewSpan views) {
 Result<ReferenceMap> ReferenceMap::of(ReferenceViewSpan views, const Point2& middle,
                                       const std::function<Result<>()>& ask) {
     ReferenceMap map(middle);
-    std::vector<Point2> all;
+    std::vector<std::vector<Point2>> points; // by view
+    std::vector<CloudView> seen;
     map.horizons_.reserve(views.size());
     for (const auto& view : views) {
         if (auto go_on = ask(); !go_on) return go_on.error();
-        const auto begin = static_cast<std::ptrdiff_t>(all.size());
-        for (const PointMm& point : view->points) all.push_back(in_metres(point) - middle);
-        map.horizons_.emplace_back(std::span<const Point2>(all.begin() + begin, all.end()), view->from - middle);
+        auto& its = points.emplace_back();
+        for (const PointMm& point : view->points) its.push_back(in_metres(point) - middle);
+        seen.push_back({its, view->from - middle});
+        map.horizons_.emplace_back(its, seen.back().from);
     }
-    for (const Surfel& surfel : surfels_of(all)) {
+    for (const Surfel& surfel : surfels_of(seen)) {
         if (auto go_on = ask(); !go_on) return go_on.error();
         if (!map.has_gone(surfel.position)) map.surfels_.push_back(surfel);
     }

@@ -38,6 +38,9 @@ std::vector<Point2> seen_from(const Pose2& place, std::vector<Point2> points) {
     return points;
 }
 
+/// Seen from the origin.
+std::vector<Surfel> surfels_around(const std::vector<Point2>& points) { return surfels_of(CloudView{points}); }
+
 double metres_off(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 double degrees_off(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)) / kDegree; }
 
@@ -48,23 +51,55 @@ TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
         const double x = n % 4 == 0 ? uniform(random, 0.0, 4.0) : uniform(random, 0.0, 1.0);
         points.emplace_back(x, 7.0 + uniform(random, -0.02, 0.02));
     }
-    const auto surfels = surfels_of(points);
+    const auto surfels = surfels_around(points);
     EXPECT_LE(surfels.size(), 84U);
     for (const Surfel& surfel : surfels) {
         ASSERT_TRUE(surfel.is_straight());
         EXPECT_NEAR(surfel.position.y(), 7.0, 0.006);
         EXPECT_GT(std::abs(surfel.normal.y()), 0.99);
     }
-    EXPECT_TRUE(surfels_of({}).empty());
-    EXPECT_FALSE(surfels_of(std::vector<Point2>(9, Point2(1.0, 1.0))).front().is_straight());
+    EXPECT_TRUE(surfels_of(std::span<const CloudView>()).empty());
+    EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2(1.0, 1.0))).front().is_straight());
+}
+
+TEST(Surfels, FarOffHaveTheDirectionOfTheWallNotOfTheBeamsNoise) {
+    std::mt19937 random(6);
+    std::normal_distribution<double> range_noise(0.0, 0.02);
+    std::normal_distribution<double> angle_noise(0.0, 0.005);
+    std::vector<Point2> points; // of a wall along x, 4 m away, that is seen up to 12 m to the side
+    for (int turn = 0; turn < 20; ++turn) {
+        for (int degree = 20; degree < 45; ++degree) {
+            const double range = 4.0 / std::sin(degree * kDegree) + range_noise(random);
+            const double angle = degree * kDegree + angle_noise(random);
+            points.emplace_back(range * std::cos(angle), range * std::sin(angle));
+        }
+    }
+    const auto surfels = surfels_around(points);
+    const auto along = std::ranges::count_if(surfels, [](const auto& one) { return std::abs(one.normal.y()) > 0.97; });
+    EXPECT_GT(along, 2 * std::ssize(surfels) / 3);
+}
+
+TEST(Surfels, OfMoreViewsAreThoseOfAllTheirPoints) {
+    std::mt19937 random(7);
+    const auto here = odd_room(random);
+    const auto there = odd_room(random);
+    auto all = here;
+    all.insert(all.end(), there.begin(), there.end());
+    const auto both = surfels_of(std::vector<CloudView>{{{}, {0.0, 0.0}}, {here, {0.0, 0.0}}, {there, {0.0, 0.0}}});
+    const auto one = surfels_around(all);
+    ASSERT_EQ(both.size(), one.size());
+    for (std::size_t n = 0; n < one.size(); ++n) {
+        EXPECT_EQ(both[n].position, one[n].position);
+        EXPECT_EQ(both[n].normal, one[n].normal);
+    }
 }
 
 TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
     std::mt19937 random(2);
     for (int round = 0; round < 20; ++round) {
         const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
-        const auto first = surfels_of(odd_room(random));
-        const auto second = surfels_of(seen_from(place, odd_room(random)));
+        const auto first = surfels_around(odd_room(random));
+        const auto second = surfels_around(seen_from(place, odd_room(random)));
         const auto hypotheses = find_hypotheses(first, second, 5.0, 5).value();
         const bool found = std::ranges::any_of(hypotheses, [&](const Pose2& pose) {
             return metres_off(pose, place) < 0.3 && degrees_off(pose, place) < 4.0;
@@ -75,7 +110,7 @@ TEST(Hypotheses, HoldTheTruthAmongTheFirst) {
 
 TEST(Hypotheses, AreSoughtAsLongAsSomebodyWantsThem) {
     std::mt19937 random(5);
-    const auto room = surfels_of(odd_room(random));
+    const auto room = surfels_around(odd_room(random));
     for (const int last : {1, 2, 60, 120}) { // of 120 rotations
         int asked = 0;
         const auto not_wanted = [&]() -> Result<> {
@@ -90,10 +125,10 @@ TEST(Hypotheses, AreSoughtAsLongAsSomebodyWantsThem) {
 
 TEST(Refinement, BringsANearPoseToTheTruth) {
     std::mt19937 random(3);
-    const Surface first(surfels_of(odd_room(random)));
+    const Surface first(surfels_around(odd_room(random)));
     for (int round = 0; round < 50; ++round) {
         const Pose2 place{uniform(random, -2.0, 0.5), uniform(random, -1.5, 0.5), uniform(random, -3.0, 3.0)};
-        const Surface second(surfels_of(seen_from(place, odd_room(random))));
+        const Surface second(surfels_around(seen_from(place, odd_room(random))));
         const Pose2 start{place.x + uniform(random, -0.2, 0.2), place.y + uniform(random, -0.2, 0.2),
                           place.yaw + uniform(random, -0.07, 0.07)};
         const Pose2 settled = settle(first, second.surfels(), start);
@@ -107,7 +142,7 @@ TEST(Refinement, BringsANearPoseToTheTruth) {
 
 TEST(Refinement, WhereNothingIsCloseThePoseStays) {
     std::mt19937 random(4);
-    const Surface room(surfels_of(odd_room(random)));
+    const Surface room(surfels_around(odd_room(random)));
     const Pose2 far{50.0, 50.0, 1.0};
     EXPECT_EQ(settle(room, room.surfels(), far), far);
     const auto fit = fit_to_lines(room, room, far);
@@ -118,7 +153,7 @@ TEST(Refinement, WhereNothingIsCloseThePoseStays) {
 TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
     std::mt19937 random(5);
     const auto room = odd_room(random);
-    const Surface surface(surfels_of(room));
+    const Surface surface(surfels_around(room));
     const Horizon horizon(room, {0.0, 0.0});
     const std::vector<Surfel> things = {
         {{-3.0, 1.0}, {1.0, 0.0}},  // on the wall
