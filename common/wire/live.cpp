@@ -43,6 +43,27 @@ void write(const RobotUpdate& robot, v1::RobotUpdate& out) {
     out.set_body_radius(robot.body_radius.value_or(0.0));
 }
 
+void write(const LandmarkChanges& changes, v1::LandmarkChanges& out) {
+    for (const auto& landmark : changes.landmarks) {
+        auto& one = *out.add_landmarks();
+        one.set_id(landmark.id);
+        one.set_x(landmark.x);
+        one.set_y(landmark.y);
+        one.set_seen(landmark.seen);
+        one.set_size_x(landmark.size_x);
+        one.set_size_y(landmark.size_y);
+        one.set_spread(landmark.spread);
+        one.set_continuity(landmark.continuity);
+        one.set_points(landmark.points);
+        one.set_first(landmark.first);
+        one.set_last(landmark.last);
+    }
+    out.set_following(changes.following);
+    out.set_captures(changes.captures);
+    out.set_revision(changes.revision);
+    out.set_refused(changes.refused);
+}
+
 } // namespace
 
 std::string encode(const LiveEvent& event) {
@@ -61,6 +82,7 @@ std::string encode(const LiveEvent& event) {
     for (const auto& changes : event.tiles) write(changes, *out.add_tiles());
     for (const auto& robot : event.robots) write(robot, *out.add_robots());
     out.set_goals_revision(event.goals_revision);
+    if (event.landmarks) write(*event.landmarks, *out.mutable_landmarks());
     return out.SerializeAsString();
 }
 
@@ -81,6 +103,7 @@ Result<LiveRequest> decode_live_request(std::string_view body) {
     }
     LiveRequest request;
     request.points = proto.points();
+    request.landmarks = proto.landmarks();
     for (const int layer : proto.layers()) {
         if (layer < v1::LAYER_OCCUPANCY || layer > v1::LAYER_CLASSIFICATION) {
             return invalid_field(

@@ -22,6 +22,7 @@ enum class LiveState : std::uint8_t { kOk = 1, kFailed = 2, kDraining = 3 };
 struct LiveRequest {
     std::vector<LiveLayer> layers; ///< as they were sent, perhaps more than once
     bool points = false;
+    bool landmarks = false;
 
     friend bool operator==(const LiveRequest&, const LiveRequest&) = default;
 };
@@ -55,6 +56,28 @@ struct RobotUpdate {
     std::optional<double> body_radius; ///< metres
 };
 
+struct LiveLandmark {
+    std::uint32_t id = 0;
+    double x = 0.0; ///< metres, map frame
+    double y = 0.0;
+    std::uint32_t seen = 0;
+    float size_x = 0.0F; ///< metres
+    float size_y = 0.0F;
+    float spread = 0.0F; ///< metres
+    float continuity = 0.0F;
+    std::uint32_t points = 0;
+    std::uint64_t first = 0;
+    std::uint64_t last = 0;
+};
+
+struct LandmarkChanges {
+    std::vector<LiveLandmark> landmarks;
+    std::uint64_t following = 0;
+    std::uint64_t captures = 0;
+    std::uint64_t revision = 0;
+    std::string refused;
+};
+
 struct LiveCounters {
     std::uint64_t scans = 0;
     std::uint32_t robots = 0;
@@ -72,6 +95,7 @@ struct LiveEvent {
     std::vector<TileChanges> tiles;
     std::vector<RobotUpdate> robots;
     std::uint64_t goals_revision = 0;
+    std::optional<LandmarkChanges> landmarks;
 };
 
 [[nodiscard]] std::string encode(const LiveEvent& event);

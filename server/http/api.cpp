@@ -209,7 +209,7 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);
     case Operation::kGoals: return get_goals(sessions_, goals_.ways(), slots_, call);
     case Operation::kLog: return get_log(sessions_, log_, call);
-    case Operation::kLive: return get_live(sessions_, goals_.ways(), doorman_, call);
+    case Operation::kLive: return get_live(sessions_, goals_.ways(), watched_landmarks_, doorman_, call);
     case Operation::kStartWeave: return start_weave(maps_, call);
     case Operation::kListWeaves: return list_weaves(maps_, call);
     case Operation::kGetWeave: return get_weave(maps_, call);

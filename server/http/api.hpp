@@ -10,6 +10,7 @@
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 #include "server/http/web_files.hpp"
+#include "server/live/landmark_hub.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/session/background_check.hpp"
 #include "server/session/capture_folds.hpp"
@@ -80,6 +81,7 @@ private:
     tiles::TileMaker tiles_;
     store::ScanLog& log_;
     session::LandmarkFolds landmarks_{log_};
+    live::LandmarkHub watched_landmarks_{landmarks_};
     const metrics::Metrics& metrics_;
     const Doorman doorman_;
     const WebFiles web_;

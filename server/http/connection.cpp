@@ -267,9 +267,10 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
         co_return;
     }
     service_->counters.answered(static_cast<unsigned>(Status::switching_protocols)).Increment();
-    viewer_ = std::make_shared<live::Viewer>(
-        std::move(stream_), invitation, std::move(seat),
-        live::Viewer::Services{service_->config.live, service_->executors.showing, service_->counters.live});
+    viewer_ =
+        std::make_shared<live::Viewer>(std::move(stream_), invitation, std::move(seat),
+                                       live::Viewer::Services{service_->config.live, service_->executors.showing,
+                                                              service_->executors.paths, service_->counters.live});
     if (stopping_) viewer_->stop();
     co_await viewer_->run(upgrade);
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -205,9 +206,21 @@ Viewer::Narration Viewer::narrate() {
         return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name)), {}};
     }
     const auto ways = invitation_.ways.state(session, Clock::now());
-    const auto event = narrator_.next(moment_of(*session, ways.revision));
-    if (!event) return {{}, {}, ways.until};
-    return {wire::encode(*event), {}, ways.until};
+    Moment moment = moment_of(*session, ways.revision);
+    const auto until = std::min(ways.until, add_landmarks(session, moment));
+    const auto event = narrator_.next(moment);
+    if (!event) return {{}, {}, until};
+    return {wire::encode(*event), {}, narrator_.has_more() ? Clock::now() : until};
+}
+
+/// @return when there may be others
+Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const session::Session>& session,
+                                                Moment& moment) {
+    if (!narrator_.wishes_for_landmarks()) return Clock::time_point::max();
+    const LandmarkSearch search{services_.finding, services_.config.landmarks_pause, services_.config.landmarks_turn};
+    auto look = invitation_.landmarks->look(session, moment.maps->revision, search);
+    moment.landmarks = std::move(look.found);
+    return look.until;
 }
 
 /// @return false when the connection cannot be used any more.

@@ -45,6 +45,7 @@ public:
     struct Services {
         LiveConfig config;
         boost::asio::any_io_executor showing; ///< where events are made
+        boost::asio::any_io_executor finding; ///< where landmarks are, from the disk
         metrics::LiveCounters& counters;
     };
 
@@ -80,6 +81,8 @@ private:
     [[nodiscard]] boost::asio::awaitable<bool> send(const std::string& event);
     [[nodiscard]] boost::asio::awaitable<void> close();
     [[nodiscard]] Narration narrate();
+    [[nodiscard]] Clock::time_point add_landmarks(const std::shared_ptr<const session::Session>& session,
+                                                  Moment& moment);
     [[nodiscard]] std::optional<Close> fault_of_message();
     void end(Close why);
     void wake();

@@ -41,7 +41,9 @@ Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Rev
         account(*kept);
         if (kept->is_full) return full(session);
         if (!done) return done.error();
-        return Folded<Layer>{kept->layer.snapshot(), kept->captures.open(), kept->captures.revision()};
+        Folded<Layer> folded{kept->layer.snapshot(), {}, kept->captures.revision()};
+        if constexpr (FoldedInto<Layer>::kWithOpen) folded.open = kept->captures.open();
+        return folded;
     } catch (const std::bad_alloc&) {
         kept->captures = {}; // of which a part may be missing
         kept->layer = {};

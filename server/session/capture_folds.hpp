@@ -19,7 +19,8 @@
 
 namespace scanloom::session {
 
-/// What captures are folded into: add(RobotCapture), size(), snapshot(); for people, what it is counted in.
+/// What captures are folded into: add(RobotCapture), size(), snapshot(); for people, what it is counted in; whether
+/// those that are being taken are wanted beside it.
 template <class Layer>
 struct FoldedInto;
 
@@ -28,6 +29,7 @@ struct FoldedInto<landmarks::LandmarkLayer> {
     static constexpr std::string_view kWhat = "landmarks";
     static constexpr std::string_view kInstead = "points.csv has what its robots saw";
     static constexpr std::size_t kSizeMax = 262'144; // 100 MiB
+    static constexpr bool kWithOpen = false;
 };
 
 template <>
@@ -35,6 +37,7 @@ struct FoldedInto<landmarks::ReferenceLayer> {
     static constexpr std::string_view kWhat = "reference points";
     static constexpr std::string_view kInstead = "robots cannot be located in it any more";
     static constexpr std::size_t kSizeMax = 8'388'608; // 64 MiB
+    static constexpr bool kWithOpen = true;
 };
 
 template <class Layer>
@@ -48,7 +51,7 @@ struct CaptureFoldsLimits {
 template <class Layer>
 struct Folded {
     decltype(std::declval<Layer&>().snapshot()) state;
-    std::vector<landmarks::RobotCapture> open; ///< those that are being taken are not in it
+    std::vector<landmarks::RobotCapture> open; ///< those that are being taken are not in it; empty unless kWithOpen
     Revision revision = 0;
 };
 

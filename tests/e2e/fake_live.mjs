@@ -1,9 +1,9 @@
 /** The live connections of a fake server: WebSockets (RFC 6455) that tell what the test does to a session. */
 import { createHash } from 'node:crypto';
 import { liveProtocol } from '../../web/protocol.js';
-import { PbfWriter } from '../../web/node_modules/pbf/index.js';
+import { PbfReader, PbfWriter } from '../../web/node_modules/pbf/index.js';
 
-const { writeLiveEvent, Layer } = await import(`data:text/javascript,${encodeURIComponent(liveProtocol())}`);
+const { readLiveRequest, writeLiveEvent, Layer } = await import(`data:text/javascript,${encodeURIComponent(liveProtocol())}`);
 
 const kGuid = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const kNativeZoom = 9;
@@ -15,6 +15,9 @@ export class FakeLive {
   constructor(socket, session) {
     Object.assign(this, { socket, session });
     this.told = 0;
+    /** Up to which revision landmarks were told; null: nobody asks for them. */
+    this.toldLandmarks = null;
+    this.unread = Buffer.alloc(0);
     /** Nothing comes any more, and nobody says so: as behind a router that forgot the connection. */
     this.isMute = false;
   }
@@ -30,18 +33,40 @@ export class FakeLive {
     const live = new FakeLive(socket, session);
     session.viewers.add(live);
     socket.on('close', () => session.viewers.delete(live));
-    // What the browser says is its own matter here.
-    socket.resume();
+    socket.on('data', (bytes) => live.hear(bytes));
     live.tell();
     return live;
+  }
+
+  /** What the browser says: masked frames. Of requests only landmarks matter here. */
+  hear(bytes) {
+    this.unread = Buffer.concat([this.unread, bytes]);
+    for (;;) {
+      const length = this.unread[1] & 0x7f;
+      const end = 6 + length;
+      // Requests have a few bytes; whatever is longer is none.
+      if (this.unread.length < 6 || length > 125 || this.unread.length < end) return;
+      const mask = this.unread.subarray(2, 6);
+      const body = this.unread.subarray(6, end).map((byte, at) => byte ^ mask[at % 4]);
+      const isRequest = this.unread[0] === 0x82;
+      this.unread = this.unread.subarray(end);
+      if (isRequest) this.obey(readLiveRequest(new PbfReader(body)));
+    }
+  }
+
+  obey({ landmarks }) {
+    this.session.wishes.push({ landmarks });
+    this.toldLandmarks = landmarks ? (this.toldLandmarks ?? 0) : null;
+    if (landmarks) this.tell();
   }
 
   /** What is new since the last time. */
   tell() {
     if (this.isMute) return;
     const writer = new PbfWriter();
-    writeLiveEvent(this.session.liveEvent(this.told), writer);
+    writeLiveEvent(this.session.liveEvent(this.told, this.toldLandmarks), writer);
     this.told = this.session.revision;
+    if (this.toldLandmarks !== null) this.toldLandmarks = this.session.revision;
     this.socket.write(frame(0x82, Buffer.from(writer.finish())));
   }
 
@@ -59,7 +84,7 @@ export class FakeLive {
 }
 
 /** A session's news as the message has them. */
-export function eventOf(session, since) {
+export function eventOf(session, since, landmarksSince) {
   const tiles = [];
   const revisions = [];
   for (const [key, { revision }] of session.tiles) {
@@ -78,7 +103,13 @@ export function eventOf(session, since) {
     goals_revision: session.goalsRevision,
     tiles: session.layers.map((layer) => ({ layer: Layer[`LAYER_${layer.toUpperCase()}`], tiles, revisions })),
     robots: session.robots.map((robot, index) => robotNews(session, robot, index, since)),
+    landmarks: landmarksSince === null ? undefined : landmarkNews(session, landmarksSince),
   };
+}
+
+function landmarkNews({ landmarks, noLandmarks, revision }, since) {
+  const news = landmarks.filter(({ last }) => last > since);
+  return { landmarks: news, following: 0, captures: 1, revision, refused: noLandmarks ?? '' };
 }
 
 function robotNews(session, robot, index, since) {

@@ -58,8 +58,6 @@ export class FakeServer {
   sockets = new Set();
   /** Path and query of every tile asked for, in order. */
   tileRequests = [];
-  /** Query of every request for landmarks, in order. */
-  landmarkQueries = [];
   /** When set, {status, title, detail}: what every request to the API is answered with. */
   failure = null;
   /** When set, the status of every tile. */
@@ -199,10 +197,6 @@ export class FakeServer {
     if (rest[0] === 'changes') return json(response, session.changes(url.searchParams.get('layer'), since));
     if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
     if (rest[0] === 'frontiers.geojson') return json(response, { type: 'FeatureCollection', features: session.frontiers });
-    if (rest[0] === 'landmarks.geojson') {
-      this.landmarkQueries.push(url.search);
-      return json(response, session.landmarksSince(since));
-    }
     if (rest[0] === 'goals.geojson') {
       const { goals: features, explored } = session;
       return json(response, { type: 'FeatureCollection', explored, features });

@@ -19,8 +19,11 @@ export class FakeSession {
     this.scan = null;
     /** Features of frontiers.geojson. */
     this.frontiers = [];
-    /** Features of landmarks.geojson, each with the revision of its newest sighting. */
+    /** As events tell them, each with the revision of its newest sighting; and why no more are found. */
     this.landmarks = [];
+    this.noLandmarks = null;
+    /** What pages asked to be told live, in order. */
+    this.wishes = [];
     /** Features of goals.geojson, and how often they were told. */
     this.goals = [];
     this.goalsRevision = 0;
@@ -44,20 +47,11 @@ export class FakeSession {
   }
 
   /** A landmark, or its next sighting. */
-  see(id, [x, y], seen, size = [1, 0.5]) {
+  see(id, [x, y], seen) {
     this.revision += 1;
-    const geometry = { type: 'Point', coordinates: [x, y] };
-    const properties = { seen, points: 9, size, spread: 0.1, continuity: 0.5, first: 1, last: this.revision };
     this.landmarks = this.landmarks.filter((each) => each.id !== id);
-    this.landmarks.push({ type: 'Feature', id, properties, geometry });
+    this.landmarks.push({ id, x, y, seen, last: this.revision });
     this.tell();
-  }
-
-  landmarksSince(since) {
-    const { revision } = this;
-    const reset = since > revision;
-    const features = this.landmarks.filter(({ properties }) => reset || properties.last > since);
-    return { type: 'FeatureCollection', revision, reset, features };
   }
 
   /** A scan taken here. */
@@ -92,8 +86,8 @@ export class FakeSession {
     return this.robots.reduce((sum, { scans }) => sum + scans, 0);
   }
 
-  liveEvent(since) {
-    return eventOf(this, since);
+  liveEvent(since, landmarksSince) {
+    return eventOf(this, since, landmarksSince);
   }
 
   /** It is deleted. */

@@ -7,6 +7,7 @@ import {
   countsPixels,
   isLike,
   keepPicture,
+  says,
   showsColour,
   showsColourAt,
   until,
@@ -88,32 +89,51 @@ describe('on the map', { timeout: 180_000 }, () => {
     assert.equal(await page.locator('#map b').count(), 0);
   });
 
-  it('show landmarks, asks for those that are new, and only when wanted', async () => {
+  it('show landmarks as they are told, when they are wanted', async () => {
     session.paint(256, 255, 0);
     session.see(0, [3, 3], 2);
     await open();
     await showsColour(page, '--cell-free');
-    assert.deepEqual(server.landmarkQueries, []);
+    assert.deepEqual(session.wishes.filter(({ landmarks }) => landmarks), []);
     const colour = await colourOf(page, '--landmark');
     await page.check('[data-switch=landmarks]');
     await showsAt(...pixelOf(3, 3), colour);
     session.see(1, [9, 9], 3);
     await showsAt(...pixelOf(9, 9), colour);
     await showsAt(...pixelOf(3, 3), colour);
-    assert.deepEqual(server.landmarkQueries.slice(0, 2), ['?since=0', '?since=2']);
     session.see(0, [5, 3], 3);
     await showsAt(...pixelOf(5, 3), colour);
     await showsNotAt(...pixelOf(3, 3), colour);
     await keepPicture(page, 'landmarks');
-    session.landmarks.push({ type: 'Feature', id: '<b>x</b>', properties: { last: 1e9 }, geometry: 'nonsense' });
+    session.noLandmarks = 'there are more than <b>can be kept</b>';
     session.move('r1', 1, 1, 0);
-    await page.waitForResponse(/landmarks\.geojson/);
-    session.landmarks.pop();
+    await says(page, '#status', /there are more than <b>can be kept<\/b>/);
+    await showsAt(...pixelOf(5, 3), colour);
+    session.noLandmarks = null;
     session.see(2, [9, 3], 2);
     await showsAt(...pixelOf(9, 3), colour);
-    assert.equal(await page.locator('#map b').count(), 0);
+    await says(page, '#status', /^$/);
     await page.uncheck('[data-switch=landmarks]');
     await showsNotAt(...pixelOf(9, 9), colour);
+    await until(page, () => session.wishes.at(-1).landmarks === false);
+    session.see(2, [3, 9], 3);
+    await page.check('[data-switch=landmarks]');
+    await showsAt(...pixelOf(3, 9), colour);
+    await showsNotAt(...pixelOf(9, 3), colour);
+  });
+
+  it('show the landmarks of another life of the server, and no others', async () => {
+    session.paint(256, 255, 0);
+    session.see(0, [3, 3], 2);
+    await open();
+    const colour = await colourOf(page, '--landmark');
+    await page.check('[data-switch=landmarks]');
+    await showsAt(...pixelOf(3, 3), colour);
+    session.landmarks = [];
+    session.see(1, [9, 9], 2);
+    for (const viewer of session.viewers) viewer.close(1001, 'the server is shutting down; connect again when it is back');
+    await showsNotAt(...pixelOf(3, 3), colour);
+    await showsAt(...pixelOf(9, 9), colour);
   });
 
   it('show where a robot is going, as soon as it is told, and forget it likewise', async () => {

@@ -47,6 +47,7 @@ public:
         EXPECT_GE(event.revision(), last.revision());
         for (const auto& changes : event.tiles()) take(changes, event.revision());
         for (const auto& robot : event.robots()) take(robot);
+        if (event.has_landmarks()) take(event.landmarks());
         last = event;
         ++events;
     }
@@ -77,6 +78,8 @@ public:
     std::map<int, Tiles> tiles; // by v1::Layer
     std::set<int> everything;   // layers of which too much changed at once
     std::map<std::uint32_t, Robot> robots;
+    std::map<std::uint32_t, v1::LiveLandmark> landmarks; // by id
+    v1::LandmarkChanges last_landmarks;
 
 private:
     static v1::Layer layer_number(mapping::Layer layer) {
@@ -98,6 +101,12 @@ private:
             }
             tiles[changes.layer()][changes.tiles(n)] = changes.revisions(n);
         }
+    }
+
+    void take(const v1::LandmarkChanges& changes) {
+        EXPECT_GE(changes.revision(), last_landmarks.revision());
+        for (const auto& landmark : changes.landmarks()) landmarks[landmark.id()] = landmark;
+        last_landmarks = changes;
     }
 
     void take(const v1::RobotUpdate& update) {

@@ -1,9 +1,9 @@
 /** One chosen session, from the server's events to everything that shows it. */
 import { fetchFrontiers } from './api/frontiers';
 import { fetchGoals, type Goals } from './api/goals';
-import { Landmarks } from './api/landmarks';
-import type { LiveEvent, LiveRobot } from './api/live';
-import type { Frontier, Landmark, Robot, Session, TileChange } from './api/types';
+import { Refused } from './api/http';
+import type { LandmarkNews, LiveEvent, LiveRobot } from './api/live';
+import type { Frontier, Robot, Session, TileChange } from './api/types';
 import { kLayers, type LayerName } from './layers/layers';
 import { Feed } from './live/feed';
 import type { Trail, Trails } from './live/trails';
@@ -62,15 +62,18 @@ interface Open {
   robots: Map<number, Robot>;
   frontiers: RevisionWatch<Frontier[]>;
   goals: RevisionWatch<Goals>;
-  landmarks: RevisionWatch<Landmark[]>;
-  /** Landmarks that were told of. */
-  heard: Landmarks;
+  /** The landmarks on the map were told over an earlier connection, perhaps by the server's life before. */
+  landmarksAreOld: boolean;
   readers: CellReaders;
   /** No scan of it was told of yet. */
   isNew: boolean;
 }
 
 const kSource = 'session';
+const kLandmarks = 'landmarks';
+
+/** The status line's code for what the server has no room for. */
+const kNoRoom = 507;
 const kNothingOfThePresent = { points: false, frontiers: false, goals: false, landmarks: false };
 
 export class Viewer {
@@ -120,8 +123,7 @@ export class Viewer {
         opened: () => {
           this.open?.frontiers.doubt();
           this.open?.goals.doubt();
-          this.open?.landmarks.doubt();
-          this.open?.heard.forget();
+          if (this.open) this.open.landmarksAreOld = true;
         },
         event: (event) => this.hear(event),
         tiles: (layer, tiles) => this.showTiles(layer, tiles),
@@ -135,7 +137,7 @@ export class Viewer {
       },
       this.leave.signal,
     );
-    this.feed.showPoints(this.parts.settings.get().points);
+    this.feed.ask(this.parts.settings.get());
     this.feed.run();
   }
 
@@ -176,7 +178,6 @@ export class Viewer {
     });
     const { name } = session;
     const { signal } = this.reading;
-    const heard = new Landmarks(name);
     this.open = {
       session: newest(session),
       source,
@@ -184,8 +185,7 @@ export class Viewer {
       robots: new Map(),
       frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
       goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => this.showGoals(all), signal),
-      landmarks: new RevisionWatch((stop) => heard.fetch(stop), (all) => map.showLandmarks(all), signal),
-      heard,
+      landmarksAreOld: false,
       readers,
       isNew: true,
     };
@@ -202,7 +202,7 @@ export class Viewer {
 
   private hear(event: LiveEvent): void {
     if (!this.open) return;
-    const { robots, frontiers, goals, landmarks, session } = this.open;
+    const { robots, frontiers, goals, session } = this.open;
     for (const robot of event.robots) robots.set(robot.index, robotOf(robot));
     if (this.open.isNew && event.scans > 0) {
       this.open.isNew = false;
@@ -210,7 +210,7 @@ export class Viewer {
     }
     frontiers.hear(event.frontiersRevision);
     goals.hear(event.goalsRevision);
-    landmarks.hear(event.revision);
+    if (event.landmarks) this.hearLandmarks(event.landmarks);
     this.open.session = { ...session, revision: event.revision, scans: event.scans, robots: this.robots };
     this.parts.newest(this.open.session);
     if (!session.bounds && event.scans > 0) this.parts.refresh();
@@ -219,6 +219,14 @@ export class Viewer {
     this.showRobots();
     this.showTrails();
     this.showSession();
+  }
+
+  private hearLandmarks(news: LandmarkNews): void {
+    if (!this.open) return;
+    if (this.open.landmarksAreOld) this.parts.map.clearLandmarks();
+    this.open.landmarksAreOld = false;
+    this.parts.map.addLandmarks(news.landmarks);
+    this.parts.status.settle(kLandmarks, news.refused === null ? null : new Refused(kNoRoom, news.refused));
   }
 
   /** A session of sonars has nothing to show of lasers, and the other way round: begin with what there is. */
@@ -269,8 +277,9 @@ export class Viewer {
 
   private choose(): void {
     const settings = this.parts.settings.get();
-    this.feed?.showPoints(settings.points);
+    this.feed?.ask(settings);
     if (!settings.points) this.parts.map.clearScans();
+    if (!settings.landmarks) this.parts.status.forget(kLandmarks);
     this.chooseOverlays();
     this.showCounters();
   }
@@ -281,7 +290,6 @@ export class Viewer {
     const settings = this.moment ? { ...chosen, ...kNothingOfThePresent } : chosen;
     this.parts.map.choose(settings);
     this.open?.frontiers.enable(settings.frontiers);
-    this.open?.landmarks.enable(settings.landmarks);
     this.open?.goals.enable(!this.moment);
     this.parts.explored.setHidden(this.moment !== null);
   }
@@ -299,6 +307,7 @@ export class Viewer {
     const wasOpen = this.open !== null;
     this.open = null;
     this.moment = null;
+    this.parts.status.forget(kLandmarks);
     this.reading.abort();
     this.reading = new AbortController();
     this.parts.picture.open(null);

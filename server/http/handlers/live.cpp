@@ -25,8 +25,8 @@ Response upgrade_required(const Call& call) {
 
 } // namespace
 
-Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, const Doorman& doorman,
-                          const Call& call) {
+Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways, live::LandmarkHub& landmarks,
+                          const Doorman& doorman, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
@@ -49,7 +49,7 @@ Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& wa
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), ways, std::move(*pass),
+        live::Invitation{*session, info.id, info.name, session_tag(info), ways, landmarks.of(info.id), std::move(*pass),
                          [doorman, peer = call.request.peer, token = call.token->name, name = info.name] {
                              doorman.note({access::Port::kHttp, access::Reason::kRevoked, peer, token, name});
                          }});

@@ -5,6 +5,7 @@
 #include "server/http/doorman.hpp"
 #include "server/http/handlers/call.hpp"
 #include "server/http/response.hpp"
+#include "server/live/landmark_hub.hpp"
 #include "server/session/session_registry.hpp"
 
 namespace scanloom::http {
@@ -14,6 +15,6 @@ namespace scanloom::http {
 /// watches for as long as its token allows it.
 /// Errors  kInvalidField: an unknown parameter; those of find_session().
 [[nodiscard]] Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways,
-                                        const Doorman& doorman, const Call& call);
+                                        live::LandmarkHub& landmarks, const Doorman& doorman, const Call& call);
 
 } // namespace scanloom::http

@@ -47,13 +47,28 @@ wire::TileChanges changes_of(const mapping::Snapshot& maps, mapping::Layer layer
     return changes;
 }
 
+wire::LiveLandmark to_wire(const landmarks::MapLandmark& one) noexcept {
+    const auto& landmark = one.landmark;
+    return {one.id,
+            landmark.position.x(),
+            landmark.position.y(),
+            one.seen,
+            static_cast<float>(landmark.size.x()),
+            static_cast<float>(landmark.size.y()),
+            static_cast<float>(landmark.spread),
+            static_cast<float>(landmark.continuity),
+            static_cast<std::uint32_t>(landmark.points),
+            one.first,
+            one.last};
+}
+
 /// Poses are within kCoordinateMax.
 PointMm point_of(const Pose2& pose) { return in_millimetres({pose.x, pose.y}); }
 
 } // namespace
 
 Wishes wishes_of(const wire::LiveRequest& request) noexcept {
-    Wishes wishes{{}, request.points};
+    Wishes wishes{{}, request.points, request.landmarks};
     for (const mapping::Layer layer : mapping::kLayers) {
         wishes.layers[static_cast<std::size_t>(layer)] =
             std::ranges::find(request.layers, to_wire(layer)) != request.layers.end();
@@ -71,8 +86,9 @@ std::optional<wire::LiveEvent> Narrator::next(const Moment& moment) {
     wire::LiveEvent event;
     tell_tiles(maps, event);
     tell_robots(moment, event);
+    tell_landmarks(moment, event);
     const ToldSession now{maps.revision, moment.state, moment.goals_revision};
-    if (told_ == now && event.tiles.empty() && event.robots.empty()) return std::nullopt;
+    if (told_ == now && event.tiles.empty() && event.robots.empty() && !event.landmarks) return std::nullopt;
     told_ = now;
     event.session = session_;
     event.revision = maps.revision;
@@ -91,6 +107,22 @@ void Narrator::tell_tiles(const mapping::Snapshot& maps, wire::LiveEvent& event)
         auto changes = changes_of(maps, layer, std::exchange(told_layers_[index], maps.revision));
         if (changes.everything || !changes.tiles.empty()) event.tiles.push_back(std::move(changes));
     }
+}
+
+void Narrator::tell_landmarks(const Moment& moment, wire::LiveEvent& event) {
+    if (!wishes_.landmarks || !moment.landmarks) return;
+    const FoundLandmarks& found = *moment.landmarks;
+    const LandmarkNews news = news_in(found.state.landmarks, told_landmarks_.up_to, kLandmarksMax);
+    told_landmarks_.following = news.following;
+    if (news.first.empty() && told_landmarks_.refused == found.refused) return;
+    if (!news.first.empty()) told_landmarks_.up_to = place_of(*news.first.back());
+    told_landmarks_.refused = found.refused;
+    auto& changes = event.landmarks.emplace();
+    for (const auto* one : news.first) changes.landmarks.push_back(to_wire(*one));
+    changes.following = news.following;
+    changes.captures = found.state.captures;
+    changes.revision = found.revision;
+    changes.refused = found.refused;
 }
 
 bool Narrator::shows_scan(const mapping::RobotState& robot, const ToldRobot& told) const {

@@ -5,6 +5,7 @@ import {
   readLiveEvent,
   SessionState,
   writeLiveRequest,
+  type LandmarkChanges,
   type RobotUpdate,
   type ScanPoints,
   type TileChanges,
@@ -12,7 +13,7 @@ import {
 import { kNativeZoom } from '../map/grid';
 import type { LayerName } from '../layers/layers';
 import { decodePose, MalformedAnswer } from './decode';
-import type { Point, Pose, TileChange } from './types';
+import type { Landmark, Point, Pose, TileChange } from './types';
 
 const kTilesAcross = 2 ** kNativeZoom;
 const kMillimetre = 0.001;
@@ -56,6 +57,20 @@ export interface LiveRobot {
   scan: LiveScan | null;
 }
 
+export interface LandmarkNews {
+  /** New ones, and those that were seen again. */
+  landmarks: Landmark[];
+  /** Why the server finds no more; null: it does. */
+  refused: string | null;
+}
+
+/** What a page wants to be told besides tiles and robots. */
+export interface Wishes {
+  /** The newest scans. */
+  points: boolean;
+  landmarks: boolean;
+}
+
 export interface LiveEvent {
   /** The session's. */
   id: string;
@@ -72,6 +87,8 @@ export interface LiveEvent {
   tiles: LiveTiles[];
   /** Those with news. */
   robots: LiveRobot[];
+  /** Null: as before, or not wanted. */
+  landmarks: LandmarkNews | null;
 }
 
 export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
@@ -87,16 +104,17 @@ export function decodeLiveEvent(bytes: ArrayBuffer): LiveEvent {
       goalsRevision: event.goals_revision,
       tiles: event.tiles.flatMap(decodeTiles),
       robots: event.robots.map(decodeRobot),
+      landmarks: event.landmarks ? decodeLandmarks(event.landmarks) : null,
     };
   } catch (error) {
     throw error instanceof MalformedAnswer ? error : new MalformedAnswer(`a live event (${String(error)})`);
   }
 }
 
-/** @param points whether the newest scans are wanted, too */
-export function encodeLiveRequest(points: boolean): Uint8Array<ArrayBuffer> {
+/** For the tiles of all layers, and what is wished for. */
+export function encodeLiveRequest(wishes: Wishes): Uint8Array<ArrayBuffer> {
   const writer = new PbfWriter();
-  writeLiveRequest({ layers: [...kLayerOfNumber.keys()], points }, writer);
+  writeLiveRequest({ layers: [...kLayerOfNumber.keys()], ...wishes }, writer);
   return new Uint8Array(writer.finish());
 }
 
@@ -125,6 +143,13 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
     trail: pointsOf(robot.trail, 0, 0),
     trailFrom: robot.trail_from,
     scan: robot.scan ? decodeScan(robot.scan) : null,
+  };
+}
+
+function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkNews {
+  return {
+    landmarks: landmarks.map(({ id, x, y, seen }) => ({ id, at: [x, y], seen })),
+    refused: refused === '' ? null : refused,
   };
 }
 

@@ -32,6 +32,18 @@ declare module 'virtual:live-protocol' {
     body_radius: number;
   }
 
+  interface LiveLandmark {
+    id: number;
+    x: number;
+    y: number;
+    seen: number;
+  }
+
+  interface LandmarkChanges {
+    landmarks: LiveLandmark[];
+    refused: string;
+  }
+
   interface LiveEvent {
     session: string;
     revision: number;
@@ -42,11 +54,13 @@ declare module 'virtual:live-protocol' {
     goals_revision: number;
     tiles: TileChanges[];
     robots: RobotUpdate[];
+    landmarks: LandmarkChanges | undefined;
   }
 
   interface LiveRequest {
     layers: number[];
     points: boolean;
+    landmarks: boolean;
   }
 
   export const Layer: Record<string, number>;

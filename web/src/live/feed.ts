@@ -2,7 +2,7 @@
 import { fetchChanges, fetchSession, fetchTrajectory, livePath } from '../api/api';
 import { MalformedAnswer } from '../api/decode';
 import { Refused } from '../api/http';
-import type { LiveEvent } from '../api/live';
+import type { LiveEvent, Wishes } from '../api/live';
 import type { Session, TileChange } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import { poll, untilDone, type Pace } from '../poll';
@@ -15,6 +15,9 @@ const kPace: Pace = { visibleMs: 500, hiddenMs: 5_000 };
 
 /** A connection may be behind what is known of the session for so long: events are due every 50 ms. */
 const kSilenceMs = 5_000;
+
+/** What is told as long as nobody has asked for anything. */
+const kUnasked: Wishes = { points: true, landmarks: false };
 
 /** The session is another than the one that was asked about. */
 class Replaced extends Error {}
@@ -43,7 +46,7 @@ export class Feed {
   /** Since when the connection has not told what the server is known to have. */
   private behindSince: number | null = null;
   private revision = 0;
-  private wantsPoints = true;
+  private wishes = kUnasked;
   /** How often in a row events were of another session. */
   private replaced = 0;
 
@@ -57,10 +60,10 @@ export class Feed {
     void poll((signal) => this.connect(signal), kPace, this.signal, (error) => error && this.events.settled(error));
   }
 
-  /** Whether the newest scans are to be told. */
-  showPoints(wanted: boolean): void {
-    this.wantsPoints = wanted;
-    this.socket?.ask(wanted);
+  /** What is to be told from now on. */
+  ask({ points, landmarks }: Wishes): void {
+    this.wishes = { points, landmarks };
+    this.socket?.ask(this.wishes);
   }
 
   /**
@@ -107,7 +110,8 @@ export class Feed {
 
   private opened(socket: LiveSocket): void {
     this.socket = socket;
-    if (!this.wantsPoints) socket.ask(false);
+    const { points, landmarks } = this.wishes;
+    if (points !== kUnasked.points || landmarks !== kUnasked.landmarks) socket.ask(this.wishes);
     this.events.opened();
   }
 

@@ -1,5 +1,5 @@
 /** One live connection, from its opening to its end. */
-import { decodeLiveEvent, encodeLiveRequest, type LiveEvent } from '../api/live';
+import { decodeLiveEvent, encodeLiveRequest, type LiveEvent, type Wishes } from '../api/live';
 import { Unreachable } from '../api/http';
 
 /** The session was deleted. */
@@ -62,8 +62,8 @@ export class LiveSocket {
   }
 
   /** Tells the server what this page shows. */
-  ask(points: boolean): void {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(encodeLiveRequest(points));
+  ask(wishes: Wishes): void {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(encodeLiveRequest(wishes));
   }
 
   /** Gives up a connection that nothing comes over any more, without waiting for the other end. */

@@ -25,9 +25,15 @@ export class LandmarksLayer {
     this.setTheme(theme);
   }
 
-  show(landmarks: Landmark[]): void {
-    this.source.clear(true);
+  /** Each takes the place of the one with its number. */
+  add(landmarks: Landmark[]): void {
+    const known = landmarks.map(({ id }) => this.source.getFeatureById(id)).filter((feature) => feature !== null);
+    this.source.removeFeatures(known);
     this.source.addFeatures(landmarks.map(featureOf));
+  }
+
+  clear(): void {
+    this.source.clear(true);
   }
 
   setTheme(theme: Theme): void {
@@ -41,8 +47,10 @@ export class LandmarksLayer {
   }
 }
 
-function featureOf({ at, seen }: Landmark): Feature {
-  return new Feature({ geometry: new PointGeometry(at), role: seen > 1 ? 'again' : 'once' });
+function featureOf({ id, at, seen }: Landmark): Feature {
+  const feature = new Feature({ geometry: new PointGeometry(at), role: seen > 1 ? 'again' : 'once' });
+  feature.setId(id);
+  return feature;
 }
 
 function dotOf({ landmark }: Theme): Style {

@@ -166,8 +166,13 @@ export class MapView {
     this.scene?.frontiers.show(frontiers);
   }
 
-  showLandmarks(landmarks: Landmark[]): void {
-    this.scene?.landmarks.show(landmarks);
+  /** New ones, and those that were seen again. */
+  addLandmarks(landmarks: Landmark[]): void {
+    this.scene?.landmarks.add(landmarks);
+  }
+
+  clearLandmarks(): void {
+    this.scene?.landmarks.clear();
   }
 
   /** @param main, beside readers of HIMM counters to be written into the cells of either side; null: none */

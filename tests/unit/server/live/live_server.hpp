@@ -127,6 +127,7 @@ public:
 
     [[nodiscard]] session::SessionRegistry& sessions() { return sessions_; }
     [[nodiscard]] session::Session& session() { return *sessions_.find("lab"); }
+    [[nodiscard]] store::ScanLog& log() { return log_; }
     [[nodiscard]] guide::WayBook& ways() { return goals_.ways(); }
     [[nodiscard]] guard::Gate& gate() { return gate_; }
     [[nodiscard]] metrics::RefusalCounters& refusals() { return metrics_.refusals(); }

@@ -66,6 +66,15 @@ describe('a live event', () => {
     assert.deepEqual([robot?.pose, robot?.scan, robot?.bodyRadius, robot?.trail], [null, null, null, []]);
   });
 
+  it('may tell landmarks, or why there are no more', () => {
+    const one = { id: 7, x: 1.5, y: -2.25, seen: 3 };
+    const told = decodeLiveEvent(bytesOf({ landmarks: { landmarks: [one] } }));
+    assert.deepEqual(told.landmarks, { landmarks: [{ id: 7, at: [1.5, -2.25], seen: 3 }], refused: null });
+    const refused = decodeLiveEvent(bytesOf({ landmarks: { refused: 'too many' } }));
+    assert.deepEqual(refused.landmarks, { landmarks: [], refused: 'too many' });
+    assert.equal(decodeLiveEvent(bytesOf({ revision: 1 })).landmarks, null);
+  });
+
   it('may have layers that this page does not know', () => {
     assert.deepEqual(decodeLiveEvent(bytesOf({ tiles: [{ layer: 99, tiles: [1], revisions: [1] }] })).tiles, []);
   });
@@ -80,11 +89,13 @@ describe('a live event', () => {
 });
 
 describe('a live request', () => {
-  it('asks for the tiles of all layers, and for scans only when they are wanted', () => {
+  it('asks for the tiles of all layers, and for scans and landmarks only when they are wanted', () => {
     for (const points of [true, false]) {
-      const request = readLiveRequest(new PbfReader(encodeLiveRequest(points)));
-      assert.deepEqual([...request.layers].sort(), [1, 2, 3, 4]);
-      assert.equal(request.points, points);
+      for (const landmarks of [true, false]) {
+        const request = readLiveRequest(new PbfReader(encodeLiveRequest({ points, landmarks })));
+        assert.deepEqual([...request.layers].sort(), [1, 2, 3, 4]);
+        assert.deepEqual([request.points, request.landmarks], [points, landmarks]);
+      }
     }
   });
 });
