@@ -16,10 +16,10 @@ constexpr double kQuantile = 0.75;
 constexpr std::size_t kNeighbors = 5;
 constexpr std::size_t kSamplesMax = 10'000;
 
-/// The value that the given part of all values does not exceed; 0 of none.
+/// The least value that at least kQuantile of all values do not exceed; 0 of none.
 double quantile(std::vector<double> values) {
     if (values.empty()) return 0.0;
-    const auto rank = static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(values.size() - 1));
+    const auto rank = static_cast<std::ptrdiff_t>(std::ceil(kQuantile * static_cast<double>(values.size()))) - 1;
     std::ranges::nth_element(values, values.begin() + rank);
     return values[static_cast<std::size_t>(rank)];
 }

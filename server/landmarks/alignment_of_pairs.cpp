@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace scanloom::landmarks {
 namespace {
 
 constexpr double kUndetermined = 1e-9; // of what the points' extents would give if they agreed
-constexpr double kGrowth = 1.4;        // of the non-convexity, a step
-constexpr int kStepsMax = 200;
+constexpr int kStepsMax = 50;
+constexpr std::size_t kSeedsMax = 64; // pairs, of which each two are tried
+constexpr double kRivalMin = 0.8;     // of the weight that agrees, by which another transform is as good
 constexpr std::size_t kAgreeingMin = 3;
 
 Result<> check(std::span<const PointPair> pairs) {
@@ -84,20 +87,71 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
     return fit;
 }
 
-/// The weight of a pair between certainly used, 1, and certainly not, 0. The larger the control, the harder the cut.
-double truncated_weight(double squares, double inlier_distance, double control) {
-    const double inlier_squares = inlier_distance * inlier_distance;
-    if (squares <= control / (control + 1.0) * inlier_squares) return 1.0;
-    if (squares >= (control + 1.0) / control * inlier_squares) return 0.0;
-    return std::clamp(inlier_distance * std::sqrt(control * (control + 1.0) / squares) - control, 0.0, 1.0);
+/// Pairs that agree on a transform.
+struct Consensus {
+    Pose2 T_first_second;
+    std::vector<std::size_t> pairs; // rising
+    double weight = 0.0;
+    double squares = 0.0; // weighted, of what remains
+};
+
+Consensus consensus_on(const Pose2& T_first_second, std::span<const PointPair> pairs, double inlier_distance) {
+    Consensus consensus{T_first_second, {}, 0.0, 0.0};
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+        const double squares = squared_distance(T_first_second, pairs[n]);
+        if (pairs[n].weight == 0.0 || squares > inlier_distance * inlier_distance) continue;
+        consensus.pairs.push_back(n);
+        consensus.weight += pairs[n].weight;
+        consensus.squares += pairs[n].weight * squares;
+    }
+    return consensus;
 }
 
-double largest_squares(std::span<const PointPair> pairs, const Pose2& T_first_second) {
-    double largest = 0.0;
-    for (const PointPair& pair : pairs) {
-        if (pair.weight > 0.0) largest = std::max(largest, squared_distance(T_first_second, pair));
+bool is_better(const Consensus& a, const Consensus& b) {
+    return a.weight != b.weight ? a.weight > b.weight : a.squares < b.squares;
+}
+
+PointPair at(std::span<const PointPair> pairs, std::size_t n) { return {pairs[n].first, pairs[n].second, 1.0}; }
+
+/// What pairs agree on, from the transform that two of them give on.
+Consensus settled(Consensus consensus, std::span<const PointPair> pairs, double inlier_distance) {
+    for (int step = 0; step < kStepsMax && consensus.pairs.size() >= 2; ++step) {
+        std::vector<PointPair> agreeing;
+        for (const std::size_t n : consensus.pairs) agreeing.push_back(pairs[n]);
+        const auto fit = least_squares(agreeing);
+        if (!fit) break;
+        Consensus next = consensus_on(fit->T_first_second, pairs, inlier_distance);
+        if (!is_better(next, consensus)) break;
+        consensus = std::move(next);
     }
-    return largest;
+    return consensus;
+}
+
+/// Of each two pairs as far from each other in both frames, what agrees with them.
+template <class Visit>
+void for_each_consensus(std::span<const PointPair> pairs, double inlier_distance, Visit visit) {
+    std::vector<std::size_t> some; // so that work is bounded, evenly chosen ones stand for all
+    const std::size_t step = pairs.size() / kSeedsMax + 1;
+    for (std::size_t n = 0; n < pairs.size(); n += step) {
+        if (pairs[n].weight > 0.0) some.push_back(n);
+    }
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        for (std::size_t j = i + 1; j < some.size(); ++j) {
+            const PointPair a = at(pairs, some[i]);
+            const PointPair b = at(pairs, some[j]);
+            const double stretch = (a.first - b.first).norm() - (a.second - b.second).norm();
+            if (std::abs(stretch) > 2.0 * inlier_distance) continue;
+            const auto fit = least_squares(std::vector{a, b});
+            if (fit) visit(consensus_on(fit->T_first_second, pairs, inlier_distance));
+        }
+    }
+}
+
+/// Whether what two consensuses rest on is mostly not the same.
+bool is_other(const Consensus& a, const Consensus& b) {
+    std::vector<std::size_t> common;
+    std::ranges::set_intersection(a.pairs, b.pairs, std::back_inserter(common));
+    return 2 * common.size() < a.pairs.size();
 }
 
 } // namespace
@@ -113,38 +167,31 @@ Result<PairAlignment> align_pairs_robustly(std::span<const PointPair> pairs, dou
         return Error{Errc::kInvalidField,
                      fmt::format("inlier_distance is {:g} m; it must be finite and more than 0", inlier_distance)};
     }
-    auto fit = least_squares(pairs);
-    if (!fit) return fit.error();
-    const double inlier_squares = inlier_distance * inlier_distance;
-    const double largest = largest_squares(pairs, fit->T_first_second);
-    double control = largest > inlier_squares ? inlier_squares / (2.0 * largest - inlier_squares) : 1.0;
-    std::vector<PointPair> weighted(pairs.begin(), pairs.end());
-    for (int step = 0; step < kStepsMax; ++step) {
-        bool is_settled = true;
-        for (std::size_t n = 0; n < pairs.size(); ++n) {
-            const double weight =
-                truncated_weight(squared_distance(fit->T_first_second, pairs[n]), inlier_distance, control);
-            if (weight > 0.0 && weight < 1.0) is_settled = false;
-            weighted[n].weight = weight * pairs[n].weight;
-        }
-        if (is_settled && control > 1.0) break;
-        auto next = least_squares(weighted);
-        if (!next) return next.error();
-        fit = std::move(next);
-        control *= kGrowth;
-    }
-    for (std::size_t n = 0; n < pairs.size(); ++n) {
-        const bool agrees = squared_distance(fit->T_first_second, pairs[n]) <= inlier_squares;
-        weighted[n].weight = agrees ? pairs[n].weight : 0.0;
-    }
-    const auto agreeing = std::ranges::count_if(
-        weighted, [](double weight) { return weight > 0.0; }, &PointPair::weight);
-    if (static_cast<std::size_t>(agreeing) < kAgreeingMin) {
+    const auto with_weight = std::ranges::count_if(
+        pairs, [](double weight) { return weight > 0.0; }, &PointPair::weight);
+    if (with_weight < 2) return least_squares(pairs).error();
+    Consensus best;
+    for_each_consensus(pairs, inlier_distance, [&](Consensus found) {
+        if (is_better(found, best)) best = std::move(found);
+    });
+    best = settled(std::move(best), pairs, inlier_distance);
+    if (best.pairs.size() < kAgreeingMin) {
         return Error{Errc::kInvalidField,
                      fmt::format("pairs that agree on a transform within {:g} m: {}; {} are needed: give "
                                  "more pairs or a larger inlier_distance",
-                                 inlier_distance, agreeing, kAgreeingMin)};
+                                 inlier_distance, best.pairs.size(), kAgreeingMin)};
     }
+    Consensus rival;
+    for_each_consensus(pairs, inlier_distance, [&](Consensus found) {
+        if (is_other(found, best) && is_better(found, rival)) rival = std::move(found);
+    });
+    if (rival.pairs.size() >= kAgreeingMin && rival.weight >= kRivalMin * best.weight) {
+        return Error{Errc::kAmbiguous, fmt::format("{} pairs agree on one transform and {} on another: give more pairs",
+                                                   best.pairs.size(), rival.pairs.size())};
+    }
+    std::vector<PointPair> weighted(pairs.begin(), pairs.end());
+    for (PointPair& pair : weighted) pair.weight = 0.0;
+    for (const std::size_t n : best.pairs) weighted[n].weight = pairs[n].weight;
     return least_squares(weighted);
 }
 

@@ -32,14 +32,15 @@ struct PairAlignment {
 ///         plane the rotation is the direction of the sum of conj(second) * first, both from their centroids.
 [[nodiscard]] Result<PairAlignment> align_pairs(std::span<const PointPair> pairs);
 
-/// Pairs that agree within `inlier_distance` on one transform, however wrong the others are: truncated least
-/// squares, made convex first and then less and less so.
+/// The transform that most pairs agree on within `inlier_distance`, by weight, however wrong the others are: what each
+/// two pairs give is tried (of more than 64 pairs, evenly chosen ones), the best is fitted to all that agree with it.
 ///
-/// `used` are the pairs that agree, their rms is that of align_pairs() with them alone. Half of the pairs may be wrong.
-/// Errors  as align_pairs(); kInvalidField also: an inlier distance that is not finite and more than 0; fewer than 3
-///         pairs that agree, as any 2 of like length do.
-/// Source  Yang, Antonante, Tzoumas, Carlone, Graduated non-convexity for robust spatial perception (2020), for
-///         truncated least squares.
+/// `used` are the pairs that agree, their rms is that of align_pairs() with them alone.
+/// Errors  as align_pairs(), of points, weights and fewer than 2 pairs; kInvalidField also: an inlier distance that is
+///         not finite and more than 0; fewer than 3 pairs that agree, as any 2 of like length do. kAmbiguous: others,
+///         of four fifths of the weight or more, agree on another transform.
+/// Cost    64 * 64 / 2 times the pairs, at most, twice.
+/// Source  Fischler, Bolles, Random sample consensus (1981); with so few pairs none is left to chance.
 [[nodiscard]] Result<PairAlignment> align_pairs_robustly(std::span<const PointPair> pairs, double inlier_distance);
 
 } // namespace scanloom::landmarks

@@ -1,13 +1,34 @@
 #include "server/landmarks/matching.hpp"
 
+#include "server/landmarks/distinct_points.hpp"
 #include "server/landmarks/point_check.hpp"
 #include "server/landmarks/point_tree.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace scanloom::landmarks {
+namespace {
+
+/// The distinct points of a set, in the order in which they come first.
+struct Distinct {
+    explicit Distinct(std::span<const Point2> all) {
+        auto [its_points, counts, of] = distinct_points(all);
+        points = std::move(its_points);
+        for (std::size_t n = 0; n < all.size(); ++n) {
+            if (of[n] == first_of.size()) first_of.push_back(n);
+        }
+        tree = PointTree(points);
+    }
+
+    std::vector<Point2> points;
+    std::vector<std::size_t> first_of; // the lowest index of each in the set
+    PointTree tree{{}};
+};
+
+} // namespace
 
 Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const Point2> second, double tolerance) {
     if (auto good = check_points(first, "first"); !good) return good.error();
@@ -18,12 +39,14 @@ Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const 
     }
     std::vector<Match> matches;
     if (first.empty() || second.empty()) return matches;
-    const PointTree first_tree(first);
-    const PointTree second_tree(second);
-    for (std::size_t n = 0; n < first.size(); ++n) {
-        const auto [there, distance] = *second_tree.nearest(first[n]);
+    // Of equal points only the first can be in a match: trees of all of them would look at each for each.
+    const Distinct here(first);
+    const Distinct there(second);
+    for (std::size_t n = 0; n < here.points.size(); ++n) {
+        const auto [other, distance] = *there.tree.nearest(here.points[n]);
         if (distance > tolerance) continue;
-        if (first_tree.nearest(second[there])->index == n) matches.push_back({n, there, distance});
+        if (here.tree.nearest(there.points[other])->index != n) continue;
+        matches.push_back({here.first_of[n], there.first_of[other], distance});
     }
     return matches;
 }

@@ -29,7 +29,11 @@ double typical_distance(const std::vector<Point2>& points, std::size_t k) {
         distances.push_back(all[std::min(k, all.size() - 1)]); // the first is the point itself
     }
     std::ranges::sort(distances);
-    return distances.empty() ? 0.0 : distances[(distances.size() - 1) * 3 / 4];
+    for (const double distance : distances) {
+        const auto no_more = std::ranges::count_if(distances, [&](double other) { return other <= distance; });
+        if (4 * no_more >= 3 * std::ssize(distances)) return distance;
+    }
+    return 0.0;
 }
 
 double oracle(const std::vector<Point2>& cloud, std::size_t min_points) {

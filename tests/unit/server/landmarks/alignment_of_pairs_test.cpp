@@ -140,6 +140,42 @@ TEST(AlignmentOfPairs, WrongPairsDoNotMatterToTheRobustOne) {
     EXPECT_GE(right, kRounds * 99 / 100) << "two of five pairs are wrong";
 }
 
+TEST(AlignmentOfPairs, FewPairsOfWhichHalfAreWrongAreEnoughForTheRobustOne) {
+    std::mt19937 random(5);
+    int right = 0;
+    constexpr int kRounds = 1000;
+    for (int round = 0; round < kRounds; ++round) {
+        const Pose2 pose = random_pose(random);
+        auto pairs = random_pairs(random, pose, 10, 0.05);
+        for (std::size_t n = 0; n < 5; ++n) {
+            pairs[2 * n].first = {uniform(random, -8.0, 8.0), uniform(random, -8.0, 8.0)};
+        }
+        const auto fit = align_pairs_robustly(pairs, 0.15);
+        if (fit && distance(fit->T_first_second, pose) < 0.2) ++right;
+    }
+    EXPECT_GE(right, kRounds * 98 / 100);
+}
+
+TEST(AlignmentOfPairs, WrongPairsThatAgreeWithEachOtherAreOutvotedOrTold) {
+    std::mt19937 random(6);
+    for (int round = 0; round < 500; ++round) {
+        const Pose2 pose = random_pose(random);
+        const Pose2 wrong = compose({5.0, 0.0, 1.0}, pose);
+        for (const std::size_t agreeing : {std::size_t{4}, std::size_t{5}}) {
+            auto pairs = random_pairs(random, pose, 10, 0.02);
+            for (PointPair& pair : pairs) pair.weight = 1.0;
+            for (std::size_t n = 0; n < agreeing; ++n) pairs[2 * n].first = transform(wrong, pairs[2 * n].second);
+            const auto fit = align_pairs_robustly(pairs, 0.15);
+            if (agreeing == 5) {
+                ASSERT_FALSE(fit) << "as many agree on either";
+                EXPECT_EQ(fit.error().code, Errc::kAmbiguous);
+            } else if (fit) {
+                ASSERT_LT(distance(fit->T_first_second, pose), 0.3) << "six against four";
+            }
+        }
+    }
+}
+
 TEST(AlignmentOfPairs, TheRobustOneOfGoodPairsIsTheLeastSquares) {
     std::mt19937 random(4);
     for (int round = 0; round < 500; ++round) {
