@@ -24,7 +24,9 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
         const auto ended = captures.add(*entry);
-        return ended ? visit(*ended) : Result<>();
+        if (!ended) return {};
+        auto visited = visit(*ended); // which may take long
+        return visited ? ask(revision) : visited;
     };
     if (captures.revision() >= until) return {};
     const auto read =

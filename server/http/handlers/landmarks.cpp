@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,7 +42,8 @@ Result<std::uint32_t> seen_min_parameter(const Query& query) {
     if (!text) return std::uint32_t{1};
     const auto number = parse_integer<std::uint32_t>(*text);
     if (number && *number > 0) return *number;
-    return Error{Errc::kInvalidField, fmt::format("seen_min is {}; a whole number from 1 is needed", in_quotes(*text))};
+    return Error{Errc::kInvalidField, fmt::format("seen_min is {}; a whole number from 1 to {} is needed",
+                                                  in_quotes(*text), std::numeric_limits<std::uint32_t>::max())};
 }
 
 double rounded(double ratio) { return std::round(ratio * 1e4) / 1e4; }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -30,17 +31,15 @@ struct CloudQuery {
     std::optional<RobotIndex> robot;
     double threshold = kThreshold;
 
-    [[nodiscard]] bool wants(const landmarks::RobotCapture& one) const {
-        return one.ended > since && (!robot || one.robot == *robot);
-    }
+    [[nodiscard]] bool wants(RobotIndex of, Revision ended) const { return ended > since && (!robot || of == *robot); }
 };
 
-/// Nothing where it is the newest revision or later: what robots are in the middle of belongs to it then, too.
-Result<std::optional<Revision>> until_parameter(const Query& query, Revision newest) {
+/// Without it, what robots are in the middle of is wanted, too: it has not ended yet, so it would be in a later part.
+Result<std::optional<Revision>> until_parameter(const Query& query) {
     const auto text = query.find("until");
     if (!text) return std::optional<Revision>();
     const auto revision = parse_integer<Revision>(*text);
-    if (revision) return *revision < newest ? revision : std::nullopt;
+    if (revision) return revision;
     return Error{Errc::kInvalidField, fmt::format("until is {}; a revision is needed", in_quotes(*text))};
 }
 
@@ -56,7 +55,7 @@ Result<double> threshold_parameter(const Query& query) {
 Result<CloudQuery> cloud_query(const mapping::Snapshot& snapshot, const Query& query) {
     const auto since = since_parameter(query);
     if (!since) return since.error();
-    const auto until = until_parameter(query, snapshot.revision);
+    const auto until = until_parameter(query);
     if (!until) return until.error();
     const auto threshold = threshold_parameter(query);
     if (!threshold) return threshold.error();
@@ -74,8 +73,9 @@ class Chosen {
 public:
     explicit Chosen(const CloudQuery& query) : query_(query) {}
 
-    Result<> add(const landmarks::RobotCapture& one) {
-        if (!query_.wants(one)) return {};
+    /// @param ends  the log entry that it ends with, at the earliest
+    Result<> add(const landmarks::RobotCapture& one, Revision ends) {
+        if (!query_.wants(one.robot, ends)) return {};
         points_ += one.capture.points.size();
         if (points_ > kPointsMax) {
             return Error{Errc::kTooLarge,
@@ -109,8 +109,7 @@ public:
         }
         if (std::chrono::steady_clock::now() < deadline_) return {};
         return Error{Errc::kTooLarge,
-                     fmt::format("this takes longer than {} s; ask for a part of it (since, until, robot), "
-                                 "or with a larger threshold",
+                     fmt::format("this takes longer than {} s; ask for fewer captures at a time (since, until, robot)",
                                  kPatience.count())};
     }
 
@@ -125,11 +124,12 @@ Result<> choose(store::ScanLog& log, store::SessionId session, const CloudQuery&
                 const Patience& patience, Chosen& chosen) {
     landmarks::SessionCaptures cut;
     const auto read = session::read_captures(
-        log, session, cut, query.until.value_or(newest),
-        [&](const landmarks::RobotCapture& ended) { return chosen.add(ended); }, [&](Revision) { return patience(); });
+        log, session, cut, std::min(newest, query.until.value_or(newest)),
+        [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
+        [&](Revision) { return patience(); });
     if (!read || query.until) return read;
     for (const auto& open : cut.open()) {
-        if (auto added = chosen.add(open); !added) return added;
+        if (auto added = chosen.add(open, newest + 1); !added) return added;
     }
     return {};
 }

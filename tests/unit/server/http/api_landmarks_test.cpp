@@ -124,7 +124,7 @@ TEST_F(ApiLandmarksTest, OnlyThoseOfAPlaceOrThatWereSeenOften) {
 TEST_F(ApiLandmarksTest, NonsenseIsRefusedAndTheSentenceSaysWhat) {
     const std::string path = "/api/v1/sessions/a/landmarks.geojson?";
     for (const auto& [query, what] : {
-             std::pair{"seen_min=0", "seen_min is \"0\"; a whole number from 1 is needed"},
+             std::pair{"seen_min=0", "seen_min is \"0\"; a whole number from 1 to 4294967295 is needed"},
              std::pair{"seen_min=-1", "seen_min is \"-1\""},
              std::pair{"seen_min=often", "seen_min is \"often\""},
              std::pair{"bbox=1,2,3", "bbox is \"1,2,3\""},

@@ -108,6 +108,15 @@ TEST_F(ApiPointsTest, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
         EXPECT_EQ(seen("?until=" + revision) + seen("?since=" + revision), whole) << at;
     }
     EXPECT_EQ(seen("?since=1000"), 0U);
+    // Whoever asks for what is new, again and again, has each once, too: what is being taken ends later.
+    const auto newest = session->snapshot()->revision;
+    const auto ended = seen("?until=" + std::to_string(newest));
+    EXPECT_LT(ended, whole);
+    const auto link = join("stand", "r3", 1);
+    session->submit(link, testing_support::reference_laser(), 0);
+    session->submit(link, {testing_support::room_scans(1)}, 1);
+    link->wait();
+    EXPECT_EQ(ended + seen("?since=" + std::to_string(newest)), seen(""));
 }
 
 TEST_F(ApiPointsTest, PlyHasTheSamePoints) {
