@@ -16,6 +16,11 @@ landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> fo
     return views;
 }
 
+const Error kOnlyMap{
+    Errc::kUndetermined,
+    "there is a map, as of an import, but no laser has seen a thing in this session, and robots are found "
+    "in what lasers saw: send the first scans from a pose that is known"};
+
 const Error kBegun{Errc::kOverloaded,
                    "nothing is mapped yet, and another robot has just been told so: the map begins where that one "
                    "stands; ask again soon"};
@@ -25,12 +30,15 @@ const Error kBegun{Errc::kOverloaded,
 Result<Located> Locator::locate(const session::Session& session, RobotIndex robot, const landmarks::CloudView& view,
                                 const std::optional<landmarks::Neighbourhood>& near,
                                 const std::function<Result<>()>& ask) {
-    auto folded = folds_.up_to(session.info(), session.snapshot()->revision, [&] { return ask().has_value(); });
+    const auto snapshot = session.snapshot();
+    auto folded = folds_.up_to(session.info(), snapshot->revision, [&] { return ask().has_value(); });
     if (!folded) return folded.error();
     const Revision revision = folded->revision;
+    const bool has_map = !mapping::bounds_of(*snapshot).empty();
     auto found = landmarks::locate(views_of(std::move(*folded)), view, near, ask);
     if (!found) {
         const bool is_empty = found.error().code == Errc::kNothingMapped;
+        if (is_empty && has_map) return kOnlyMap;
         if (is_empty && !first_places_.take(session.info().id, robot, FirstPlaces::Clock::now())) return kBegun;
         return found.error();
     }

@@ -26,6 +26,7 @@ std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
 wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
     if (services_.sessions.is_draining())
         return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});
+    if (*asker.is_gone) return refusal_of(request, {Errc::kUnreachable, "the link is closed"});
     try {
         return reply_to(request, asker, services_);
     } catch (const std::bad_alloc&) {

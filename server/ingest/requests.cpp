@@ -137,14 +137,17 @@ wire::Message reply_from(const Kind& request, const Asker& asker, const Services
     return reply(request, maps->revision, std::move(found));
 }
 
+const Error kNobodyWaits{Errc::kUnreachable, "the link is closed"};
+
 wire::Message reply_from(const wire::LocateRequest& request, const Asker& asker, const Services& services) {
     const auto points = landmarks::in_metres(request.points);
     std::optional<landmarks::Neighbourhood> near;
     if (request.near) near = landmarks::Neighbourhood{request.near->point, request.near->radius};
     const guide::Patience patience(services.sessions, guide::Patience::Clock::now() + guide::Patience::kTime,
                                    "say near which place it is");
+    const auto ask = [&]() -> Result<> { return *asker.is_gone ? Result<>(kNobodyWaits) : patience(); };
     const auto located =
-        services.locator.locate(*asker.session, asker.robot, {.points = points, .from = request.from}, near, patience);
+        services.locator.locate(*asker.session, asker.robot, {.points = points, .from = request.from}, near, ask);
     if (!located) return reply(request, asker.session->snapshot()->revision, located.error());
     const auto& found = located->alignment;
     return reply(request, located->revision,

@@ -7,6 +7,7 @@
 #include "server/session/session.hpp"
 #include "server/session/session_registry.hpp"
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -23,6 +24,8 @@ using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::Coverag
 struct Asker {
     std::shared_ptr<session::Session> session;
     RobotIndex robot = 0;
+    /// Set when its link is closed: nobody waits for the reply any more.
+    std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<const std::atomic<bool>>(false);
 };
 
 /// Who meets them. All outlive whoever has this.

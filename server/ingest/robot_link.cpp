@@ -242,7 +242,8 @@ Result<> RobotLink::ask(Request request) {
             self->answer(std::move(frame), std::move(slot));
         });
     };
-    const auto refused = services_.desk.ask({dialogue_.session(), dialogue_.robot()}, request, std::move(done));
+    const auto refused =
+        services_.desk.ask({dialogue_.session(), dialogue_.robot(), is_gone_}, request, std::move(done));
     if (refused) {
         outbox_.send(refusal_of(request, *refused));
     } else {

@@ -20,6 +20,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -115,7 +116,9 @@ private:
     Allowance allowance_;               // as its token was when it last allowed this
     std::string robot_;
     std::size_t asked_ = 0; // requests that are being met
-    bool parting_ = false;  // nothing more is said or heard
+    std::shared_ptr<std::atomic<bool>> is_gone_ =
+        std::make_shared<std::atomic<bool>>(false); // closed: for who meets them
+    bool parting_ = false;                          // nothing more is said or heard
 
     std::chrono::steady_clock::time_point read_; // when bytes were read off the socket last
 

@@ -67,6 +67,7 @@ asio::awaitable<void> RobotLink::let_hang_up() {
 
 void RobotLink::hang_up() {
     deadline_timer_.cancel();
+    *is_gone_ = true;
     stream_.close();
 }
 
