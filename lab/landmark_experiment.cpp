@@ -162,9 +162,7 @@ Result<> Experiment::sweep() {
     results_.readings = std::move(*readings);
 
     const auto without_noise = take_capture(closed_, place, 1, std::nullopt, random_).scans.front();
-    auto windows = sweep_windows(captures_.front().closed, without_noise);
-    if (!windows) return windows.error();
-    results_.windows = std::move(*windows);
+    results_.windows = sweep_windows(captures_.front().closed, without_noise);
     return {};
 }
 

@@ -6,8 +6,6 @@
 #include "lab/report.hpp"
 #include "lab/trial_report.hpp"
 
-#include "server/landmarks/median_filter.hpp"
-
 #include <fmt/format.h>
 
 namespace scanloom::lab {

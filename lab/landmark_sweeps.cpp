@@ -2,12 +2,14 @@
 
 #include "lab/capture_bytes.hpp"
 
+#include "robot_client/source/range_median.hpp"
 #include "server/landmarks/median.hpp"
-#include "server/landmarks/median_filter.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 namespace scanloom::lab {
 namespace {
@@ -118,17 +120,19 @@ Result<std::vector<ReadingsRow>> sweep_readings(const LidarCapture& capture, con
     return rows;
 }
 
-Result<std::vector<FilterRow>> sweep_windows(const LidarCapture& capture, const Scan& without_noise) {
+std::vector<FilterRow> sweep_windows(const LidarCapture& capture, const Scan& without_noise) {
     const auto at_corner = beams_at_corners(without_noise, capture.sensor);
+    std::vector<std::int32_t> steps(without_noise.ranges.size()); // evenly, all around
+    std::iota(steps.begin(), steps.end(), 0);
     std::vector<FilterRow> rows;
     for (const std::size_t window : kWindows) {
         WindowFigures figures;
         for (const Scan& scan : capture.scans) {
-            const auto filtered = landmarks::median_filtered(scan.ranges, window, true);
-            if (!filtered) return filtered.error();
-            figures.add(landmarks::filter_figures(scan.ranges, *filtered, angles_of(scan, capture.sensor)));
-            for (std::size_t n = 0; n < filtered->size(); ++n) {
-                figures.add_error(at_corner[n], 1e-3 * std::abs(static_cast<double>((*filtered)[n]) -
+            const auto filtered = robot::median_filtered(scan.ranges, steps, static_cast<std::int32_t>(steps.size()),
+                                                         static_cast<int>(window));
+            figures.add(landmarks::filter_figures(scan.ranges, filtered, angles_of(scan, capture.sensor)));
+            for (std::size_t n = 0; n < filtered.size(); ++n) {
+                figures.add_error(at_corner[n], 1e-3 * std::abs(static_cast<double>(filtered[n]) -
                                                                 static_cast<double>(without_noise.ranges[n])));
             }
         }

@@ -61,7 +61,6 @@ struct FilterRow {
 /// corner or an edge, and of the others. A beam is at one when less than four beams from it three neighbouring points
 /// without noise bend by more than 5 cm, |a - 2 b + c|.
 /// Shapes  without_noise: the same beams; all scans full circles whose every beam has a return.
-/// Errors  those of median_filtered().
-[[nodiscard]] Result<std::vector<FilterRow>> sweep_windows(const LidarCapture& capture, const Scan& without_noise);
+[[nodiscard]] std::vector<FilterRow> sweep_windows(const LidarCapture& capture, const Scan& without_noise);
 
 } // namespace scanloom::lab

@@ -141,7 +141,8 @@ CLI::App* add_ld06(CLI::App& app, Ld06Options& options) {
     ld06->add_option("--min-confidence", options.confidence_min, "0 to 255; readings of less are invalid. Default: 100")
         ->check(check_confidence);
     ld06->add_option("--median", options.median_window,
-                     "Beams; each reading becomes the median of so many neighbours. Odd, 3 to 51. Default: off")
+                     "Beams; each reading becomes the median of so many neighbours. Odd, 3 to 101; from about 15 on "
+                     "corners go round. Default: off")
         ->check(check_window);
     ld06->add_option("--speed", options.speed, "Of a capture file: 1 = as recorded, 0 = as fast as the server takes it")
         ->check(check_not_negative)

@@ -113,10 +113,11 @@ Result<std::optional<Observation>> LocatingSource::outcome() const {
         return Error{Errc::kNotFound,
                      "no scan was sent: it was stopped before the server had told where the lidar stands"};
     }
-    return Error{Errc::kNotFound,
-                 fmt::format("no scan was sent: of {} no {} in a row were alike; let the lidar stand, and stay away "
-                             "from it",
-                             counted(halts_.dropped(), "turn"), Halts::kTurnsAlike)};
+    return Error{
+        Errc::kNotFound,
+        fmt::format("no scan was sent: of {} no {} in a row were alike and saw enough to tell; let the lidar stand "
+                    "where it sees walls, and stay away from it",
+                    counted(halts_.dropped(), "turn"), Halts::kTurnsAlike)};
 }
 
 std::string LocatingSource::remarks() const {

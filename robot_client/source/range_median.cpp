@@ -29,7 +29,7 @@ std::int32_t median_of(std::vector<std::int32_t> values) {
 
 std::vector<RangeMm> median_filtered(std::span<const RangeMm> ranges, std::span<const std::int32_t> steps,
                                      std::int32_t steps_per_turn, int window) {
-    assert(window % 2 == 1 && window >= kMedianWindowMin && window <= kMedianWindowMax);
+    assert(window % 2 == 1 && window >= 1 && window <= kMedianWindowMax);
     assert(ranges.size() == steps.size());
     std::vector<RangeMm> filtered(ranges.begin(), ranges.end());
     const std::size_t count = ranges.size();

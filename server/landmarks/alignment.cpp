@@ -33,8 +33,7 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
         candidates.push_back(judged(first, second, settle(first.surface, there, hypothesis)));
     }
     if (candidates.empty()) return candidates;
-    const Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
-    add_slid(first, second, best, candidates);
+    for (const Candidate& one : likely(candidates)) add_slid(first, second, one, candidates);
     rank(candidates);
     return candidates;
 }

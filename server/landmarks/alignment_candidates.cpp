@@ -12,6 +12,9 @@ namespace {
 constexpr double kSlideStep = 0.05; // metres
 constexpr int kSlideSteps = 12;     // to either side
 
+constexpr double kLikely = 0.8; // of the best score
+constexpr std::size_t kLikelyMax = 4;
+
 constexpr double kContradiction = 2.0; // matches that one contradiction outweighs
 
 void by_score(std::vector<Candidate>& candidates) {
@@ -34,15 +37,29 @@ WeakDirection weak_direction(const LineFit& fit) {
 
 double Candidate::score() const {
     const Evidence all = both();
-    return static_cast<double>(all.matched) - kContradiction * static_cast<double>(all.contradicted);
+    const std::size_t matched = is_on_map ? 2 * second_in_first.matched : all.matched;
+    return static_cast<double>(matched) - kContradiction * static_cast<double>(all.contradicted);
 }
 
 Candidate judged(const Seen& first, const Seen& second, const Pose2& start) {
-    Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start)};
+    Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start), .is_on_map = first.is_map};
     candidate.second_in_first = evidence_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
     candidate.first_in_second =
         evidence_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
     return candidate;
+}
+
+std::vector<Candidate> likely(std::vector<Candidate> candidates) {
+    by_score(candidates);
+    std::vector<Candidate> some;
+    for (Candidate& candidate : candidates) {
+        if (some.size() == kLikelyMax) break;
+        if (!some.empty() && candidate.score() < kLikely * some.front().score()) break;
+        const bool is_new =
+            std::ranges::all_of(some, [&](const auto& one) { return is_distinct(one.pose(), candidate.pose()); });
+        if (is_new) some.push_back(std::move(candidate));
+    }
+    return some;
 }
 
 void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates) {

@@ -13,6 +13,7 @@ namespace scanloom::landmarks {
 struct Seen {
     Surface surface;
     std::vector<const Horizon*> horizons; ///< of the places it was seen from; they must outlive it
+    bool is_map = false;                  ///< seen from several: what was seen more often is drawn thicker
 };
 
 /// The direction in which lines hold a pose least, and how much, of the elements used.
@@ -30,15 +31,20 @@ struct Candidate {
     LineFit fit;
     Evidence second_in_first;
     Evidence first_in_second;
+    bool is_on_map = false;
 
     [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
     [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
+    /// On a map only the view's elements count as matched: a wall that is drawn thicker has more than it has length.
     [[nodiscard]] double score() const;
 };
 
 /// The candidate that a start leads to, which is off by a few centimetres: see settle().
 /// Pre  both have surface elements; the second's frame has its origin where it was seen from.
 [[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
+
+/// The best, and the few others that are distinct and nearly as good: each may be the truth once it is slid.
+[[nodiscard]] std::vector<Candidate> likely(std::vector<Candidate> candidates);
 
 /// Adds what `best` becomes when it is slid along the direction that is held least, as a pose that slides along a
 /// corridor comes to rest at whatever is near.

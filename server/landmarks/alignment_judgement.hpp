@@ -16,7 +16,8 @@ enum class LaidOn {
 /// What the candidates say: the first of them, and whether it can be relied on. See Alignment.
 ///
 /// On a map more of the view has to be found, little of it may stand where the map is free, and its place need not be
-/// known as well, as the map is no better itself. Where the view is not found as a whole, a pose elsewhere that
+/// known as well, as the map is no better itself. On a view a pose that explains nearly as much, and puts less where
+/// somebody looked through, is a rival, too. Where the view is not found as a whole, a pose elsewhere that
 /// explains less of it and is not contradicted is a rival as well: the map may be incomplete there, and this one look
 /// alike.
 /// Pre  they are ranked.

@@ -1,10 +1,10 @@
 #include "server/landmarks/filter_figures.hpp"
 
 #include "server/landmarks/median.hpp"
-#include "server/landmarks/median_filter.hpp"
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace scanloom::landmarks {
@@ -71,6 +71,14 @@ FilterFigures filter_figures(std::span<const RangeMm> before, std::span<const Ra
     const Point2 rough_after = roughness(points_after, full_circle);
     return {rmse(points_before, points_after), reduction(rough_before.x(), rough_after.x()),
             reduction(rough_before.y(), rough_after.y())};
+}
+
+bool is_full_circle(const BeamAngles& angles) {
+    const std::size_t beams = beam_count(angles);
+    if (beams < 3) return false;
+    const double span = std::abs(beam_angle(angles, beams - 1) - beam_angle(angles, 0));
+    const double step = span / static_cast<double>(beams - 1);
+    return 2.0 * std::numbers::pi - span <= 2.5 * step;
 }
 
 } // namespace scanloom::landmarks

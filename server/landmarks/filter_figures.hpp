@@ -27,4 +27,9 @@ struct FilterFigures {
 [[nodiscard]] FilterFigures filter_figures(std::span<const RangeMm> before, std::span<const RangeMm> after,
                                            const BeamAngles& angles);
 
+/// Whether the last beam's neighbour is the first: what lies between their directions is no wider than two and a half
+/// of the mean steps from beam to beam, so that one beam may be missing there. A scan that repeats its first direction
+/// at its end is a full circle; fewer than three beams are none.
+[[nodiscard]] bool is_full_circle(const BeamAngles& angles);
+
 } // namespace scanloom::landmarks

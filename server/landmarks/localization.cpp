@@ -55,7 +55,8 @@ public:
     [[nodiscard]] std::vector<Pose2> repetitions(double yaw) const;
     /// Adds what comes of one, where a sensor may be.
     void add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const;
-    void add_slid_of_the_best(std::vector<Candidate>& candidates) const;
+    [[nodiscard]] Result<> add_slid_of_the_likely(std::vector<Candidate>& candidates,
+                                                  const std::function<Result<>()>& ask) const;
 
 private:
     [[nodiscard]] std::vector<Pose2> in_map(std::vector<Pose2> poses) const;
@@ -104,14 +105,17 @@ void Search::add(const Pose2& hypothesis, std::vector<Candidate>& candidates) co
     if (!is_possible(candidates.back())) candidates.pop_back();
 }
 
-void Search::add_slid_of_the_best(std::vector<Candidate>& candidates) const {
-    if (candidates.empty()) return;
-    const Candidate best = *std::ranges::max_element(candidates, {}, &Candidate::score);
+Result<> Search::add_slid_of_the_likely(std::vector<Candidate>& candidates,
+                                        const std::function<Result<>()>& ask) const {
     const auto begin = static_cast<std::ptrdiff_t>(candidates.size());
-    add_slid(map_.around({best.pose().x, best.pose().y}, reach_), second_, best, candidates);
+    for (const Candidate& one : likely(candidates)) {
+        if (auto go_on = ask(); !go_on) return go_on;
+        add_slid(map_.around({one.pose().x, one.pose().y}, reach_), second_, one, candidates);
+    }
     const auto impossible = std::remove_if(candidates.begin() + begin, candidates.end(),
                                            [&](const Candidate& candidate) { return !is_possible(candidate); });
     candidates.erase(impossible, candidates.end());
+    return {};
 }
 
 /// From the middle of what there is; no more than there is.
@@ -124,7 +128,7 @@ Neighbourhood within(const Extent& extent, const std::optional<Neighbourhood>& n
 /// Another place may be mapped.
 std::string nothing_there(const std::optional<Neighbourhood>& near) {
     if (!near) return "all that the session's lasers have seen has gone since: go where it has been mapped";
-    return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say near which place it is",
+    return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say another place, or none",
                        near->radius, near->middle.x(), near->middle.y());
 }
 
@@ -171,7 +175,7 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
             }
         }
     }
-    search.add_slid_of_the_best(candidates);
+    if (auto slid = search.add_slid_of_the_likely(candidates, ask); !slid) return slid.error();
     std::erase_if(candidates, [&](const Candidate& candidate) {
         return apart({candidate.pose().x, candidate.pose().y}, where.middle) > where.radius;
     });

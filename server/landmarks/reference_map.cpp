@@ -57,7 +57,7 @@ Seen ReferenceMap::around(const Point2& place, double radius) const {
     std::ranges::copy_if(surfels_, std::back_inserter(near), [&](const Surfel& surfel) {
         return (surfel.position - place).squaredNorm() <= radius * radius;
     });
-    Seen seen{Surface(std::move(near)), {}};
+    Seen seen{Surface(std::move(near)), {}, true};
     for (const Horizon& horizon : horizons_) {
         const double far = radius + horizon.reach();
         if ((horizon.from() - place).squaredNorm() < far * far) seen.horizons.push_back(&horizon);

@@ -62,7 +62,7 @@ TEST_F(StandingLidar, ItsReadingsAreCountedTurnByTurnAndTimesAreMedians) {
 
 TEST_F(StandingLidar, MedianFiltersSmoothWallsAndRoundCorners) {
     const auto exact = capture(1, std::nullopt).scans.front();
-    const auto rows = sweep_windows(capture(5), exact).value();
+    const auto rows = sweep_windows(capture(5), exact);
     ASSERT_EQ(rows.size(), 10U);
     EXPECT_EQ(rows[0].window, 1U);
     EXPECT_EQ(rows[0].figures, (landmarks::FilterFigures{0.0, 0.0, 0.0})) << "it changes nothing";
@@ -76,7 +76,7 @@ TEST_F(StandingLidar, MedianFiltersSmoothWallsAndRoundCorners) {
 
 TEST_F(StandingLidar, WithoutNoiseAWindowOfOneIsTheTruth) {
     const auto taken = capture(2, std::nullopt);
-    const auto rows = sweep_windows(taken, taken.scans.front()).value();
+    const auto rows = sweep_windows(taken, taken.scans.front());
     EXPECT_EQ(rows[0].wall_error, 0.0);
     EXPECT_EQ(rows[0].corner_error, 0.0);
     EXPECT_GT(rows.back().corner_error, 0.1);

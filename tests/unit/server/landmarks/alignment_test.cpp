@@ -53,6 +53,7 @@ Alignment aligned(const TwoCaptures& captures) {
 /// What is clear is right; how many are.
 int clear_of(const robot::World& world, int seeds) {
     int clear = 0;
+    int beyond_sigmas = 0;
     for (int seed = 0; seed < seeds; ++seed) {
         const auto captures = two_captures(world, doors_of(world), static_cast<std::uint64_t>(seed));
         const auto alignment = aligned(captures);
@@ -62,20 +63,34 @@ int clear_of(const robot::World& world, int seeds) {
         ++clear;
         EXPECT_TRUE(error.is_right()) << world.name << ", seed " << seed << ": " << error.metres << " m, "
                                       << error.radians / kDegree << " degrees";
-        EXPECT_LT(error.metres, 6.0 * alignment.position_sigma) << world.name << ", seed " << seed;
+        beyond_sigmas += error.metres > 3.0 * alignment.position_sigma ? 1 : 0;
     }
+    EXPECT_LE(beyond_sigmas, seeds / 50);
     return clear;
 }
 
-TEST(Alignment, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 40), 39); }
+TEST(Alignment, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
 
 TEST(Alignment, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
     auto office = robot::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
-    EXPECT_GE(clear_of(office, 40), 38);
+    EXPECT_GE(clear_of(office, 100), 95);
 }
 
-TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 20), 16); }
+TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 93); }
+
+/// Scenes by chance on which an earlier align() was clear and wrong: half a turn off, a rack further, along racks.
+TEST(Alignment, WhatExplainsSomewhatMoreIsNotTakenForTheTruth) {
+    auto office = robot::make_office();
+    office.starts = {{-15.0, -10.0, 15.0, 10.0}};
+    const auto hall = robot::make_hall();
+    for (const auto& [world, seed] : {std::pair{office, 10'194U}, {hall, 10'734U}, {hall, 10'987U}, {hall, 147U}}) {
+        const auto captures = two_captures(world, doors_of(world), seed);
+        const auto alignment = aligned(captures);
+        if (alignment.certainty != Certainty::kClear) continue;
+        EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right()) << world.name << " " << seed;
+    }
+}
 
 TEST(Alignment, InASquareRoomHasRivalsAQuarterTurnAway) {
     const auto captures = captures_at(room_of(3.0, 3.0), {0.5, 0.2, 0.3}, {-0.4, 0.6, 2.0});
@@ -91,12 +106,15 @@ TEST(Alignment, InASquareRoomHasRivalsAQuarterTurnAway) {
 TEST(Alignment, InARoomWithoutFeaturesIsClearOnlyWhereItIsRight) {
     const auto square = room_of(3.0, 3.0);
     const auto oblong = room_of(4.0, 2.5);
+    int ambiguous = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const auto captures = two_captures(seed % 2 == 0 ? square : oblong, {}, seed);
         const auto alignment = aligned(captures);
+        ambiguous += alignment.certainty == Certainty::kAmbiguous ? 1 : 0;
         if (alignment.certainty != Certainty::kClear) continue; // else the rivals are beyond distance_max
         EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right()) << "seed " << seed;
     }
+    EXPECT_GE(ambiguous, 6);
 }
 
 TEST(Alignment, ATableTellsTheCornersOfASquareRoomApart) {
@@ -144,7 +162,7 @@ TEST(Alignment, AmongEvenlySpacedDoorFramesIsAmbiguous) {
 
 TEST(Alignment, OfWhatIsFarAwayAloneIsSaidNotToBeKnownWell) {
     const auto hall = robot::make_hall();
-    const auto alignment = aligned(two_captures(hall, doors_of(hall), 124));
+    const auto alignment = aligned(two_captures(hall, doors_of(hall), 10'987));
     EXPECT_EQ(alignment.certainty, Certainty::kUndetermined);
     EXPECT_THAT(alignment.why, HasSubstr("known to within"));
 }
@@ -201,8 +219,8 @@ TEST(Alignment, ATurnAloneDoesAsWell) {
     const auto captures = two_captures(robot::make_room(), {}, 3, 1);
     const auto alignment = aligned(captures);
     const Off error = off(alignment.T_first_second, captures.T_first_second);
-    EXPECT_TRUE(alignment.certainty != Certainty::kClear || (error.metres < 0.03 && error.radians < kDegree))
-        << error.metres;
+    EXPECT_EQ(alignment.certainty, Certainty::kClear) << alignment.why;
+    EXPECT_TRUE(error.metres < 0.03 && error.radians < kDegree) << error.metres;
 }
 
 TEST(Alignment, WhatCannotBeIsRefused) {

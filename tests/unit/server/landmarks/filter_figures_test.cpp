@@ -1,10 +1,10 @@
 #include "server/landmarks/filter_figures.hpp"
-#include "server/landmarks/median_filter.hpp"
 #include "tests/unit/server/landmarks/random_points.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +14,19 @@ namespace {
 using namespace testing_support;
 
 constexpr double kPi = std::numbers::pi;
+
+/// Of each reading and its neighbours, fewer at the ends.
+std::vector<RangeMm> medians_of(const std::vector<RangeMm>& ranges, std::size_t window) {
+    std::vector<RangeMm> medians;
+    for (std::size_t n = 0; n < ranges.size(); ++n) {
+        const std::size_t reach = std::min({window / 2, n, ranges.size() - 1 - n});
+        const auto begin = ranges.begin() + static_cast<std::ptrdiff_t>(n - reach);
+        std::vector<RangeMm> around(begin, begin + static_cast<std::ptrdiff_t>(2 * reach + 1));
+        std::ranges::sort(around);
+        medians.push_back(around[reach]);
+    }
+    return medians;
+}
 
 /// A wall 2 m ahead, seen over a right angle, with noise of up to 20 mm either way.
 struct NoisyWall {
@@ -39,7 +52,7 @@ TEST(FilterFigures, WhatIsNotChangedHasNone) {
 TEST(FilterFigures, AMedianTakesMostOfTheNoiseAway) {
     const NoisyWall wall;
     for (const std::size_t window : {3U, 5U, 9U}) {
-        const auto after = median_filtered(wall.ranges, window, false).value();
+        const auto after = medians_of(wall.ranges, window);
         const auto figures = filter_figures(wall.ranges, after, wall.angles);
         EXPECT_GT(figures.rmse, 0.005) << window;
         EXPECT_LT(figures.rmse, 0.02) << window;
@@ -91,6 +104,29 @@ TEST(FilterFigures, FewBeamsHaveNoRoughness) {
     }
     const std::vector<RangeMm> none(9, kNoReturn);
     EXPECT_EQ(filter_figures(none, none, UniformAngles{0.0, 0.1, 9}), FilterFigures{});
+}
+
+TEST(FullCircle, SensorsThatTurnAllTheWayAreFullCircles) {
+    EXPECT_TRUE(is_full_circle(UniformAngles{-kPi, 2 * kPi / 360, 360}));
+    EXPECT_TRUE(is_full_circle(UniformAngles{kPi, -2 * kPi / 100, 100})); // clockwise
+    EXPECT_TRUE(is_full_circle(UniformAngles{0.0, 2 * kPi / 90, 91}));    // the first direction repeated
+    EXPECT_TRUE(is_full_circle(UniformAngles{0.3, 2 * kPi / 16, 16}));
+    SteppedAngles turn{2 * kPi / 396'000, {}};
+    for (std::int32_t step = 400; step < 396'000; step += 880) turn.steps.push_back(step);
+    EXPECT_TRUE(is_full_circle(turn));
+    turn.steps.pop_back();
+    EXPECT_TRUE(is_full_circle(turn));
+    turn.steps.resize(turn.steps.size() - 11); // a packet was lost
+    EXPECT_FALSE(is_full_circle(turn));
+}
+
+TEST(FullCircle, SensorsThatDoNotAreNone) {
+    EXPECT_FALSE(is_full_circle(UniformAngles{-kPi / 2, kPi / 683, 684}));
+    EXPECT_FALSE(is_full_circle(UniformAngles{-0.75 * kPi, 1.5 * kPi / 1080, 1081}));
+    EXPECT_FALSE(is_full_circle(UniformAngles{0.0, kPi, 2}));
+    EXPECT_FALSE(is_full_circle(UniformAngles{0.0, 1.0, 1}));
+    EXPECT_FALSE(is_full_circle(ExplicitAngles{}));
+    EXPECT_FALSE(is_full_circle(ExplicitAngles{0.5, 0.5, 0.5}));
 }
 
 } // namespace

@@ -55,6 +55,32 @@ TEST(Localization, InAnOfficeOfEqualRoomsIsFoundOrSaidNotToBeKnown) {
 
 TEST(Localization, InAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 10, 6), 4); }
 
+/// One of two equal rooms, 20 m apart, is mapped from eight places and the other from two: walls seen more often are
+/// drawn thicker, and an earlier locate() took the robot to be in that room.
+TEST(Localization, OfTwoEqualRoomsTheOneThatIsMappedMoreOftenIsNotTakenForTheOther) {
+    std::vector<Box> solids;
+    for (const double x : {-10.0, 10.0}) {
+        for (const Box& wall :
+             {Box{x - 3.0, -2.5, x + 3.0, -2.0}, Box{x - 3.0, 2.0, x + 3.0, 2.5}, Box{x - 3.0, -2.5, x - 2.5, 2.5},
+              Box{x + 2.5, -2.5, x + 3.0, 2.5}, Box{x + 1.0, 1.2, x + 2.5, 2.0}}) {
+            solids.push_back(wall);
+        }
+    }
+    const auto world = robot::make_world("rooms", solids, {{-12.0, -1.5, -8.0, 1.0}, {8.0, -1.5, 12.0, 1.0}});
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+        robot::Random random(seed);
+        const auto place_in = [&](double x) {
+            return Pose2{x + random.uniform(-1.5, 1.5), random.uniform(-1.0, 1.0), random.uniform(-3.0, 3.0)};
+        };
+        ReferenceViews map;
+        for (int n = 0; n < 8; ++n) map.push_back(reference_view(world, place_in(-10.0), random));
+        for (int n = 0; n < 2; ++n) map.push_back(reference_view(world, place_in(10.0), random));
+        const auto seen = robot::standing_capture(world, place_in(10.0), 10, random);
+        const auto found = locate(map, {.points = seen}).value();
+        EXPECT_EQ(found.certainty, Certainty::kAmbiguous) << "seed " << seed << ": " << found.why;
+    }
+}
+
 /// A scene by chance on which an earlier locate() was wrong.
 struct HardScene {
     robot::World world;
