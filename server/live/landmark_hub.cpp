@@ -13,8 +13,8 @@ bool is_passing(const Error& error) { return error.code == Errc::kShuttingDown |
 
 } // namespace
 
-WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const session::Session>& session,
-                                              Revision revision, const LandmarkSearch& search) {
+WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const session::Session>& session, Revision revision,
+                                              const LandmarkSearch& search) {
     const std::lock_guard lock(mutex_);
     if (is_finding_ || revision <= searched_) return {found_}; // the watchers are told
     if (Clock::now() < next_) return {found_, next_};
@@ -26,8 +26,7 @@ WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const sessio
 }
 
 /// On the search's executor.
-void WatchedLandmarks::find(const session::Session& session, Revision revision,
-                            const LandmarkSearch& search) noexcept {
+void WatchedLandmarks::find(const session::Session& session, Revision revision, const LandmarkSearch& search) noexcept {
     try {
         keep(find_for_a_turn(session, revision, search.turn), revision, search.pause);
     } catch (const std::exception& failure) { // no memory
@@ -39,8 +38,8 @@ void WatchedLandmarks::find(const session::Session& session, Revision revision,
 Result<FoundLandmarks> WatchedLandmarks::find_for_a_turn(const session::Session& session, Revision revision,
                                                          std::chrono::milliseconds turn) {
     const auto end = Clock::now() + turn;
-    auto folded = folds_.up_to(session.info(), revision,
-                               [&] { return Clock::now() < end && !session.closing().has_value(); });
+    auto folded =
+        folds_.up_to(session.info(), revision, [&] { return Clock::now() < end && !session.closing().has_value(); });
     if (!folded) return folded.error();
     return FoundLandmarks{std::move(folded->state), folded->revision, {}};
 }

@@ -29,7 +29,7 @@ public:
     explicit WatchedLandmarks(session::LandmarkFolds& folds) : folds_(folds) {}
 
     struct Look {
-        std::shared_ptr<const FoundLandmarks> found; ///< null: nothing yet
+        std::shared_ptr<const FoundLandmarks> found;        ///< null: nothing yet
         Clock::time_point until = Clock::time_point::max(); ///< look again then, also if nobody says that it changed
     };
 

@@ -9,8 +9,8 @@
 
 namespace scanloom::live {
 
-/// A landmark's place among all of a session, those first that were seen longest ago. Each time that it is seen it has a
-/// place behind all others that were there before.
+/// A landmark's place among all of a session, those first that were seen longest ago. Each time that it is seen it has
+/// a place behind all others that were there before.
 struct LandmarkPlace {
     Revision last = 0;    ///< MapLandmark::last
     std::uint64_t id = 0; ///< MapLandmark::id, plus one

@@ -39,6 +39,11 @@ export function landmarksPath(session: string): string {
   return `${sessionPath(session)}/landmarks.geojson`;
 }
 
+/** What robots saw from many places, as one cloud. */
+export function pointsPath(session: string, format: 'csv' | 'ply'): string {
+  return `${sessionPath(session)}/points.${format}`;
+}
+
 export function logPath(session: string, format: 'clf' | 'protobuf'): string {
   return `${sessionPath(session)}/log?format=${format}`;
 }

@@ -13,7 +13,7 @@ const kSwitches: [key: Switch, label: string][] = [
   ['points', 'Newest scans'],
   ['goals', 'Goals and ways'],
   ['frontiers', 'Frontiers'],
-  ['landmarks', 'Landmarks'],
+  ['landmarks', 'Landmarks (filled: seen again)'],
   ['counters', 'HIMM counters in cells'],
 ];
 

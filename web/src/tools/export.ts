@@ -4,6 +4,7 @@ import {
   fetchFile,
   frontiersPath,
   landmarksPath,
+  pointsPath,
   logPath,
   mapFilePath,
   trajectoryPath,
@@ -204,6 +205,14 @@ function offersOf(session: string, query: MapQuery): Offer[] {
     {
       ...{ label: 'Landmarks (GeoJSON)', note: 'things that robots saw, metres' },
       ...{ file: `${session}-landmarks.geojson`, path: landmarksPath(session) },
+    },
+    {
+      ...{ label: 'Points (CSV)', note: 'what robots saw, as one cloud, metres' },
+      ...{ file: `${session}-points.csv`, path: pointsPath(session, 'csv') },
+    },
+    {
+      ...{ label: 'Points (PLY)', note: 'the same, for programs that show clouds' },
+      ...{ file: `${session}-points.ply`, path: pointsPath(session, 'ply') },
     },
     {
       ...{ label: 'CARMEN log', note: 'all scans, to replay', file: `${session}.clf` },

@@ -1,8 +1,8 @@
 #include "server/live/landmark_hub.hpp"
 
+#include "tests/support/http_client.hpp"
 #include "tests/support/live_client.hpp"
 #include "tests/support/live_replay.hpp"
-#include "tests/support/http_client.hpp"
 #include "tests/unit/server/live/live_server.hpp"
 
 #include <boost/json/array.hpp>
