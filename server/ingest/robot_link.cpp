@@ -57,6 +57,7 @@ asio::awaitable<void> RobotLink::run() {
     } catch (const std::exception& exception) {
         served = Error{Errc::kInternal, fmt::format("this link failed unexpectedly: {}", exception.what())};
     }
+    if (!served) *is_gone_ = true;
     if (dialogue_.is_welcome()) dialogue_.session()->leave(self);
     const bool was_let_in = pass_ != nullptr;
     pass_.reset();

@@ -34,8 +34,8 @@ constexpr double kHardlyMore = 0.002;     // hardly more than the best is contra
 constexpr double kElsewhere = 0.5;        // and it is so far away, in metres,
 constexpr double kTurnedElsewhere = 0.17; // or in radians, for the best itself to be no part of it
 
-/// Neighbouring surface elements come from the same points: so many of them tell what one alone does. Of 1,300 clear
-/// alignments in the simulator's office and hall 2 are further off than three sigmas, and 10 turned further.
+/// Neighbouring surface elements come from the same points: so many of them tell what one alone does. Of 937 clear
+/// alignments in the simulator's office and hall one is further off than three sigmas, and ten are turned further.
 constexpr double kShared = 12.0;
 
 double share(std::size_t part, std::size_t all) {

@@ -5,11 +5,13 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <thread>
 #include <vector>
 
 /// Robots that ask where they are.
@@ -181,6 +183,56 @@ TEST_F(LocateRequestsTest, ANewRobotIsFoundInWhatItMappedItself) {
     robot->send(question_from({-1.0, -1.8, 2.5}));
     const auto reply = robot->receive_kind<wire::LocateReply>();
     EXPECT_TRUE(reply.correction) << reply.correction.error().message;
+}
+
+/// Robots are found in what lasers saw: an imported map is not empty, and none begins another one on it.
+TEST_F(LocateRequestsTest, InAnImportedMapNobodyIsToldToBeginOne) {
+    auto& ingest = start();
+    const MapPatch patch{0.1, 0.0, 0.0, 2, {MapCell::kOccupied, MapCell::kFree}};
+    ASSERT_TRUE(ingest.sessions().import_map("lab", {}, {patch}));
+    const auto carried = welcomed(port(), hello("carried"));
+    carried->send(question_from(kTruth));
+    const auto refused = carried->receive_kind<wire::LocateReply>().correction.error();
+    EXPECT_EQ(refused.code, Errc::kUndetermined);
+    EXPECT_THAT(refused.message, HasSubstr("send the first scans from a pose that is known"));
+}
+
+TEST_F(LocateRequestsTest, AQuestionOfALinkThatIsClosedIsNotMet) {
+    auto& ingest = start();
+    const auto mapper = mapping();
+    const auto session = ingest.sessions().find("lab");
+    const auto is_gone = std::make_shared<std::atomic<bool>>(false);
+    const auto is_met = [&](bool gone) {
+        std::promise<std::string> told;
+        *is_gone = gone;
+        RequestDesk desk(ingest.planning(), ingest.locating(), {ingest.goals(), ingest.locator(), ingest.sessions()});
+        EXPECT_FALSE(
+            desk.ask({session, 0, is_gone}, question_from(kTruth),
+                     [&](std::string frame, const std::shared_ptr<const void>&) { told.set_value(std::move(frame)); }));
+        const auto frame = told.get_future().get();
+        const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
+        return std::get<wire::LocateReply>(reply).correction.has_value();
+    };
+    EXPECT_TRUE(is_met(false));
+    EXPECT_FALSE(is_met(true));
+}
+
+/// Where nothing is mapped the first that is told so begins the map: who hangs up before is told nothing.
+TEST_F(LocateRequestsTest, WhoHangsUpIsNotWaitedFor) {
+    auto& ingest = start();
+    std::promise<void> go_on;
+    boost::asio::post(ingest.locating(), [wait = go_on.get_future().share()] { wait.wait(); });
+    {
+        const auto hasty = welcomed(port(), hello("hasty"));
+        hasty->send(question_from(kTruth));
+        hasty->send(wire::Ping{3});
+        EXPECT_EQ(hasty->receive_kind<wire::Pong>().nonce, 3U) << "the question has been read";
+    }
+    while (ingest.sessions().find("lab")->is_connected(0)) std::this_thread::yield();
+    const auto patient = welcomed(port(), hello("patient"));
+    patient->send(question_from(kTruth));
+    go_on.set_value();
+    EXPECT_EQ(patient->receive_kind<wire::LocateReply>().correction.error().code, Errc::kNothingMapped);
 }
 
 } // namespace
