@@ -13,7 +13,7 @@ namespace scanloom::exchange {
 inline constexpr std::size_t kPointTextBytes = 64;
 
 /// A line for each point, after one with the names: angle,distance,x,y,seen,robot,revision. Angle in radians and
-/// distance are as the robot saw it that saw it first.
+/// distance are the fused point's, from the robot that saw it first.
 /// @param robots  names by RobotIndex; they need no quotes
 [[nodiscard]] std::string points_csv(std::span<const landmarks::CloudPoint> points,
                                      std::span<const std::string> robots);

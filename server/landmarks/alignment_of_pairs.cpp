@@ -15,7 +15,7 @@ namespace {
 constexpr double kUndetermined = 1e-9; // of what the points' extents would give if they agreed
 constexpr int kStepsMax = 50;
 constexpr std::size_t kSeedsMax = 64; // pairs, of which each two are tried
-constexpr double kRivalMin = 0.8;     // of the weight that agrees, by which another transform is as good
+constexpr double kRivalMin = 0.8;     // of the best's worth, by which another transform is as good
 constexpr std::size_t kAgreeingMin = 3;
 
 Result<> check(std::span<const PointPair> pairs) {
@@ -91,25 +91,22 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
 struct Consensus {
     Pose2 T_first_second;
     std::vector<std::size_t> pairs; // rising
-    double weight = 0.0;
-    double squares = 0.0; // weighted, of what remains
+    double worth = 0.0;             // of each its weight, less the nearer it is to disagreeing
 };
 
 Consensus consensus_on(const Pose2& T_first_second, std::span<const PointPair> pairs, double inlier_distance) {
-    Consensus consensus{T_first_second, {}, 0.0, 0.0};
+    Consensus consensus{T_first_second, {}, 0.0};
+    const double limit = inlier_distance * inlier_distance;
     for (std::size_t n = 0; n < pairs.size(); ++n) {
         const double squares = squared_distance(T_first_second, pairs[n]);
-        if (pairs[n].weight == 0.0 || squares > inlier_distance * inlier_distance) continue;
+        if (pairs[n].weight == 0.0 || squares > limit) continue;
         consensus.pairs.push_back(n);
-        consensus.weight += pairs[n].weight;
-        consensus.squares += pairs[n].weight * squares;
+        consensus.worth += pairs[n].weight * (1.0 - squares / limit);
     }
     return consensus;
 }
 
-bool is_better(const Consensus& a, const Consensus& b) {
-    return a.weight != b.weight ? a.weight > b.weight : a.squares < b.squares;
-}
+bool is_better(const Consensus& a, const Consensus& b) { return a.worth > b.worth; }
 
 PointPair at(std::span<const PointPair> pairs, std::size_t n) { return {pairs[n].first, pairs[n].second, 1.0}; }
 
@@ -185,7 +182,8 @@ Result<PairAlignment> align_pairs_robustly(std::span<const PointPair> pairs, dou
     for_each_consensus(pairs, inlier_distance, [&](Consensus found) {
         if (is_other(found, best) && is_better(found, rival)) rival = std::move(found);
     });
-    if (rival.pairs.size() >= kAgreeingMin && rival.weight >= kRivalMin * best.weight) {
+    rival = settled(std::move(rival), pairs, inlier_distance);
+    if (is_other(rival, best) && rival.pairs.size() >= kAgreeingMin && rival.worth >= kRivalMin * best.worth) {
         return Error{Errc::kAmbiguous, fmt::format("{} pairs agree on one transform and {} on another: give more pairs",
                                                    best.pairs.size(), rival.pairs.size())};
     }

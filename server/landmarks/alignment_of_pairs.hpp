@@ -32,8 +32,9 @@ struct PairAlignment {
 ///         plane the rotation is the direction of the sum of conj(second) * first, both from their centroids.
 [[nodiscard]] Result<PairAlignment> align_pairs(std::span<const PointPair> pairs);
 
-/// The transform that most pairs agree on within `inlier_distance`, by weight, however wrong the others are: what each
-/// two pairs give is tried (of more than 64 pairs, evenly chosen ones), the best is fitted to all that agree with it.
+/// The transform that pairs agree on within `inlier_distance`, however wrong the others are: truncated least squares.
+/// What each two pairs give is tried (of more than 64 pairs, evenly chosen ones), and the best is fitted to all that
+/// agree with it.
 ///
 /// `used` are the pairs that agree, their rms is that of align_pairs() with them alone.
 /// Errors  as align_pairs(), of points, weights and fewer than 2 pairs; kInvalidField also: an inlier distance that is

@@ -14,7 +14,6 @@ namespace {
 constexpr int kStraightPointsMin = 5;
 constexpr double kStraight = 0.15; // variance across a straight surface, of that along it, at most
 constexpr double kExtent = 4e-4;   // square metres, of variance along a straight surface, at least
-constexpr double kAround = 0.03;   // of the distance: how far around points belong to a line
 
 using CellKey = std::pair<std::int64_t, std::int64_t>; // (y, x)
 
@@ -44,13 +43,13 @@ struct Moments {
 using Cells = std::map<CellKey, Moments>;
 
 /// Squares to each side that belong to the line through these points.
-std::int64_t reach_of(const Moments& moments) {
+std::int64_t reach_of(const Moments& moments, double around) {
     const double distance = moments.distances / moments.count;
-    return std::max<std::int64_t>(1, std::llround(kAround * distance / kSurfelSpacing));
+    return std::max<std::int64_t>(1, std::llround(around * distance / kSurfelSpacing));
 }
 
 /// Those of the squares up to `reach` from one.
-Moments around(const Cells& cells, CellKey key, std::int64_t reach) {
+Moments within(const Cells& cells, CellKey key, std::int64_t reach) {
     Moments all;
     for (std::int64_t y = key.first - reach; y <= key.first + reach; ++y) {
         for (auto cell = cells.lower_bound({y, key.second - reach}); cell != cells.end(); ++cell) {
@@ -61,9 +60,9 @@ Moments around(const Cells& cells, CellKey key, std::int64_t reach) {
     return all;
 }
 
-Surfel surfel(const Cells& cells, CellKey key, const Moments& moments) {
+Surfel surfel(const Cells& cells, CellKey key, const Moments& moments, double around) {
     Surfel surfel{.position = moments.mean()};
-    const Moments all = around(cells, key, reach_of(moments));
+    const Moments all = within(cells, key, reach_of(moments, around));
     if (all.count < kStraightPointsMin) return surfel;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(all.covariance());
@@ -75,7 +74,7 @@ Surfel surfel(const Cells& cells, CellKey key, const Moments& moments) {
 
 } // namespace
 
-std::vector<Surfel> surfels_of(std::span<const CloudView> views) {
+std::vector<Surfel> surfels_of(std::span<const CloudView> views, double around) {
     std::vector<Surfel> surfels;
     const auto any = std::ranges::find_if(views, [](const CloudView& view) { return !view.points.empty(); });
     if (any == views.end()) return surfels;
@@ -91,7 +90,7 @@ std::vector<Surfel> surfels_of(std::span<const CloudView> views) {
         }
     }
     for (const auto& [key, moments] : cells) {
-        surfels.push_back(surfel(cells, key, moments));
+        surfels.push_back(surfel(cells, key, moments, around));
         surfels.back().position += origin;
     }
     return surfels;

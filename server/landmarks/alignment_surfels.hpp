@@ -19,13 +19,18 @@ struct Surfel {
 
 /// The surface elements of what was seen from some places, all in one frame, by rows.
 ///
-/// A line is told from the points around: the further away they were seen, the further around, at least a square to
-/// each side and 3 % of the distance. Far off, neighbouring beams meet a wall further apart than a square is wide, and
-/// noise of their angles smears each across its direction: the points of one square show the beam, not the wall.
+/// A line is told from the points around: a square to each side, and further where they were seen from further away.
+/// Far off, neighbouring beams meet a wall further apart than a square is wide, and noise of their angles smears each
+/// across its direction: the points of one square show the beam, not the wall.
+/// @param around  part of the distance that belongs to a line, to each side; 0: a square at any distance
 /// Pre   the points, and where they were seen from, pass check_points().
 /// Cost  n log n.
-[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const CloudView> views);
-[[nodiscard]] inline std::vector<Surfel> surfels_of(const CloudView& view) { return surfels_of({&view, 1}); }
+[[nodiscard]] std::vector<Surfel> surfels_of(std::span<const CloudView> views, double around);
+
+inline constexpr double kAroundOfView = 0.03;
+[[nodiscard]] inline std::vector<Surfel> surfels_of(const CloudView& view, double around = kAroundOfView) {
+    return surfels_of({&view, 1}, around);
+}
 
 [[nodiscard]] Surfel transformed(const Pose2& T_a_b, const Surfel& surfel_b);
 

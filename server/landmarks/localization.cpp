@@ -40,7 +40,7 @@ ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near
 
 /// A view of a room has some hundred surface elements: of one that has far more, evenly chosen ones stand for all.
 std::vector<Surfel> some_surfels_of(const std::vector<Point2>& points) {
-    return sample(surfels_of(CloudView{points}), kViewSurfelsMax);
+    return sample(surfels_of(CloudView{points}, kAroundOfMap), kViewSurfelsMax);
 }
 
 /// A view, and the map that it is laid on.

@@ -33,7 +33,7 @@ Result<ReferenceMap> ReferenceMap::of(ReferenceViewSpan views, const Point2& mid
         seen.push_back({its, view->from - middle});
         map.horizons_.emplace_back(its, seen.back().from);
     }
-    for (const Surfel& surfel : surfels_of(seen)) {
+    for (const Surfel& surfel : surfels_of(seen, kAroundOfMap)) {
         if (auto go_on = ask(); !go_on) return go_on.error();
         if (!map.has_gone(surfel.position)) map.surfels_.push_back(surfel);
     }

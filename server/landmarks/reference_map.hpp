@@ -12,6 +12,10 @@ namespace scanloom::landmarks {
 
 using ReferenceViewSpan = std::span<const std::shared_ptr<const ReferenceView>>;
 
+/// Of surfels_of(), for a map and what is laid on it: a wall is seen from many places, and where real poses are off by
+/// centimetres a longer piece of it is no line.
+inline constexpr double kAroundOfMap = 0.0;
+
 /// How far what was seen reaches: a square, of which at least two opposite sides were seen.
 struct Extent {
     Point2 middle{0.0, 0.0}; ///< metres, map frame
@@ -28,7 +32,7 @@ class ReferenceMap {
 public:
     /// @param middle  what its own frame's origin is to be, in the map frame
     /// @param ask     now and then; its error ends it
-    /// Cost  n log n of the points, and of each surface element the views around.
+    /// Cost  n log n of the points, and of each surface element all views.
     [[nodiscard]] static Result<ReferenceMap> of(
         ReferenceViewSpan views, const Point2& middle,
         const std::function<Result<>()>& ask = [] { return Result<>(); });

@@ -101,7 +101,7 @@ TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
         EXPECT_THAT(refused({"f", "--pose", pose}), HasSubstr("is not X,Y,YAW")) << pose;
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--mount", pose}), HasSubstr("is not X,Y,YAW")) << pose;
     }
-    for (const auto* window : {"1", "4", "53", "-3", "3.5", "x"}) {
+    for (const auto* window : {"1", "4", "103", "-3", "3.5", "x"}) {
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--median", window}), HasSubstr("is not an odd number")) << window;
     }
     for (const auto* confidence : {"-1", "256", "x"}) {

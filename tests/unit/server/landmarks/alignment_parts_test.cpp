@@ -58,7 +58,7 @@ TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
         EXPECT_NEAR(surfel.position.y(), 7.0, 0.006);
         EXPECT_GT(std::abs(surfel.normal.y()), 0.99);
     }
-    EXPECT_TRUE(surfels_of(std::span<const CloudView>()).empty());
+    EXPECT_TRUE(surfels_of(std::span<const CloudView>(), 0.0).empty());
     EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2(1.0, 1.0))).front().is_straight());
 }
 
@@ -85,7 +85,8 @@ TEST(Surfels, OfMoreViewsAreThoseOfAllTheirPoints) {
     const auto there = odd_room(random);
     auto all = here;
     all.insert(all.end(), there.begin(), there.end());
-    const auto both = surfels_of(std::vector<CloudView>{{{}, {0.0, 0.0}}, {here, {0.0, 0.0}}, {there, {0.0, 0.0}}});
+    const auto both =
+        surfels_of(std::vector<CloudView>{{{}, {0.0, 0.0}}, {here, {0.0, 0.0}}, {there, {0.0, 0.0}}}, kAroundOfView);
     const auto one = surfels_around(all);
     ASSERT_EQ(both.size(), one.size());
     for (std::size_t n = 0; n < one.size(); ++n) {

@@ -19,6 +19,7 @@ using testing_support::HttpClient;
 using testing_support::LiveClient;
 using testing_support::LiveReplay;
 
+const LandmarkSearch kPatient{{}, 0ms, 1h};
 constexpr LiveConfig kQuick{.interval = 0ms, .landmarks_pause = 0ms};
 
 /// Somebody who watches the session "lab", landmarks and all.
@@ -156,9 +157,9 @@ TEST_F(WatchedLandmarksTest, AreOneForAllWhoHoldThem) {
 
 TEST_F(WatchedLandmarksTest, AreSearchedForOnceHoweverManyLook) {
     const auto watched = hub_.of(server_.session().info().id);
-    for (int n = 0; n < 5; ++n) EXPECT_EQ(look(*watched, {}).found, nullptr);
+    for (int n = 0; n < 5; ++n) EXPECT_EQ(look(*watched, kPatient).found, nullptr);
     EXPECT_EQ(search(), 1U);
-    const auto found = look(*watched, {}).found;
+    const auto found = look(*watched, kPatient).found;
     ASSERT_TRUE(found);
     EXPECT_GT(found->state.landmarks.size(), 0U);
     EXPECT_EQ(found->revision, server_.session().snapshot()->revision);
@@ -189,11 +190,10 @@ TEST_F(WatchedLandmarksTest, WhoLooksTooSoonIsToldWhenToLookAgain) {
 }
 
 TEST_F(WatchedLandmarksTest, ARefusalIsToldAndWhatWasFoundStays) {
-    const LandmarkSearch patient{{}, 0ms, 1h};
     const auto find = [&](WatchedLandmarks& watched) {
-        static_cast<void>(look(watched, patient));
+        static_cast<void>(look(watched, kPatient));
         EXPECT_EQ(search(), 1U);
-        return look(watched, patient).found;
+        return look(watched, kPatient).found;
     };
     const std::size_t count = find(*hub_.of(0))->state.landmarks.size();
     session::LandmarkFolds small(server_.log(), {.size_max = count});
