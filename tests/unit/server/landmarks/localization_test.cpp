@@ -55,7 +55,7 @@ TEST(Localization, InAnOfficeOfEqualRoomsIsFoundOrSaidNotToBeKnown) {
 
 TEST(Localization, InAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 10, 6), 4); }
 
-/// One of two equal rooms, 20 m apart, is mapped from eight places and the other from two: walls seen more often are
+/// One of two equal rooms, 20 m apart, is mapped from twenty places and the other from two: walls seen more often are
 /// drawn thicker, and an earlier locate() took the robot to be in that room.
 TEST(Localization, OfTwoEqualRoomsTheOneThatIsMappedMoreOftenIsNotTakenForTheOther) {
     std::vector<Box> solids;
@@ -73,7 +73,7 @@ TEST(Localization, OfTwoEqualRoomsTheOneThatIsMappedMoreOftenIsNotTakenForTheOth
             return Pose2{x + random.uniform(-1.5, 1.5), random.uniform(-1.0, 1.0), random.uniform(-3.0, 3.0)};
         };
         ReferenceViews map;
-        for (int n = 0; n < 8; ++n) map.push_back(reference_view(world, place_in(-10.0), random));
+        for (int n = 0; n < 20; ++n) map.push_back(reference_view(world, place_in(-10.0), random));
         for (int n = 0; n < 2; ++n) map.push_back(reference_view(world, place_in(10.0), random));
         const auto seen = robot::standing_capture(world, place_in(10.0), 10, random);
         const auto found = locate(map, {.points = seen}).value();
