@@ -22,7 +22,7 @@ inline constexpr double kDistinctTurn = 0.0523599; ///< radians, 3 degrees
 
 /// Whether an alignment can be relied on.
 enum class Certainty {
-    kClear,        ///< no other pose explains the views nearly as well
+    kClear,        ///< no other pose may be the truth as well
     kAmbiguous,    ///< another one does; the pose given is one of several
     kUndetermined, ///< too little of one view is seen in the other to say, or to say well
 };
@@ -32,7 +32,7 @@ struct Alignment {
     Pose2 T_first_second; ///< takes the second's frame into the first's
     Certainty certainty = Certainty::kUndetermined;
     std::string why;            ///< a sentence; empty when it is clear
-    std::optional<Pose2> rival; ///< the best of the other poses that explain the views nearly as well
+    std::optional<Pose2> rival; ///< the best of the other poses that may be the truth as well
 
     /// Parts, 0 to 1, of the second's surface, every 10 cm of which count as one.
     double explained = 0.0;      ///< lies on what the first shows
@@ -51,10 +51,11 @@ struct Alignment {
 /// judged by what both views saw and by what they saw through.
 ///
 /// Certainty  ambiguous: another pose, more than kDistinctDistance or kDistinctTurn away, explains the views nearly as
-///            well (a room that is symmetric but for little), or nothing holds the pose in some direction (a corridor,
-///            along its axis). Undetermined: little of the views overlaps, or much contradicts, or the place is known
-///            to within 2 cm only (3 position_sigma). A pose is given all the same, for whoever looks on. Whether it is
-///            one place at all no alignment can tell: rooms may be equal.
+///            well (a room that is symmetric but for little) and no second thing tells them apart, or it explains less
+///            and is contradicted less; or nothing holds the pose in some direction (a corridor, along its axis).
+///            Undetermined: little of the views overlaps, or much contradicts, or the place is known to within 2 cm
+///            only (3 position_sigma). A pose is given all the same, for whoever looks on. Whether it is one place at
+///            all no alignment can tell: rooms may be equal.
 /// Units      the sigmas are those of the fit, by the residuals and the surface's directions; things that moved and
 ///            rivals are not in them.
 /// Errors     those of check_view(); kInvalidField: a distance_max that is not more than 0 and at most 100.

@@ -3,8 +3,10 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace scanloom::landmarks {
 namespace {
@@ -16,6 +18,11 @@ constexpr double kLikely = 0.8; // of the best score
 constexpr std::size_t kLikelyMax = 4;
 
 constexpr double kContradiction = 2.0; // matches that one contradiction outweighs
+
+double worth(Finding finding) {
+    if (finding == Finding::kUnseen) return 0.0;
+    return finding == Finding::kMatched ? 1.0 : -kContradiction;
+}
 
 void by_score(std::vector<Candidate>& candidates) {
     std::ranges::stable_sort(candidates, std::greater(), &Candidate::score);
@@ -41,11 +48,37 @@ double Candidate::score() const {
     return static_cast<double>(matched) - kContradiction * static_cast<double>(all.contradicted);
 }
 
+Difference difference(const Candidate& one, const Candidate& other, double thing_radius) {
+    assert(one.findings.size() == other.findings.size() && one.findings.size() == one.places.size());
+    Difference between;
+    std::vector<std::pair<Point2, double>> for_one;
+    for (std::size_t i = 0; i < one.findings.size(); ++i) {
+        const double more = worth(one.findings[i]) - worth(other.findings[i]);
+        if (more > 0.0) for_one.emplace_back(one.places[i], more);
+        (more > 0.0 ? between.for_one : between.for_other) += std::abs(more);
+    }
+    for (const auto& [middle, _] : for_one) {
+        double around = 0.0;
+        for (const auto& [place, more] : for_one) around += (place - middle).norm() <= thing_radius ? more : 0.0;
+        between.of_one_thing = std::max(between.of_one_thing, around);
+    }
+    return between;
+}
+
 Candidate judged(const Seen& first, const Seen& second, const Pose2& start) {
     Candidate candidate{.fit = fit_to_lines(first.surface, second.surface, start), .is_on_map = first.is_map};
-    candidate.second_in_first = evidence_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
-    candidate.first_in_second =
-        evidence_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
+    auto findings = findings_of(first.surface, first.horizons, second.surface.surfels(), candidate.pose());
+    const auto of_first =
+        findings_of(second.surface, second.horizons, first.surface.surfels(), inverse(candidate.pose()));
+    candidate.second_in_first = evidence_of(findings);
+    candidate.first_in_second = evidence_of(of_first);
+    if (first.is_map) return candidate;
+    findings.insert(findings.end(), of_first.begin(), of_first.end());
+    candidate.findings = std::move(findings);
+    for (const Surfel& there : second.surface.surfels()) {
+        candidate.places.push_back(transform(candidate.pose(), there.position));
+    }
+    for (const Surfel& here : first.surface.surfels()) candidate.places.push_back(here.position);
     return candidate;
 }
 

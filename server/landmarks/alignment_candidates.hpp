@@ -32,12 +32,28 @@ struct Candidate {
     Evidence second_in_first;
     Evidence first_in_second;
     bool is_on_map = false;
+    /// Of two views, the second's elements in the first, then the first's in the second; none where it lies on a map.
+    std::vector<Finding> findings;
+    std::vector<Point2> places; ///< of these elements in the first's frame
 
     [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
     [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
     /// On a map only the view's elements count as matched: a wall that is drawn thicker has more than it has length.
     [[nodiscard]] double score() const;
 };
+
+/// Surface elements by which two poses differ: each that one of them explains and the other does not counts as one, and
+/// as more where one is contradicted, as in Candidate::score().
+struct Difference {
+    double for_one = 0.0;
+    double for_other = 0.0;
+    double of_one_thing = 0.0; ///< of what is for one, the most that lies around a place: one thing that moved, perhaps
+};
+
+/// @param thing_radius  metres
+/// Pre   both are of the same two views.
+/// Cost  the square of the elements that are for one.
+[[nodiscard]] Difference difference(const Candidate& one, const Candidate& other, double thing_radius);
 
 /// The candidate that a start leads to, which is off by a few centimetres: see settle().
 /// Pre  both have surface elements; the second's frame has its origin where it was seen from.

@@ -60,19 +60,25 @@ bool is_open(std::span<const Horizon* const> horizons, const Point2& place) {
     });
 }
 
-Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons, std::span<const Surfel> second,
-                     const Pose2& T_first_second) {
-    Evidence evidence{.elements = second.size()};
+std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
+                                 std::span<const Surfel> second, const Pose2& T_first_second) {
+    std::vector<Finding> findings;
+    findings.reserve(second.size());
     const Pose2 rotation{0.0, 0.0, T_first_second.yaw};
     for (const Surfel& there : second) {
         const Point2 place = transform(T_first_second, there.position);
         if (is_matched(surface, there, place, rotation)) {
-            ++evidence.matched;
-        } else if (is_open(horizons, place)) {
-            ++evidence.contradicted;
+            findings.push_back(Finding::kMatched);
+        } else {
+            findings.push_back(is_open(horizons, place) ? Finding::kContradicted : Finding::kUnseen);
         }
     }
-    return evidence;
+    return findings;
+}
+
+Evidence evidence_of(std::span<const Finding> findings) {
+    const auto count = [&](Finding finding) { return static_cast<std::size_t>(std::ranges::count(findings, finding)); };
+    return {count(Finding::kMatched), count(Finding::kContradicted), findings.size()};
 }
 
 } // namespace scanloom::landmarks

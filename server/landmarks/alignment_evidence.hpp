@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -52,11 +53,20 @@ struct Evidence {
     }
 };
 
+/// What one view says of a surface element of another.
+enum class Finding : std::uint8_t {
+    kUnseen,       ///< it could not be seen
+    kMatched,      ///< it lies on the surface
+    kContradicted, ///< it stands where was looked through
+};
+
 /// Of a second view's elements in a pose, what a first one says, which was seen from where the horizons are: what any
 /// of them looked through, and nothing of the surface is at, contradicts.
 /// Pre  the surface has elements.
-[[nodiscard]] Evidence evidence_of(const Surface& surface, std::span<const Horizon* const> horizons,
-                                   std::span<const Surfel> second, const Pose2& T_first_second);
+[[nodiscard]] std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
+                                               std::span<const Surfel> second, const Pose2& T_first_second);
+
+[[nodiscard]] Evidence evidence_of(std::span<const Finding> findings);
 
 /// Whether somebody has looked through a place.
 [[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);

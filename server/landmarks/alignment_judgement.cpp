@@ -17,11 +17,24 @@ constexpr double kMargin = 0.08;       // of the best score, by which it must be
 constexpr double kMarginElements = 30; // and at least so many: what may have moved
 constexpr double kHeld = 0.02;         // of the elements used: less holds the pose in no direction
 constexpr double kElementsMin = 40;
-constexpr double kContradictedMax = 0.15; // of what is matched or contradicted
+constexpr double kContradictedMax = 0.1;       // of what is matched or contradicted, of two views,
+constexpr double kContradictedInMapMax = 0.15; // and on a map
 
 constexpr double kOverlapMin = 0.3;      // of two views
 constexpr double kSigmaMax = 0.02 / 3.0; // metres, likewise: 2 cm, almost surely
-constexpr double kAsMuch = 0.85; // of what the best matches: a pose that does, and contradicts less, may be the truth
+
+/// Along a hall a pose beside the best explains hardly less of two views, as what holds it there is a small share of
+/// all. It is no rival if the elements by which the two differ tell them apart: so many more that speak for the best
+/// than otherwise,
+constexpr double kTelling = 20.0;
+constexpr double kTellingRatio = 3.0;      // and so many times as many;
+constexpr double kTellingElsewhere = 10.0; // so many more, even if all around some place is left out,
+constexpr double kThingRadius = 1.0;       // metres: one thing that moved may have been as large.
+
+/// A pose elsewhere may be the truth though it explains less: with two doors, one closed and one opened since, a room
+/// may look like itself turned round. It is a rival if it explains so much of what the best does,
+constexpr double kAsMuch = 0.9;
+constexpr double kUnlikely = 8.0; // and less by so many elements for each by which it is contradicted less.
 
 constexpr double kFoundMin = 0.5;        // of a view that is laid on a map
 constexpr double kSigmaInMapMax = 0.033; // metres: the map is no better itself
@@ -87,7 +100,7 @@ std::optional<std::string> undetermined(const Candidate& best, LaidOn first) {
             "moved",
             100.0 * alone);
     }
-    if (contradicted_of(best) > kContradictedMax) {
+    if (contradicted_of(best) > (first == LaidOn::kView ? kContradictedMax : kContradictedInMapMax)) {
         return fmt::format("{:.0f} % of what both could see is in one of the two alone: it may not be the same place, "
                            "or much of it has moved",
                            100.0 * contradicted_of(best));
@@ -105,12 +118,22 @@ bool may_be_unfinished(const Candidate& other, const Candidate& best) {
            contradicted_of(other) <= contradicted_of(best) + kHardlyMore && is_elsewhere(other.pose(), best.pose());
 }
 
-/// Of two views, the one that puts less where the other looked through, though it explains somewhat less, too.
-bool is_contradicted_less(const Candidate& other, const Candidate& best) {
-    const Evidence its = other.both();
-    const Evidence of_best = best.both();
-    return its.contradicted < of_best.contradicted &&
-           static_cast<double>(its.matched) >= kAsMuch * static_cast<double>(of_best.matched);
+/// Of two views, whether what tells a pose beside the best from it says clearly enough which is the better one.
+bool is_told_from(const Candidate& best, const Candidate& beside) {
+    if (is_elsewhere(beside.pose(), best.pose())) return false;
+    const auto [for_best, for_other, of_one_thing] = difference(best, beside, kThingRadius);
+    const double more = for_best - for_other;
+    return more >= kTelling && for_best >= kTellingRatio * for_other && more - of_one_thing >= kTellingElsewhere;
+}
+
+/// Of two views, whether the truth may be elsewhere.
+bool may_be_elsewhere(const Candidate& other, const Candidate& best) {
+    const auto worth = [](const Candidate& one, double as_much) {
+        const Evidence both = one.both();
+        return as_much * static_cast<double>(both.matched) - kUnlikely * static_cast<double>(both.contradicted);
+    };
+    return overlaps(other, LaidOn::kView, kOverlapMin) && worth(other, 1.0) >= worth(best, kAsMuch) &&
+           is_elsewhere(other.pose(), best.pose());
 }
 
 /// Of the candidates, the best that is distinct from the first and may be the truth as well.
@@ -119,19 +142,23 @@ const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first
     const double near = best.score() - std::max(kMargin * best.score(), kMarginElements);
     for (const Candidate& other : candidates) {
         if (!is_distinct(other.pose(), best.pose())) continue;
-        if (other.score() >= near) return &other;
-        if (first == LaidOn::kView && is_contradicted_less(other, best)) return &other;
-        if (first == LaidOn::kMap && may_be_unfinished(other, best)) return &other;
+        if (first == LaidOn::kMap) {
+            if (other.score() >= near || may_be_unfinished(other, best)) return &other;
+        } else if ((other.score() >= near && !is_told_from(best, other)) || may_be_elsewhere(other, best)) {
+            return &other;
+        }
     }
     return nullptr;
 }
 
 std::string rivalled(const Candidate& best, const Candidate& rival, LaidOn first) {
     const Pose2 apart = compose(inverse(best.pose()), rival.pose());
+    const bool is_likelier = first == LaidOn::kView && rival.both().contradicted < best.both().contradicted;
     return fmt::format("another pose, {:.2f} m and {:.0f} degrees away, explains {:.0f} % where this one explains "
-                       "{:.0f} %: look from where more can be told apart",
+                       "{:.0f} %{}: look from where more can be told apart",
                        std::hypot(apart.x, apart.y), std::abs(apart.yaw) * 180.0 / std::numbers::pi,
-                       100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first));
+                       100.0 * overlap_of(rival, first), 100.0 * overlap_of(best, first),
+                       is_likelier ? ", and less speaks against it" : "");
 }
 
 } // namespace

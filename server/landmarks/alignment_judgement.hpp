@@ -16,10 +16,13 @@ enum class LaidOn {
 /// What the candidates say: the first of them, and whether it can be relied on. See Alignment.
 ///
 /// On a map more of the view has to be found, little of it may stand where the map is free, and its place need not be
-/// known as well, as the map is no better itself. On a view a pose that explains nearly as much, and puts less where
-/// somebody looked through, is a rival, too. Where the view is not found as a whole, a pose elsewhere that
+/// known as well, as the map is no better itself. Where the view is not found as a whole, a pose elsewhere that
 /// explains less of it and is not contradicted is a rival as well: the map may be incomplete there, and this one look
 /// alike.
+///
+/// On a view a pose beside the best that explains hardly less is no rival, if by far the most of what they differ in
+/// speaks for the best, and not one thing alone, which may have moved: all surface elements of both views are told
+/// apart. A pose elsewhere is a rival though it explains less, if it puts less where somebody looked through.
 /// Pre  they are ranked.
 [[nodiscard]] Alignment judge(const std::vector<Candidate>& candidates, LaidOn first);
 

@@ -1,3 +1,4 @@
+#include "server/landmarks/alignment_candidates.hpp"
 #include "server/landmarks/alignment_evidence.hpp"
 #include "server/landmarks/alignment_search.hpp"
 #include "server/landmarks/refinement.hpp"
@@ -163,13 +164,31 @@ TEST(Evidence, WhatStandsWhereTheOtherLookedThroughContradicts) {
         {{-9.0, 0.0}, {0.0, 0.0}},  // behind the wall
         {{-2.88, 1.0}, {1.0, 0.0}}, // neither on the wall nor clearly before it
     };
-    const auto evidence = evidence_of(surface, std::vector{&horizon}, things, {});
+    const auto findings = findings_of(surface, std::vector{&horizon}, things, {});
+    EXPECT_EQ(findings, (std::vector{Finding::kMatched, Finding::kUnseen, Finding::kContradicted, Finding::kUnseen,
+                                     Finding::kUnseen}));
+    const auto evidence = evidence_of(findings);
     EXPECT_EQ(evidence.elements, 5U);
     EXPECT_EQ(evidence.matched, 1U);
     EXPECT_EQ(evidence.contradicted, 1U);
     EXPECT_EQ(horizon.at({-1.5, 0.0}), Horizon::Verdict::kOpen);
     EXPECT_EQ(horizon.at({-9.0, 0.0}), Horizon::Verdict::kHidden);
     EXPECT_EQ(Horizon({}, {0.0, 0.0}).at({1.0, 0.0}), Horizon::Verdict::kUnknown);
+}
+
+TEST(Candidates, DifferInWhatOnlyOneOfThemExplains) {
+    using enum Finding;
+    const std::vector<Point2> places = {{0.0, 0.0}, {0.0, 1.0}, {0.0, 2.0}, {0.0, 3.0}, {0.0, 9.0}};
+    const Candidate one{
+        .fit = {}, .findings = {kMatched, kMatched, kContradicted, kUnseen, kMatched}, .places = places};
+    const Candidate other{
+        .fit = {}, .findings = {kUnseen, kUnseen, kUnseen, kContradicted, kContradicted}, .places = places};
+    const Difference between = difference(one, other, 2.5);
+    EXPECT_EQ(between.for_one, 1.0 + 1.0 + 2.0 + 3.0);
+    EXPECT_EQ(between.for_other, 2.0);
+    EXPECT_EQ(between.of_one_thing, 1.0 + 1.0 + 2.0) << "around (0, 1)";
+    EXPECT_EQ(difference(one, other, 0.5).of_one_thing, 3.0);
+    EXPECT_EQ(difference(one, one, 1.0).for_one, 0.0);
 }
 
 } // namespace

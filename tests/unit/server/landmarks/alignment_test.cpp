@@ -77,14 +77,22 @@ TEST(Alignment, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
     EXPECT_GE(clear_of(office, 100), 95);
 }
 
-TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 93); }
+TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
 
-/// Scenes by chance on which an earlier align() was clear and wrong: half a turn off, a rack further, along racks.
+/// Scenes by chance on which an earlier align() was clear and wrong: half a turn off, racks further, along racks.
 TEST(Alignment, WhatExplainsSomewhatMoreIsNotTakenForTheTruth) {
     auto office = robot::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     const auto hall = robot::make_hall();
-    for (const auto& [world, seed] : {std::pair{office, 10'194U}, {hall, 10'734U}, {hall, 10'987U}, {hall, 147U}}) {
+    for (const auto& [world, seed] : {std::pair{office, 1'887U},
+                                      {office, 10'194U},
+                                      {office, 10'519U},
+                                      {office, 50'251U},
+                                      {hall, 147U},
+                                      {hall, 933U},
+                                      {hall, 10'734U},
+                                      {hall, 10'987U},
+                                      {hall, 51'983U}}) {
         const auto captures = two_captures(world, doors_of(world), seed);
         const auto alignment = aligned(captures);
         if (alignment.certainty != Certainty::kClear) continue;
@@ -125,6 +133,55 @@ TEST(Alignment, ATableTellsTheCornersOfASquareRoomApart) {
     EXPECT_TRUE(off(alignment.T_first_second, captures.T_first_second).is_right());
     EXPECT_GT(alignment.explained, 0.9);
     EXPECT_LT(alignment.contradicted, 0.01);
+}
+
+TEST(Alignment, ACupboardThatWasMovedToTheOppositeCornerTurnsNoRoomRound) {
+    robot::Random random(3);
+    const Pose2 here{0.5, 0.2, 0.3};
+    const Pose2 there{-0.4, 0.6, 2.0};
+    const auto before = standing_capture(room_of(3.0, 2.0, {{2.7, 1.7, 3.0, 2.0}}), here, 20, random);
+    const auto after = standing_capture(room_of(3.0, 2.0, {{-3.0, -2.0, -2.7, -1.7}}), there, 20, random);
+    EXPECT_EQ(align({.points = before}, {.points = after})->certainty, Certainty::kAmbiguous);
+}
+
+TEST(Alignment, ACrateThatWasMovedAlongACorridorIsNotTakenForItsPlace) {
+    for (const double moved : {0.12, 0.2, 0.3, 0.45}) {
+        robot::Random random(7);
+        const Pose2 here{0.0, 0.2, 0.3};
+        const Pose2 there{1.0, -0.2, 2.0};
+        const auto before = standing_capture(room_of(40.0, 1.0, {{2.0, -1.0, 3.0, -0.4}}), here, 20, random);
+        const auto after =
+            standing_capture(room_of(40.0, 1.0, {{2.0 + moved, -1.0, 3.0 + moved, -0.4}}), there, 20, random);
+        EXPECT_NE(align({.points = before}, {.points = after})->certainty, Certainty::kClear) << moved << " m";
+    }
+}
+
+/// The legs of an L are alike: from one of them the other may be taken for it.
+TEST(Alignment, InTheLegsOfAnLIsClearOnlyWhereItIsRight) {
+    const auto world = robot::make_world("L",
+                                         {{-2.0, -2.0, 16.0, -1.0},
+                                          {15.0, -2.0, 16.0, 2.0},
+                                          {1.0, 1.0, 16.0, 16.0},
+                                          {-2.0, 15.0, 1.0, 16.0},
+                                          {-2.0, -2.0, -1.0, 16.0}},
+                                         {{-1.0, -1.0, 15.0, 1.0}});
+    int clear = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        robot::Random random(seed);
+        const bool is_same_leg = seed % 2 == 0;
+        const double along = is_same_leg ? 0.3 * static_cast<double>(seed) : 0.04 * static_cast<double>(seed);
+        const Pose2 first{along, 0.3, 0.1 * static_cast<double>(seed)};
+        const Pose2 second = is_same_leg ? Pose2{along + 2.0, -0.4, 2.0} : Pose2{-0.2, along, 1.0};
+        const TwoCaptures captures{standing_capture(world, first, 20, random),
+                                   standing_capture(world, second, 20, random), compose(inverse(first), second)};
+        const auto alignment = aligned(captures);
+        if (alignment.certainty != Certainty::kClear) continue;
+        ++clear;
+        const Pose2& found = alignment.T_first_second;
+        EXPECT_TRUE(off(found, captures.T_first_second).is_right())
+            << "seed " << seed << ": (" << found.x << ", " << found.y << "), " << found.yaw / kDegree << " degrees";
+    }
+    EXPECT_GE(clear, 10);
 }
 
 TEST(Alignment, InALongCorridorIsAmbiguousAlongIt) {
