@@ -37,6 +37,7 @@ struct Scan {
     std::vector<RangeMm> ranges;            ///< one a beam
     std::vector<std::uint32_t> intensities; ///< empty, or one a beam; the sensor's own scale
     std::optional<BeamAngles> angles;       ///< only where they differ from the sensor's
+    bool begins_map = false; ///< people said the pose, nothing being mapped: to be taken only if that holds
 
     friend bool operator==(const Scan&, const Scan&) = default;
 };

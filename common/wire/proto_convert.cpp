@@ -233,6 +233,7 @@ Result<Scan> from_proto(const v1::Scan& proto, std::vector<RangeMm> ranges) {
         if (!angles) return angles.error();
         scan.angles = std::move(*angles);
     }
+    scan.begins_map = proto.begins_map();
     if (auto ok = check_beam_counts(scan); !ok) return ok.error();
     return scan;
 }
@@ -267,6 +268,7 @@ void to_proto_without_ranges(const Scan& scan, v1::Scan& out) {
     if (scan.odometry) to_proto(*scan.odometry, *out.mutable_odometry());
     out.mutable_intensities()->Add(scan.intensities.begin(), scan.intensities.end());
     if (scan.angles) write_angles(*scan.angles, *out.mutable_angles());
+    out.set_begins_map(scan.begins_map);
 }
 
 } // namespace scanloom::wire

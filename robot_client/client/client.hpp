@@ -190,7 +190,7 @@ public:
     /// Shapes  a scan or some, ten are plenty; all of `sensor`, with kLocatePointsMin returns among them. Of more than
     ///         32,768 returns some are taken, evenly.
     /// Errors  the server's are kAmbiguous: several places look alike; kUndetermined: too little of what is seen is in
-    ///         the map; kNothingMapped: no laser has seen anything yet.
+    ///         the map; kNothingMapped: no laser has seen anything yet (see Scan::begins_map).
     [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,
                                           std::chrono::milliseconds patience, const LocateOptions& options = {});
     static constexpr std::size_t kLocatePointsMin = 20;

@@ -174,44 +174,44 @@ class Timing:
 
 # What protoc makes of proto/scanloom/v1/frame.proto, compressed: robot_client/python/embed_protocol.py writes it.
 _PROTOCOL = """
-eNq1Wc2TG1cRj1YfK7VW2tnZD8trJzhKCM6m4hAnkAIqBfpaS1hf9aR1Yg5MzY7Gu4OlmclIa3uTC0euUFxTnDlQBRe4cKK4cuKf4E/gQkF3vzfSzKzs
-wmU4abr797769ddrwZ8KcDC3THfqebMPnnz4AX3f8QNv4enFkH/nyYfV70B26M3tu/oWpJ5VUrdSt1Mi9Yyoy8qGpC51DdKX5tNKmmn6rD6E0onrPPKC
-Wc09m9pzfQ+yj5xgvlBTSEK/CQXHtQJ7ZrsLNd2KQWMs7wIlNHFJSKJ6G8qtZ/7UsZyFmvsAciZ/4eRpnEJR1R9CabSwfd+eKKAOmQvXCffA3/oh5Cb2
-dGHOcf307Z36hoYTSE71LymAum2GZ/gubF7IQ/EMxbuHdyKquhM7cPs1EYL170HeVjvmQxbv3ogNjB8HRy7htORcHoGVkFwydjxaUoHrBRznm5bjnlW/
-3oCdke3OvaBpz63A8ReO55LO5szko5SEovT3IPPYcSe8z/Lda/HVGHIfxYJBpE/XnNm8tYLgb/02ZGd8aRnerx6bgU1JSID+wfLasgyNL7bSe3ifeFV5
-07eDxUVgV3J8hUtavwGFAGG2MXPcyqYUMqPnuBGh+aySjwrNZ9VfbkBmhAuTFc/tL1gfGUGfZIDzhTnzlWlKIqK6dEx170DGx/O94OAs1+9A3pt4M3sR
-XKqTr8MuMWShvNk5Hjp9e1NaqOTob0PRcRe4vrNwELCJgBIDouyIpvP/laarH0OBVFI3F9a5/i3UAhLSu4p3d+I2gd9Cyo8+A1iZCCr92qjVHw2Ecb/T
-bxon/dGw1egcd1pN7TV9H20yIuzWRi2hpZLs0aBfE9pGPf3PVOo0x9HpI/jHNlyPRS57PkeLXhe8/l7CCCDFDc995Jzpt6Bg2dOpMXe+tGUYIHcj1gg5
-v0il9CqAb3iWdeE7tnSDVBujkj9QLMLgjfjGo8CWlp9qb4isf4wkyW7Cpm/4gYPmkWFhWuT8IdEkrUDWZxPNsiyDJoEGupKgfbJlt7MkMZ+R5C7o3ima
-njW1jcW5Yz128UjSxts5sRPKxqGIxtyG0ileq7H0F7b69qbYInZNcQn5CfnGpTHzMOZVCuz1+7EbFuZlj4TtPDmN/KaBbwGYqJPZxdRc2BXAkfl2QUR4
-SpvnzsIIzIlzMa8UeRMgCsgTzCLMu1CeBJ5vuJ4R2Lgtt7LFkxXFFvH7nmAuQY+gfO7MZsYqaZQQmm1viRLxOyE7ip3YIbbM2JLENu0I9gdwjbFr9LzN
-ey6LfQIM1un6Q9B5cFzhGo/bFhrJ6gmlfwqVueeawboFd3igJg4YsXbFj2BXDo8vqfPIHbHDwuSaH8OeHLQyb7a3XR6lq1HD0M6V8b0FxXAUme0eg3dF
-QYKV7UZBOOM+g/aWIDnTj2DLmprzuTH3LgLLrhywrVVittYgwIjl7X1RtFYkzfA+aHKGiINe47UORJklw6iXfjNcUPlqhaHXBEho6LCoTAmTFhBOfJ2N
-pSJ2WNimy4/M/R5sRwbx9Ic84LooLQeEK7wDWxMK14FBgWZeucHIQ1GU3AYxldMqnPKXm7zjG0INX7pMfQvAWMaxegmKEZVQ7ldHrgPkDRWN6nnIyUsM
-v8xn9X3YXWOCdQ3KcdPiBZdhghdc+TmTKy+v78C2EXdoZsUdd8Va+mf9ECrGc9yQd3rVy+o34LrxPE+qH8CescZP6tdg31jnCvUybBkRa4/TKN+GkhG1
-4fou7BhJk4yg1C3QPtaYWF0HzUhYEQ+OGgvfRcwqjr6CfBiT9euwL2oPjd6g2eomUmwV3liJOv0HLTFqGSq7MhPz7TXYXWHqooXidq2nbcQFY1Gj0bWu
-lj76KRQjTorZrtLA5D3CVH0iGq3EFg7hICYdNBonw1q/8VCm+pis3en1kqn+1+/CtWiqfxRghbkm0R8+5ylz+PxCofqvPGSPaT5MFNlzVLWnivp4MdYm
-CdYIEqJ/Gzaf2lMLKzNVye/F0J9JGVXiCqYPQJf1IRr6svxWxfwba8rrSJGO0+zMr1TunwDQKOOUijNVbB5cqcm4dMMJCvNlHfc2pE3rsSo5tdiImvUY
-sSQmbdhBgNVLbo02WiQhbTAEK8OMj08MrkWSheEQBYhkAAM9BObXAT0FxF/S75nnTU4vba5Fkvq9J2WkXwXDxxVYXhDYFusV1tS3jaUYx0XAmIW3/Clq
-MrC/uLDxaVrkwfGMNESAkHIcXfRXJF2EGu5PL7lmSV6EHIxSugg/JGjdM8+cLtctrVn3HgIi656tSFpXDad1y2vWlYPVumchoXcwf3pP7MDEl1C49jYP
-v5lQmASt1t+24iy9AeXIVLQPbc3zdDWR3EvJijL0B7CPLuIH6JcYgCNGvcNz3UrMFSKj5r1rXWXT5qaehZlpeUp9zea6DFmdsTSNMuiSlpPQ+XbXXFI4
-hTxdcboiMYDmrMD66K5V+TepeFMosp6DzKk3uaz+agOyHFyw/tU4JFne1ED1UIxSj/LtkP9AsulBGninnmwjFIQk8OmwqWKbeomHJOEX3mPb5TCBeCbw
-QYGbsalqz67rKUQfTEIh6dFrTR2qonM8laL4MSzruU3JlxQ9TOmYYSWTV08tIOaqjqEEG4FV/5iCTRVD9dcxzsmtGM6EFVLAaCY5nQkWSxrmoYUxuQjM
-U0z79HTf4Kd7mfhNyR7hK/49yE2dmbOYq6i7G79DFgkF0d/EojGwJ1jNnF4u8MGc4SmLklcnFnU9vpwvJqy8vODv6peQkxPhwcucprg043JY3uUWc+mV
-ifUwdSSoJpkzYIMBeWaQ8H0s7+lBbWDBIj2CYbLboLFoaAds69TA+BR21zgHbXP5yi0J/l5unVbcUlv/GaQx/OvfgGJUlbILApOVGhFg+v6UaqWVrkGx
-CJBUXfqK6qqPIcspBLNMxsIChpcpJ6IXIxooFYwh857h2TBsKLMPSWofBtQioS3ycnmxYlRvQoaSEDmB67mWXCwnJMFS77nSN2FT5RqycHSBuXJKtHBJ
-Vf+cAlilFsxcMMZrwjpw4s3WlhKqrzPumf4AMdTOCuwnDvut1OaSppNRD9B0XNX5S4kVA182Zd+j3g76xtw5m5my1SBKIXdETDKyS/OpQmRl2wsZLKy+
-RY1dBz34BY3d6o9RSebinHTgE3jZYZUU8ae2e7Y4V0MURXZmefOF2jl/VwewKexHF3Nz+r+5/erPN6AYSc96GTZUoMgI/KJOJD4JgrDnmrwMPICQAOrc
-UZZU8WEdkOX4zi2ZGLGfGhfuY9d7KsNqXmwx80TykpEvuzbyESos80lROdVnAvUkRN6a+Mh0ZFj16xQUlkXGFQW8yMCoIsObVUdOVGQo4IqMrh4rskBe
-m6o14xWZulKqyBSM3p/exYJiePW3KShGKplXuKKEVtPrtXoEO48Cz104qCAZfx15SZhLQwGHYPW4i+aev6UgQ3vVvw9FcjUvMBdhKk72KVoruYiC0TOl
-Wjeeo1al1CPI4anO7MULTE4h8ImXP3Oe2K5x4aujbDJ94pODO64yCJWO8o7bZJptY1kIvqxtRNxh50ppSbbB/vBKtvHXFGwnKs3/u328vvxbRDVnUyJk
-kJhD/RmpJCvDnKSuuCG1VcK/V36fgnx4jOX1p158/Xhv9Ng3TEwlKnLmiVFDmtMozYd5luUyhhYVjyG3oHjh4od1zpkvQ39ciSiLVlj1uVXoD7vc1d+l
-oBQrzV/KOj6CfFjGKwvZX1v0c2M9VMwrWcpvcL+xav3Kflf5if/EW+YnDOzo9rMXBXaSE861zeA5f90wjuRsIJGwLhRV/QPGuchj4KX0GX/Apl/mAfsq
-Wj36XRYKy2RLrZqWEANhNAbNZBvnDTiMyHq17vFA9FpN41jUei0tlZAz1xgPBka3Ju61tA3qRMXnPhkOB2KMM1BbqTPoa2lqJEUwnf6DWreDK3Ra3aaW
-Saxw0r/fH3zWN0atEY/OYm16IyJXfCT6x91OY6zl6M+oCGBwMjYGx8ZANFtC20zM3hCtZmdstD5vtFpNPH8eb12PyMedXgsn0ArUJIvwRWvYrTVwACQm
-DLfTbHVbeGitmNjNaDwQqLZap4vCrYQmRu2T8bjTv2c08cRaKTH0pF87GbcHovMTHFqmbmD0lKjd7qBGZ9hO7LXTH7dEv9bVtORe1F6PT7pdbSdx8v7A
-GNbGbU1P7LFZ69XuLe1hF0u2vYi01qt37p0MTkba3pXdN1Ehotfp4xb3MThfjy02btO5e7XhEMUHR19BMZJ2earPh92BqI1pw3GL3QMtKrw3qFG3k6wk
-wh3X7rf6Rv2hgSuhHaKh0sYjgMagN6Qr09KxtuR/AH7On5o=
+eNq1Wc2TG1cRj3YlrdRaaWdnv+S1ExwlBGdTccg6kAIqBfpaS1hf9aR1Yg5MzY7Gu4OlmclIa3uTC0fOFNcUZw6pggsnThRXTlTxN/AncKGgu98baWZW
+dpEynDTd/Xtf/frrteDvedifWaY78bzpB08//IC+7/qBN/f0Qsi/+/TDyvcgM/Bm9rG+Cann5dTt1J2USD0n6qq8JqkrXYP1K/NZeZ1p+qw8guKp6zz2
+gmnVPZ/YM30XMo+dYDZXU0hCvwV5x7UCe2q7czXdkkFjLO8SJTRxUUiicgdKzef+xLGcuZp7H7Imf+Hk6ziFoio/huJwbvu+PVZAHdKXrhPugb/1Q8iO
+7cncnOH663e2a2saTiA5lT+nAGq2GZ7h+7BxKQ/FMxSOD+9GVHU3duDWayIE6z+AnK12zIcsHN+MDYwfB0cu4LTkTB6BlZBcMnY8WlKBa3kc55uW455X
+vlqD7aHtzrygYc+swPHnjueSzmbM5KMUhaL09yD9xHHHvM/S8UF8NYY8QLFgEOnTNac2by0v+Fu/A5kpX1qa96vHZmBTEhKgf7C4tgxD44st9R7eJ15V
+zvTtYH4Z2OUsX+GC1m9CPkCYbUwdt7whhczoOm5EaD4v56JC83nl92uQHuLCZMUz+3PWR1rQJxngbG5OfWWakoiobj2muncg7eP5XnJwlut3IeeNvak9
+D67UyVdhFxiyUN7sDA+9fmdDWqjk6G9DwXHnuL4zdxCwgYAiA6LsiKZz/52mXwc4s88dd4Ya88t5HJQTecnpmn7lI8iTxmrm3LrQv4NKQkI6X+F4O24y
++C2k/OhTgKUF4Z0cDJu9YV8YD9q9hnHaGw6a9fZJu9nQXtP30GQjwk512BRaKske9ntVoa3V1v+ZSp1lOXjdg39swY1YYLNnMzT4VbHtb0UMEFJc99zH
+zrl+G/KWPZkYM+cLW0YJ8kZiDZHzq1RKrwD4hmdZl75jSy9JtTBo+X3FIgxemG88DmzpGKnWmsj4J0iS7BZs+IYfOGg9aRaui6w/IJqkZcj4bMEZlqXR
+YtB+lxI0Xzb8VoYk5nOSHIPunaFlWhPbmF841hMXjyRdoJUV26FsFIpozB0onuGtGwt3YqdobYhNYlcVl5Afk+tcGVMPQyIbQul4L3bDwrzqkrCVI5+S
+3zTwLQATdTK9nJhzuwxkQq28iPCUNi+cuRGYY+dyVi7wJkDkkSeYRZh3oTQOPN9wPSOwcVtueZMnK4hN4vc8wVyCHkHpwplOjWVOKSI009oUReK3Q3YU
+O7ZDbImxRYlt2BHsj+CAsSv0vMV7Lok9AvRX6fpD0HlwXOEaj9sSGslqCaV/AuWZ55rBqgW3eaAm9hmxcsV7sCOHx5fUeeS22GZhcs2PYFcOWpo329sO
+j9LVqEFo58r43oJCOIrMdpfBOyIvwcp2oyCccY9BuwuQnOknsGlNzNnMmHmXgWWX99nWyjFbqxNgyPLWnihYS5JmeB80OUPEQQ94rX1RYskg6qXfDhdU
+vlpm6IEACQ0dFpUpYdICwolvsLGUxTYLW3T5kbnfg63IIJ7+kAfcEMXFgHCFd2BzTNE8MCjQzMo3GXkoCpJbJ6ZyWoVT/nKLd3xTqOELl6ltAhiLOFYr
+QiGiEioN1JFrADlDRaNaDrLyEsMv83ltD3ZWmGBNg1LctHjBRZjgBZd+zuTSy2vbsGXEHZpZccddshb+WTuEsvECN+SdXvey2k24YbzIk2r7sGus8JPa
+AewZq1yhVoJNI2LtcRrlW1A0ojZc24FtI2mSEZS6BdrHChOr6aAZCSviwVFj4buIWcXRl5ALY7J+A/ZE9ZHR7TeanUSKrcAbS1G797Aphk1DZVdmYr49
+gJ0lpiaaKG5Vu9paXDASVRpd7WjrRz+HQsRJMduV65i8h5iqT0W9mdjCIezHpP16/XRQ7dUfyVQfk7Xa3W4y1f/mXTiIpvrHARagKxL94QteOocvLhQq
+/8pB5oTmw0SRuUBVe6rmj9dqLZJgjSAh+ndh45k9sbBwU4X+bgz9qZRRoa5geh90WT6ioS+qc1Xrv7Gi+o7U8DjN9uxaYf8xAI0yzqg4U7Xo/rWajEs3
+nCA/W9Rxb8O6aT1RFakWG1G1niCWxKQNOwiwesmu0EaTJKQNhmBlmPbxBcK1SLIwHKAAkQxgoIfA3Cqgp4D4S/o997zx2ZXNtUhSv/eljPSrYPj2AssL
+AttivcKK8re+EOO4CBiz8KY/QU0G9ueXNr5cCzw4npEGCBBSjqML/pKki1DD/ckV1yzJi5CDUUoX4YcErXvumZPFusUV695HQGTd8yVJ66rhtG5pxbpy
+sFr3PCT0NuZP76kdmPhQCtfe4uG3EgqToOX6W1acpdehFJmK9qGteL0uJ5J7KVpRhv4Q9tBF/AD9EgNwxKi3ea7biblCZNS8d6zrbNrcxLMwMy1Oqa/Y
+XIchyzMWJ1EGXdJiEjrfzopLCqeQpytMliQG0KwVWPeOrfK/ScUbQpG1LKTPvPFV5ddrkOHggvWvxiHJ8iYGqodilHqzb4X8h5JN79XAO/NklyEvJIFP
+hw0V29RDPSQJP/ee2C6HCcQzgQ8K3IxNVXtmVcsh+mASCklvYmviUBWd5akUxW9lWc9tSL6k6N1KxwwrmZx6agExl3UMJdgIrPLHFGyoGEpPVHUMwxmz
+QvIYzSSnPcZiScM8NDfGl4F5hmmfXvZr/LIvEb8h2UN85L8H2YkzdeYzFXV34nfIIqEg+ptYNAb2GKuZs6s5vqfTPGVB8mrEoqbIF7P5mJWXE/xd+QKy
+ciI8eInTFJdmXA7Lu9xkLr0ysR6mhgXVJDMGrDEgxwwSvo/lPT2oDSxYpEcwTDYjNBYN7IBtnfobn8DOCuegbS5euUXB34ut04qbauu/gHUM//q3oBBV
+pWySwHipRgSYvj+hWmmpa1AsAiRVt35NdZUnkOEUglkmbWEBw8uUEtGLEXWUCsaQeU/xbBg2lNmHJHUXA+qg0BZ5uZxYMiq3IE1JiJzA9VxLLpYVkmCp
+90Lpm7Chcg1ZOLrATDklWrikKn9KASxTC2YuGFEzxaC2zspSQrV9Rl3T7yOGul2B/dRhv5XaXNB0MmoRmo6rGoMpsWTgy6bke9T6Qd+YOedTU7YaRDHk
+DolJRnZlPlOIjOyKIYOFlbeo7+ugB7+k71v5KSrJnF+QDnwCLxqwkiL+xHbP5xdqiKLIzixvNlc75+9KHzaE/fhyZk7+N7df+eUaFCLpWS/BmgoUaYFf
+1KjEJ0EQtmSTl4EHEBJAjT3Kkio+rAKyHN+5RRMj9jPj0n3ies9kWM2JTWaeSl4y8mVWRj5ChWU+KSqr+kygnoTIWxEfmY4Mq3yVgvyiyLimgJcZGFVk
+eLPqyImKDAVckdHVY0UWyGtTtWa8IlNXShWZgtH707ucUwyv/C4FhUgl8wpXlNDq+mqtHsH248Bz5w4qSMZfR14S5tJQwCFYPe6iueevKUjTXvUfQoFc
+zQvMeZiKk32K5lIuomD0TKnWtReoVSn1CLJ4qnN7/hKTUwh84uXOnae2a1z66igbTJ/65OCOqwxCpaOc4zaYZttYFILf1DYi7rB9rbQk22B/eCXb+EsK
+thKV5v/dPl5f/GuimrMpETJIzKH+nFSSkWFOUtfckNoq4b8vv09BLjzG4vpTL79+vDd67BsmphIVOXPEqCLNaZTmwzzLchlDC4rHkNtQuHTxw7rgzJem
+/7VElEUrLPvcKvSHXe7K1ykoxkrzb2Qd9yAXlvHKQvZWFv3cWA8V80qW8lvcb6xav7bfZX7i//gW+QkDO7r99GWBneSEc20zeME/O4wjORtIJKwLRVX+
+gHEu8hj4RvqMP2DXv8kD9lW0evR1BvKLZEutmqYQfWHU+41kG+cNOIzIutXOSV90mw3jRFS7TS2VkDPXGPX7Rqcq7je1NepExec+HQz6YoQzUFup3e9p
+69RIimDavYfVThtXaDc7DS2dWOG096DX/7RnDJtDHp3B2vRmRK74SPROOu36SMvSn1ERQP90ZPRPjL5oNIW2kZi9LpqN9shoflZvNht4/hzeuh6Rj9rd
+Jk6g5alJFuGL5qBTreMASEwYbqfR7DTx0FohsZvhqC9QbdV2B4WbCU0MW6ejUbt332jgibViYuhpr3o6avVF+2c4tETdwOgpUbudfpXOsJXYa7s3aope
+taNpyb2ovZ6cdjraduLkvb4xqI5amp7YY6Pard5f2MMOlmy7EWm1W2vfP+2fDrXda7tvoEJEt93DLe5hcL4RW2zUonN3q4MBivePvoRCJO3yVJ8NOn1R
+HdGG4xa7C1pUeL9fpW4nWUmEO6o+aPaM2iMDV0I7REOljUcA9X53QFemrcfakv8Bnq2okw==
 """
 
 
@@ -438,9 +438,11 @@ def _describe(sensor: int, kind: str, name: str, mount: Pose, uniform: Tuple[Any
 
 
 def _encode_scan(sensor: Sensor, ranges: Any, pose: Any, stamp: float, odometry: Any, intensities: Any,
-                 angles: Any) -> bytes:
+                 angles: Any, begins_map: Any = False) -> bytes:
     """A Scan without its seq, which is known when it is sent."""
-    scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp))
+    if not isinstance(begins_map, bool):
+        raise ValueError(f"begins_map is {begins_map!r}; True or False is needed")
+    scan = _Scan(sensor=sensor.id, stamp=_finite("stamp", stamp), begins_map=begins_map)
     _set_pose("pose", pose, scan.pose)
     if odometry is not None:
         _set_pose("odometry", odometry, scan.odometry)
@@ -1101,7 +1103,8 @@ class Client:
 
     def send(self, sensor: Sensor, ranges: Sequence[float], *, pose: Pose, stamp: Optional[float] = None,
              odometry: Optional[Pose] = None, intensities: Optional[Sequence[int]] = None,
-             angles: Optional[Sequence[float]] = None, block: bool = True, timeout: Optional[float] = None) -> None:
+             angles: Optional[Sequence[float]] = None, begins_map: bool = False, block: bool = True,
+             timeout: Optional[float] = None) -> None:
         """Takes a scan and returns; it is sent as soon as there is a link.
 
         ranges       one a beam; inf, or range_max and more: nothing within range; nan, 0, below range_min: no valid
@@ -1111,17 +1114,20 @@ class Client:
         odometry     of the robot in its odometry frame
         intensities  the sensor's own scale, one a beam
         angles       of this scan's beams, where they are not the sensor's
+        begins_map   people said the pose, as locate() had raised NOTHING_MAPPED; of all scans from there. If something
+                     is mapped by then, the robot's first scan is refused, and the client fails with SESSION_CONFLICT
 
         Waits while the buffer is full. Raises BufferFull if block is False then, or when timeout seconds have passed;
         ScanloomError once the client has failed.
         """
-        self._take(*self._encoded(sensor, ranges, pose, stamp, odometry, intensities, angles), block, timeout)
+        self._take(*self._encoded(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map), block,
+                   timeout)
 
     def _encoded(self, sensor: Sensor, ranges: Any, pose: Any, stamp: Optional[float], odometry: Any, intensities: Any,
-                 angles: Any) -> Tuple[Sensor, bytes]:
+                 angles: Any, begins_map: bool = False) -> Tuple[Sensor, bytes]:
         self._check_sensor(sensor)
         stamp = time.time() if stamp is None else stamp
-        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles)
+        return sensor, _encode_scan(sensor, ranges, pose, stamp, odometry, intensities, angles, begins_map)
 
     def _check_sensor(self, sensor: Any) -> None:
         if not isinstance(sensor, Sensor):
@@ -1221,7 +1227,8 @@ class Client:
         near      the robot is no more than radius metres from there, along each axis; None: anywhere in the map
 
         Raises ScanloomError with AMBIGUOUS where several places look alike, UNDETERMINED where too little of what is
-        seen is in the map, NOTHING_MAPPED where no laser has seen anything yet, and TIMEOUT as plan() does.
+        seen is in the map, NOTHING_MAPPED where no laser has seen anything yet (say where the robot stands, and send()
+        its scans from there with begins_map=True), and TIMEOUT as plan() does.
         """
         frame = _Frame()
         request = frame.locate_request

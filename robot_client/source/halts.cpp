@@ -13,7 +13,14 @@
 namespace scanloom::robot {
 namespace {
 
-std::string text_of(const Pose2& pose) { return fmt::format("({:.2f}, {:.2f}), yaw {:.2f}", pose.x, pose.y, pose.yaw); }
+constexpr double kAlmostSure = 3.0; // sigmas
+
+/// As it is told, without a -0.00.
+double rounded(double value) { return std::round(100.0 * value) / 100.0 + 0.0; }
+
+std::string text_of(const Pose2& pose) {
+    return fmt::format("({:.2f}, {:.2f}), yaw {:.2f}", rounded(pose.x), rounded(pose.y), rounded(pose.yaw));
+}
 
 } // namespace
 
@@ -50,6 +57,7 @@ void Halts::leave() {
     }
     drop_held();
     T_map_odom_.reset();
+    begins_map_ = false;
     refused_at_.reset();
     stillness_ = {};
 }
@@ -78,13 +86,15 @@ void Halts::answer(const Result<Located>& located) {
     tell(fmt::format("located at {}: {:.0f} % of what the lidar sees is in the map; known within {:.1f} cm and {:.2f} "
                      "degrees",
                      text_of(compose(*T_map_odom_, held_.back().scan.pose)), 100.0 * located->explained,
-                     100.0 * located->position_sigma, located->yaw_sigma * 180.0 / std::numbers::pi));
+                     kAlmostSure * 100.0 * located->position_sigma,
+                     kAlmostSure * located->yaw_sigma * 180.0 / std::numbers::pi));
     release(kTurnsHeldBack);
 }
 
 void Halts::place_first() {
     const Pose2 place = *std::exchange(first_place_, std::nullopt);
     T_map_odom_ = compose(place, inverse(held_.back().scan.pose));
+    begins_map_ = true;
     tell(fmt::format(
         "nothing is mapped yet: the lidar is taken to stand at {}, and its next places are found from there",
         text_of(place)));
@@ -107,6 +117,7 @@ void Halts::release(std::size_t held_back) {
     for (; held_.size() > held_back; held_.pop_front()) {
         Observation turn = std::move(held_.front());
         turn.scan.pose = compose(*T_map_odom_, turn.scan.pose);
+        turn.scan.begins_map = begins_map_;
         ready_.push_back(std::move(turn));
     }
 }

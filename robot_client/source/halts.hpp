@@ -76,6 +76,7 @@ private:
     std::deque<Observation> held_; ///< at most kTurnsAlike of the newest turns, all alike
     std::deque<Observation> ready_;
     std::optional<Pose2> T_map_odom_;  ///< of this halt
+    bool begins_map_ = false;          ///< this halt: its place was said, not told
     std::optional<double> refused_at_; ///< stamp, seconds: of this halt
     std::optional<Error> refusal_;
     std::deque<std::string> told_; ///< of this halt, the newest kToldMax

@@ -141,7 +141,7 @@ std::size_t Projection::page_count() const noexcept {
 Snapshot Projection::snapshot() {
     Snapshot snapshot{.revision = revision_,
                       .config = config_,
-                      .bounds = {laser_.bounds(), sonar_.bounds()},
+                      .bounds = bounds(),
                       .chunk_count = chunk_count(),
                       .laser = laser_.snapshot(),
                       .sonar = sonar_.snapshot()};
@@ -187,7 +187,7 @@ Projection::Robot Projection::Robot::branch() const {
 }
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision_, {laser_.bounds(), sonar_.bounds()}, chunk_count(), {}};
+    ProjectionState state{revision_, bounds(), chunk_count(), {}};
     for (const auto& robot : robots_) {
         auto& out = state.robots.emplace_back(ProjectionState::Robot{robot.state.name,
                                                                      robot.source,

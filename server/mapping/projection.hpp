@@ -58,6 +58,9 @@ public:
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
+    /// The cells that any scan changed.
+    [[nodiscard]] LayerBounds bounds() const noexcept { return {laser_.bounds(), sonar_.bounds()}; }
+
     /// Of lasers and sonars.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
 

@@ -15,10 +15,10 @@ grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept {
     return {seen.i_begin - 1, seen.j_begin - 1, seen.i_end + 1, seen.j_end + 1}; // frontiers lie around what is free
 }
 
-grid::CellBox bounds_of(const Snapshot& snapshot) noexcept {
-    grid::CellBox all = snapshot.bounds.laser.occupancy;
-    all.include(snapshot.bounds.laser.himm);
-    all.include(snapshot.bounds.sonar);
+grid::CellBox bounds_of(const LayerBounds& bounds) noexcept {
+    grid::CellBox all = bounds.laser.occupancy;
+    all.include(bounds.laser.himm);
+    all.include(bounds.sonar);
     return all;
 }
 

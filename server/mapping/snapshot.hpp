@@ -47,6 +47,9 @@ struct LayerBounds {
     friend bool operator==(const LayerBounds&, const LayerBounds&) = default;
 };
 
+/// The cells in which any layer shows what a sensor saw.
+[[nodiscard]] grid::CellBox bounds_of(const LayerBounds& bounds) noexcept;
+
 /// Everything a session has woven from its log up to one revision: what all readers read.
 /// Immutable; hold it by shared_ptr<const Snapshot> as long as needed.
 struct Snapshot {
@@ -63,7 +66,6 @@ struct Snapshot {
 /// The cells in which a layer shows anything.
 [[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
 
-/// The cells in which any layer shows what a sensor saw.
-[[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot) noexcept;
+[[nodiscard]] inline grid::CellBox bounds_of(const Snapshot& snapshot) noexcept { return bounds_of(snapshot.bounds); }
 
 } // namespace scanloom::mapping

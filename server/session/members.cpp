@@ -11,6 +11,14 @@ namespace {
 
 constexpr std::size_t kRobotsMax = 1024; // of one session
 
+Error begun_already(const std::string& robot, const std::string& session) {
+    return {Errc::kConflict,
+            fmt::format("begins_map: robot '{}' was to begin the map of session '{}' from a pose that people said, but "
+                        "something is mapped by now, and nobody knows how the two lie to each other: have the robot's "
+                        "place told anew, or send these scans into another session",
+                        robot, session)};
+}
+
 } // namespace
 
 void Members::restore(const mapping::ProjectionState& state) {
@@ -24,6 +32,7 @@ void Members::restore(Member& member, const mapping::ProjectionState::Robot& sta
     member.source = state.source;
     member.body_radius = state.body_radius;
     member.received_seq = member.durable_seq = state.last_seq;
+    if (member.showed_seq > member.received_seq) member.showed_seq = 0;
     member.under_way = 0;
     member.sensors.clear();
     for (const auto& known : state.sensors) member.sensors[known.sensor->id] = *known.sensor;
@@ -159,7 +168,7 @@ std::vector<Submitted> Members::describe(const std::shared_ptr<RobotListener>& f
 }
 
 std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
-                                     std::size_t bytes) {
+                                     std::size_t bytes, bool is_mapped) {
     std::vector<Submitted> entries;
     Member* member = member_of(from);
     if (member == nullptr) { // the link was cut or replaced while they came: the robot will send them again
@@ -174,7 +183,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
             ++counters_.scans_duplicates;
             continue;
         }
-        if (auto ok = check_next(*member, scan); !ok) {
+        if (auto ok = check_next(*member, scan, is_mapped); !ok) {
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
@@ -184,6 +193,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
             continue;
         }
         member->received_seq = scan.seq;
+        if (member->showed_seq == 0 && !reach.cells.empty()) member->showed_seq = scan.seq;
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
     }
@@ -194,7 +204,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
     return entries;
 }
 
-Result<> Members::check_next(const Member& member, const Scan& scan) const {
+Result<> Members::check_next(const Member& member, const Scan& scan, bool is_mapped) const {
     if (scan.seq != member.received_seq + 1) {
         return Error{
             Errc::kOutOfOrder,
@@ -205,6 +215,10 @@ Result<> Members::check_next(const Member& member, const Scan& scan) const {
     if (sensor == member.sensors.end()) {
         return Error{Errc::kInvalidField,
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
+    }
+    if (scan.begins_map && member.received_seq == 0) { // what follows a robot's first scan lies to that as it says
+        const auto shows = [](const Member& other) { return other.showed_seq > 0; };
+        if (is_mapped || std::ranges::any_of(members_, shows)) return begun_already(member.name, info_.name);
     }
     return wire::check_scan(scan, sensor->second);
 }

@@ -53,8 +53,9 @@ public:
     /// @return what to append; nothing from a link that is not a robot's. A fault fails the link.
     [[nodiscard]] std::vector<Submitted> describe(const std::shared_ptr<RobotListener>& from, Sensor sensor,
                                                   std::size_t bytes);
+    /// @param is_mapped  whether anything of the session is in the maps yet
     [[nodiscard]] std::vector<Submitted> take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
-                                              std::size_t bytes);
+                                              std::size_t bytes, bool is_mapped);
 
     /// The group is in the maps: tells the links, gives back their credit, lets in who waited for that.
     void release(const Group& group);
@@ -74,6 +75,7 @@ private:
         std::size_t under_way = 0; // entries submitted and not released
         std::uint64_t received_seq = 0;
         std::uint64_t durable_seq = 0;
+        std::uint64_t showed_seq = 0; // of the first scan taken here that shows anything; 0: there is none
         std::map<std::uint32_t, Sensor> sensors;
     };
 
@@ -81,7 +83,7 @@ private:
     [[nodiscard]] Member* member_of(const std::shared_ptr<RobotListener>& listener);
     [[nodiscard]] Submitted submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
     [[nodiscard]] Result<> check_source(const Member& member, const std::string& source) const;
-    [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan) const;
+    [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan, bool is_mapped) const;
     void restore(Member& member, const mapping::ProjectionState::Robot& state);
     void admit(Member& member);
     void fail(Member& member, const Error& error);

@@ -118,8 +118,12 @@ void Session::submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::si
 
 void Session::submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes) {
     on_strand([from = std::move(from), scans = std::move(scans), bytes](Session& self) mutable {
-        if (!self.refusing_) return self.enqueue(self.members_.take(from, std::move(scans), bytes));
-        self.counters_->scans_dropped += scans.size();
+        if (self.refusing_) {
+            self.counters_->scans_dropped += scans.size();
+            return;
+        }
+        const bool is_mapped = !mapping::bounds_of(self.projection_.bounds()).empty();
+        self.enqueue(self.members_.take(from, std::move(scans), bytes, is_mapped));
     });
 }
 

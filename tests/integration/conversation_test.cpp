@@ -188,6 +188,27 @@ TEST_F(IngestTest, TwoRobotsWeaveOneMapAndEachHasItsOwnSeqs) {
     for (const auto& robot : snapshot->robots) EXPECT_EQ(robot.last_seq, 200U);
 }
 
+TEST_F(IngestTest, TheSecondThatWasToBeginTheMapIsToldThatItIsBegunAndTriesNoMore) {
+    auto& ingest = start();
+    const auto first = welcomed(port(), hello("first"));
+    const auto late = welcomed(port(), hello("late"));
+    const auto begin = [](RobotSocket& robot, unsigned seed) {
+        auto scans = random_scans(seed, 1, 3);
+        for (Scan& scan : scans) scan.begins_map = true;
+        robot.send(small_laser());
+        robot.send(wire::ScanBatch{std::move(scans)});
+    };
+    begin(*first, 1);
+    while (first->receive_kind<wire::Ack>().durable_seq < 3) {
+    }
+    begin(*late, 2);
+    const auto told = late->receive_kind<wire::LinkError>();
+    EXPECT_EQ(told.error.code, Errc::kConflict);
+    EXPECT_FALSE(told.retryable);
+    EXPECT_THAT(told.error.message, testing::HasSubstr("scan_batch.scans[0].begins_map: robot 'late' was to begin"));
+    EXPECT_EQ(ingest.snapshot("lab")->robots.at(1).scan_count, 0U);
+}
+
 TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
     auto& ingest = start();
     std::vector<std::thread> robots;

@@ -36,17 +36,18 @@ class Fields(LinkTest):
 
     def test_all_that_is_given_arrives(self):
         scan = self.sent([1.0, math.inf, math.nan], odometry=(4.0, 5.0, 6.0), intensities=[1.0, 255, 0],
-                         angles=[0.1, 0.3, 0.2])
+                         angles=[0.1, 0.3, 0.2], begins_map=True)
         self.assertEqual((scan.pose.x, scan.pose.y, scan.pose.yaw, scan.stamp), (1.0, 2.0, 3.0, 4.5))
         self.assertEqual((scan.odometry.x, scan.odometry.y, scan.odometry.yaw), (4.0, 5.0, 6.0))
         self.assertEqual(list(scan.ranges), [1000, NO_RETURN, 0])
         self.assertEqual(list(scan.intensities), [1, 255, 0])
         self.assertEqual(list(scan.angles.explicit.angles), [0.1, 0.3, 0.2])
+        self.assertTrue(scan.begins_map)
 
     def test_what_is_not_given_is_absent(self):
         scan = self.sent([1.0], pose=(0, 0, 0))
         self.assertTrue(scan.HasField("pose"))
-        self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities)
+        self.assertFalse(scan.HasField("odometry") or scan.HasField("angles") or scan.intensities or scan.begins_map)
 
     def test_arrays_are_taken_as_lists_are(self):
         self.assertEqual(list(self.sent(array.array("f", [1.5, 2.5])).ranges), [1500, 2500])
@@ -85,6 +86,7 @@ class Refused(LinkTest):
                     ("for 3 angles", {"angles": [0.0, 0.1, 0.2]}),
                     ("an angle is nan", {"angles": [0.0, math.nan]}),
                     ("intensities has 1 values", {"intensities": [1]}),
+                    ("begins_map is 'False'", {"begins_map": "False"}),
                     ("intensities are whole numbers", {"intensities": [-1, 0]}),
                     ("pose.yaw is nan", {"pose": (0.0, 0.0, math.nan)}),
                     ("pose.x is 2000000.0", {"pose": (2e6, 0.0, 0.0)}),

@@ -84,6 +84,8 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
     scan.intensities.clear();
     scan.angles.reset();
     EXPECT_EQ(decode(body_of(ScanBatch{{scan}})).value(), Message(ScanBatch{{scan}}));
+    scan.begins_map = true;
+    EXPECT_EQ(decode(body_of(ScanBatch{{scan}})).value(), Message(ScanBatch{{scan}}));
     Sensor sensor = example_sensor();
     sensor.angles = ExplicitAngles{3.0, -1.0};
     EXPECT_EQ(decode(body_of(sensor)).value(), Message(sensor));

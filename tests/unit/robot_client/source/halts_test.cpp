@@ -55,11 +55,12 @@ TEST_F(HaltsTest, GiveTheirTurnsWhereTheyWereLocated) {
     halts_.answer(kLocated);
     EXPECT_THAT(halts_.take_news(),
                 ElementsAre("located at (3.00, 4.00), yaw 1.00: 93 % of what the lidar sees is in the "
-                            "map; known within 2.0 cm and 0.57 degrees"));
+                            "map; known within 6.0 cm and 1.72 degrees"));
     auto scans = given();
     ASSERT_EQ(scans.size(), 7U) << "the newest three may be of a movement's begin";
     for (std::size_t n = 0; n < scans.size(); ++n) {
         EXPECT_EQ(scans[n].pose, kLocated.T_map_odom);
+        EXPECT_FALSE(scans[n].begins_map);
         EXPECT_NEAR(scans[n].stamp, 1000.0 + 0.1 * static_cast<double>(n), 1e-9);
     }
     stand(kHere, 5);
@@ -161,6 +162,7 @@ TEST_F(HaltsTest, TheFirstOneIsWhereItWasSaidToBeIfNothingIsMapped) {
     EXPECT_NEAR(scans[0].pose.x, kFirstPlace.x, 1e-12);
     EXPECT_NEAR(scans[0].pose.y, kFirstPlace.y, 1e-12);
     EXPECT_NEAR(scans[0].pose.yaw, kFirstPlace.yaw, 1e-12);
+    EXPECT_TRUE(std::ranges::all_of(scans, &Scan::begins_map)) << "the first may be dropped for want of room";
     EXPECT_FALSE(halts_.refusal());
 
     walk(kHere, kThere, 30);
