@@ -107,8 +107,8 @@ void add_locating(CLI::App& ld06, Ld06Options& options) {
         "where it stands. What it sees on its way is dropped. A capture file is sent once more by each run");
     ld06.add_option_function<std::string>(
             "--near", [&](const std::string& text) { options.near = checked_near(text); },
-            "X,Y,RADIUS in metres, with --locate: it stands no farther from there, along either axis. Default: "
-            "anywhere in the map")
+            "X,Y,RADIUS in metres, with --locate: it stands no farther from there first, along either axis, and is "
+            "carried no more than 100 m from place to place. Default: anywhere in the map")
         ->check(check_near);
 }
 

@@ -57,6 +57,7 @@ void locate(PreparedSource& prepared, const Ld06Options& ld06, std::unique_ptr<L
                                                      [&console](const std::string& text) { console.note(text); });
     prepared.locating = locating.get();
     prepared.near = ld06.near;
+    if (ld06.pose) prepared.first_place = {ld06.pose->x, ld06.pose->y};
     prepared.live = std::move(locating);
 }
 

@@ -23,7 +23,8 @@ struct PreparedSource {
     std::string_view order;               ///< of a log's scans: "file" or "time", a literal; else empty
     ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
     LocatingSource* locating = nullptr;   ///< likewise
-    std::optional<wire::Near> near;       ///< of `locating`: where it must be
+    std::optional<wire::Near> near;       ///< of `locating`: where it stands first
+    Point2 first_place{0.0, 0.0};         ///< of `locating`: where that is taken to be while nothing is mapped
     std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
 
     /// Those of the source.

@@ -141,7 +141,8 @@ ExitCode run(const RobotOptions& options) {
     asio::io_context io(1);
     Uplink uplink(io, std::move(carried), **feed);
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kWayClearance));
-    if (prepared->locating != nullptr) prepared->locating->ask_with(located_by(uplink, prepared->near));
+    if (prepared->locating != nullptr)
+        prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));
     std::optional<Result<>> outcome; // none where a second signal ends it
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);

@@ -3,6 +3,7 @@
 #include "robot_client/source/seen_points.hpp"
 #include "robot_client/uplink/asking.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace scanloom::robot {
@@ -22,11 +23,37 @@ asio::awaitable<Result<Located>> ask(Uplink& uplink, wire::LocateRequest request
     co_return Located{correction->T_map_odom, correction->explained, correction->position_sigma, correction->yaw_sigma};
 }
 
+/// What was said of the first place holds for no other: a robot that is carried out of it may be where that looks
+/// alike.
+struct Sought {
+    std::optional<wire::Near> near;
+    Point2 first_place;
+    bool is_placed = false;
+
+    void place(const Point2& place) {
+        if (near) near = wire::Near{place, kCarriedMax};
+        is_placed = true;
+    }
+};
+
+asio::awaitable<Result<Located>> ask_where(Uplink& uplink, wire::LocateRequest request,
+                                           std::shared_ptr<Sought> sought) {
+    const Point2 from = request.from;
+    auto located = co_await ask(uplink, std::move(request));
+    if (located) {
+        sought->place(transform(located->T_map_odom, from));
+    } else if (located.error().code == Errc::kNothingMapped && !sought->is_placed) {
+        sought->place(sought->first_place);
+    }
+    co_return located;
+}
+
 } // namespace
 
-Locate located_by(Uplink& uplink, std::optional<wire::Near> near) {
-    return [&uplink, near](std::vector<PointMm> points, Point2 from) {
-        return ask(uplink, wire::LocateRequest{0, std::move(points), from, near});
+Locate located_by(Uplink& uplink, const std::optional<wire::Near>& near, const Point2& first_place) {
+    const auto sought = std::make_shared<Sought>(Sought{near, first_place});
+    return [&uplink, sought](std::vector<PointMm> points, Point2 from) {
+        return ask_where(uplink, wire::LocateRequest{0, std::move(points), from, sought->near}, sought);
     };
 }
 

@@ -164,7 +164,10 @@ asio::awaitable<bool> FakeServer::meet(Link& link, const wire::LocateRequest& re
         co_await link.send(error);
         co_return false;
     }
-    const wire::Message reply = wire::LocateReply{request.id, stored_.size(), link.script.location};
+    const auto& first = link.script.locations;
+    const std::size_t asked = locates_.size();
+    const wire::Message reply =
+        wire::LocateReply{request.id, stored_.size(), asked <= first.size() ? first[asked - 1] : link.script.location};
     co_return co_await link.send(reply);
 }
 

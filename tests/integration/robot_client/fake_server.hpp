@@ -27,7 +27,8 @@ struct LinkScript {
     std::optional<std::uint64_t> stop_reading_after_scans = {};
     std::optional<std::uint64_t> hang_up_after_requests = {}; ///< instead of answering the last of them
     bool knows_locating = true;                               ///< else the question is a frame without a body to it
-    Result<wire::Correction> location = wire::Correction{};   ///< what it answers to that
+    Result<wire::Correction> location = wire::Correction{};   ///< what it answers to that,
+    std::vector<Result<wire::Correction>> locations = {};     ///< and to the first questions, one each
     std::string session_id = "f1";
     std::uint64_t credit_bytes = 20'000;
     std::uint64_t ack_every = 1; ///< batches

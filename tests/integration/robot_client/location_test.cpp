@@ -15,6 +15,7 @@ using namespace asio::experimental::awaitable_operators;
 using testing::HasSubstr;
 
 const wire::Near kNear{{1.0, 2.0}, 5.0};
+const Point2 kFirstPlace{-3.0, 4.0};
 
 class LocationTest : public LiveFeedTest {
 protected:
@@ -28,7 +29,7 @@ protected:
 
     /// Asks within a run of the robot's program, and ends that.
     asio::awaitable<void> ask(Uplink& uplink, ScriptedSource& source) {
-        const Locate locate = located_by(uplink, kNear);
+        const Locate locate = located_by(uplink, kNear, kFirstPlace);
         answer_ = co_await locate(points(), Point2(0.5, 0.25));
         source.end();
     }
@@ -36,6 +37,23 @@ protected:
     Result<> run_and_ask(ScriptedSource& source) {
         return run(source, nullptr,
                    [&] { asio::co_spawn(uplink_->executor(), ask(*uplink_, source), [](std::exception_ptr) {}); });
+    }
+
+    /// Where it is to be sought, of each of four questions.
+    std::vector<std::optional<wire::Near>> asked_four_times() {
+        ScriptedSource source;
+        const auto ask_four_times = [&]() -> asio::awaitable<void> {
+            const Locate locate = located_by(*uplink_, kNear, kFirstPlace);
+            for (int times = 0; times < 4; ++times) static_cast<void>(co_await locate(points(), Point2(0.5, 0.25)));
+            source.end();
+        };
+        EXPECT_TRUE(run(source, nullptr, [&] {
+            asio::co_spawn(uplink_->executor(), ask_four_times(),
+                           [](std::exception_ptr failed) { EXPECT_FALSE(failed); });
+        }));
+        std::vector<std::optional<wire::Near>> asked;
+        for (const auto& request : server_.locates()) asked.push_back(request.near);
+        return asked;
     }
 
     std::optional<Result<Located>> answer_;
@@ -54,6 +72,22 @@ TEST_F(LocationTest, IsWhatTheServerAnswers) {
     EXPECT_EQ(server_.locates()[0].points, points());
     EXPECT_EQ(server_.locates()[0].from, Point2(0.5, 0.25));
     EXPECT_EQ(server_.locates()[0].near, kNear);
+}
+
+TEST_F(LocationTest, OfWhichWasSaidWhereItIsFirstIsAfterwardsSoughtAroundThat) {
+    serve({.location = Error{Errc::kNothingMapped, "nothing"},
+           .locations = {Error{Errc::kAmbiguous, "here or there"},
+                         wire::Correction{{10.0, 20.0, 0.0}, 7, 0.9, 0.01, 0.02},
+                         Error{Errc::kAmbiguous, "here or there"}}});
+    EXPECT_THAT(asked_four_times(),
+                testing::ElementsAre(kNear, kNear, wire::Near{{10.5, 20.25}, 100.0}, wire::Near{{10.5, 20.25}, 100.0}));
+}
+
+TEST_F(LocationTest, WhereNothingIsMappedIsAfterwardsSoughtAroundTheFirstPlace) {
+    serve(
+        {.location = Error{Errc::kUndetermined, "too little"}, .locations = {Error{Errc::kNothingMapped, "nothing"}}});
+    const wire::Near around{kFirstPlace, 100.0};
+    EXPECT_THAT(asked_four_times(), testing::ElementsAre(kNear, around, around, around));
 }
 
 TEST_F(LocationTest, IsAskedForOnceTheScansBeforeAreInTheMaps) {
@@ -92,7 +126,7 @@ TEST_F(LocationTest, ThatNobodyWaitsForAnyMoreLeavesRoomForOthers) {
     serve({.hang_up_after_requests = 1});
     ScriptedSource source;
     const auto leave = [&]() -> asio::awaitable<void> {
-        const Locate locate = located_by(*uplink_, std::nullopt);
+        const Locate locate = located_by(*uplink_, std::nullopt, kFirstPlace);
         const auto until_asked = [&]() -> asio::awaitable<void> {
             while (server_.locates().empty()) co_await asio::post(asio::use_awaitable);
         };
@@ -120,7 +154,8 @@ TEST_F(LocationTest, OfACarriedLidarIsAskedForAtEachPlaceAndAllThatIsSentHasIt) 
     };
     LocatingSource source(std::make_unique<ReplayedSource>(std::make_unique<RecordedSource>(std::move(turns))), {},
                           options_.tell);
-    const auto outcome = run(source, nullptr, [&] { source.ask_with(located_by(*uplink_, std::nullopt)); });
+    const auto outcome =
+        run(source, nullptr, [&] { source.ask_with(located_by(*uplink_, std::nullopt, kFirstPlace)); });
     ASSERT_TRUE(outcome) << outcome.error().message;
     EXPECT_EQ(server_.faults(), std::vector<std::string>());
     EXPECT_EQ(server_.locates().size(), 2U);
