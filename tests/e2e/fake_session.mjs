@@ -50,7 +50,7 @@ export class FakeSession {
   see(id, [x, y], seen) {
     this.revision += 1;
     this.landmarks = this.landmarks.filter((each) => each.id !== id);
-    this.landmarks.push({ id, x, y, seen, last: this.revision });
+    this.landmarks.push({ id, x, y, seen, size_x: 0.31, size_y: 0.125, last: this.revision });
     this.tell();
   }
 

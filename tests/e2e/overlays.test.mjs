@@ -104,6 +104,10 @@ describe('on the map', { timeout: 180_000 }, () => {
     session.see(0, [5, 3], 3);
     await showsAt(...pixelOf(5, 3), colour);
     await showsNotAt(...pixelOf(3, 3), colour);
+    await page.mouse.move(...pixelOf(5, 3));
+    await says(page, '#cursor-others', /^Landmark 00\.31 × 0\.1[23] m, seen 3 times/);
+    await page.mouse.move(...pixelOf(5, 5));
+    await says(page, '#cursor-others', /^(?!.*Landmark)/);
     await keepPicture(page, 'landmarks');
     session.noLandmarks = 'there are more than <b>can be kept</b>';
     session.move('r1', 1, 1, 0);

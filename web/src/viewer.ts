@@ -191,7 +191,7 @@ export class Viewer {
     };
     map.open(session.cellSize, this.colours, settings.get());
     picture.open(source);
-    cursor.show({ readers, picture });
+    cursor.show({ readers, picture, landmarkAt: (place) => map.landmarkAt(place) });
     details.hidden = false;
     this.choose();
     session.robots.forEach((robot, index) => this.open?.robots.set(index, robot));

@@ -37,6 +37,8 @@ declare module 'virtual:live-protocol' {
     x: number;
     y: number;
     seen: number;
+    size_x: number;
+    size_y: number;
   }
 
   interface LandmarkChanges {

@@ -97,6 +97,8 @@ export interface Landmark {
   at: Point;
   /** By so many captures. */
   seen: number;
+  /** Metres along x and y, as it was seen last. */
+  size: Point;
 }
 
 /** Unexplored ground beside free ground, which hangs together. */

@@ -17,6 +17,9 @@ type Role = 'once' | 'again';
 /** Metres a pixel: from further off, those that were seen once would only hide the map. */
 const kNear = 0.04;
 
+/** As far from its middle one is still meant. */
+const kHitPx = 8;
+
 export class LandmarksLayer {
   private readonly source = new VectorSource();
   readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.landmarks });
@@ -36,6 +39,18 @@ export class LandmarksLayer {
     this.source.clear(true);
   }
 
+  /** The one that is seen there, if any: the nearest. @param resolution metres a pixel */
+  at([x = 0, y = 0]: number[], resolution: number): Landmark | null {
+    if (!this.layer.isVisible()) return null;
+    const reach = kHitPx * resolution;
+    const around = this.source.getFeaturesInExtent([x - reach, y - reach, x + reach, y + reach]);
+    const distance = ({ at }: Landmark): number => Math.hypot(at[0] - x, at[1] - y);
+    return around
+      .map((feature) => feature.get('landmark') as Landmark)
+      .filter(({ seen }) => resolution <= kNear || seen > 1)
+      .reduce<Landmark | null>((best, each) => (best && distance(best) <= distance(each) ? best : each), null);
+  }
+
   setTheme(theme: Theme): void {
     const near = stylesOf(theme);
     const far = dotOf(theme);
@@ -47,9 +62,10 @@ export class LandmarksLayer {
   }
 }
 
-function featureOf({ id, at, seen }: Landmark): Feature {
-  const feature = new Feature({ geometry: new PointGeometry(at), role: seen > 1 ? 'again' : 'once' });
-  feature.setId(id);
+function featureOf(landmark: Landmark): Feature {
+  const role: Role = landmark.seen > 1 ? 'again' : 'once';
+  const feature = new Feature({ geometry: new PointGeometry(landmark.at), role, landmark });
+  feature.setId(landmark.id);
   return feature;
 }
 

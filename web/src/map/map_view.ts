@@ -175,6 +175,10 @@ export class MapView {
     this.scene?.landmarks.clear();
   }
 
+  landmarkAt(place: number[]): Landmark | null {
+    return this.scene?.landmarks.at(place, this.map.getView().getResolution() ?? 1) ?? null;
+  }
+
   /** @param main, beside readers of HIMM counters to be written into the cells of either side; null: none */
   showCounters(main: CellReader | null, beside: CellReader | null): void {
     this.scene?.labels.show(main);

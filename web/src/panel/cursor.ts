@@ -1,5 +1,6 @@
 /** Where the person points at, in metres and cells, and what is known there. */
 import type OlMap from 'ol/Map';
+import type { Landmark } from '../api/types';
 import { byId, el, setText } from '../dom';
 import * as format from '../format';
 import type { CellReaders } from '../map/cell_readers';
@@ -13,6 +14,7 @@ import type { Picture } from '../picture';
 export interface CursorScene {
   readers: CellReaders;
   picture: Picture;
+  landmarkAt: (place: number[]) => Landmark | null;
 }
 
 export class Cursor {
@@ -58,7 +60,7 @@ export class Cursor {
     const shown = this.scene?.picture.shownAt(byKeyboard ? 0.5 : (this.pixel?.[0] ?? 0) / width) ?? null;
     this.fields.box.hidden = !(shown && at);
     this.fields.crosshair.hidden = !(shown && at && byKeyboard);
-    if (this.scene && shown && at) this.tell(this.scene.readers, shown, at);
+    if (this.scene && shown && at) this.tell(this.scene.readers, shown, at, this.scene.landmarkAt(at));
   }
 
   private pointAt(pixel: number[] | null): void {
@@ -66,14 +68,20 @@ export class Cursor {
     this.update();
   }
 
-  private tell(readers: CellReaders, { source, layer }: Shown, [x = 0, y = 0]: number[]): void {
+  private tell(
+    readers: CellReaders,
+    { source, layer }: Shown,
+    [x = 0, y = 0]: number[],
+    landmark: Landmark | null,
+  ): void {
     const cell = cellAt(x, y, source.cellSize);
     setText(this.fields.x, format.decimal(x, 2));
     setText(this.fields.y, format.decimal(y, 2));
     setText(this.fields.cell, `${format.integer(cell.i)}, ${format.integer(cell.j)}`);
     const [shown, ...others] = readers.all(source, layer);
     setText(this.fields.value, shown ? format.cellValue(shown.read(cell)) : '');
-    this.tellOthers(others.flatMap((reader) => otherValue(reader.layer, reader.read(cell))));
+    const values = others.flatMap((reader) => otherValue(reader.layer, reader.read(cell)));
+    this.tellOthers(landmark ? [landmarkValue(landmark), ...values] : values);
   }
 
   private tellOthers(values: OtherValue[]): void {
@@ -89,6 +97,11 @@ export class Cursor {
 interface OtherValue {
   title: string;
   text: string;
+}
+
+function landmarkValue({ id, seen, size: [width, height] }: Landmark): OtherValue {
+  const size = `${format.decimal(width, 2)} \u00d7 ${format.decimal(height, 2)} m`;
+  return { title: `Landmark ${id}`, text: `${size}, seen ${seen === 1 ? 'once' : `${format.count(seen)} times`}` };
 }
 
 /** Of layers that know nothing there, nothing. */
