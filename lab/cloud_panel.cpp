@@ -1,11 +1,14 @@
 #include "lab/cloud_panel.hpp"
 
+#include <fmt/format.h>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace scanloom::lab {
 namespace {
@@ -53,6 +56,25 @@ void draw_disc(cv::Mat& picture, const cv::Point& at, int radius, const cv::Scal
 
 void draw_sensor(cv::Mat& picture, const cv::Point& at) {
     cv::drawMarker(picture, at, kBlack, cv::MARKER_CROSS, 4 * kMark, 3);
+}
+
+void draw_scale(cv::Mat& picture, const Panel& panel) {
+    constexpr int kInset = 10;
+    constexpr int kThick = 3;
+    constexpr auto kFont = cv::FONT_HERSHEY_SIMPLEX;
+    constexpr double kFontScale = 0.5;
+    double metres = 1.0;
+    for (const double longer : {2.0, 5.0, 10.0, 20.0, 50.0}) {
+        if (longer * panel.pixels_per_metre <= panel.width() / 4.0) metres = longer;
+    }
+    const std::string text = fmt::format("{:g} m", metres);
+    int below = 0;
+    cv::getTextSize(text, kFont, kFontScale, 1, &below);
+    const int length = static_cast<int>(std::lround(metres * panel.pixels_per_metre));
+    const cv::Point begin(panel.left + kInset, panel.height() - kInset);
+    const cv::Point above(begin.x, begin.y - kThick - below);
+    cv::line(picture, begin, begin + cv::Point(length, 0), kBlack, kThick);
+    cv::putText(picture, text, above, kFont, kFontScale, kBlack, 1, cv::LINE_AA);
 }
 
 tiles::Bytes png_of(const cv::Mat& picture) {

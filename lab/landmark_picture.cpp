@@ -53,6 +53,7 @@ tiles::Bytes comparison_png(const SeenLandmarks& first, const SeenLandmarks& sec
     right.left = width + kGap;
     cv::Mat picture(left.height(), 2 * width + kGap, CV_8UC3, kWhite);
     picture.colRange(width, width + kGap).setTo(kPaleColour);
+    for (const Panel& panel : {left, right}) draw_scale(picture, panel);
     draw_cloud(picture, left, second.points, kPaleColour);
     draw_cloud(picture, right, first.points, kPaleColour);
 

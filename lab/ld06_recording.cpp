@@ -1,8 +1,13 @@
 #include "lab/ld06_recording.hpp"
 
+#include "lab/lidar_capture.hpp"
 #include "robot_client/source/ld06_capture.hpp"
+#include "server/landmarks/alignment.hpp"
 
 #include <fmt/format.h>
+
+#include <span>
+#include <utility>
 
 namespace scanloom::lab {
 
@@ -18,9 +23,23 @@ Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path) {
         recorded.capture.scans.push_back(std::move((*next)->scan));
         recorded.capture.scans.back().seq = recorded.capture.scans.size();
     }
-    if (recorded.capture.scans.size() > 1) return recorded;
-    return Error{Errc::kInvalidField,
-                 fmt::format("{}: one turn only, and its halves are to be compared; record for longer", path.string())};
+    const auto& scans = recorded.capture.scans;
+    if (scans.size() < 2) {
+        return Error{Errc::kInvalidField, fmt::format("{}: one turn only, and its halves are to be compared; record "
+                                                      "for longer",
+                                                      path.string())};
+    }
+    const auto first = std::span(scans).first(scans.size() / 2);
+    const auto last = std::span(scans).subspan(first.size());
+    for (const auto& [which, half] : {std::pair{"first", first}, std::pair{"last", last}}) {
+        const std::size_t points = points_of(half, recorded.capture.sensor).size();
+        if (points >= landmarks::kViewPointsMin) continue;
+        return Error{Errc::kInvalidField,
+                     fmt::format("{}: in the {} {} of {} turns only {} points were seen; record where the lidar sees "
+                                 "walls",
+                                 path.string(), which, half.size(), scans.size(), points)};
+    }
+    return recorded;
 }
 
 } // namespace scanloom::lab

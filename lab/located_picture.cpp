@@ -24,6 +24,7 @@ tiles::Bytes located_png(const robot::MappedWorld& scene, const Pose2& T_map_fou
 
     const Panel panel = Panel::fitting(extent_around(sensor, {map, places, view}), kSizeMax, kSizeMax);
     cv::Mat picture(panel.height(), panel.width(), CV_8UC3, kWhite);
+    draw_scale(picture, panel);
     draw_cloud(picture, panel, map, kFirstColour);
     draw_cloud(picture, panel, view, kSecondColour);
     for (const Point2& place : places) draw_disc(picture, panel.at(place), kMark, kFirstColour);

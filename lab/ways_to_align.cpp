@@ -1,16 +1,15 @@
 #include "lab/ways_to_align.hpp"
 
 #include "server/landmarks/alignment_of_pairs.hpp"
+#include "server/landmarks/cloud.hpp"
 
 namespace scanloom::lab {
 namespace {
 
 std::vector<Point2> in_frame_of(const Pose2& T_map_lidar, std::span<const Point2> points) {
     const Pose2 T_lidar_map = inverse(T_map_lidar);
-    std::vector<Point2> moved;
-    moved.reserve(points.size());
-    for (const Point2& point : points) moved.push_back(transform(T_lidar_map, point));
-    return moved;
+    // what was surveyed passed its checks
+    return landmarks::transform_points(points, {T_lidar_map.x, T_lidar_map.y}, T_lidar_map.yaw).value();
 }
 
 ByLandmarks align_by_landmarks(const PlacedCaptures& captures, std::span<const landmarks::Match> matches) {

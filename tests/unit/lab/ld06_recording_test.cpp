@@ -45,5 +45,20 @@ TEST_F(Ld06Recordings, WithoutTwoTurnsAreErrorsThatNameTheFile) {
                 HasSubstr("missing: cannot be opened"));
 }
 
+TEST_F(Ld06Recordings, OfNothingAreErrorsThatSayHowLittleWasSeen) {
+    testing_support::Ld06Spinner sensor;
+    Bytes bytes;
+    for (int n = 0; n < 400; ++n) {
+        robot::Ld06Packet packet = sensor.next();
+        if (n < 200) {
+            for (auto& point : packet.points) point.distance = 0;
+        }
+        testing_support::append(bytes, testing_support::bytes_of(packet));
+    }
+    EXPECT_THAT(
+        read_ld06_recording(file(bytes)).error().message,
+        HasSubstr("room.bin: in the first 4 of 9 turns only 0 points were seen; record where the lidar sees walls"));
+}
+
 } // namespace
 } // namespace scanloom::lab
