@@ -67,9 +67,12 @@ describe('a live event', () => {
   });
 
   it('may tell landmarks, or why there are no more', () => {
-    const one = { id: 7, x: 1.5, y: -2.25, seen: 3 };
+    const one = { id: 7, x: 1.5, y: -2.25, seen: 3, size_x: 0.5, size_y: 0.25 };
     const told = decodeLiveEvent(bytesOf({ landmarks: { landmarks: [one] } }));
-    assert.deepEqual(told.landmarks, { landmarks: [{ id: 7, at: [1.5, -2.25], seen: 3 }], refused: null });
+    assert.deepEqual(told.landmarks, {
+      landmarks: [{ id: 7, at: [1.5, -2.25], seen: 3, size: [0.5, 0.25] }],
+      refused: null,
+    });
     const refused = decodeLiveEvent(bytesOf({ landmarks: { refused: 'too many' } }));
     assert.deepEqual(refused.landmarks, { landmarks: [], refused: 'too many' });
     assert.equal(decodeLiveEvent(bytesOf({ revision: 1 })).landmarks, null);
