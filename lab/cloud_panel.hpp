@@ -44,8 +44,8 @@ void draw_disc(cv::Mat& picture, const cv::Point& at, int radius, const cv::Scal
 /// A black cross.
 void draw_sensor(cv::Mat& picture, const cv::Point& at);
 
-/// A bar in the lower left corner, as long as it says: a round number of metres, at most a quarter of the panel's width,
-/// but 1 m at least. To be drawn first, so that it hides nothing.
+/// A bar in the lower left corner, as long as it says: a round number of metres, at most a quarter of the panel's
+/// width, but 1 m at least. To be drawn first, so that it hides nothing.
 void draw_scale(cv::Mat& picture, const Panel& panel);
 
 /// Throws std::runtime_error when OpenCV fails.
