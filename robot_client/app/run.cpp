@@ -80,7 +80,11 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
     const auto tell = [&console](const std::string& text) { console.note(text); };
     const auto on_resume = [&console](std::uint64_t stored) { console.note(resume_text(stored, std::nullopt)); };
     auto spool = open_spool_of(options.session, options.robot,
-                               {options.spool, options.spool_bytes_max, options.when_full}, tell);
+                               {.directory = options.spool,
+                                .bytes_max = options.spool_bytes_max,
+                                .when_full = options.when_full,
+                                .poses_are_told = prepared.locating != nullptr},
+                               tell);
     if (!spool) return spool.error();
     if (*spool && (*spool)->waiting() > 0)
         console.note(fmt::format("{} scans wait in {}", (*spool)->waiting(), (*spool)->directory().string()));
@@ -161,7 +165,15 @@ ExitCode run(const RobotOptions& options) {
                summary_json({options.session, options.robot, prepared->fingerprint, prepared->order, uplink.status(),
                              prepared->skipped_lines, std::chrono::steady_clock::now() - begun, (*feed)->scan_count(),
                              prepared->remarks(), *outcome ? "" : outcome->error().message}));
-    return *outcome ? kExitDone : fail(outcome->error());
+    if (*outcome) return kExitDone;
+    const bool is_refused = outcome->error().code == Errc::kConflict;
+    if (is_refused && prepared->locating != nullptr && !options.spool.empty()) {
+        console.note(
+            fmt::format("to have the lidar's place told anew, move {0}/{1}.{2} away; or rename it to OTHER.{2}, "
+                        "and its scans go to --session OTHER",
+                        options.spool.string(), options.session, options.robot));
+    }
+    return fail(outcome->error());
 }
 
 } // namespace scanloom::robot

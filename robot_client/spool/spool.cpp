@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view kNumberingFile = "numbering";
 constexpr std::uint64_t kSegmentsWanted = 16;
 constexpr std::uint64_t kSegmentBytesMax = std::uint64_t{4} << 20;
+constexpr const char* kNoSession = "none";                   ///< the id of none: theirs have 16 digits
 constexpr std::uint64_t kTidyBytes = std::uint64_t{1} << 20; ///< from then on the newest file may go, too
 
 } // namespace
@@ -191,8 +192,11 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     }
     const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
+    is_strange_ = !is_same && waiting_ > 0 && options_.poses_are_told;
+    // Whoever is refused comes back, and is still a stranger, there and anywhere.
+    const Numbering kept = is_strange_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
+    if (auto ok = write_numbering(options_.directory / kNumberingFile, kept, Sync::kYes); !ok) return ok;
     numbering_ = {std::string(session_id), durable_seq};
-    if (auto ok = write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes); !ok) return ok;
     for (SpoolFile& segment : segments_) {
         waiting_ -= segment.left();
         segment.stored(durable_seq);
@@ -225,6 +229,7 @@ Result<> Spool::check(std::uint64_t durable_seq) const {
 Result<> Spool::follow(std::string_view session_id) {
     if (numbering_.session_id == session_id) return {};
     numbering_.session_id = session_id;
+    if (is_strange_) return {};
     return write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes);
 }
 
@@ -271,7 +276,9 @@ Result<std::optional<Observation>> Spool::next() {
             if (segment.first + read_++ < segment.from) continue;
             ++next_seq_;
             --waiting_;
-            return std::optional(Observation{sensor, std::move(batch->scans.front())});
+            Observation next{sensor, std::move(batch->scans.front())};
+            next.scan.begins_map = next.scan.begins_map || is_strange_;
+            return std::optional(std::move(next));
         }
     }
     return std::optional<Observation>{};
@@ -309,6 +316,7 @@ void Spool::leave_damaged(const std::string& why) {
 void Spool::acknowledge(std::uint64_t seq) {
     if (seq > numbering_.acknowledged) {
         numbering_.acknowledged = seq;
+        is_strange_ = false;
         // Were it not written, the worst would be that another session gets scans that this one has.
         (void)write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kNo);
     }

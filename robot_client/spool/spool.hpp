@@ -26,6 +26,8 @@ struct SpoolOptions {
     std::filesystem::path directory; ///< for one robot in one session; made where it is missing
     std::uint64_t bytes_max = std::uint64_t{256} << 20;
     WhenFull when_full = WhenFull::kDropOldest; ///< the oldest go by whole files, each a sixteenth of bytes_max at most
+    bool poses_are_told = false; ///< by the server, from the session's map: in another session they are of no use but
+                                 ///< to begin a map with
 };
 
 /// The scans that a robot took and the server has not acknowledged, on disk. They survive the program that took them.
@@ -48,7 +50,8 @@ public:
                                                              std::function<void(const std::string&)> tell);
 
     /// The server holds the robot's scans up to `durable_seq`: those of them that are here are passed over. Pre: once.
-    /// In another session than before, those go that were not acknowledged in that one.
+    /// In another session than before, those go that were not acknowledged in that one; where their poses were told
+    /// from its map, each as one that begins a map (Scan::begins_map), until the new one has acknowledged one of them.
     /// Where the server holds more than was sent from here, that is told: files may have lost their ends in a power
     /// cut, scans may have gone past a full disk, or another program sent some under the same name. What was sent then
     /// counts as stored.
@@ -113,6 +116,7 @@ private:
 
     // handing out
     Numbering numbering_;
+    bool is_strange_ = false; ///< the scans' poses were told from the map of another session than this
     std::size_t reading_ = 0; ///< index of the segment to read from
     std::optional<SegmentReader> reader_;
     std::map<std::uint32_t, std::shared_ptr<const Sensor>> read_sensors_; ///< of that file

@@ -218,6 +218,45 @@ TEST_F(SpoolTest, ASessionMadeAnewGetsWhatTheOneBeforeHasNotAcknowledged) {
     EXPECT_EQ(handed_out(), from_to(18, 52)) << "under the numbers of the new one";
 }
 
+TEST_F(SpoolTest, PosesThatASessionToldBeginTheMapOfAnotherOrNone) {
+    const auto open_told = [&] {
+        spool_.reset();
+        spool_ = Spool::open({.directory = directory_.path(), .poses_are_told = true}, [&](const std::string& text) {
+                     told_.push_back(text);
+                 }).value();
+    };
+    const auto handed_out_as_beginning = [&](bool begins) {
+        std::vector<std::uint64_t> numbers;
+        while (const auto next = spool_->next().value()) {
+            EXPECT_EQ(next->scan.begins_map, begins);
+            numbers.push_back(static_cast<std::uint64_t>(next->scan.pose.x));
+        }
+        return numbers;
+    };
+    open_told();
+    ASSERT_TRUE(spool_->begin("a1", 100));
+    take(1, 20);
+    EXPECT_EQ(handed_out_as_beginning(false), from_to(1, 20));
+    spool_->acknowledge(112);
+    for (int refused = 0; refused < 3; ++refused) { // by one in which something is mapped
+        open_told();
+        ASSERT_TRUE(spool_->begin("b2", 0));
+        EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20));
+    }
+    open_told();
+    ASSERT_TRUE(spool_->begin("a1", 112));
+    EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20)) << "to whom it has sent before, that means nothing";
+    open_told();
+    ASSERT_TRUE(spool_->begin("c3", 0));
+    EXPECT_EQ(handed_out_as_beginning(true), from_to(13, 20));
+    spool_->acknowledge(3);
+    take(21, 22);
+    EXPECT_EQ(handed_out_as_beginning(false), from_to(21, 22)) << "the map is begun";
+    open_told();
+    ASSERT_TRUE(spool_->begin("c3", 3));
+    EXPECT_EQ(handed_out_as_beginning(false), from_to(16, 22));
+}
+
 TEST_F(SpoolTest, WhereItsNumberingIsGoneNothingIsSentTwice) {
     for (const bool empty : {false, true}) {
         fs::remove_all(directory_.path());
