@@ -105,7 +105,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsAt(...pixelOf(5, 3), colour);
     await showsNotAt(...pixelOf(3, 3), colour);
     await page.mouse.move(...pixelOf(5, 3));
-    await says(page, '#cursor-others', /^Landmark 00\.31 × 0\.1[23] m, seen 3 times/);
+    await says(page, '#cursor-others', /^Landmark#0: 0\.31 × 0\.1[23] m, seen 3 times/);
     await page.mouse.move(...pixelOf(5, 5));
     await says(page, '#cursor-others', /^(?!.*Landmark)/);
     await keepPicture(page, 'landmarks');

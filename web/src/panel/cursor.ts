@@ -101,7 +101,7 @@ interface OtherValue {
 
 function landmarkValue({ id, seen, size: [width, height] }: Landmark): OtherValue {
   const size = `${format.decimal(width, 2)} \u00d7 ${format.decimal(height, 2)} m`;
-  return { title: `Landmark ${id}`, text: `${size}, seen ${seen === 1 ? 'once' : `${format.count(seen)} times`}` };
+  return { title: 'Landmark', text: `#${id}: ${size}, seen ${seen === 1 ? 'once' : `${format.count(seen)} times`}` };
 }
 
 /** Of layers that know nothing there, nothing. */
