@@ -17,9 +17,10 @@ inline constexpr double kMapCellSizeMax = 100.0; ///< metres, of an imported map
 inline constexpr double kRangeMax = 1000.0;      ///< metres, a sensor's range_max
 inline constexpr double kReachCellsMax = 8192.0; ///< cells of a session, a sensor's range_max
 
-/// Radians from a scan's first beam to its last: a sensor may repeat its first direction at the end of a turn, and
-/// rounding may exceed it a little.
-inline constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-6;
+/// Largest angle from the first to the last beam of a scan, radians. A sensor may repeat its first direction at the end
+/// of a turn, and an increment stored as float32 may carry the last beam past it: a TurtleBot3's 360 beams exceed the
+/// turn by 4.8e-6 rad.
+inline constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-3;
 
 /// Of a robot that states one; false for NaN.
 [[nodiscard]] constexpr bool is_body_radius(double metres) noexcept { return metres > 0.0 && metres <= kBodyRadiusMax; }

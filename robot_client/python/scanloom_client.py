@@ -261,7 +261,7 @@ _LOCATE_POINTS_MIN = 20
 _LOCATE_POINTS_MAX = 32_768
 _NEAR_RADIUS_MAX = 1000.0  # metres
 _TOKEN_BYTES_MAX = 8192  # a hello has room for more
-_FULL_TURN = 2.0 * math.pi + 1e-6
+_FULL_TURN = 2.0 * math.pi + 1e-3
 _SERVER_TEXT_MAX = 500  # characters that are shown
 
 

@@ -18,7 +18,6 @@ namespace {
 using TokenSpan = std::span<const std::string_view>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kFullTurn = 2.0 * kPi + 1e-6; ///< what the wire allows
 
 std::optional<std::size_t> to_count(std::string_view token) {
     std::size_t value = 0;

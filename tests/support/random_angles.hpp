@@ -10,7 +10,7 @@
 /// Beam angles of every kind of sensor there is, and of some that there are not.
 namespace scanloom::testing_support {
 
-inline constexpr unsigned kAngleShapes = 12;
+inline constexpr unsigned kAngleShapes = 13;
 
 /// Pre: shape < kAngleShapes. `name` says which it is.
 inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::string& name) {
@@ -45,6 +45,7 @@ inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::strin
         }
         return stepped;
     }
+    case 11: name = "full turn of a float32 increment"; return UniformAngles{0.0, 0.017501922324299812, 360};
     default: {
         name = "any angles in any order";
         ExplicitAngles list(1 + below(150));

@@ -106,6 +106,13 @@ class Refused(LinkTest):
             robot.send(**good)
         self.assertEqual(len(self.server.stored), 1)
 
+    def test_a_full_turn_of_a_float32_increment_is_sent(self):
+        self.start()
+        with self.client() as robot:
+            laser = self.laser(robot, angle_increment=0.017501922324299812, count=360)  # a TurtleBot3's
+            robot.send(sensor=laser, ranges=[1.0] * 360, pose=(0.0, 0.0, 0.0), stamp=0.0)
+        self.assertEqual(len(self.server.stored), 1)
+
     def test_sensors_that_make_no_sense_are_refused_by_name(self):
         self.start()
         robot = self.client()

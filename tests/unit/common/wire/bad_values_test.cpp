@@ -348,6 +348,22 @@ TEST(CheckScan, UniformAnglesOfTheSensorMustNotPassAFullTurn) {
     EXPECT_THAT(refused.error().message, testing::StartsWith("ranges has 362 beams, which span 6.301 rad"));
 }
 
+TEST(CheckScan, Float32IncrementMayPassAFullTurnByAThousandthRadian) {
+    constexpr double kTurtleBot3 = 0.017501922324299812; // radians; 359 of them are 4.8e-6 more than a turn
+    Sensor sensor = example_sensor();
+    sensor.angles = UniformAngles{0.0, kTurtleBot3, 360};
+    EXPECT_TRUE(decode(body_of(sensor)));
+    Scan scan = example_scan();
+    scan.angles.reset();
+    scan.ranges.assign(360, 1000);
+    EXPECT_TRUE(check_scan(scan, sensor));
+    sensor.angles = UniformAngles{0.0, (2.0 * std::numbers::pi + 0.99e-3) / 359.0, 360};
+    EXPECT_TRUE(check_scan(scan, sensor));
+    sensor.angles = UniformAngles{0.0, (2.0 * std::numbers::pi + 1.01e-3) / 359.0, 360};
+    EXPECT_FALSE(check_scan(scan, sensor));
+    EXPECT_FALSE(decode(body_of(sensor)));
+}
+
 TEST(CheckScan, ExplicitAnglesOfTheSensorNeedARangeEach) {
     Sensor sensor = example_sensor();
     sensor.angles = ExplicitAngles{0.1, 0.2, 0.4};

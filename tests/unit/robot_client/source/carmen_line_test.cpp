@@ -92,6 +92,12 @@ TEST(CarmenLine, RobotLaserStatesItsAnglesAndItsRange) {
     EXPECT_EQ(scan.sensor, 0U);
 }
 
+TEST(CarmenLine, FullTurnOfAFloat32IncrementIsRead) {
+    std::string line = "ROBOTLASER1 0 0.0 6.2831853 0.017501922 3.5 0.01 0 360 ";
+    for (int beam = 0; beam < 360; ++beam) line += "1.0 ";
+    EXPECT_EQ(scan_of(fmt::format("{}0 {}0 13.0 host 13.1", line, kPoses)).ranges.size(), 360U);
+}
+
 TEST(CarmenLine, RawLaserNeedsNoPoses) {
     for (const std::string_view tail : {"0 13.0 host 13.1", "2 5 6 13.0 host 13.1", "13.0 host 13.1", "0"}) {
         const auto line = fmt::format("RAWLASER1 0 -1.5708 3.1416 0.0175 81.9 0.01 0 2 1.0 2.0 {}", tail);
