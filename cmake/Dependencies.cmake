@@ -11,7 +11,7 @@ find_package(CLI11 2.1 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto SSL)
 find_package(zstd 1.5 CONFIG REQUIRED)
 if(SCANLOOM_SERVER)
-  find_package(Boost 1.81 REQUIRED COMPONENTS url iostreams) # iostreams: for tests only
+  find_package(Boost 1.81 REQUIRED COMPONENTS url)
   find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
   find_package(spdlog 1.10 REQUIRED)
   find_package(RocksDB 7.8 REQUIRED)

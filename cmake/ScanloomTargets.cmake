@@ -1,71 +1,114 @@
-# How every target of this tree is built.
+# How the targets of this tree are built. docs/internals/build.md says what each measure saves.
 
 add_library(scanloom_options INTERFACE)
 target_include_directories(scanloom_options INTERFACE ${CMAKE_SOURCE_DIR})
+# -ffp-contract=off: no fused multiply-add, so that results have the same bits whatever instructions the kernels are
+# compiled for. The C library's sin, cos and atan2 may still differ in their last bits between versions and processors.
 target_compile_options(scanloom_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers
-                                                  # nothing is fused: the same bits whatever instructions the kernels
-                                                  # are compiled for. The C library's sin, cos and atan2 may still differ
-                                                  # in their last bits between its versions and between processors.
                                                   -ffp-contract=off)
 if(DEFINED ENV{CI})
   target_compile_options(scanloom_options INTERFACE -Werror)
 endif()
-if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  add_compile_options(-Wno-subobject-linkage) # it takes the files that are put together for headers
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  if(CMAKE_UNITY_BUILD)
+    add_compile_options(-Wno-subobject-linkage) # g++ takes the sources of a unity file for headers
+  endif()
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    add_compile_options(-fpch-preprocess) # for ccache
+  endif()
+  # False alarms of g++ 12: it takes the operators new and delete of Asio's coroutine frames for a mismatched pair, and
+  # sees std::string_view::find() read beyond the end where optimization has joined sources.
+  add_compile_options(-Wno-mismatched-new-delete -Wno-stringop-overread)
+  # The client library is linked into plugins and hides what it was built with (robot_client/package). All targets are
+  # built the same way, because a precompiled header serves only targets with equal -f options.
+  add_compile_options(-fno-semantic-interposition -fno-gnu-unique)
 endif()
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 if(SCANLOOM_SANITIZE)
   add_compile_options(-fsanitize=${SCANLOOM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SCANLOOM_SANITIZE})
   if(SCANLOOM_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    add_compile_options(-Wno-tsan) # it does not follow fences; Asio has some, beside its locks
+    add_compile_options(-Wno-tsan) # it does not follow fences; Asio has some, next to its locks
   endif()
 endif()
 
-# What follows takes ALONE, too: files that are compiled by themselves also where the others are put together
-# (CMAKE_UNITY_BUILD), as names of theirs that are nobody else's business are those of another file as well.
-function(scanloom_alone)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()
-
-# scanloom_library(NAME SOURCES a.cpp ... [ALONE a.cpp ...] LINKS target ...)
-# One folder, one library; LINKS are the folders and packages it may include.
-function(scanloom_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINKS" ${ARGN})
-  scanloom_alone(${ARG_ALONE})
-  if(ARG_SOURCES)
-    add_library(${name} STATIC ${ARG_SOURCES})
-    target_link_libraries(${name} PUBLIC scanloom_options ${ARG_LINKS})
-  else()
-    add_library(${name} INTERFACE)
-    target_link_libraries(${name} INTERFACE scanloom_options ${ARG_LINKS})
+# Optimization by kind of code, in release builds: kernels -O3, what waits for sockets and disks -O2, tests -Og.
+# Each kind has one precompiled header, which all targets of the kind share.
+# scanloom_kind(TARGET KIND), KIND one of compute, io, test
+function(scanloom_kind target kind)
+  set(levels_compute -O3)
+  set(levels_io -O2)
+  set(levels_test -Og)
+  set(packages_compute fmt::fmt)
+  set(packages_io fmt::fmt Boost::json scanloom_asio)
+  set(packages_test ${packages_io} GTest::gmock GTest::gtest)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${levels_${kind}}>)
+  target_link_libraries(${target} PRIVATE ${packages_${kind}})
+  if(NOT target STREQUAL scanloom_${kind}_headers)
+    target_precompile_headers(${target} REUSE_FROM scanloom_${kind}_headers)
   endif()
 endfunction()
 
-# scanloom_program(NAME SOURCES main.cpp ... [ALONE a.cpp ...] LINKS target ...)
+# scanloom_headers(KIND): the precompiled header cmake/headers/KIND.hpp.
+function(scanloom_headers kind)
+  set(name scanloom_${kind}_headers)
+  add_library(${name} OBJECT ${CMAKE_SOURCE_DIR}/cmake/headers/empty.cpp)
+  target_link_libraries(${name} PRIVATE scanloom_options)
+  scanloom_kind(${name} ${kind})
+  # In angle brackets, so that no path of this checkout gets into it, and checkouts share what ccache holds.
+  target_precompile_headers(${name} PRIVATE <cmake/headers/${kind}.hpp>)
+endfunction()
+
+# scanloom_library(NAME [IO] SOURCES a.cpp ... LINKS target ...)
+# One folder, one library; LINKS are the folders and packages it may include. IO: it waits for sockets or disks.
+function(scanloom_library name)
+  cmake_parse_arguments(ARG "IO" "" "SOURCES;LINKS" ${ARGN})
+  if(NOT ARG_SOURCES)
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE scanloom_options ${ARG_LINKS})
+    return()
+  endif()
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC scanloom_options ${ARG_LINKS})
+  if(ARG_IO)
+    scanloom_kind(${name} io)
+  else()
+    scanloom_kind(${name} compute)
+  endif()
+endfunction()
+
+# scanloom_program(NAME SOURCES main.cpp ... LINKS target ...)
 function(scanloom_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINKS" ${ARGN})
-  scanloom_alone(${ARG_ALONE})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE scanloom_options ${ARG_LINKS})
 endfunction()
 
-# scanloom_test(NAME [ONE_THREAD] SOURCES x_test.cpp ... [ALONE a.cpp ...] LINKS target ...)
-# One executable; each of its cases is a test of CTest's. ONE_THREAD: ThreadSanitizer has nothing to see in it.
+# scanloom_test_program(NAME [LABELS label ...] [TIMEOUT seconds]): an executable of GoogleTest suites, one CTest test a suite.
+function(scanloom_test_program name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  add_executable(${name} ${CMAKE_SOURCE_DIR}/cmake/headers/empty.cpp)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
+  target_link_libraries(${name} PRIVATE GTest::gmock GTest::gtest_main)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  if(SCANLOOM_SANITIZE)
+    set(ARG_TIMEOUT 1800) # brute force takes twenty times as long
+  endif()
+  set(PROGRAM ${CMAKE_BINARY_DIR}/tests/${name})
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/suites.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}_suites.cmake)
+endfunction()
+
+# scanloom_test(NAME IN PROGRAM SOURCES x_test.cpp ... LINKS target ...)
+# The tests of one folder, as a part of the test program PROGRAM.
 function(scanloom_test name)
-  cmake_parse_arguments(ARG "ONE_THREAD" "" "SOURCES;ALONE;LINKS;ENVIRONMENT" ${ARGN})
-  scanloom_alone(${ARG_ALONE})
-  add_executable(${name} ${ARG_SOURCES})
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  target_link_libraries(${name} PRIVATE scanloom_options GTest::gmock GTest::gtest_main ${ARG_LINKS})
+  cmake_parse_arguments(ARG "" "IN" "SOURCES;LINKS" ${ARGN})
+  add_library(${name} OBJECT ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC scanloom_options GTest::gmock GTest::gtest ${ARG_LINKS})
+  scanloom_kind(${name} test)
   # g++ 12 sees overlaps that are not there in "text" + std::string (GCC bug 105651).
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-  set(seconds 300)
-  if(SCANLOOM_SANITIZE)
-    set(seconds 1800) # brute force takes twenty times as long
-  endif()
-  set(labels "")
-  if(ARG_ONE_THREAD)
-    set(labels LABELS one_thread)
-  endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ${labels} TIMEOUT ${seconds} ENVIRONMENT "${ARG_ENVIRONMENT}")
+  target_link_libraries(${ARG_IN} PRIVATE ${name})
 endfunction()

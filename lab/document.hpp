@@ -35,6 +35,13 @@ struct Picture {
     std::string caption;
 };
 
+/// The cells of a row that is made of two parts.
+[[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> front,
+                                                     const std::vector<std::string>& back) {
+    front.insert(front.end(), back.begin(), back.end());
+    return front;
+}
+
 using Block = std::variant<Heading, Paragraph, Items, Code, Link, Table, Picture>;
 using Document = std::vector<Block>;
 

@@ -38,31 +38,31 @@ std::string row_text(const std::vector<std::string>& cells, std::string_view tag
     return text + "</tr>\n";
 }
 
-std::string text_of(const Heading& heading) {
+std::string html_of(const Heading& heading) {
     return fmt::format("<h{}>{}</h{}>\n", heading.level, escaped(heading.text), heading.level);
 }
 
-std::string text_of(const Paragraph& paragraph) { return fmt::format("<p>{}</p>\n", escaped(paragraph.text)); }
+std::string html_of(const Paragraph& paragraph) { return fmt::format("<p>{}</p>\n", escaped(paragraph.text)); }
 
-std::string text_of(const Items& items) {
+std::string html_of(const Items& items) {
     std::string text = "<ul>\n";
     for (const std::string& item : items.texts) text += fmt::format("<li>{}</li>\n", escaped(item));
     return text + "</ul>\n";
 }
 
-std::string text_of(const Code& code) { return fmt::format("<pre>{}</pre>\n", escaped(code.text)); }
+std::string html_of(const Code& code) { return fmt::format("<pre>{}</pre>\n", escaped(code.text)); }
 
-std::string text_of(const Link& link) {
+std::string html_of(const Link& link) {
     return fmt::format("<p><a href=\"{}.html\">{}</a></p>\n", escaped(link.file), escaped(link.text));
 }
 
-std::string text_of(const Table& table) {
+std::string html_of(const Table& table) {
     std::string text = "<table>\n<thead>\n" + row_text(table.head, "th") + "</thead>\n<tbody>\n";
     for (const auto& row : table.rows) text += row_text(row, "td");
     return text + "</tbody>\n</table>\n";
 }
 
-std::string text_of(const Picture& picture) {
+std::string html_of(const Picture& picture) {
     const std::string caption = escaped(picture.caption);
     return fmt::format("<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\" loading=\"lazy\"></a>"
                        "<figcaption>{1}</figcaption></figure>\n",
@@ -78,7 +78,7 @@ std::string to_html(const Document& document, std::string_view title) {
                     "</head>\n<body>\n",
                     escaped(title), kStyle);
     for (const Block& block : document) {
-        text += std::visit([](const auto& content) { return text_of(content); }, block);
+        text += std::visit([](const auto& content) { return html_of(content); }, block);
     }
     return text + "</body>\n</html>\n";
 }

@@ -15,7 +15,7 @@ const cv::Scalar kMatchColour(90, 90, 90);
 const cv::Scalar kUnmatchedColour(40, 30, 210);
 constexpr int kPanelWidth = 600; // pixels
 constexpr int kPanelHeightMax = 900;
-constexpr int kGap = 12;
+constexpr int kPanelGap = 12;
 constexpr double kDash = 7.0; // pixels, of a dash and of what is between two
 
 void draw_dashed(cv::Mat& picture, const cv::Point& from, const cv::Point& to) {
@@ -50,9 +50,9 @@ tiles::Bytes comparison_png(const SeenLandmarks& first, const SeenLandmarks& sec
         Panel::fitting(extent_around(sensor, {first.points, second.points}), kPanelWidth, kPanelHeightMax);
     const int width = left.width();
     Panel right = left;
-    right.left = width + kGap;
-    cv::Mat picture(left.height(), 2 * width + kGap, CV_8UC3, kWhite);
-    picture.colRange(width, width + kGap).setTo(kPaleColour);
+    right.left = width + kPanelGap;
+    cv::Mat picture(left.height(), 2 * width + kPanelGap, CV_8UC3, kWhite);
+    picture.colRange(width, width + kPanelGap).setTo(kPaleColour);
     for (const Panel& panel : {left, right}) draw_scale(picture, panel);
     draw_cloud(picture, left, second.points, kPaleColour);
     draw_cloud(picture, right, first.points, kPaleColour);

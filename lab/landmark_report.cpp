@@ -35,7 +35,7 @@ Items conditions(const LandmarkResults& results) {
     }};
 }
 
-Items definitions() {
+Items landmark_definitions() {
     return {{
         "matched: landmarks of both captures that are each other's nearest and within the tolerance. only first, only "
         "second: the others of each capture.",
@@ -156,7 +156,7 @@ Document landmark_report_of(const LandmarkResults& results) {
         Heading{2, "Conditions"},
         conditions(results),
         Heading{2, "What is measured"},
-        definitions(),
+        landmark_definitions(),
     };
     add_doors(document, results);
     add_neighbours(document, results);

@@ -21,11 +21,6 @@ std::string millimetres(double metres) { return fmt::format("{:.1f}", 1e3 * metr
 std::string degrees(const PoseError& error) { return fmt::format("{:.2f}", error.degrees()); }
 std::string range_text(const ValueRange& span) { return fmt::format("{:.2f} to {:.2f}", span.low, span.high); }
 
-std::vector<std::string> joined(std::vector<std::string> front, const std::vector<std::string>& back) {
-    front.insert(front.end(), back.begin(), back.end());
-    return front;
-}
-
 const std::vector<std::string> kComparisonHead{"matched",   "only first", "only second", "persistence",
                                                "stability", "mean m",     "sd m",        "linearity",
                                                "evenness",  "fill",       "continuity"};

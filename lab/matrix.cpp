@@ -19,7 +19,7 @@ std::vector<RayModelChoice> ray_models() {
     };
 }
 
-constexpr NoiseChoice kNone{"none", [](double) { return MaybeNoise{}; }, false};
+constexpr NoiseChoice kNoNoise{"none", [](double) { return MaybeNoise{}; }, false};
 constexpr NoiseChoice kGaussian{"gaussian", [](double) { return MaybeNoise(robot::Noise{}); }, true};
 constexpr NoiseChoice kOneCell{"1_cell", [](double cell_size_m) { return MaybeNoise(uniform(cell_size_m)); }, false};
 constexpr NoiseChoice kThreeCells{"3_cells", [](double cell_size_m) { return MaybeNoise(uniform(3.0 * cell_size_m)); },
@@ -35,14 +35,14 @@ Matrix full_matrix() {
     return {scenes(),
             {0.01, 0.05, 0.1, 0.5},
             ray_models(),
-            {kNone, kGaussian, kOneCell, kThreeCells},
+            {kNoNoise, kGaussian, kOneCell, kThreeCells},
             {kSouthWest, kNorthEast},
             kScansDefault,
             1};
 }
 
 Matrix quick_matrix() {
-    return {scenes(), {0.1, 0.5}, ray_models(), {kNone, kGaussian}, {kSouthWest}, kScansDefault, 1};
+    return {scenes(), {0.1, 0.5}, ray_models(), {kNoNoise, kGaussian}, {kSouthWest}, kScansDefault, 1};
 }
 
 } // namespace scanloom::lab

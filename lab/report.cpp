@@ -46,11 +46,6 @@ std::vector<std::string> score_cells(const Chosen& chosen) {
         fmt::format("{:.0f}", mean_of(chosen, [](const RunResult& r) { return static_cast<double>(r.touched); }))};
 }
 
-std::vector<std::string> joined(std::vector<std::string> front, const std::vector<std::string>& back) {
-    front.insert(front.end(), back.begin(), back.end());
-    return front;
-}
-
 Items conditions(const Matrix& matrix) {
     return {{
         "Scenes: static, a furnished room of 10 x 10 m; dynamic, the same with a person (a disc of 0.5 m) who walks "

@@ -12,7 +12,7 @@ namespace scanloom::wire {
 namespace {
 
 constexpr std::string_view kTag = "\xfd\x7f"; // field 2047, fixed32
-constexpr std::uint8_t kDelimited = 2;
+constexpr std::uint8_t kLengthDelimited = 2;
 
 std::optional<std::uint64_t> take_varint(std::string_view& bytes) {
     std::uint64_t value = 0;
@@ -29,7 +29,7 @@ std::optional<std::uint64_t> take_varint(std::string_view& bytes) {
 bool is_one_field(std::string_view bytes) {
     const auto tag = take_varint(bytes);
     const auto size = take_varint(bytes);
-    return tag && (*tag & 7U) == kDelimited && size && *size == bytes.size();
+    return tag && (*tag & 7U) == kLengthDelimited && size && *size == bytes.size();
 }
 
 } // namespace

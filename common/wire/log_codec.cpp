@@ -20,7 +20,7 @@ Error damaged(const char* what) {
             std::string(what) + " in the store cannot be read; the store is damaged or was written by another program"};
 }
 
-struct ToProto {
+struct EntryToProto {
     v1::LogEntry& out;
 
     void operator()(const RobotJoined& joined) const {
@@ -87,7 +87,7 @@ Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
 std::string encode_entry(const LogEntry& entry) {
     google::protobuf::Arena arena;
     auto* proto = google::protobuf::Arena::CreateMessage<v1::LogEntry>(&arena);
-    std::visit(ToProto{*proto}, entry);
+    std::visit(EntryToProto{*proto}, entry);
     return proto->SerializeAsString();
 }
 

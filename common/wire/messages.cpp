@@ -132,7 +132,7 @@ Result<Message> read_frame(const v1::Frame& frame) {
     return Error{Errc::kMalformed, "a frame without a body this program knows; it may come from a newer version"};
 }
 
-struct ToProto {
+struct MessageToProto {
     v1::Frame& frame;
 
     void operator()(const Hello& hello) const {
@@ -231,7 +231,7 @@ Result<Message> decode(std::string_view body) {
 void encode(const Message& message, std::string& out) {
     google::protobuf::Arena arena;
     auto* frame = google::protobuf::Arena::CreateMessage<v1::Frame>(&arena);
-    std::visit(ToProto{*frame}, message);
+    std::visit(MessageToProto{*frame}, message);
     append_checked_frame(out, frame->SerializeAsString());
 }
 

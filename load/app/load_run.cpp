@@ -1,12 +1,11 @@
 #include "load/app/load_run.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "load/core/words.hpp"
 #include "load/net/own_use.hpp"
 #include "load/net/server_api.hpp"
 #include "load/net/verification.hpp"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -227,7 +226,7 @@ asio::awaitable<Moment> LoadRun::moment() {
 asio::awaitable<void> LoadRun::pause(Micros time) {
     asio::steady_timer timer(io_);
     timer.expires_after(std::chrono::microseconds(time));
-    co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    co_await timer.async_wait(kAwaitTuple);
 }
 
 void LoadRun::show(const Moment& before, const Moment& now) {

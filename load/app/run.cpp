@@ -1,18 +1,17 @@
 #include "load/app/run.hpp"
 
 #include "common/app/token_file.hpp"
+#include "common/net/await_tuple.hpp"
 #include "load/app/drive_course.hpp"
 #include "load/app/load_run.hpp"
 #include "load/app/report_file.hpp"
 #include "load/core/words.hpp"
 #include "load/net/own_use.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -86,13 +85,12 @@ Result<> check_descriptors(const LoadOptions& options) {
 
 /// The first signal ends the streaming, the second everything.
 asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDisplay& display) {
-    constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
     asio::signal_set signals(io, SIGINT, SIGTERM);
-    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
     display.note("interrupted: waiting for what was sent, then verifying it; interrupt again to leave at once, which "
                  "leaves the sessions on the server");
     run.interrupt();
-    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
     io.stop();
 }
 

@@ -1,7 +1,7 @@
 #include "load/net/calm_session.hpp"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <fmt/format.h>
 
 #include <utility>
@@ -40,7 +40,7 @@ asio::awaitable<Result<>> CalmSession::stream_to(std::uint64_t scans) {
     robot_.due(scans);
     while (robot_.talk().acknowledged() < scans) {
         timer.expires_after(kLookPeriod);
-        co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+        co_await timer.async_wait(kAwaitTuple);
         if (robot_.has_failed()) co_return Error{Errc::kInternal, troubles_.failures.front()};
         robot_.look_after(clock_.now());
         if (std::exchange(acknowledged, robot_.talk().acknowledged()) != robot_.talk().acknowledged()) {

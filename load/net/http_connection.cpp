@@ -1,13 +1,12 @@
 #include "load/net/http_connection.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "load/core/words.hpp"
 #include "load/net/open_link.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
@@ -21,7 +20,6 @@ namespace http = boost::beast::http;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint64_t kBodyMax = std::uint64_t{64} << 20;
 
 } // namespace
@@ -44,9 +42,9 @@ asio::awaitable<boost::system::error_code> HttpConnection::exchange(const Reques
         const auto failed = co_await connect();
         if (failed) co_return failed;
     }
-    const auto [unsent, sent] = co_await http::async_write(*stream_, request, kUse);
+    const auto [unsent, sent] = co_await http::async_write(*stream_, request, kAwaitTuple);
     if (unsent) co_return unsent;
-    const auto [unread, count] = co_await http::async_read(*stream_, buffer_, parser, kUse);
+    const auto [unread, count] = co_await http::async_read(*stream_, buffer_, parser, kAwaitTuple);
     bytes_in_ += count;
     co_return unread;
 }
@@ -55,7 +53,7 @@ asio::awaitable<boost::system::error_code> HttpConnection::within_patience(const
     using namespace asio::experimental::awaitable_operators;
     asio::steady_timer timer(executor_);
     timer.expires_after(patience_);
-    const auto first = co_await (exchange(request, parser) || timer.async_wait(kUse));
+    const auto first = co_await (exchange(request, parser) || timer.async_wait(kAwaitTuple));
     if (first.index() != 0) co_return boost::system::error_code(asio::error::timed_out);
     co_return std::get<0>(first);
 }

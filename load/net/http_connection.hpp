@@ -20,6 +20,8 @@
 
 namespace scanloom::load {
 
+inline constexpr unsigned kOk = 200; ///< HTTP status
+
 struct HttpAnswer {
     unsigned status = 0;
     std::string etag;

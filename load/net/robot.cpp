@@ -1,12 +1,11 @@
 #include "load/net/robot.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "load/core/words.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
@@ -19,7 +18,6 @@ using asio::ip::tcp;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 512; // acks are some twenty bytes each
 constexpr Micros kConnectMax = 10 * kSecond;
 
@@ -63,7 +61,7 @@ asio::awaitable<void> Robot::run() {
         note(failure);
         if (failed_) break;
         timer_.expires_after(backoff_.next());
-        co_await timer_.async_wait(kUse);
+        co_await timer_.async_wait(kAwaitTuple);
     }
     if (talk_.is_done()) ++shared_.figures.finished;
 }
@@ -103,13 +101,13 @@ asio::awaitable<wire::LinkError> Robot::use_one_link() {
 
 asio::awaitable<boost::system::error_code> Robot::connect(std::shared_ptr<Link> link) {
     auto& socket = link->stream.socket();
-    const auto [refused, endpoint] = co_await asio::async_connect(socket, shared_.link.server, kUse);
+    const auto [refused, endpoint] = co_await asio::async_connect(socket, shared_.link.server, kAwaitTuple);
     if (refused) co_return refused;
     boost::system::error_code ignored; // without it small frames only wait longer
     socket.set_option(tcp::no_delay(true), ignored);
     if (!shared_.link.tls) co_return refused;
     link->stream.expect_host(shared_.link.host);
-    const auto [failed] = co_await link->stream.async_handshake(net::LinkStream::Role::kClient, kUse);
+    const auto [failed] = co_await link->stream.async_handshake(net::LinkStream::Role::kClient, kAwaitTuple);
     co_return failed;
 }
 
@@ -117,11 +115,11 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
     for (;;) {
         const auto room = link->in.prepare(kReadBytes);
         const auto [failed, count] =
-            co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+            co_await link->stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return lost(ended(*link, failed));
         while (shared_.clock.now() < stalled_until_ && !stopped_) {
             timer_.expires_at(shared_.clock.at(stalled_until_));
-            co_await timer_.async_wait(kUse);
+            co_await timer_.async_wait(kAwaitTuple);
         }
         if (auto failure = take(*link, count)) co_return *failure;
         flush();

@@ -15,7 +15,6 @@ namespace json = boost::json;
 namespace {
 
 constexpr std::size_t kPageMax = 1000;
-constexpr unsigned kOk = 200;
 constexpr unsigned kNoContent = 204;
 constexpr unsigned kNotFound = 404;
 
@@ -54,7 +53,7 @@ std::vector<std::string> read_names(const json::value& value) {
     return names;
 }
 
-std::vector<TilePlace> read_tiles(const json::value& value) {
+std::vector<TilePlace> read_tile_list(const json::value& value) {
     std::vector<TilePlace> tiles;
     for (const auto& tile : value.at("tiles").as_array()) {
         tiles.push_back({tile.at("x").to_number<std::uint32_t>(), tile.at("y").to_number<std::uint32_t>()});
@@ -120,7 +119,7 @@ asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http) {
 asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session, std::string layer) {
     const auto target = fmt::format("{}/changes?layer={}&since=0", path_of(session), layer);
     const auto answer = co_await http.get(target);
-    co_return read_json(answer, target, read_tiles);
+    co_return read_json(answer, target, read_tile_list);
 }
 
 double metric(std::string_view text, std::string_view name) {

@@ -1,6 +1,7 @@
 #include "load/net/shard.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
@@ -16,7 +17,6 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr Micros kTick = 250;               ///< at most so many waits for the schedule: thousands a second cost CPU
 constexpr std::uint64_t kScansAtOnce = 128; ///< that are handed out before acks are read again
 constexpr Micros kLookAfterPeriod = kSecond;
@@ -95,7 +95,7 @@ asio::awaitable<void> Shard::connect_all() {
         const auto before = static_cast<double>(i * plan_.threads + number_);
         const auto wait = static_cast<Micros>(before / plan_.connections_per_second * static_cast<double>(kSecond));
         timer.expires_at(clock_.at(begun + wait));
-        co_await timer.async_wait(kUse);
+        co_await timer.async_wait(kAwaitTuple);
         robots_[i]->start();
     }
 }
@@ -108,7 +108,7 @@ asio::awaitable<void> Shard::follow_schedule(Micros start) {
         if (hand_out_due(start)) {
             const Micros next = start + course_.schedule->due(std::min(place_, places - 1));
             timer.expires_at(clock_.at(std::max(next, clock_.now() + kTick)));
-            co_await timer.async_wait(kUse);
+            co_await timer.async_wait(kAwaitTuple);
         } else {
             co_await asio::post(io_, asio::use_awaitable);
         }
@@ -136,10 +136,10 @@ bool Shard::hand_out_due(Micros start) {
 asio::awaitable<void> Shard::send_without_pause(Micros start) {
     asio::steady_timer timer(io_);
     timer.expires_at(clock_.at(start));
-    co_await timer.async_wait(kUse);
+    co_await timer.async_wait(kAwaitTuple);
     for (auto& robot : robots_) robot->due(RobotTalk::kEndless);
     timer.expires_at(clock_.at(start + plan_.duration));
-    co_await timer.async_wait(kUse);
+    co_await timer.async_wait(kAwaitTuple);
     end_all();
 }
 
@@ -153,7 +153,7 @@ asio::awaitable<void> Shard::strike_at_random() {
         const auto event = faults.next();
         next += event.after;
         timer.expires_at(clock_.at(next));
-        co_await timer.async_wait(kUse);
+        co_await timer.async_wait(kAwaitTuple);
         if (ended_) co_return;
         if (robots_[event.robot]->strike(event.fault)) ++figures_.faults[static_cast<std::size_t>(event.fault)];
     }
@@ -163,7 +163,7 @@ asio::awaitable<void> Shard::look_after_all() {
     asio::steady_timer timer(io_);
     for (;;) {
         timer.expires_after(std::chrono::microseconds(kLookAfterPeriod));
-        co_await timer.async_wait(kUse);
+        co_await timer.async_wait(kAwaitTuple);
         const Micros now = clock_.now();
         for (auto& robot : robots_) robot->look_after(now);
     }

@@ -1,12 +1,11 @@
+#include "common/net/await_tuple.hpp"
 #include "load/core/tile_tour.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
 #include "load/net/server_api.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <unordered_map>
@@ -18,8 +17,6 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-constexpr unsigned kOk = 200;
 constexpr unsigned kNotModified = 304;
 
 /// One reader: what it has seen, and what it is to ask for next.
@@ -32,7 +29,7 @@ public:
         for (;;) {
             const TileTour::Step step = tour_.next();
             timer_.expires_at(shared_.clock.at(step.at));
-            co_await timer_.async_wait(kUse);
+            co_await timer_.async_wait(kAwaitTuple);
             if (shared_.stopped) co_return;
             if (step.is_list) {
                 co_await list(step.layer);

@@ -1,14 +1,13 @@
+#include "common/net/await_tuple.hpp"
 #include "common/net/websocket_teardown.hpp"
 #include "load/net/http_connection.hpp"
 #include "load/net/onlooker.hpp"
 #include "load/net/open_link.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <fmt/format.h>
@@ -20,8 +19,7 @@ namespace beast = boost::beast;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-constexpr std::chrono::seconds kConnectMax{10};
+constexpr std::chrono::seconds kEnterMax{10};
 constexpr std::chrono::seconds kPause{1};
 constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's are at most 512 KiB
 
@@ -44,7 +42,7 @@ asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::
             [authorization](auto& request) { request.set(beast::http::field::authorization, authorization); }));
     }
     beast::websocket::response_type answer;
-    const auto [failed] = co_await stream.async_handshake(answer, host, target, kUse);
+    const auto [failed] = co_await stream.async_handshake(answer, host, target, kAwaitTuple);
     if (failed != beast::websocket::error::upgrade_declined) co_return Entry{failed, {}};
     co_return Entry{failed, refusal({answer.result_int(), {}, answer.body()}, target).message};
 }
@@ -53,8 +51,8 @@ asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::
 asio::awaitable<Entry> enter_in_time(Stream& stream, const OnlookerShared& shared, std::string session) {
     using namespace asio::experimental::awaitable_operators;
     asio::steady_timer timer(stream.get_executor());
-    timer.expires_after(kConnectMax);
-    auto first = co_await (enter(stream, shared, std::move(session)) || timer.async_wait(kUse));
+    timer.expires_after(kEnterMax);
+    auto first = co_await (enter(stream, shared, std::move(session)) || timer.async_wait(kAwaitTuple));
     if (first.index() != 0) co_return Entry{asio::error::timed_out, {}};
     co_return std::get<0>(std::move(first));
 }
@@ -63,7 +61,7 @@ asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceF
     beast::flat_buffer event;
     stream.read_message_max(kEventMax);
     for (;;) {
-        const auto [failed, bytes] = co_await stream.async_read(event, kUse);
+        const auto [failed, bytes] = co_await stream.async_read(event, kAwaitTuple);
         if (failed) co_return failed;
         ++figures.events;
         figures.event_bytes += bytes;
@@ -118,7 +116,7 @@ asio::awaitable<void> watch(OnlookerShared& shared, std::string session) {
             fmt::format("a viewer of session {}: {}", session,
                         entry.refusal.empty() ? trouble_with(stream.next_layer(), entry.failed) : entry.refusal);
         pause.expires_after(kPause);
-        co_await pause.async_wait(kUse);
+        co_await pause.async_wait(kAwaitTuple);
     }
 }
 

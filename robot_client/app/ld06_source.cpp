@@ -19,7 +19,7 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr std::size_t kSkippedLinesShown = 5;
+constexpr std::size_t kSkippedPosesShown = 5;
 constexpr std::string_view kStandardInput = "-";
 
 Result<Ld06ScanOptions> scan_options(const RobotOptions& options, const Ld06Options& ld06) {
@@ -40,13 +40,13 @@ Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
     const std::string name = ld06.poses == kStandardInput ? "stdin" : ld06.poses;
     std::size_t skipped = 0;
     const auto tell = [&](const SkippedLine& line) {
-        if (++skipped <= kSkippedLinesShown) {
+        if (++skipped <= kSkippedPosesShown) {
             console.note(fmt::format("{}:{}: skipped: {}", name, line.line_number, line.reason));
         }
     };
     auto lines = ld06.poses == kStandardInput ? read_pose_lines(std::cin, name, tell) : read_pose_lines(name, tell);
-    if (skipped > kSkippedLinesShown) {
-        console.note(fmt::format("{}: {} more lines skipped", name, skipped - kSkippedLinesShown));
+    if (skipped > kSkippedPosesShown) {
+        console.note(fmt::format("{}: {} more lines skipped", name, skipped - kSkippedPosesShown));
     }
     return lines;
 }

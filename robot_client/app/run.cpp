@@ -1,6 +1,7 @@
 #include "robot_client/app/run.hpp"
 
 #include "common/app/token_file.hpp"
+#include "common/net/await_tuple.hpp"
 #include "robot_client/app/make_source.hpp"
 #include "robot_client/app/progress.hpp"
 #include "robot_client/app/recent_rate.hpp"
@@ -12,11 +13,9 @@
 #include "robot_client/uplink/uplink.hpp"
 #include "robot_client/uplink/waiting_robot.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <csignal>
@@ -27,8 +26,6 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 
 namespace {
-
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 
 /// What the server has from earlier runs.
 std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
@@ -95,10 +92,10 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
 /// The first signal ends the source, the second everything.
 asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console& console) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
-    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
     console.note("interrupted: waiting for what was sent to be stored; interrupt again to leave at once");
     uplink.stop();
-    if (std::get<0>(co_await signals.async_wait(kUse))) co_return;
+    if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
     io.stop();
 }
 
@@ -110,7 +107,7 @@ asio::awaitable<void> show_progress(asio::io_context& io, const Uplink& uplink, 
     static_cast<void>(rate.update({}, 0));
     for (;;) {
         timer.expires_after(console.progress_period());
-        if (std::get<0>(co_await timer.async_wait(kUse))) co_return;
+        if (std::get<0>(co_await timer.async_wait(kAwaitTuple))) co_return;
         const UplinkStatus status = uplink.status();
         const std::uint64_t stored_now = status.acknowledged - status.resumed_after;
         console.progress(progress_text(status, feed.scan_count(),

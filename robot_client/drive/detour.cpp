@@ -20,8 +20,8 @@ constexpr double kOffsetMax = 1.6;
 constexpr double kSeenAhead = 1.5; // how far ahead what stands there matters to where to pass
 constexpr double kPastMin = 0.6;   // room ahead beside the line
 // control steps
-constexpr int kRememberedSteps = 200;
-constexpr int kPatienceSteps = 40;
+constexpr int kSeenSteps = 200;
+constexpr int kDetourBlockedStepsMax = 40;
 
 bool any_within(const std::vector<Point2>& places, double x_min, double x_max, double y_min, double y_max) {
     return std::ranges::any_of(places, [&](const Point2& place) {
@@ -110,7 +110,7 @@ Velocity Detour::step(const Ground& ground, const Senses& senses) {
     if (turns_back || follower_.has_arrived()) begin_next_part(ground, position);
     if (state_ != State::kUnderWay) return {};
     const Velocity velocity = follower_.step(senses);
-    if (follower_.blocked_steps() > kPatienceSteps) state_ = State::kFailed;
+    if (follower_.blocked_steps() > kDetourBlockedStepsMax) state_ = State::kFailed;
     return velocity;
 }
 
@@ -143,7 +143,7 @@ double Detour::room_beside(const Ground& ground) const {
 }
 
 void Detour::remember(const Ground& ground, const Senses& senses) {
-    std::erase_if(seen_, [&](const Seen& seen) { return seen.step < step_ - kRememberedSteps; });
+    std::erase_if(seen_, [&](const Seen& seen) { return seen.step < step_ - kSeenSteps; });
     if (step_ % 2 == 0) return; // a scan comes every other step
     const auto [low, high] = std::minmax({0.0, offset_});
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {

@@ -13,19 +13,19 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr int kPatienceSteps = 40;    // two seconds
-constexpr double kElsewhere = 0.5;    // metres: so far from where it was blocked it has got on
-constexpr int kBlockedBeforeFree = 3; // times, before it gets away from there
-constexpr double kGetFree = 0.4;      // metres
-constexpr int kDirections = 16;
+constexpr int kLookBlockedStepsMax = 40; // two seconds
+constexpr double kElsewhere = 0.5;       // metres: so far from where it was blocked it has got on
+constexpr int kBlockedBeforeFree = 3;    // times, before it gets away from there
+constexpr double kGetFree = 0.4;         // metres
+constexpr int kLookDirections = 16;
 
 /// The end of the longest free straight way, up to kGetFree; of equal ones that which asks for the smallest turn.
 Point2 free_place(const Senses& senses) {
     double best_yaw = senses.pose.yaw;
     double most = 0.0;
-    for (int n = 0; n < kDirections; ++n) {
+    for (int n = 0; n < kLookDirections; ++n) {
         const int turn = n % 2 == 0 ? n / 2 : -(n + 1) / 2; // 0, -1, 1, -2, 2, ...
-        const double yaw = senses.pose.yaw + turn * 2.0 * std::numbers::pi / kDirections;
+        const double yaw = senses.pose.yaw + turn * 2.0 * std::numbers::pi / kLookDirections;
         const double free = std::min(kGetFree, free_ahead(senses, yaw));
         if (free <= most) continue;
         most = free;
@@ -92,7 +92,7 @@ Velocity Explore::go_on(const Senses& senses) {
         task_ = task_ == Task::kGo ? Task::kLook : Task::kAsk;
         return {};
     }
-    if (follower_.blocked_steps() < kPatienceSteps) return velocity;
+    if (follower_.blocked_steps() < kLookBlockedStepsMax) return velocity;
     if (task_ == Task::kGo) {
         ask_another_way(senses);
     } else {

@@ -14,7 +14,7 @@ double to_square(std::int32_t dx, std::int32_t dy, double cell_size) {
     return cell_size * std::hypot(x, y);
 }
 
-constexpr double kRounding = 1e-9; // metres
+constexpr double kRadiusTolerance = 1e-9; // metres
 
 } // namespace
 
@@ -71,7 +71,7 @@ void Ground::take_out_around(Spot centre, double radius_m) {
     for (std::int32_t dy = -reach; dy <= reach; ++dy) {
         for (std::int32_t dx = -reach; dx <= reach; ++dx) {
             const Spot spot{centre.x + dx, centre.y + dy};
-            if (!holds(spot) || to_square(dx, dy, plan_.cell_size) >= radius_m - kRounding) continue;
+            if (!holds(spot) || to_square(dx, dy, plan_.cell_size) >= radius_m - kRadiusTolerance) continue;
             fits_[index_of(spot)] = 0;
         }
     }

@@ -14,11 +14,11 @@ constexpr double kReach = 0.5;        // rho_0, metres
 constexpr double kRepulsion = 0.002;  // eta
 constexpr double kAttraction = 1.0;   // k, for each metre
 constexpr double kDistanceMin = 0.02; // metres from the rim: nearer counts as that
-constexpr std::size_t kDirections = 24;
+constexpr std::size_t kFieldDirections = 24;
 
 std::size_t direction_of(const Point2& offset) {
     const double turn = std::atan2(offset.y(), offset.x()) / (2.0 * std::numbers::pi) + 0.5; // 0 .. 1
-    return std::min(static_cast<std::size_t>(turn * kDirections), kDirections - 1);
+    return std::min(static_cast<std::size_t>(turn * kFieldDirections), kFieldDirections - 1);
 }
 
 Point2 repulsion(const Point2& offset) {
@@ -30,7 +30,7 @@ Point2 repulsion(const Point2& offset) {
 } // namespace
 
 Point2 potential_force(const Point2& position, const Point2& goal, std::span<const Point2> obstacles) {
-    std::array<Point2, kDirections> nearest;
+    std::array<Point2, kFieldDirections> nearest;
     nearest.fill({kReach + kBodyRadius, 0.0}); // too far to count
     for (const Point2& obstacle : obstacles) {
         const Point2 offset = obstacle - position;

@@ -18,9 +18,9 @@ constexpr double kRoundingRadius = 0.55; // a little less than the distance, so 
 constexpr double kCruise = 0.4;
 constexpr double kBackOff = -0.2;
 constexpr double kRecovery = -0.08;
-constexpr double kRounding = 0.3;
+constexpr double kRoundingSpeed = 0.3;
 // radians a second
-constexpr double kTurnMax = std::numbers::pi / 4.0;
+constexpr double kSharpTurn = std::numbers::pi / 4.0;
 constexpr double kSearchTurn = -0.05;
 constexpr double kWallGain = 0.5; // radians a second for each metre
 // control steps
@@ -45,7 +45,7 @@ Velocity WallFollower::decide(const SectorRanges& nearest) {
     if (recovery_steps_left_ > 0) {
         --recovery_steps_left_;
         if (d_min > kRecoveredRange) recovery_steps_left_ = 0;
-        return {kRecovery, -0.6 * kTurnMax};
+        return {kRecovery, -0.6 * kSharpTurn};
     }
     if (d_min < kStopRange) {
         if (++blocked_steps_ > kBlockedStepsMax) {
@@ -59,7 +59,7 @@ Velocity WallFollower::decide(const SectorRanges& nearest) {
         if (mode_ == Mode::kLeaving) search(); // here is another wall
         // Backing off turns left, too: straight back, a robot beside a wall keeps its distance from it and never gets
         // free.
-        return {d_min < kBackOffRange ? kBackOff : 0.0, kTurnMax};
+        return {d_min < kBackOffRange ? kBackOff : 0.0, kSharpTurn};
     }
     return go_on(nearest.right);
 }
@@ -76,7 +76,8 @@ Velocity WallFollower::go_on(double right) {
         mode_ = Mode::kRounding;
         rounding_steps_left_ = kRoundingStepsMax;
     }
-    if (mode_ == Mode::kRounding && rounding_steps_left_-- > 0) return {kRounding, -kRounding / kRoundingRadius};
+    if (mode_ == Mode::kRounding && rounding_steps_left_-- > 0)
+        return {kRoundingSpeed, -kRoundingSpeed / kRoundingRadius};
     search();
     return {kCruise, kSearchTurn};
 }

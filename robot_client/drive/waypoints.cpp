@@ -11,9 +11,9 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kArrived = 0.10;   // metres
-constexpr double kProgress = 0.10;  // metres nearer, to count as some
-constexpr int kPatienceSteps = 300; // 15 seconds
+constexpr double kArrived = 0.10;  // metres
+constexpr double kProgress = 0.10; // metres nearer, to count as some
+constexpr int kStuckSteps = 300;   // 15 seconds
 constexpr std::size_t kGivenUpTold = 5;
 constexpr double kForceMin = 1e-9; // shorter ones point nowhere
 
@@ -107,7 +107,7 @@ bool Waypoints::has_progress(double distance) {
         return true;
     }
     steps_no_nearer_ += 1;
-    return steps_no_nearer_ < kPatienceSteps;
+    return steps_no_nearer_ < kStuckSteps;
 }
 
 } // namespace scanloom::robot

@@ -12,7 +12,7 @@ namespace scanloom::robot {
 namespace {
 
 // control steps
-constexpr int kPatienceSteps = 40;
+constexpr int kBlockedStepsPerDetour = 40;
 constexpr int kLanePatienceSteps = 200;
 constexpr int kDetoursMax = 4;
 constexpr int kWaysAroundMax = 3;
@@ -22,7 +22,7 @@ double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - p
 
 /// Once every two seconds that it is blocked.
 bool is_out_of_patience(const PathFollower& follower) {
-    return follower.blocked_steps() > 0 && follower.blocked_steps() % kPatienceSteps == 0;
+    return follower.blocked_steps() > 0 && follower.blocked_steps() % kBlockedStepsPerDetour == 0;
 }
 
 } // namespace

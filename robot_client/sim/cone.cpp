@@ -11,7 +11,7 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -37,7 +37,7 @@ double distance_within(const Cone& cone, const Segment& segment) {
     };
     cut(cross(cone.right_end, a), cross(cone.right_end, b));
     cut(cross(a, cone.left_end), cross(b, cone.left_end));
-    if (begin > end) return kFar;
+    if (begin > end) return kNever;
     const Point2 side = b - a;
     const double foot = std::clamp(-a.dot(side) / side.squaredNorm(), begin, end);
     return (a + foot * side).norm();

@@ -1,3 +1,4 @@
+#include "robot_client/sim/shell.hpp"
 #include "robot_client/sim/world.hpp"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kHalfWidth = 15.0; // of the building, inside
-constexpr double kHalfHeight = 10.0;
+constexpr double kOfficeHalfWidth = 15.0; // of the building, inside
+constexpr double kOfficeHalfHeight = 10.0;
 constexpr double kCorridorOuter = 4.0;  // |y| of the wall between corridor and outer rooms
 constexpr double kCorridorInner = 2.0;  // |y| of the wall between corridor and inner rooms
 constexpr double kBlockHalfWidth = 9.0; // of the inner block
@@ -29,23 +30,15 @@ void add_wall_along_y(std::vector<Box>& solids, double x, double y_begin, double
     solids.push_back({x - kWall / 2, y_begin, x + kWall / 2, y_end});
 }
 
-void add_shell(std::vector<Box>& solids) {
-    constexpr double kThick = 0.3;
-    solids.push_back({-kHalfWidth - kThick, -kHalfHeight - kThick, kHalfWidth + kThick, -kHalfHeight});
-    solids.push_back({-kHalfWidth - kThick, kHalfHeight, kHalfWidth + kThick, kHalfHeight + kThick});
-    solids.push_back({-kHalfWidth - kThick, -kHalfHeight - kThick, -kHalfWidth, kHalfHeight + kThick});
-    solids.push_back({kHalfWidth, -kHalfHeight - kThick, kHalfWidth + kThick, kHalfHeight + kThick});
-}
-
 /// Five rooms of 6 x 6 m on each long side, a door each.
 void add_outer_rooms(std::vector<Box>& solids) {
     constexpr std::array<double, 5> kNorthDoors{-13.6, -7.6, -1.6, 4.4, 10.4};
     constexpr std::array<double, 5> kSouthDoors{-10.4, -4.4, 1.6, 7.6, 13.6};
-    add_wall_along_x(solids, kCorridorOuter, -kHalfWidth, kHalfWidth, kNorthDoors);
-    add_wall_along_x(solids, -kCorridorOuter, -kHalfWidth, kHalfWidth, kSouthDoors);
+    add_wall_along_x(solids, kCorridorOuter, -kOfficeHalfWidth, kOfficeHalfWidth, kNorthDoors);
+    add_wall_along_x(solids, -kCorridorOuter, -kOfficeHalfWidth, kOfficeHalfWidth, kSouthDoors);
     for (const double x : {-9.0, -3.0, 3.0, 9.0}) {
-        add_wall_along_y(solids, x, kCorridorOuter, kHalfHeight);
-        add_wall_along_y(solids, x, -kHalfHeight, -kCorridorOuter);
+        add_wall_along_y(solids, x, kCorridorOuter, kOfficeHalfHeight);
+        add_wall_along_y(solids, x, -kOfficeHalfHeight, -kCorridorOuter);
     }
 }
 
@@ -84,16 +77,16 @@ void add_furniture(std::vector<Box>& solids) {
 // 30 x 20 m inside, around the world origin: a ring of corridors, wider at its ends, around a block of inner rooms.
 World make_office() {
     std::vector<Box> solids;
-    add_shell(solids);
+    add_shell(solids, kOfficeHalfWidth, kOfficeHalfHeight);
     add_outer_rooms(solids);
     add_inner_rooms(solids);
     add_furniture(solids);
     return make_world("office", std::move(solids),
                       {
-                          {-kHalfWidth, -kCorridorOuter, kHalfWidth, -kCorridorInner},
-                          {-kHalfWidth, kCorridorInner, kHalfWidth, kCorridorOuter},
-                          {-kHalfWidth, -kCorridorOuter, -kBlockHalfWidth, kCorridorOuter},
-                          {kBlockHalfWidth, -kCorridorOuter, kHalfWidth, kCorridorOuter},
+                          {-kOfficeHalfWidth, -kCorridorOuter, kOfficeHalfWidth, -kCorridorInner},
+                          {-kOfficeHalfWidth, kCorridorInner, kOfficeHalfWidth, kCorridorOuter},
+                          {-kOfficeHalfWidth, -kCorridorOuter, -kBlockHalfWidth, kCorridorOuter},
+                          {kBlockHalfWidth, -kCorridorOuter, kOfficeHalfWidth, kCorridorOuter},
                       });
 }
 

@@ -1,9 +1,9 @@
 #include "robot_client/source/exploring_source.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,6 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr int kFailuresMax = 10;
 constexpr double kAskAgainAfter = 1.0; // seconds of the simulation
 constexpr int kTimesBlockedMax = 30;
@@ -94,12 +93,12 @@ asio::awaitable<void> ExploringSource::wait_until_due(double stamp) {
     due_ = std::max(due_, Clock::now());
     wake_->expires_at(due_);
     due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(passed / speed_));
-    if (!is_stopped_) co_await wake_->async_wait(kUse);
+    if (!is_stopped_) co_await wake_->async_wait(kAwaitTuple);
 }
 
 asio::awaitable<void> ExploringSource::until_stopped() {
     wake_->expires_at(Clock::time_point::max());
-    co_await wake_->async_wait(kUse);
+    co_await wake_->async_wait(kAwaitTuple);
 }
 
 } // namespace scanloom::robot

@@ -1,11 +1,11 @@
 #include "robot_client/source/ld06_device.hpp"
 
 #include "common/error/further.hpp"
+#include "common/net/await_tuple.hpp"
+#include "robot_client/source/seconds.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,12 +20,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 4096;
 constexpr std::chrono::milliseconds kFirstWait{100};
 constexpr std::chrono::milliseconds kLongestWait{2'000};
-
-double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 class Reading {
 public:
@@ -60,7 +57,7 @@ asio::awaitable<Error> Reading::run() {
             co_return Error{error.code, error.message + tried};
         }
         asio::steady_timer timer(co_await asio::this_coro::executor, wait_);
-        co_await timer.async_wait(kUse);
+        co_await timer.async_wait(kAwaitTuple);
         wait_ = std::min(2 * wait_, kLongestWait);
     }
 }

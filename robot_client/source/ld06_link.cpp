@@ -1,12 +1,13 @@
 #include "robot_client/source/ld06_link.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+#include "robot_client/source/seconds.hpp"
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 namespace scanloom::robot {
@@ -18,10 +19,7 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr unsigned kBaud = 230'400;
-
-double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 Result<> set_line(asio::serial_port& port) {
     using Port = asio::serial_port;
@@ -54,16 +52,16 @@ asio::awaitable<Result<Ld06Link>> open(SerialDevice device, std::chrono::millise
 
 asio::awaitable<error_code> connect(tcp::socket& socket, const TcpPeer& peer) {
     tcp::resolver resolver(co_await asio::this_coro::executor);
-    auto [unknown, addresses] = co_await resolver.async_resolve(peer.host, peer.port, kUse);
+    auto [unknown, addresses] = co_await resolver.async_resolve(peer.host, peer.port, kAwaitTuple);
     if (unknown) co_return unknown;
-    co_return std::get<0>(co_await asio::async_connect(socket, addresses, kUse));
+    co_return std::get<0>(co_await asio::async_connect(socket, addresses, kAwaitTuple));
 }
 
 asio::awaitable<Result<Ld06Link>> open(TcpPeer peer, std::chrono::milliseconds timeout) {
     const auto executor = co_await asio::this_coro::executor;
     tcp::socket socket(executor);
     asio::steady_timer timer(executor, timeout);
-    const auto first = co_await (connect(socket, peer) || timer.async_wait(kUse));
+    const auto first = co_await (connect(socket, peer) || timer.async_wait(kAwaitTuple));
     const auto* connected = std::get_if<0>(&first);
     if (connected != nullptr && !*connected) co_return Ld06Link(std::move(socket));
     const std::string why =
@@ -92,8 +90,9 @@ asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::ui
                                                std::chrono::milliseconds timeout) {
     asio::steady_timer timer(co_await asio::this_coro::executor, timeout);
     const auto buffer = asio::buffer(bytes.data(), bytes.size());
-    const auto first = co_await (std::visit([&](auto& line) { return line.async_read_some(buffer, kUse); }, link) ||
-                                 timer.async_wait(kUse));
+    const auto first =
+        co_await (std::visit([&](auto& line) { return line.async_read_some(buffer, kAwaitTuple); }, link) ||
+                  timer.async_wait(kAwaitTuple));
     if (first.index() == 1) {
         co_return Error{
             Errc::kTimeout,

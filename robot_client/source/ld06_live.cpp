@@ -1,18 +1,18 @@
 #include "robot_client/source/ld06_live.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "robot_client/source/ld06_clock.hpp"
 #include "robot_client/source/ld06_decoder.hpp"
 #include "robot_client/source/ld06_remarks.hpp"
 #include "robot_client/source/ld06_turns.hpp"
 #include "robot_client/source/pose_feed.hpp"
+#include "robot_client/source/seconds.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/cancellation_signal.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -53,13 +53,10 @@ private:
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
 constexpr double kOtherClock = 60.0;     // seconds; no late pose is so far from a scan
 
 double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
-
-double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 } // namespace
 
@@ -225,7 +222,7 @@ asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
         if (auto ready = take_ready()) co_return std::optional(std::move(*ready));
         if (waiting_.empty() && ended_) co_return *ended_;
         timer.expires_at(waiting_.empty() ? Clock::time_point::max() : waiting_.front().until);
-        co_await timer.async_wait(kUse);
+        co_await timer.async_wait(kAwaitTuple);
     }
     co_return end_when_stopped();
 }

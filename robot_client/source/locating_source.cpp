@@ -1,12 +1,11 @@
 #include "robot_client/source/locating_source.hpp"
 
 #include "common/error/further.hpp"
+#include "common/net/await_tuple.hpp"
 #include "robot_client/source/counted.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <cassert>
@@ -93,7 +92,7 @@ asio::awaitable<void> LocatingSource::wait(Time until) {
     if (is_stopped_) co_return;
     asio::steady_timer timer(co_await asio::this_coro::executor, until);
     const Shown shown(awaiting_, timer);
-    co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    co_await timer.async_wait(kAwaitTuple);
 }
 
 void LocatingSource::stop() {

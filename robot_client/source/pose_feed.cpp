@@ -1,13 +1,12 @@
 #include "robot_client/source/pose_feed.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "robot_client/source/pose_lines.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 #include <fcntl.h>
@@ -19,7 +18,6 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kLineBytesMax = 4096;
 constexpr std::size_t kSkippedLinesTold = 5;
 
@@ -33,7 +31,7 @@ asio::awaitable<std::string> feed_poses(int descriptor, std::function<void(const
     std::size_t skipped = 0;
     for (std::size_t line_number = 1;; ++line_number) {
         const auto [failed, size] =
-            co_await asio::async_read_until(input, asio::dynamic_buffer(text, kLineBytesMax), '\n', kUse);
+            co_await asio::async_read_until(input, asio::dynamic_buffer(text, kLineBytesMax), '\n', kAwaitTuple);
         if (failed == asio::error::operation_aborted) co_return "";
         if (failed == asio::error::eof) co_return "the poses have ended";
         if (failed == asio::error::not_found) {

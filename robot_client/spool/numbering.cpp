@@ -1,10 +1,10 @@
 #include "robot_client/spool/numbering.hpp"
 
+#include "robot_client/spool/checksum.hpp"
 #include "robot_client/spool/file_handle.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <fstream>
 
@@ -17,10 +17,6 @@ constexpr std::string_view kNone = "-"; // in the place of an empty text
 std::string content_of(const Numbering& numbering) {
     const std::string_view session = numbering.session_id.empty() ? kNone : std::string_view(numbering.session_id);
     return fmt::format("{}\n{:<64} {:>20}\n", kFormat, session, numbering.acknowledged);
-}
-
-unsigned long checksum(std::string_view content) {
-    return ::crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
 }
 
 } // namespace

@@ -1,19 +1,14 @@
 #include "robot_client/spool/record.hpp"
 
 #include "common/wire/frame_decoder.hpp"
+#include "robot_client/spool/checksum.hpp"
 
 #include <boost/endian/conversion.hpp>
-#include <zlib.h>
 
 #include <cstdint>
 
 namespace scanloom::robot {
 namespace {
-
-std::uint32_t checksum(std::string_view body) {
-    return static_cast<std::uint32_t>(
-        ::crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size())));
-}
 
 std::uint32_t load(std::string_view bytes) {
     return boost::endian::load_big_u32(reinterpret_cast<const unsigned char*>(bytes.data()));

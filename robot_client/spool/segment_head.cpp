@@ -1,11 +1,11 @@
 #include "robot_client/spool/segment_head.hpp"
 
+#include "robot_client/spool/checksum.hpp"
 #include "robot_client/spool/file_handle.hpp"
 
 #include <boost/endian/conversion.hpp>
 #include <fcntl.h>
 #include <unistd.h>
-#include <zlib.h>
 
 namespace scanloom::robot {
 namespace {
@@ -15,10 +15,6 @@ constexpr std::size_t kNumbersBytes = 16;
 static_assert(kMagic.size() + kNumbersBytes + 4 == kSegmentHeadBytes);
 
 const unsigned char* bytes_of(std::string_view text) { return reinterpret_cast<const unsigned char*>(text.data()); }
-
-std::uint32_t checksum(std::string_view numbers) {
-    return static_cast<std::uint32_t>(::crc32(0, bytes_of(numbers), static_cast<uInt>(numbers.size())));
-}
 
 } // namespace
 

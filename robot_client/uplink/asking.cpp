@@ -1,9 +1,9 @@
 #include "robot_client/uplink/asking.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include <memory>
 #include <optional>
@@ -33,7 +33,7 @@ asio::awaitable<Result<Reply>> ask_once_applied(Uplink& uplink, Request request)
     });
     if (!asked) co_return Error{Errc::kOverloaded, "too many questions to the server are open"};
     try {
-        while (!pending->reply) co_await pending->answered.async_wait(asio::as_tuple(asio::use_awaitable));
+        while (!pending->reply) co_await pending->answered.async_wait(kAwaitTuple);
     } catch (...) { // cancelled
         uplink.abandon(*asked);
         throw;

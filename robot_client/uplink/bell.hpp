@@ -1,10 +1,10 @@
 #pragma once
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include <list>
 #include <memory>
@@ -23,7 +23,7 @@ public:
         const auto waiting = waiting_;
         boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor, until);
         const Place place(*waiting, timer);
-        co_await timer.async_wait(boost::asio::as_tuple(boost::asio::use_awaitable));
+        co_await timer.async_wait(kAwaitTuple);
     }
 
     void ring() {

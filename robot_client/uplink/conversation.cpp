@@ -2,6 +2,7 @@
 
 #include "common/scan/limits.hpp"
 #include "common/wire/frame_decoder.hpp"
+#include "robot_client/source/seconds.hpp"
 #include "robot_client/uplink/server_text.hpp"
 
 #include <fmt/format.h>
@@ -29,8 +30,6 @@ wire::LinkError in_plain_text(wire::LinkError failure) {
                   : shown(message);
     return failure;
 }
-
-double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// A server that states no limit means the protocol's.
 wire::Limits with_defaults(wire::Limits limits) {

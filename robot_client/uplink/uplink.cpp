@@ -1,14 +1,14 @@
 #include "robot_client/uplink/uplink.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "common/wire/frame_decoder.hpp"
+#include "robot_client/source/seconds.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
@@ -20,12 +20,9 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 16384;
 constexpr std::chrono::milliseconds kProgressPeriod{100};
 constexpr std::chrono::milliseconds kGoodbyeMax{1000};
-
-double seconds(std::chrono::milliseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
 
@@ -184,7 +181,7 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::shake_hands(net::LinkStr
     if (!options_.tls) co_return std::nullopt;
     stream.expect_host(options_.server.host);
     asio::steady_timer timer(io_);
-    const auto shaken = co_await (stream.async_handshake(net::LinkStream::Role::kClient, kUse) ||
+    const auto shaken = co_await (stream.async_handshake(net::LinkStream::Role::kClient, kAwaitTuple) ||
                                   wait(timer, Clock::now() + options_.connect_timeout));
     if (shaken.index() != 0) {
         co_return lost(fmt::format("{}:{} did not answer with TLS within {:g} s", options_.server.host,
@@ -200,13 +197,13 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream:
     const std::string where = fmt::format("{}:{}", options_.server.host, options_.server.port);
     tcp::resolver resolver(io_);
     const auto [unresolved, addresses] =
-        co_await resolver.async_resolve(options_.server.host, options_.server.port, kUse);
+        co_await resolver.async_resolve(options_.server.host, options_.server.port, kAwaitTuple);
     if (unresolved) {
         co_return lost(fmt::format("cannot find {}: {}; check --server", where, unresolved.message()));
     }
     asio::steady_timer timer(io_);
-    const auto connected =
-        co_await (asio::async_connect(socket, addresses, kUse) || wait(timer, Clock::now() + options_.connect_timeout));
+    const auto connected = co_await (asio::async_connect(socket, addresses, kAwaitTuple) ||
+                                     wait(timer, Clock::now() + options_.connect_timeout));
     const bool in_time = connected.index() == 0;
     const auto refused = in_time ? std::get<0>(std::get<0>(connected)) : boost::system::error_code();
     if (!in_time || refused == asio::error::operation_aborted) {
@@ -226,7 +223,8 @@ asio::awaitable<wire::LinkError> Uplink::read_frames(net::LinkStream& stream) {
     wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
         const auto room = decoder.prepare(kReadBytes);
-        const auto [failed, count] = co_await stream.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        const auto [failed, count] =
+            co_await stream.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return closed(failed);
         decoder.commit(count);
         for (;;) {
@@ -277,7 +275,7 @@ std::optional<wire::LinkError> Uplink::take(std::string_view body) {
 asio::awaitable<wire::LinkError> Uplink::write_frames(net::LinkStream& stream) {
     for (;;) {
         while (const auto frame = conversation_.next_frame(Clock::now())) {
-            const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(*frame), kUse);
+            const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(*frame), kAwaitTuple);
             if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
         }
         if (conversation_.said_goodbye()) stream.shutdown_send(); // the reader sees how the link ends
@@ -297,7 +295,7 @@ asio::awaitable<wire::LinkError> Uplink::watch_link() {
 
 asio::awaitable<void> Uplink::wait(asio::steady_timer& timer, Clock::time_point time) {
     timer.expires_at(time);
-    co_await timer.async_wait(kUse);
+    co_await timer.async_wait(kAwaitTuple);
 }
 
 void Uplink::wake_all() {

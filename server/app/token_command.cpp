@@ -16,8 +16,9 @@
 namespace scanloom::app {
 namespace {
 
-constexpr const char* kAbout = "Makes a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
-                               "Whoever sends the secret is let in; the file holds its hash alone.";
+constexpr const char* kAboutToken =
+    "Makes a token: prints its secret, once, and the lines to add to the file of --tokens.\n"
+    "Whoever sends the secret is let in; the file holds its hash alone.";
 
 std::string check_name(const std::string& name) {
     if (is_valid_name(name)) return {};
@@ -44,7 +45,7 @@ std::optional<Leave> token_command(int argc, const char* const* argv) {
     if (argc < 2 || std::string_view(argv[1]) != "token") return std::nullopt;
     access::Token token;
     std::string role;
-    CLI::App app(kAbout, "scanloom-server token");
+    CLI::App app(kAboutToken, "scanloom-server token");
     app.add_option("--name", token.name, "What it is called in the file and in logs")->required()->check(check_name);
     app.add_option("--role", role, "robot: sends scans; viewer: looks; operator: all, also creates and deletes")
         ->required()

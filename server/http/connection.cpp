@@ -1,5 +1,6 @@
 #include "server/http/connection.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "server/http/date.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/incoming.hpp"
@@ -7,7 +8,6 @@
 #include "server/live/invitation.hpp"
 #include "server/sockets/compute_on.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/read.hpp>
@@ -25,7 +25,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 
-constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kReadBytes = 4096;
 
 /// The boundary at which a fault of ours costs one answer and nothing else. `use` is one of Answering.

@@ -1,9 +1,8 @@
+#include "common/net/await_tuple.hpp"
 #include "server/http/connection.hpp"
 #include "server/http/date.hpp"
 #include "server/sockets/compute_on.hpp"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/buffers_suffix.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -19,7 +18,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 
-constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t kLingerReadBytes = 4096;
 constexpr std::size_t kLingerBytesMax = 256 * 1024;
 

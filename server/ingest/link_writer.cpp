@@ -1,9 +1,9 @@
 #include "server/ingest/link_writer.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <utility>
@@ -23,8 +23,7 @@ void LinkWriter::start(std::shared_ptr<void> owner) {
 asio::awaitable<void> LinkWriter::write([[maybe_unused]] std::shared_ptr<void> owner) {
     while (const auto piece = outbox_.next()) {
         if (piece->durable_seq) told_(*piece->durable_seq);
-        const auto [error, written] =
-            co_await asio::async_write(stream_, asio::buffer(piece->bytes), asio::as_tuple(asio::use_awaitable));
+        const auto [error, written] = co_await asio::async_write(stream_, asio::buffer(piece->bytes), kAwaitTuple);
         if (error) break;
     }
     writing_ = false;
@@ -32,7 +31,7 @@ asio::awaitable<void> LinkWriter::write([[maybe_unused]] std::shared_ptr<void> o
 }
 
 asio::awaitable<void> LinkWriter::emptied() {
-    if (writing_) co_await emptied_.async_wait(asio::as_tuple(asio::use_awaitable));
+    if (writing_) co_await emptied_.async_wait(kAwaitTuple);
 }
 
 } // namespace scanloom::ingest

@@ -1,12 +1,11 @@
 #include "server/ingest/robot_link.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "common/wire/compression.hpp"
 #include "server/ingest/entrance.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -18,8 +17,6 @@ constexpr std::size_t kReadBytes = std::size_t{64} << 10;
 
 /// Requests that were not refused and whose replies are not written yet.
 constexpr std::size_t kRequestsUnderWayMax = 4;
-
-constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 
 Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the connection"}; }
 
@@ -84,7 +81,7 @@ asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
 /// @return whether frames can be read and written.
 asio::awaitable<bool> RobotLink::shake_hands() {
     const auto [failed] = co_await stream_.async_handshake(
-        net::LinkStream::Role::kServer, asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
+        net::LinkStream::Role::kServer, asio::bind_cancellation_slot(stop_reading_.slot(), kAwaitTuple));
     if (!failed) co_return true;
     spdlog::debug("{}: TLS handshake: {}", peer_, failed.message());
     if (const auto fault = net::client_fault_of(failed)) services_.audit.note(access::Port::kRobot, address_, *fault);
@@ -119,7 +116,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
 /// is our matter.
 asio::awaitable<Result<>> RobotLink::settle() {
     deadline_ = std::chrono::steady_clock::time_point::max();
-    while ((dialogue_.has_under_way() || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAsTuple);
+    while ((dialogue_.has_under_way() || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAwaitTuple);
     if (ended_by_) co_return *ended_by_;
     co_return Result<>();
 }
@@ -191,7 +188,7 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
         }
         const auto room = decoder_.prepare(allowance_.read_max(kReadBytes));
         const auto [error, bytes] = co_await stream_.async_read_some(
-            asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAsTuple));
+            asio::buffer(room.data(), room.size()), asio::bind_cancellation_slot(stop_reading_.slot(), kAwaitTuple));
         if (error) {
             if (ended_by_) co_return *ended_by_;
             co_return closed_by_robot();
@@ -212,7 +209,7 @@ asio::awaitable<void> RobotLink::hold_back(double seconds) {
     services_.counters.held_back_seconds.Increment(seconds);
     if (deadline_ != std::chrono::steady_clock::time_point::max()) deadline_ += pause;
     held_back_.expires_after(pause);
-    co_await held_back_.async_wait(kAsTuple);
+    co_await held_back_.async_wait(kAwaitTuple);
 }
 
 Result<> RobotLink::handle(wire::Message message) {

@@ -1,9 +1,8 @@
+#include "common/net/await_tuple.hpp"
 #include "server/ingest/robot_link.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <fmt/format.h>
 
 /// When a link ends, how the robot is told, and how the log is.
@@ -12,8 +11,6 @@ namespace asio = boost::asio;
 namespace {
 
 constexpr std::size_t kUnheardBytes = std::size_t{64} << 10; // read at once and thrown away
-
-constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
 
 std::string in_http(std::string_view sentence) {
     return fmt::format("HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain; charset=utf-8\r\n"
@@ -60,7 +57,7 @@ asio::awaitable<void> RobotLink::let_hang_up() {
     for (;;) {
         const auto room = decoder_.prepare(kUnheardBytes);
         const auto [failed, bytes] =
-            co_await stream_.socket().async_read_some(asio::buffer(room.data(), room.size()), kAsTuple);
+            co_await stream_.socket().async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return;
     }
 }
@@ -86,7 +83,7 @@ asio::awaitable<void> RobotLink::watch_deadline() {
     const auto self = shared_from_this();
     while (stream_.is_open()) {
         deadline_timer_.expires_at(deadline_);
-        co_await deadline_timer_.async_wait(kAsTuple);
+        co_await deadline_timer_.async_wait(kAwaitTuple);
         if (!stream_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
         if (ended_by_ || parting_) { // the farewell took too long
             stream_.close();

@@ -9,10 +9,10 @@ namespace scanloom::landmarks {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kSameSurface = 0.15; // metres between elements of one surface
-constexpr double kSameLine = 0.07;    // metres from a straight element's line
-constexpr double kAlike = 0.8;        // cosine between the normals of one surface
-constexpr double kDepth = 0.2;        // metres between what is before and what is behind
+constexpr double kSameSurface = 0.15;      // metres between elements of one surface
+constexpr double kSameLine = 0.07;         // metres from a straight element's line
+constexpr double kSameSurfaceCosine = 0.8; // cosine between the normals of one surface
+constexpr double kDepth = 0.2;             // metres between what is before and what is behind
 
 bool is_matched(const Surface& surface, const Surfel& there, const Point2& place, const Pose2& rotation) {
     const auto [index, distance] = surface.nearest(place);
@@ -20,7 +20,7 @@ bool is_matched(const Surface& surface, const Surfel& there, const Point2& place
     const Surfel& here = surface.surfels()[index];
     if (!here.is_straight()) return true;
     if (std::abs(here.normal.dot(place - here.position)) > kSameLine) return false;
-    return !there.is_straight() || std::abs(here.normal.dot(transform(rotation, there.normal))) >= kAlike;
+    return !there.is_straight() || std::abs(here.normal.dot(transform(rotation, there.normal))) >= kSameSurfaceCosine;
 }
 
 } // namespace

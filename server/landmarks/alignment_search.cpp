@@ -10,11 +10,11 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr int kRotations = 120;      // of a full turn
-constexpr double kCell = 0.15;       // metres, of translations
-constexpr double kAlike = 0.85;      // cosine between normals of like direction
-constexpr std::size_t kPeaksMax = 6; // of one rotation
-constexpr double kApart = 0.3;       // metres between hypotheses of like rotation
+constexpr int kRotations = 120;            // of a full turn
+constexpr double kCell = 0.15;             // metres, of translations
+constexpr double kComparableCosine = 0.85; // cosine between normals of like direction
+constexpr std::size_t kPeaksMax = 6;       // of one rotation
+constexpr double kApart = 0.3;             // metres between hypotheses of like rotation
 constexpr double kTurned = 7.0 * std::numbers::pi / 180.0;
 
 struct Peak {
@@ -46,7 +46,7 @@ public:
                 const double y = here.position.y() - there.position.y() + reach_;
                 if (!(x >= 0.0 && y >= 0.0 && x < 2.0 * reach_ && y < 2.0 * reach_)) continue;
                 const bool comparable = here.is_straight() && there.is_straight();
-                if (comparable && std::abs(here.normal.dot(there.normal)) < kAlike) continue;
+                if (comparable && std::abs(here.normal.dot(there.normal)) < kComparableCosine) continue;
                 ++votes_[index(static_cast<int>(x / kCell), static_cast<int>(y / kCell))];
             }
         }

@@ -22,7 +22,7 @@ bool is_due(const Capture& last, double stamp, const Pose2& pose) {
 }
 
 /// Where millimetres can be counted, metres: no map reaches as far.
-constexpr double kFarthest = 2e6;
+constexpr double kCoordinateLimit = 2e6;
 
 void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
     const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
@@ -34,7 +34,7 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
         const double direction = T_map_sensor.yaw + beam_angle(angles, beam);
         const Point2 met(T_map_sensor.x + reading->metres * std::cos(direction),
                          T_map_sensor.y + reading->metres * std::sin(direction));
-        if (met.cwiseAbs().maxCoeff() <= kFarthest) capture.points.push_back(in_millimetres(met));
+        if (met.cwiseAbs().maxCoeff() <= kCoordinateLimit) capture.points.push_back(in_millimetres(met));
     }
 }
 

@@ -9,19 +9,19 @@
 namespace scanloom::landmarks {
 namespace {
 
-struct Place {
+struct CellPlace {
     double x;
     double y;
     std::uint32_t index;
 
-    [[nodiscard]] bool operator<(const Place& other) const {
+    [[nodiscard]] bool operator<(const CellPlace& other) const {
         return std::tie(x, y, index) < std::tie(other.x, other.y, other.index);
     }
-    [[nodiscard]] bool is_at(const Place& other) const { return x == other.x && y == other.y; }
+    [[nodiscard]] bool is_at(const CellPlace& other) const { return x == other.x && y == other.y; }
 };
 
-std::vector<Place> sorted_places(std::span<const Point2> cloud) {
-    std::vector<Place> places(cloud.size());
+std::vector<CellPlace> sorted_places(std::span<const Point2> cloud) {
+    std::vector<CellPlace> places(cloud.size());
     for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x(), cloud[n].y(), n};
     std::sort(places.begin(), places.end());
     return places;
@@ -33,7 +33,7 @@ DistinctPoints distinct_points(std::span<const Point2> cloud) {
     assert(cloud.size() <= kPointsMax);
     DistinctPoints distinct;
     distinct.of.resize(cloud.size());
-    const std::vector<Place> places = sorted_places(cloud);
+    const std::vector<CellPlace> places = sorted_places(cloud);
     for (std::size_t n = 0, first = 0; n < places.size(); ++n) {
         if (!places[n].is_at(places[first])) first = n;
         distinct.of[places[n].index] =

@@ -18,7 +18,7 @@ namespace scanloom::landmarks {
 namespace {
 
 constexpr double kHalfExtentMax = 100.0; // metres
-constexpr std::size_t kHypotheses = 48;
+constexpr std::size_t kMapHypotheses = 48;
 constexpr std::size_t kRepetitions = 12;     // of each quarter turn
 constexpr std::size_t kMapSurfelsMax = 4000; // that stand for all
 constexpr std::size_t kViewSurfelsMax = 4000;
@@ -83,7 +83,7 @@ Search::Search(const ReferenceMap& map, const Neighbourhood& within, const Horiz
 }
 
 Result<std::vector<Pose2>> Search::hypotheses(const std::function<Result<>()>& ask) const {
-    auto found = find_hypotheses(near_, second_.surface.surfels(), within_.radius, kHypotheses, kMapSurfelsMax, ask);
+    auto found = find_hypotheses(near_, second_.surface.surfels(), within_.radius, kMapHypotheses, kMapSurfelsMax, ask);
     if (!found) return found;
     return in_map(std::move(*found));
 }

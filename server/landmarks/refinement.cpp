@@ -17,12 +17,12 @@ constexpr std::size_t kSettlePairsMin = 10;
 constexpr double kAtRest = 2e-3; // metres, and radians
 
 constexpr int kFitStepsMax = 15;
-constexpr double kFitDistance = 0.15; // metres between elements that correspond
-constexpr double kResidualMax = 0.08; // metres from a line
-constexpr double kAlike = 0.9;        // cosine between normals that correspond
-constexpr double kRoundWeight = 0.2;  // of a surface element that is not straight: its place depends on the view
-constexpr double kDamping = 1e-3;     // of the elements used: holds what no line holds
-constexpr double kFitted = 1e-5;      // metres, and radians
+constexpr double kFitDistance = 0.15;        // metres between elements that correspond
+constexpr double kResidualMax = 0.08;        // metres from a line
+constexpr double kCorrespondingCosine = 0.9; // cosine between normals that correspond
+constexpr double kRoundWeight = 0.2;         // of a surface element that is not straight: its place depends on the view
+constexpr double kDamping = 1e-3;            // of the elements used: holds what no line holds
+constexpr double kFitted = 1e-5;             // metres, and radians
 
 bool is_at_rest(const Pose2& before, const Pose2& after, double limit) {
     return std::hypot(after.x - before.x, after.y - before.y) < limit &&
@@ -77,7 +77,7 @@ void add(NormalEquations& equations, const Surfel& here, const Surfel& there, co
     const double closeness = 1.0 - off * off / (kResidualMax * kResidualMax);
     if (closeness <= 0.0) return;
     if (here.is_straight()) {
-        if (std::abs(here.normal.dot(there.normal)) < kAlike) return;
+        if (std::abs(here.normal.dot(there.normal)) < kCorrespondingCosine) return;
         equations.add(line, from_origin, off, closeness * closeness); // Tukey's biweight
         equations.agreement += closeness * closeness * closeness;     // and what it makes most
     } else {

@@ -1,13 +1,12 @@
 #include "server/live/viewer.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "common/wire/live.hpp"
 #include "server/sockets/compute_on.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/http/field.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -22,8 +21,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
-
-constexpr auto kAwaitTuple = asio::as_tuple(asio::use_awaitable);
 
 /// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 401 and 404.
 constexpr websocket::close_code kTokenGone{4401};

@@ -16,7 +16,7 @@
 namespace scanloom::mapping {
 namespace {
 
-const std::shared_ptr<const LaserChunk>& blank_chunk() {
+const std::shared_ptr<const LaserChunk>& blank_laser_chunk() {
     static const auto blank = [] {
         LaserChunk chunk;
         chunk.occupancy.fill(kUnknownLogOdds);
@@ -97,7 +97,7 @@ LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, doubl
     return fan;
 }
 
-LaserLayers::LaserLayers(const MapConfig& config) : LaserLayers(config, ChunkGrid<LaserChunk>(blank_chunk())) {}
+LaserLayers::LaserLayers(const MapConfig& config) : LaserLayers(config, ChunkGrid<LaserChunk>(blank_laser_chunk())) {}
 
 LaserLayers::LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid)
     : config_(config), occupancy_(config), himm_(config), by_occupancy_(hysteresis_of_occupancy(config)),

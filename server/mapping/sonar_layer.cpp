@@ -9,7 +9,7 @@
 namespace scanloom::mapping {
 namespace {
 
-const std::shared_ptr<const SonarChunk>& blank_chunk() {
+const std::shared_ptr<const SonarChunk>& blank_sonar_chunk() {
     static const auto blank = [] {
         SonarChunk chunk;
         chunk.cells.fill(kUnknownLogOdds);
@@ -35,7 +35,7 @@ double sonar_probability(Verdict region, double r, double range_max, double a, d
     return region == Verdict::kOccupied ? 0.5 + 0.5 * w : 0.5 * (1.0 - w);
 }
 
-SonarLayer::SonarLayer(const MapConfig& config) : SonarLayer(config, ChunkGrid<SonarChunk>(blank_chunk())) {}
+SonarLayer::SonarLayer(const MapConfig& config) : SonarLayer(config, ChunkGrid<SonarChunk>(blank_sonar_chunk())) {}
 
 SonarLayer::SonarLayer(const MapConfig& config, ChunkGrid<SonarChunk> grid)
     : config_(config), l_min_(to_fixed(log_odds_of(config.sonar_p_min))),

@@ -8,7 +8,7 @@
 namespace scanloom::session {
 namespace {
 
-const Error kEnough{Errc::kInternal, "what follows is kept in memory, or too much"};
+const Error kRestIsKept{Errc::kInternal, "what follows is kept in memory, or too much"};
 
 constexpr Revision kAskEvery = 1024; // entries: a few milliseconds
 
@@ -65,13 +65,13 @@ Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, c
     const Revision all_kept = kept.empty() ? 0 : *std::ranges::max_element(kept);
     std::size_t points = 0;
     const auto visit = [&](Revision revision, std::string_view bytes) -> Result<> {
-        if (revision >= all_kept) return kEnough;
+        if (revision >= all_kept) return kRestIsKept;
         if (revision % kAskEvery == 0 && !is_wanted()) {
             return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
         }
         if (points == points_max) {
             paths.until = revision - 1;
-            return kEnough;
+            return kRestIsKept;
         }
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
@@ -82,7 +82,7 @@ Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, c
     };
     if (all_kept > since + 1) {
         const auto read = log.read(session, since, visit);
-        if (!read && read.error() != kEnough) return read.error();
+        if (!read && read.error() != kRestIsKept) return read.error();
     }
     shorten(paths, maps, since, points_max);
     return paths;

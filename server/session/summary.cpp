@@ -8,7 +8,7 @@
 namespace scanloom::session {
 namespace {
 
-const Error kEnough{Errc::kShuttingDown, "what follows are sensors and cells"};
+const Error kSummaryIsRead{Errc::kShuttingDown, "what follows are sensors and cells"};
 
 Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
     mapping::Snapshot facts{.revision = state.revision, .config = config, .bounds = state.bounds};
@@ -44,13 +44,13 @@ Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionI
     CheckpointReader reader(config);
     std::optional<Error> unusable;
     auto read = log.read_checkpoint(session, [&](std::string_view key, std::string_view value) -> Result<> {
-        if (key >= CheckpointReader::kAfterState) return kEnough;
+        if (key >= CheckpointReader::kAfterState) return kSummaryIsRead;
         auto added = reader.add(key, value);
         if (!added) unusable = added.error();
         return added;
     });
     if (unusable) return std::optional<Summary>{};
-    if (!read && read.error() != kEnough) return read.error();
+    if (!read && read.error() != kSummaryIsRead) return read.error();
     const auto state = std::move(reader).state();
     if (!state || state->revision != *end) return std::optional<Summary>{};
     return std::optional(summary_of(*state, config));

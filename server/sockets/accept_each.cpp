@@ -1,9 +1,9 @@
 #include "server/sockets/accept_each.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -14,7 +14,6 @@ namespace asio = boost::asio;
 
 asio::awaitable<void> accept_each(asio::ip::tcp::acceptor& acceptor, asio::io_context& io, std::string_view what,
                                   std::function<void(asio::ip::tcp::socket)> take) {
-    constexpr auto kAsTuple = asio::as_tuple(asio::use_awaitable);
     asio::steady_timer pause(acceptor.get_executor());
     bool failed = false;
     while (acceptor.is_open()) {
@@ -22,9 +21,9 @@ asio::awaitable<void> accept_each(asio::ip::tcp::acceptor& acceptor, asio::io_co
             if (failed) {
                 failed = false;
                 pause.expires_after(std::chrono::milliseconds(100));
-                co_await pause.async_wait(kAsTuple);
+                co_await pause.async_wait(kAwaitTuple);
             }
-            auto [error, socket] = co_await acceptor.async_accept(asio::make_strand(io), kAsTuple);
+            auto [error, socket] = co_await acceptor.async_accept(asio::make_strand(io), kAwaitTuple);
             if (!acceptor.is_open()) break;
             if (error) throw boost::system::system_error(error);
             take(std::move(socket));

@@ -1,6 +1,7 @@
 #include "server/store/crash_recovery.hpp"
 
 #include "server/store/advice.hpp"
+#include "server/store/failure.hpp"
 #include "server/store/listing.hpp"
 #include "server/store/log_file.hpp"
 
@@ -24,16 +25,14 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kManifest = "MANIFEST-";
 
-Error failure(std::string message) { return {Errc::kStoreFailed, std::move(message)}; }
-
 Result<std::string> contents_of(const fs::path& file) {
     std::error_code problem;
     const auto size = fs::file_size(file, problem);
-    if (problem) return failure(fmt::format("cannot read {} of the store: {}", file.native(), problem.message()));
+    if (problem) return failure("cannot read {} of the store: {}", file.native(), problem.message());
     std::string bytes(size, '\0');
     std::ifstream in(file, std::ios::binary);
     if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-        return failure(fmt::format("cannot read {} of the store; check the disk", file.native()));
+        return failure("cannot read {} of the store; check the disk", file.native());
     }
     return bytes;
 }
@@ -43,8 +42,7 @@ Result<LogFileCheck> checked(const fs::path& file) {
     if (!bytes) return bytes.error();
     auto check = check_log_file(*bytes);
     if (check.damage) {
-        return failure(
-            fmt::format("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kBringBack));
+        return failure("{} of the store is damaged at byte {}; {}", file.native(), *check.damage, kBringBack);
     }
     return check;
 }
@@ -76,7 +74,7 @@ Result<> cut_off(const fs::path& file, std::size_t bytes) {
     const std::string problem = std::system_category().message(errno);
     if (descriptor >= 0) ::close(descriptor);
     if (done) return {};
-    return failure(fmt::format("cannot cut the unfinished write off {} of the store: {}", file.native(), problem));
+    return failure("cannot cut the unfinished write off {} of the store: {}", file.native(), problem);
 }
 
 } // namespace
@@ -90,8 +88,8 @@ Result<> check_newest_log(const fs::path& directory) {
     if (!(in >> manifest) || !manifest.starts_with(kManifest)) return {}; // a new store
     const auto number = number_in(std::string_view(manifest).substr(kManifest.size()));
     if (!number || logs.rbegin()->first + 1 >= *number) return {};
-    return failure(fmt::format("the newest write-ahead log of the store {} is missing: {} is older than {}; {}",
-                               directory.native(), logs.rbegin()->second.filename().native(), manifest, kBringBack));
+    return failure("the newest write-ahead log of the store {} is missing: {} is older than {}; {}", directory.native(),
+                   logs.rbegin()->second.filename().native(), manifest, kBringBack);
 }
 
 Result<> check_manifest(const fs::path& directory) {
@@ -102,17 +100,16 @@ Result<> check_manifest(const fs::path& directory) {
     if (!name) return name.error();
     if (!name->starts_with("MANIFEST-") || name->find_first_not_of("0123456789", 9) != name->size() - 1 ||
         !name->ends_with('\n')) {
-        return failure(
-            fmt::format("{} of the store is damaged: it does not name a manifest; {}", current.native(), kBringBack));
+        return failure("{} of the store is damaged: it does not name a manifest; {}", current.native(), kBringBack);
     }
     const fs::path manifest = directory / name->substr(0, name->size() - 1);
     if (!fs::exists(manifest, problem)) {
-        return failure(fmt::format("{} of the store is missing; {}", manifest.native(), kBringBack));
+        return failure("{} of the store is missing; {}", manifest.native(), kBringBack);
     }
     const auto check = checked(manifest);
     if (!check) return check.error();
     if (check->whole_bytes == 0) {
-        return failure(fmt::format("{} of the store has lost its contents; {}", manifest.native(), kBringBack));
+        return failure("{} of the store has lost its contents; {}", manifest.native(), kBringBack);
     }
     return {};
 }
@@ -124,14 +121,14 @@ Result<std::optional<UnfinishedWrite>> find_unfinished_write(const LockedDirecto
     std::optional<UnfinishedWrite> unfinished;
     for (const auto& [number, log] : logs) {
         if (unfinished) {
-            return failure(fmt::format("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
-                                       unfinished->whole_bytes, kBringBack));
+            return failure("{} of the store is damaged at byte {}; {}", unfinished->file.native(),
+                           unfinished->whole_bytes, kBringBack);
         }
         const auto check = checked(log);
         if (!check) return check.error();
         std::error_code problem;
         const auto size = fs::file_size(log, problem);
-        if (problem) return failure(fmt::format("cannot read {} of the store: {}", log.native(), problem.message()));
+        if (problem) return failure("cannot read {} of the store: {}", log.native(), problem.message());
         if (check->whole_bytes < size) unfinished = {log, check->whole_bytes, size - check->whole_bytes};
     }
     return unfinished;

@@ -12,7 +12,7 @@
 namespace scanloom::store {
 namespace {
 
-Error failure(const char* what, const std::filesystem::path& file, int error) {
+Error lock_failure(const char* what, const std::filesystem::path& file, int error) {
     return {Errc::kStoreFailed,
             fmt::format("cannot {} {}: {}", what, file.native(), std::system_category().message(error))};
 }
@@ -21,14 +21,14 @@ Error failure(const char* what, const std::filesystem::path& file, int error) {
 
 Result<FileLock> FileLock::alone(const std::filesystem::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (descriptor < 0) return failure("write", file, errno);
+    if (descriptor < 0) return lock_failure("write", file, errno);
     return locked(file, descriptor, LOCK_EX);
 }
 
 Result<FileLock> FileLock::beside_others(const std::filesystem::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0 && errno == ENOENT) return FileLock(-1);
-    if (descriptor < 0) return failure("read", file, errno);
+    if (descriptor < 0) return lock_failure("read", file, errno);
     return locked(file, descriptor, LOCK_SH);
 }
 
@@ -38,7 +38,7 @@ Result<FileLock> FileLock::locked(const std::filesystem::path& file, int descrip
     const int error = errno;
     if (error == EWOULDBLOCK)
         return Error{Errc::kConflict, fmt::format("{} is held by another process", file.native())};
-    return failure("lock", file, error);
+    return lock_failure("lock", file, error);
 }
 
 FileLock::~FileLock() {

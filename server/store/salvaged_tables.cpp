@@ -2,6 +2,7 @@
 
 #include "server/store/compaction_watch.hpp"
 #include "server/store/crash_recovery.hpp"
+#include "server/store/failure.hpp"
 #include "server/store/listing.hpp"
 #include "server/store/log_file.hpp"
 #include "server/store/readable_file.hpp"
@@ -31,8 +32,6 @@ constexpr std::string_view kTable = ".sst";
 constexpr std::string_view kLog = ".log";
 constexpr std::string_view kSetAside = "aside"; // tables that RocksDB does not have
 constexpr std::size_t kBatchHeaderBytes = 12;
-
-Error failure(std::string message) { return {Errc::kStoreFailed, std::move(message)}; }
 
 /// For a copy that nothing else uses: takes what there is.
 rocksdb::Options options_of_copy(const StoreOptions& options) {
@@ -111,8 +110,8 @@ SalvagedTables::~SalvagedTables() {
 Result<> SalvagedTables::copy_files() {
     std::error_code problem;
     if (!fs::create_directories(copy_, problem)) {
-        return failure(fmt::format("cannot make the directory {}: {}", copy_.native(),
-                                   problem ? problem.message() : "it exists; remove it first"));
+        return failure("cannot make the directory {}: {}", copy_.native(),
+                       problem ? problem.message() : "it exists; remove it first");
     }
     for (const auto& file : regular_files(store_)) {
         const auto name = file.filename();
@@ -137,7 +136,7 @@ Result<> SalvagedTables::open_database() {
         status = rocksdb::DB::Open(rocksdb, copy_.native(), &opened);
     }
     database_.reset(opened);
-    if (!status.ok()) return failure(fmt::format("nothing of it can be read: {}", reason_of(status, copy_)));
+    if (!status.ok()) return failure("nothing of it can be read: {}", reason_of(status, copy_));
     return has_all_ ? set_unlisted_aside() : Result<>();
 }
 
@@ -152,7 +151,7 @@ Result<> SalvagedTables::set_all_aside() {
         else
             fs::remove(file, problem);
     }
-    if (problem) return failure(fmt::format("cannot write {}: {}", copy_.native(), problem.message()));
+    if (problem) return failure("cannot write {}: {}", copy_.native(), problem.message());
     return {};
 }
 
@@ -243,7 +242,7 @@ Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
         if (!session_of(key)) ++taken;
     });
     if (const auto status = database_->Write({}, &batch); !status.ok()) {
-        return failure(fmt::format("what is left of {} cannot be taken: {}", table.native(), status.ToString()));
+        return failure("what is left of {} cannot be taken: {}", table.native(), status.ToString());
     }
     return taken;
 }
@@ -266,13 +265,12 @@ Result<> SalvagedTables::take_write_ahead_logs() {
             Removals removals(removed_);
             batch.Iterate(&removals).PermitUncheckedError(); // its checksum holds
             if (const auto status = database_->Write({}, &batch); !status.ok()) {
-                return failure(
-                    fmt::format("a write of {} cannot be taken: {}", file.filename().native(), status.ToString()));
+                return failure("a write of {} cannot be taken: {}", file.filename().native(), status.ToString());
             }
         }
     }
     if (const auto status = database_->Flush({}); !status.ok()) {
-        return failure(fmt::format("cannot write {}: {}", copy_.native(), status.ToString()));
+        return failure("cannot write {}: {}", copy_.native(), status.ToString());
     }
     return {};
 }

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error failure(const fs::path& directory, std::string_view what) {
+Error facts_failure(const fs::path& directory, std::string_view what) {
     return {Errc::kStoreFailed, fmt::format("the store {} cannot be opened: {}", directory.native(), what)};
 }
 
@@ -27,7 +27,7 @@ Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs
     if (!status.ok()) return cannot_open(directory, status);
     const auto value = unsealed(key, sealed_value);
     const auto number = value ? number_of(*value) : std::nullopt;
-    if (!number) return failure(directory, fmt::format("its record '{}' is damaged; {}", key, kBringBack));
+    if (!number) return facts_failure(directory, fmt::format("its record '{}' is damaged; {}", key, kBringBack));
     return number;
 }
 
@@ -44,8 +44,8 @@ Error cannot_open(const fs::path& directory, const rocksdb::Status& status) {
         return {Errc::kDataLoss, fmt::format("the store {} cannot be opened: it is damaged ({}); {}",
                                              directory.native(), status.ToString(), kBringBack)};
     }
-    if (status.IsNoSpace()) return failure(directory, fmt::format("the disk is full ({})", status.ToString()));
-    return failure(directory, status.ToString());
+    if (status.IsNoSpace()) return facts_failure(directory, fmt::format("the disk is full ({})", status.ToString()));
+    return facts_failure(directory, status.ToString());
 }
 
 Result<bool> must_write_format(rocksdb::DB& database, const fs::path& directory) {
@@ -53,8 +53,8 @@ Result<bool> must_write_format(rocksdb::DB& database, const fs::path& directory)
     if (!version) return version.error();
     if (!*version) {
         if (is_empty(database)) return true;
-        return failure(directory,
-                       fmt::format("it holds a RocksDB database without the format record of scanloom-server; name "
+        return facts_failure(
+            directory, fmt::format("it holds a RocksDB database without the format record of scanloom-server; name "
                                    "another directory if it is another program's; if it is not, {}",
                                    kBringBack));
     }
@@ -76,7 +76,7 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
         const auto session = session_of(sessions->key().ToStringView());
         if (!session) break;
         if (*session >= ends.next_session)
-            return failure(directory, fmt::format("its count of sessions is damaged; {}", kBringBack));
+            return facts_failure(directory, fmt::format("its count of sessions is damaged; {}", kBringBack));
         const auto end = end_of_log(database, directory.native(), *session); // damage of one holds up no other
         ends.revisions.emplace(*session, end ? *end : 0);
         if (!end) ends.damaged.emplace(*session, end.error());

@@ -148,7 +148,7 @@ Result<grid::CellBox> places_of(const mapping::Snapshot& snapshot, mapping::Laye
     return cells_in(extent_of(cells, snapshot.config.cell_size), cell_size);
 }
 
-constexpr std::array<PaletteEntry, kDifferenceNames.size()> kPalette = {{
+constexpr std::array<PaletteEntry, kDifferenceNames.size()> kDifferencePalette = {{
     {{255, 255, 255}, 0}, // neither
     {{166, 206, 235}},    // only A
     {{252, 214, 148}},    // only B
@@ -205,7 +205,7 @@ DifferenceSums compare(const ComparedMaps& maps, const MapFrame& frame, const Us
 }
 
 Bytes difference_png(const ComparedMaps& maps, const MapFrame& frame) {
-    PngWriter png(frame.width(), frame.height(), kPalette);
+    PngWriter png(frame.width(), frame.height(), kDifferencePalette);
     std::vector<std::uint8_t> pixels(frame.pixels_wide());
     compare(maps, frame, [&](std::span<const Difference> row) {
         std::ranges::transform(row, pixels.begin(), [](Difference d) { return static_cast<std::uint8_t>(d); });

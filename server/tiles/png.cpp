@@ -17,7 +17,7 @@ constexpr int kMemoryLevel = 8;
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
 constexpr std::uint8_t kGrey = 0; // colour types
-constexpr std::uint8_t kPalette = 3;
+constexpr std::uint8_t kColourTypePalette = 3;
 constexpr std::uint8_t kUnfiltered = 0;
 
 void append_number(Bytes& to, std::uint32_t number) {
@@ -125,7 +125,7 @@ PngWriter::PngWriter(std::int32_t width, std::int32_t height)
       deflate_(std::make_unique<Deflate>(png_)) {}
 
 PngWriter::PngWriter(std::int32_t width, std::int32_t height, std::span<const PaletteEntry> palette)
-    : png_(beginning_of(width, height, bits_for(palette.size()), kPalette)), bits_(bits_for(palette.size())),
+    : png_(beginning_of(width, height, bits_for(palette.size()), kColourTypePalette)), bits_(bits_for(palette.size())),
       packed_(1 + packed_size(width, bits_), kUnfiltered), deflate_(std::make_unique<Deflate>(png_)) {
     assert(!palette.empty() && palette.size() <= 256);
     append_palette(png_, palette);

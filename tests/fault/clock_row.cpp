@@ -111,7 +111,7 @@ std::string digest(const ServerProcess& server) {
     return boost::json::serialize(boost::json::parse(answer.body).at("layers"));
 }
 
-std::string peaceful_digest(std::uint64_t seed, std::uint64_t scans) {
+std::string digest_without_jumps(std::uint64_t seed, std::uint64_t scans) {
     const TemporaryDirectory place;
     ServerProcess server({}, place.path());
     server.start_and_wait();
@@ -136,7 +136,7 @@ void say_hello_after(const JumpingClock& clock, const std::string& days, const S
     }
 }
 
-Outcome run_one(const Run& run, const fs::path& library, std::uint64_t seed, std::uint64_t jumps) {
+Outcome jump_clock(const Run& run, const fs::path& library, std::uint64_t seed, std::uint64_t jumps) {
     const TemporaryDirectory place;
     std::mt19937_64 random(seed);
     const JumpingClock clock(library, place.path() / "clock");
@@ -163,7 +163,7 @@ Outcome run_one(const Run& run, const fs::path& library, std::uint64_t seed, std
         sent = scans;
     }
     outcome.add(verify_numbers(ask_for(server.http_port(), "s").log, "r", sent));
-    outcome.digest_equal = digest(server) == peaceful_digest(seed, sent);
+    outcome.digest_equal = digest(server) == digest_without_jumps(seed, sent);
     if (const int code = server.stop(); code != 0)
         outcome.amiss.push_back(fmt::format("the server ends with {}", code));
     return outcome;
@@ -176,7 +176,7 @@ Outcome run_clock_row(const Run& run) {
     if (!library) return {.skipped = "there is no faketime: apt-get install faketime"};
     return run_cases(run,
                      {.row = "clock", .of_count = kJumpsPerStore, .run = [&](std::uint64_t seed, std::uint64_t jumps) {
-                          return run_one(run, *library, seed, jumps);
+                          return jump_clock(run, *library, seed, jumps);
                       }});
 }
 

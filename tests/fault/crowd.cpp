@@ -1,12 +1,12 @@
 #include "tests/fault/crowd.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <array>
@@ -20,16 +20,15 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
 constexpr std::chrono::milliseconds kComesAgainAfter{20};
 constexpr int kReceiveBytes = 4096; // so that who does not read is soon full
 
 /// Until the server hangs up.
 asio::awaitable<void> listen(tcp::socket& socket, bool reads) {
-    if (!reads) co_await socket.async_wait(tcp::socket::wait_error, kUse);
+    if (!reads) co_await socket.async_wait(tcp::socket::wait_error, kAwaitTuple);
     std::array<char, 4096> heard{};
     for (;;) {
-        const auto [failed, bytes] = co_await socket.async_read_some(asio::buffer(heard), kUse);
+        const auto [failed, bytes] = co_await socket.async_read_some(asio::buffer(heard), kAwaitTuple);
         if (failed) co_return;
     }
 }
@@ -79,7 +78,8 @@ asio::awaitable<void> Crowd::belong(std::size_t member) {
         tcp::socket socket(io_);
         socket.open(tcp::v4());
         socket.set_option(tcp::socket::receive_buffer_size(kReceiveBytes));
-        const auto [failed] = co_await socket.async_connect({asio::ip::address_v4::loopback(), manner.port}, kUse);
+        const auto [failed] =
+            co_await socket.async_connect({asio::ip::address_v4::loopback(), manner.port}, kAwaitTuple);
         if (!failed) {
             ++made_;
             made_.notify_all();
@@ -89,19 +89,19 @@ asio::awaitable<void> Crowd::belong(std::size_t member) {
             left_.notify_all();
         }
         pause.expires_after(kComesAgainAfter);
-        co_await pause.async_wait(kUse);
+        co_await pause.async_wait(kAwaitTuple);
     }
 }
 
 /// Until nobody takes it any more.
 asio::awaitable<void> Crowd::speak(tcp::socket& socket, const Manner& manner) {
     asio::steady_timer pause(socket.get_executor());
-    const auto [unsaid, bytes] = co_await asio::async_write(socket, asio::buffer(manner.opening), kUse);
+    const auto [unsaid, bytes] = co_await asio::async_write(socket, asio::buffer(manner.opening), kAwaitTuple);
     if (unsaid || manner.then.empty()) co_return;
     for (;;) {
         pause.expires_after(manner.pause);
-        co_await pause.async_wait(kUse);
-        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(manner.then), kUse);
+        co_await pause.async_wait(kAwaitTuple);
+        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(manner.then), kAwaitTuple);
         if (failed) co_return;
     }
 }

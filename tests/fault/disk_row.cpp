@@ -20,11 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kReserveMib = 16; // that the server keeps free
 constexpr std::uint64_t kFillingsPerDisk = 5;
 constexpr std::uint64_t kScansPerFilling = 100; // of each robot
-constexpr unsigned kRobots = 4;
+constexpr unsigned kDiskRobots = 4;
 
 /// Somebody else's file, that takes the disk's room for as long as this lives.
 class Ballast {
@@ -74,14 +73,14 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", std::to_string(kReserveMib)});
-    Fleet fleet(half_sharing(kRobots, seed, fillings * kScansPerFilling), server.robot_port());
+    Fleet fleet(half_sharing(kDiskRobots, seed, fillings * kScansPerFilling), server.robot_port());
     server.start_and_wait();
     fleet.release(1);
-    (void)fleet.wait_for_acknowledged(kRobots); // on a full disk no session can be made
+    (void)fleet.wait_for_acknowledged(kDiskRobots); // on a full disk no session can be made
     Outcome outcome;
     for (std::uint64_t filling = 1; filling <= fillings && !fleet.has_given_up(); ++filling) {
         fleet.release(filling * kScansPerFilling - kScansPerFilling / 2);
-        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRobots * kScansPerFilling / 2));
+        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kDiskRobots * kScansPerFilling / 2));
         {
             Ballast ballast(store / "ballast");
             const auto left = random() % (kReserveMib << 18); // the superuser has some more

@@ -1,12 +1,12 @@
 #include "tests/fault/fault_proxy.hpp"
 
-#include <boost/asio/as_tuple.hpp>
+#include "common/net/await_tuple.hpp"
+
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <array>
@@ -20,23 +20,21 @@ using namespace asio::experimental::awaitable_operators;
 
 namespace {
 
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-
 asio::awaitable<void> pause_for(tcp::socket& socket, std::chrono::microseconds time) {
     if (time.count() == 0) co_return;
     asio::steady_timer timer(socket.get_executor(), time);
-    co_await timer.async_wait(kUse);
+    co_await timer.async_wait(kAwaitTuple);
 }
 
 /// Hands one direction on until it ends. @return how
 asio::awaitable<Ending> forward(tcp::socket& from, tcp::socket& to, SpoiledStream& stream) {
     std::array<char, 4096> bytes{};
     for (;;) {
-        const auto [failed, count] = co_await from.async_read_some(asio::buffer(bytes), kUse);
+        const auto [failed, count] = co_await from.async_read_some(asio::buffer(bytes), kAwaitTuple);
         if (failed) co_return Ending::kClosed;
         for (const Piece& piece : stream.take({bytes.data(), count})) {
             co_await pause_for(to, piece.pause);
-            const auto [broken, written] = co_await asio::async_write(to, asio::buffer(piece.bytes), kUse);
+            const auto [broken, written] = co_await asio::async_write(to, asio::buffer(piece.bytes), kAwaitTuple);
             if (broken) co_return Ending::kClosed;
         }
         if (stream.ending() != Ending::kNone) co_return stream.ending();
@@ -65,7 +63,7 @@ FaultProxy::~FaultProxy() {
 
 asio::awaitable<void> FaultProxy::accept() {
     for (std::uint64_t connection = 0;; ++connection) {
-        auto [failed, socket] = co_await acceptor_.async_accept(kUse);
+        auto [failed, socket] = co_await acceptor_.async_accept(kAwaitTuple);
         if (failed) co_return;
         asio::co_spawn(io_, serve(std::move(socket), fate_of_(connection)), asio::detached);
     }
@@ -73,7 +71,7 @@ asio::awaitable<void> FaultProxy::accept() {
 
 asio::awaitable<void> FaultProxy::serve(tcp::socket near, LinkFate fate) {
     tcp::socket far(io_);
-    const auto [refused] = co_await far.async_connect(to_, kUse);
+    const auto [refused] = co_await far.async_connect(to_, kAwaitTuple);
     if (refused) co_return;
     boost::system::error_code ignored; // small pieces are meant to stay small
     near.set_option(tcp::no_delay(true), ignored);

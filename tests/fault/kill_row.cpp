@@ -21,7 +21,7 @@ using std::chrono::microseconds;
 
 constexpr std::uint64_t kKillsPerStore = 50; // then another store, so that recovery stays short
 constexpr std::uint64_t kScansPerKill = 300; // of each robot: a session of three has a checkpoint every few kills
-constexpr unsigned kRobots = 6;
+constexpr unsigned kKillRobots = 6;
 constexpr std::uint64_t kMicrosUntilKill = 20'000;
 
 /// One store, and the kills that its servers suffer.
@@ -29,7 +29,7 @@ class Killing {
 public:
     Killing(const Run& run, std::uint64_t seed, std::uint64_t kills)
         : random_(seed), kills_(kills), server_(run.server, place_.path()),
-          fleet_(half_sharing(kRobots, seed, kills * kScansPerKill), server_.robot_port()) {}
+          fleet_(half_sharing(kKillRobots, seed, kills * kScansPerKill), server_.robot_port()) {}
 
     Outcome run() {
         const auto begin = std::chrono::steady_clock::now();

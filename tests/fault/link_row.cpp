@@ -25,12 +25,12 @@ constexpr std::uint64_t kSpoiledLinksMax = 4;
 constexpr std::size_t kAtOnce = 8; // most of them wait
 
 /// Stalls are longer than these, at times.
-constexpr Patience kPatience{.welcome = std::chrono::milliseconds(250),
-                             .ping_after = std::chrono::milliseconds(50),
-                             .silence_max = std::chrono::milliseconds(250),
-                             .give_up_after = std::chrono::milliseconds(30'000),
-                             .backoff_first = std::chrono::milliseconds(1),
-                             .backoff_longest = std::chrono::milliseconds(20)};
+constexpr Patience kLinkPatience{.welcome = std::chrono::milliseconds(250),
+                                 .ping_after = std::chrono::milliseconds(50),
+                                 .silence_max = std::chrono::milliseconds(250),
+                                 .give_up_after = std::chrono::milliseconds(30'000),
+                                 .backoff_first = std::chrono::milliseconds(1),
+                                 .backoff_longest = std::chrono::milliseconds(20)};
 
 /// What happens to a robot's links: all from the seed.
 class Fates {
@@ -87,7 +87,7 @@ private:
 /// One robot, from its first link to its last.
 RobotStanding stream(const RobotPlan& plan, std::uint16_t port, Fates& fates) {
     FaultProxy proxy(port, [&](std::uint64_t connection) { return fates.fate_of(connection); });
-    Fleet fleet({plan}, proxy.port(), kPatience);
+    Fleet fleet({plan}, proxy.port(), kLinkPatience);
     fleet.release_all();
     return fleet.finish().front();
 }
@@ -105,7 +105,7 @@ std::optional<std::string> complaint(const RobotStanding& robot) {
     return std::nullopt;
 }
 
-Outcome run_one(Server& server, std::uint64_t seed, bool forges) {
+Outcome spoil_links(Server& server, std::uint64_t seed, bool forges) {
     const RobotPlan plan{fmt::format("link-{}", seed), "robot", static_cast<unsigned>(seed), kScans};
     Fates fates(seed, forges);
     const RobotStanding robot = stream(plan, server.port(), fates);
@@ -133,7 +133,7 @@ Outcome run_link_row(const Run& run, const LinkTrial& trial) {
     spdlog::set_level(spdlog::level::off); // what becomes of spoiled links is told below
     Server server(trial.make_log());
     return run_cases(run, {.row = "link", .at_once = kAtOnce, .run = [&](std::uint64_t seed, std::uint64_t) {
-                               return run_one(server, seed, trial.forges);
+                               return spoil_links(server, seed, trial.forges);
                            }});
 }
 

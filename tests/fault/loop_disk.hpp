@@ -9,6 +9,8 @@
 
 namespace scanloom::fault {
 
+inline constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20; ///< size of the rows' disks
+
 /// A file system of its own, ext4 in a file, on a loop device: one that can lose its power, and can be full.
 class LoopDisk {
 public:

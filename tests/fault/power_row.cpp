@@ -16,10 +16,9 @@
 namespace scanloom::fault {
 namespace {
 
-constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kCutsPerDisk = 50;
 constexpr std::uint64_t kScansPerCut = 200; // of each robot
-constexpr unsigned kRobots = 4;
+constexpr unsigned kPowerRobots = 4;
 constexpr std::uint64_t kMicrosUntilCut = 5'000;
 
 /// Nothing where there is no such disk; then why not.
@@ -29,11 +28,11 @@ Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) 
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", "0"}); // it is a small disk
-    Fleet fleet(half_sharing(kRobots, seed, cuts * kScansPerCut), server.robot_port());
+    Fleet fleet(half_sharing(kPowerRobots, seed, cuts * kScansPerCut), server.robot_port());
     server.start_and_wait();
     for (std::uint64_t cut = 1; cut <= cuts && !fleet.has_given_up(); ++cut) {
         fleet.release(cut * kScansPerCut);
-        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + random() % (kRobots * kScansPerCut));
+        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + random() % (kPowerRobots * kScansPerCut));
         server.let_be(std::chrono::microseconds(random() % kMicrosUntilCut)); // within a write, at times
         // Linux lets an fdatasync that is under way succeed, as if by mistake, when the file system is shut down
         // meanwhile. Where the power fails nobody hears of that: so the server is stopped first, and never comes back

@@ -13,21 +13,21 @@
 namespace scanloom::fault {
 namespace {
 
-constexpr unsigned kRobots = 100;
+constexpr unsigned kRestartRobots = 100;
 constexpr unsigned kRobotsPerSession = 10;
 constexpr std::uint64_t kScansPerRestart = 50; // of each robot
 constexpr std::uint64_t kRestartsPerStore = 10;
 
 std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t scans) {
     std::vector<RobotPlan> made;
-    for (unsigned n = 0; n < kRobots; ++n) {
+    for (unsigned n = 0; n < kRestartRobots; ++n) {
         made.push_back({fmt::format("session{}", n / kRobotsPerSession), fmt::format("robot{}", n),
-                        static_cast<unsigned>(seed * kRobots + n), scans});
+                        static_cast<unsigned>(seed * kRestartRobots + n), scans});
     }
     return made;
 }
 
-Outcome run_one(const Run& run, std::uint64_t seed, std::uint64_t restarts) {
+Outcome restart_servers(const Run& run, std::uint64_t seed, std::uint64_t restarts) {
     const TemporaryDirectory place;
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path());
@@ -36,7 +36,7 @@ Outcome run_one(const Run& run, std::uint64_t seed, std::uint64_t restarts) {
     Outcome outcome;
     for (std::uint64_t restart = 1; restart <= restarts && !fleet.has_given_up(); ++restart) {
         fleet.release(restart * kScansPerRestart);
-        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRobots * kScansPerRestart));
+        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRestartRobots * kScansPerRestart));
         if (random() % 2 == 0) {
             server.kill_nine();
             ++outcome.figures["killed"];
@@ -58,7 +58,7 @@ Outcome run_one(const Run& run, std::uint64_t seed, std::uint64_t restarts) {
 Outcome run_restart_row(const Run& run) {
     return run_cases(
         run, {.row = "restart", .of_count = kRestartsPerStore, .run = [&](std::uint64_t seed, std::uint64_t restarts) {
-                  return run_one(run, seed, restarts);
+                  return restart_servers(run, seed, restarts);
               }});
 }
 

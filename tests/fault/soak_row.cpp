@@ -14,7 +14,7 @@
 namespace scanloom::fault {
 namespace {
 
-constexpr unsigned kRobots = 8;
+constexpr unsigned kSoakRobots = 8;
 constexpr std::uint64_t kParts = 40;
 constexpr std::uint64_t kQuarter = kParts / 4; // of which the second shows what it takes warm, the last what came to it
 
@@ -40,14 +40,14 @@ std::uint64_t growth_max(const Run& run, std::uint64_t warm) {
 Outcome run_soak_row(const Run& run) {
     const TemporaryDirectory place;
     ServerProcess server(run.server, place.path());
-    const std::uint64_t scans_a_part = std::max<std::uint64_t>(1, run.count / kRobots / kParts); // of each robot
-    Fleet fleet(half_sharing(kRobots, run.seed, scans_a_part * kParts), server.robot_port());
+    const std::uint64_t scans_a_part = std::max<std::uint64_t>(1, run.count / kSoakRobots / kParts); // of each robot
+    Fleet fleet(half_sharing(kSoakRobots, run.seed, scans_a_part * kParts), server.robot_port());
     server.start_and_wait();
     std::vector<std::uint64_t> second;
     std::vector<std::uint64_t> last;
     for (std::uint64_t part = 1; part <= kParts; ++part) {
         fleet.release(part * scans_a_part);
-        if (!fleet.wait_for_acknowledged(part * scans_a_part * kRobots)) break;
+        if (!fleet.wait_for_acknowledged(part * scans_a_part * kSoakRobots)) break;
         if (const auto quarter = (part - 1) / kQuarter; quarter == 1 || quarter == 3)
             (quarter == 1 ? second : last).push_back(resident_bytes(server.id()));
         run.on_progress(part * run.count / kParts);

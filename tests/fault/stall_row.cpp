@@ -17,14 +17,13 @@
 namespace scanloom::fault {
 namespace {
 
-constexpr std::uint64_t kDiskBytes = std::uint64_t{128} << 20;
 constexpr std::uint64_t kStallsPerDisk = 5;
 constexpr std::uint64_t kScansPerStall = 100; // of each robot
-constexpr unsigned kRobots = 4;
+constexpr unsigned kStallRobots = 4;
 
 /// They wait longer than a disk stalls.
-constexpr Patience kPatience{.welcome = std::chrono::milliseconds(10'000),
-                             .silence_max = std::chrono::milliseconds(15'000)};
+constexpr Patience kStallPatience{.welcome = std::chrono::milliseconds(10'000),
+                                  .silence_max = std::chrono::milliseconds(15'000)};
 
 /// Robots may have as much under way as their credits allow; they have little here.
 constexpr std::uint64_t kGrowthMax = std::uint64_t{4} << 20;
@@ -41,20 +40,20 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
     ServerProcess server(run.server, place.path(), {"--disk-reserve", "16"});
-    Fleet fleet(half_sharing(kRobots, seed, stalls * kScansPerStall), server.robot_port(), kPatience);
+    Fleet fleet(half_sharing(kStallRobots, seed, stalls * kScansPerStall), server.robot_port(), kStallPatience);
     server.start_and_wait();
     fleet.release(1);
-    (void)fleet.wait_for_acknowledged(kRobots); // all sessions are there
+    (void)fleet.wait_for_acknowledged(kStallRobots); // all sessions are there
     Outcome outcome;
     for (std::uint64_t stall = 1; stall <= stalls && !fleet.has_given_up(); ++stall) {
         const auto before = stall * kScansPerStall - kScansPerStall / 2;
         fleet.release(before);
-        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kRobots * kScansPerStall / 2));
+        (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kStallRobots * kScansPerStall / 2));
         const auto memory = resident_bytes(server.id());
         const auto frozen = (*disk)->freeze();
         fleet.release(stall * kScansPerStall);
         server.let_be(std::chrono::milliseconds(200 + random() % 2'000));
-        if (fleet.acknowledged() > before * kRobots)
+        if (fleet.acknowledged() > before * kStallRobots)
             outcome.amiss.emplace_back("scans are acknowledged that were sent while the disk took nothing");
         check_that_maps_are_served(server, "while the disk takes nothing", outcome);
         check_memory(memory, resident_bytes(server.id()), outcome);

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kScansPerStore = 1'000;
-constexpr unsigned kRobots = 4;
+constexpr unsigned kSyncRobots = 4;
 
 /// A thousand scans take some twenty syncs: that none of so many rounds meets one that fails is out of the question.
 constexpr std::uint64_t kRoundsMax = 20;
@@ -45,7 +45,7 @@ std::uint64_t lines_ending_with(std::string_view text, const fs::path& log) {
 
 /// Robots of sessions that no other round has.
 std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t round, std::uint64_t scans) {
-    auto made = half_sharing(kRobots, seed * kRoundsMax + round, scans / kRobots);
+    auto made = half_sharing(kSyncRobots, seed * kRoundsMax + round, scans / kSyncRobots);
     for (auto& plan : made) plan.session += fmt::format("-{}", round);
     return made;
 }

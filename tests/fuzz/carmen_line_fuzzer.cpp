@@ -3,7 +3,7 @@
 #include "tests/fuzz/check.hpp"
 
 /// Input: one line of a CARMEN log.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(carmen_line)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const auto line = robot::parse_carmen_line({reinterpret_cast<const char*>(data), size});
     if (!line) {

@@ -38,7 +38,7 @@ bool is_welcome(const wire::Message& message) {
 } // namespace
 
 /// Input: a CARMEN log, plain or compressed.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(carmen_log)(const std::uint8_t* data, std::size_t size) {
     const MemoryFile file(data, size);
     robot::CarmenOptions options;
     options.limits = {.text_bytes_max = 1 << 20, .line_bytes_max = 1 << 16};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -14,3 +16,13 @@ inline void check(bool holds, std::string_view claim) {
 }
 
 } // namespace scanloom::fuzz
+
+/// Begins the function of the fuzzer NAME, which takes `const std::uint8_t* data, std::size_t size` and returns 0.
+///
+/// With libFuzzer each fuzzer is a program. Otherwise all are functions of one program, `replay`, which feeds each its
+/// corpus.
+#ifdef SCANLOOM_LIBFUZZER
+#define SCANLOOM_FUZZER(NAME) extern "C" int LLVMFuzzerTestOneInput
+#else
+#define SCANLOOM_FUZZER(NAME) int NAME##_fuzzer
+#endif

@@ -24,7 +24,7 @@ std::string_view take_text(std::string_view& input) {
 } // namespace
 
 /// Input: key, value, key, value ... of a checkpoint's parts.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(checkpoint)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     std::string_view input(reinterpret_cast<const char*>(data), size);
     session::CheckpointReader reader{mapping::MapConfig{}};

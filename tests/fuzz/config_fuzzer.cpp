@@ -5,7 +5,7 @@
 #include <sstream>
 
 /// Input: a file of --config, read into options of every kind that the programs have.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(config)(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = scanloom::fuzz;
     const std::string text(reinterpret_cast<const char*>(data), size);
     const auto lines = scanloom::one_line_a_setting(text);

@@ -36,7 +36,7 @@ Outcome decode_stream(std::string_view stream, std::string_view sizes) {
 } // namespace scanloom::wire
 
 /// Input: a count, so many sizes of pieces, then the stream.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(frame_decoder)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     std::string_view input(reinterpret_cast<const char*>(data), size);
     if (input.empty()) return 0;

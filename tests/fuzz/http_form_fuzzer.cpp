@@ -6,7 +6,7 @@
 #include <string>
 
 /// Input: a Content-Type field, a line feed, the body of a request.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(http_form)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view input(reinterpret_cast<const char*>(data), size);
     const auto type = input.substr(0, input.find('\n'));

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 /// Input: the body of a request.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(http_json)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const auto object = http::parse_json_object({reinterpret_cast<const char*>(data), size});
     if (!object) {

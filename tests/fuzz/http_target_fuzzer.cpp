@@ -21,7 +21,7 @@ void check_segments(const std::vector<std::string>& segments) {
 } // namespace scanloom::http
 
 /// Input: a request target; also read as the fields If-None-Match and Host.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(http_target)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     static_cast<void>(http::if_none_match_has(text, "\"a-1\""));

@@ -69,7 +69,7 @@ void check_turn(const Ld06Turn& turn, const Ld06ScanOptions& options) {
 } // namespace scanloom::robot
 
 /// Input: a count, so many sizes of pieces, then what a sensor sends; the first byte also chooses the median's window.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(ld06)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     using namespace scanloom::robot;
     if (size == 0) return 0;

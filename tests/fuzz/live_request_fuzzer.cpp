@@ -6,7 +6,7 @@
 #include <string_view>
 
 /// Input: a message of a viewer's.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(live_request)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const auto request = wire::decode_live_request({reinterpret_cast<const char*>(data), size});
     if (!request) {

@@ -21,7 +21,7 @@ void check_round_trip(std::string_view bytes, scanloom::Result<Value> (*decode)(
 } // namespace
 
 /// Input: the bytes of a stored record, read both as a log entry and as a session.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(log_codec)(const std::uint8_t* data, std::size_t size) {
     namespace wire = scanloom::wire;
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     check_round_trip(bytes, wire::decode_entry, wire::encode_entry);

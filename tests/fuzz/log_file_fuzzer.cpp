@@ -6,7 +6,7 @@
 #include <string>
 
 /// Input: a log file. A seed's checksums hold; the fuzzer breaks them.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(log_file)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     const auto found = store::check_log_file(bytes);

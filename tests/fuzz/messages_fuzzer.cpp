@@ -45,7 +45,7 @@ void check_requests_and_replies(const Message& message) {
 } // namespace scanloom::wire
 
 /// Input: one frame body.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(messages)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view body(reinterpret_cast<const char*>(data), size);
     const auto message = wire::decode(body);

@@ -6,7 +6,7 @@
 #include <string_view>
 
 /// Input: the YAML of a map, a zero byte, its image.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(ros_map)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view input(reinterpret_cast<const char*>(data), size);
     const auto yaml = input.substr(0, input.find('\0'));

@@ -6,7 +6,7 @@
 
 /// Input: the length of a key, the key, and the value that lies there with its checksum, as a damaged table might have
 /// them.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(store_key)(const std::uint8_t* data, std::size_t size) {
     namespace store = scanloom::store;
     using scanloom::fuzz::check;
     if (size == 0) return 0;

@@ -28,7 +28,7 @@ std::set<const char*> places_of_values(std::string_view table) {
 } // namespace
 
 /// Input: a damaged table file.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(table_carving)(const std::uint8_t* data, std::size_t size) {
     const std::string_view table(reinterpret_cast<const char*>(data), size);
     for (const auto session : scanloom::store::sessions_removed_in(table)) {
         scanloom::fuzz::check(table.find(scanloom::store::session_key(session).back()) != std::string_view::npos,

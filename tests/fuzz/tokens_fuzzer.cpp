@@ -8,7 +8,7 @@
 #include <string>
 
 /// Input: the file of --tokens.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+SCANLOOM_FUZZER(tokens)(const std::uint8_t* data, std::size_t size) {
     using namespace scanloom;
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     static_cast<void>(access::without_secrets(text));

@@ -1,4 +1,5 @@
 #include "server/mapping/projection.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/support/class_oracle.hpp"
 #include "tests/support/laser_oracle.hpp"
 #include "tests/support/murphy_oracle.hpp"
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -126,7 +126,6 @@ struct RingLog {
 };
 
 RingLog read_ring() {
-    constexpr double kDegree = std::numbers::pi / 180.0;
     RingLog log;
     log.ring = {.id = 1, .kind = SensorKind::kSonar, .aperture = 30.0 * kDegree, .range_max = 5.11};
     ExplicitAngles angles;

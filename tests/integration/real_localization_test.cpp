@@ -1,18 +1,17 @@
 #include "server/landmarks/localization.hpp"
 #include "server/landmarks/session_captures.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/support/whole_log.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 /// Robots are found in the maps that they made themselves of real buildings, of what they saw at other times.
 namespace scanloom::landmarks {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kAsked = 20;  // of each log
 constexpr std::size_t kLeftOut = 3; // captures before and behind the one that is asked for
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/scan/beam_angles.hpp"
+#include "tests/support/angles.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string>
 
@@ -14,7 +14,6 @@ inline constexpr unsigned kAngleShapes = 13;
 
 /// Pre: shape < kAngleShapes. `name` says which it is.
 inline BeamAngles random_angles(std::mt19937& random, unsigned shape, std::string& name) {
-    constexpr double kPi = std::numbers::pi;
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };

@@ -10,7 +10,7 @@ Error none_kept() {
     return {Errc::kNotFound, "this server keeps no backups; start it with --backups DIR, a directory on another disk"};
 }
 
-boost::json::object to_json(const store::Backup& backup) {
+boost::json::object backup_json(const store::Backup& backup) {
     return {{"id", backup.id}, {"time", backup.time}, {"bytes", backup.bytes}, {"sessions", backup.sessions}};
 }
 
@@ -22,7 +22,7 @@ Result<Response> list_backups(store::Backups* backups, const Call& call) {
     const auto there = backups->list();
     if (!there) return there.error();
     boost::json::array listed;
-    for (const auto& backup : *there) listed.push_back(to_json(backup));
+    for (const auto& backup : *there) listed.push_back(backup_json(backup));
     return ok(boost::json::object{{"backups", std::move(listed)}, {"kept", backups->kept()}});
 }
 
@@ -31,7 +31,7 @@ Result<Response> make_backup(store::Backups* backups, store::ScanLog& log, const
     if (backups == nullptr) return none_kept();
     const auto made = backups->make(log);
     if (!made) return made.error();
-    auto response = ok(to_json(*made));
+    auto response = ok(backup_json(*made));
     response.status = Status::created;
     return response;
 }

@@ -19,7 +19,7 @@ namespace scanloom::http {
 namespace {
 
 /// What a request for a comparison comes to before anything is compared.
-struct Wanted {
+struct WantedDifference {
     TwoMaps maps;
     mapping::Layer layer;
     tiles::MapFrame frame;
@@ -27,7 +27,7 @@ struct Wanted {
     [[nodiscard]] tiles::ComparedMaps compared() const { return {*maps.a.snapshot, *maps.b.snapshot, layer}; }
 };
 
-Result<Wanted> wanted_difference(const MapsLookup& lookup, const Call& call) {
+Result<WantedDifference> wanted_difference(const MapsLookup& lookup, const Call& call) {
     const auto bbox = bbox_parameter(call.query);
     if (!bbox) return bbox.error();
     auto maps = lookup.find_two(call, {"layer", "bbox"});
@@ -36,7 +36,7 @@ Result<Wanted> wanted_difference(const MapsLookup& lookup, const Call& call) {
     if (!layer) return layer.error();
     const auto frame = tiles::difference_frame({*maps->a.snapshot, *maps->b.snapshot, *layer}, *bbox);
     if (!frame) return frame.error();
-    return Wanted{std::move(*maps), *layer, *frame};
+    return WantedDifference{std::move(*maps), *layer, *frame};
 }
 
 boost::json::object shown(const Maps& maps, std::optional<std::string_view> weave) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
-const Error kEnough{Errc::kShuttingDown, "the piece is large enough"};
+const Error kPieceIsFull{Errc::kShuttingDown, "the piece is large enough"};
 
 /// How an entry is written.
 class Format {
@@ -89,12 +89,12 @@ private:
         if (read_ == newest_) return {};
         const auto done =
             log_.read(session_->info().id, read_, [&](Revision revision, std::string_view bytes) -> Result<> {
-                if (revision > newest_ || piece_.size() >= kPieceBytes) return kEnough;
+                if (revision > newest_ || piece_.size() >= kPieceBytes) return kPieceIsFull;
                 if (auto appended = format_->append(piece_, bytes); !appended) return appended;
                 read_ = revision;
                 return {};
             });
-        return done || done.error() == kEnough ? Result<>{} : done;
+        return done || done.error() == kPieceIsFull ? Result<>{} : done;
     }
 
     std::shared_ptr<session::Session> session_;

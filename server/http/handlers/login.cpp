@@ -12,7 +12,7 @@
 namespace scanloom::http {
 namespace {
 
-boost::json::object to_json(const access::Token& token) {
+boost::json::object token_json(const access::Token& token) {
     boost::json::array sessions;
     for (const auto& pattern : token.sessions) sessions.emplace_back(pattern);
     return {{"name", token.name}, {"role", name_of(token.role)}, {"sessions", std::move(sessions)}};
@@ -21,7 +21,7 @@ boost::json::object to_json(const access::Token& token) {
 boost::json::object login_json(const Doorman& doorman, const access::TokenRef& token) {
     const bool needed = !doorman.gate().is_open();
     boost::json::value shown;
-    if (needed && token) shown = to_json(*token);
+    if (needed && token) shown = token_json(*token);
     return {{"needed", needed}, {"token", std::move(shown)}};
 }
 

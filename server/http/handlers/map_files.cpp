@@ -19,7 +19,7 @@ namespace scanloom::http {
 namespace {
 
 /// What a request for a map comes to before anything is drawn.
-struct Wanted {
+struct WantedMapFile {
     std::shared_ptr<const mapping::Snapshot> snapshot;
     mapping::Layer layer;
     tiles::MapFrame frame;
@@ -31,7 +31,7 @@ using BytesPerCell = std::int64_t (*)(mapping::Layer);
 
 std::int64_t one_byte(mapping::Layer) { return 1; }
 
-Result<Wanted> wanted_map(const MapsLookup& maps, const Call& call, BytesPerCell bytes_per_cell) {
+Result<WantedMapFile> wanted_map(const MapsLookup& maps, const Call& call, BytesPerCell bytes_per_cell) {
     const auto bbox = bbox_parameter(call.query);
     if (!bbox) return bbox.error();
     auto found = maps.find_or_weave(call, {"layer", "bbox"});
@@ -42,7 +42,7 @@ Result<Wanted> wanted_map(const MapsLookup& maps, const Call& call, BytesPerCell
     const auto frame = tiles::map_frame(*found->snapshot, *layer, *bbox, bytes_per_cell(*layer));
     if (!frame) return frame.error();
     auto etag = fmt::format("\"{}-map-{}\"", found->tag, found->snapshot->revision);
-    return Wanted{std::move(found->snapshot), *layer, *frame, std::move(etag)};
+    return WantedMapFile{std::move(found->snapshot), *layer, *frame, std::move(etag)};
 }
 
 Response map_answer(std::string_view content_type, Body body, std::string_view etag) {
@@ -68,7 +68,7 @@ Result<Response> get_file(const MapsLookup& maps, const AnswerSlots& slots, cons
     return map_answer(content_type, Body(std::shared_ptr<const Bytes>(file, &file->bytes)), wanted->etag);
 }
 
-tiles::MapImage rendered(const Wanted& wanted) {
+tiles::MapImage rendered(const WantedMapFile& wanted) {
     return tiles::render_map(*wanted.snapshot, wanted.layer, wanted.frame);
 }
 
@@ -76,23 +76,25 @@ tiles::MapImage rendered(const Wanted& wanted) {
 
 Result<Response> get_map_png(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
     return get_file(maps, slots, call, "image/png", one_byte,
-                    [](const Wanted& wanted) { return tiles::map_png(rendered(wanted)); });
+                    [](const WantedMapFile& wanted) { return tiles::map_png(rendered(wanted)); });
 }
 
 Result<Response> get_map_pgm(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
-    return get_file(maps, slots, call, "image/x-portable-graymap", one_byte,
-                    [](const Wanted& wanted) { return tiles::map_pgm(rendered(wanted), wanted.snapshot->config); });
+    return get_file(maps, slots, call, "image/x-portable-graymap", one_byte, [](const WantedMapFile& wanted) {
+        return tiles::map_pgm(rendered(wanted), wanted.snapshot->config);
+    });
 }
 
 Result<Response> get_map_csv(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
     const auto text_per_cell = [](mapping::Layer) -> std::int64_t { return 4; }; // "100,"
     return get_file(maps, slots, call, "text/csv", text_per_cell,
-                    [](const Wanted& wanted) { return tiles::map_csv(rendered(wanted)); });
+                    [](const WantedMapFile& wanted) { return tiles::map_csv(rendered(wanted)); });
 }
 
 Result<Response> get_map_npy(const MapsLookup& maps, const AnswerSlots& slots, const Call& call) {
-    return get_file(maps, slots, call, "application/octet-stream", tiles::npy_bytes_per_cell,
-                    [](const Wanted& wanted) { return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame); });
+    return get_file(
+        maps, slots, call, "application/octet-stream", tiles::npy_bytes_per_cell,
+        [](const WantedMapFile& wanted) { return tiles::map_npy(*wanted.snapshot, wanted.layer, wanted.frame); });
 }
 
 Result<Response> get_map_yaml(const MapsLookup& maps, const Call& call) {

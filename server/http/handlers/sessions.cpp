@@ -68,15 +68,16 @@ std::map<std::string, Error> found_by(const session::BackgroundCheck* check) {
     return check == nullptr ? std::map<std::string, Error>() : check->damaged();
 }
 
-boost::json::object to_json(const session::Listed& listed, const std::map<std::string, Error>& found) {
-    auto json = http::to_json(listed);
+boost::json::object listed_json(const session::Listed& listed, const std::map<std::string, Error>& found) {
+    auto json = to_json(listed);
     const auto damage = found.find(listed.info.name);
     if (damage != found.end()) json["damage"] = damage->second.message;
     return json;
 }
 
-boost::json::object to_json(const Listed& listed, std::string_view name, const std::map<std::string, Error>& found) {
-    return listed ? to_json(*listed, found) : damaged_json(name, listed.error());
+boost::json::object listed_json(const Listed& listed, std::string_view name,
+                                const std::map<std::string, Error>& found) {
+    return listed ? listed_json(*listed, found) : damaged_json(name, listed.error());
 }
 
 } // namespace
@@ -91,7 +92,7 @@ Result<Response> list_sessions(const session::SessionRegistry& sessions, const s
     boost::json::value next = nullptr;
     auto entry = listed.upper_bound(page->after);
     for (; entry != listed.end() && shown.size() < page->limit; ++entry) {
-        shown.push_back(to_json(entry->second, entry->first, found));
+        shown.push_back(listed_json(entry->second, entry->first, found));
         if (shown.size() == page->limit && std::next(entry) != listed.end()) next = boost::json::string(entry->first);
     }
     return ok(boost::json::object{{"sessions", std::move(shown)}, {"next", std::move(next)}});
@@ -114,7 +115,7 @@ Result<Response> get_session(const session::SessionRegistry& sessions, const ses
                              const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
     const auto& name = call.arguments["session"];
-    if (const auto listed = sessions.listed(name)) return ok(to_json(*listed, found_by(check)));
+    if (const auto listed = sessions.listed(name)) return ok(listed_json(*listed, found_by(check)));
     const auto damage = damage_of(sessions, name);
     return damage ? *damage : session::no_such_session(name);
 }

@@ -43,24 +43,24 @@ bool is_final(const Version& version, std::string_view tag, Revision tile, Revis
 }
 
 /// What the request says.
-struct Asked {
+struct TileParameters {
     Version version;
     tiles::TileKey key;
     mapping::Layer layer;
 };
 
-Result<Asked> parse(const Call& call) {
+Result<TileParameters> parse(const Call& call) {
     const auto version = parse_version(call.query);
     if (!version) return version.error();
     const auto key = tiles::parse_tile_key(call.arguments["z"], call.arguments["x"], call.arguments["y"]);
     if (!key) return key.error();
     const auto layer = find_layer(call.arguments["layer"]);
     if (!layer) return layer.error();
-    return Asked{*version, *key, *layer};
+    return TileParameters{*version, *key, *layer};
 }
 
 /// A tile that was asked for, before anything is drawn.
-struct Wanted {
+struct WantedTile {
     Maps maps;
     tiles::TilePlace place;
     Revision revision; ///< of the tile
@@ -68,25 +68,25 @@ struct Wanted {
     std::string_view kept; ///< Cache-Control
 };
 
-tiles::TilePlace place_of(const Asked& asked, const Maps& maps, tiles::TileFormat format) {
+tiles::TilePlace place_of(const TileParameters& asked, const Maps& maps, tiles::TileFormat format) {
     return {maps.tag, asked.layer, asked.key, format};
 }
 
-Wanted wanted_tile(const Asked& asked, Maps maps, tiles::TileFormat format) {
+WantedTile wanted_tile(const TileParameters& asked, Maps maps, tiles::TileFormat format) {
     const Revision revision = tiles::tile_revision(*maps.snapshot, asked.layer, asked.key);
     auto etag = tiles::etag_of(maps.tag, mapping::name_of(asked.layer), asked.key, revision);
     const bool is_kept = is_final(asked.version, maps.tag, revision, maps.snapshot->revision);
     auto place = place_of(asked, maps, format);
-    return Wanted{std::move(maps), std::move(place), revision, std::move(etag), is_kept ? kImmutable : kRevalidate};
+    return WantedTile{std::move(maps), std::move(place), revision, std::move(etag), is_kept ? kImmutable : kRevalidate};
 }
 
-bool is_known(const Wanted& wanted, const Call& call) {
+bool is_known(const WantedTile& wanted, const Call& call) {
     return if_none_match_has(call.request.if_none_match, wanted.etag);
 }
 
 tiles::TileSource source_of(const Maps& maps) { return {*maps.snapshot, maps.origin}; }
 
-Response answer_of(const Wanted& wanted, tiles::SharedBytes bytes) {
+Response answer_of(const WantedTile& wanted, tiles::SharedBytes bytes) {
     const bool is_png = wanted.place.format == tiles::TileFormat::kPng;
     return ok(is_png ? "image/png" : "application/octet-stream", Body(std::move(bytes)))
         .set("ETag", wanted.etag)
@@ -100,7 +100,7 @@ Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const
     if (!asked) return asked.error();
     auto found = maps.find(call, {"v", "id"});
     if (!found) return found.error();
-    const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
+    const WantedTile wanted = wanted_tile(*asked, std::move(*found), format);
     if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
     return answer_of(wanted, maker.make(source_of(wanted.maps), wanted.place, wanted.revision));
 }
@@ -115,7 +115,7 @@ Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, co
         return maker.is_quick(tile_of.origin, place, revision) ? Lane::kServing : Lane::kSurvey;
     };
     if (!found->snapshot) return lane_of(*found, place_of(*asked, *found, format), kNewest);
-    const Wanted wanted = wanted_tile(*asked, std::move(*found), format);
+    const WantedTile wanted = wanted_tile(*asked, std::move(*found), format);
     if (is_known(wanted, call)) return not_modified(wanted.etag, wanted.kept);
     if (auto bytes = maker.find(wanted.place, wanted.revision)) return answer_of(wanted, std::move(bytes));
     return lane_of(wanted.maps, wanted.place, wanted.revision);

@@ -20,7 +20,7 @@ namespace scanloom::http {
 namespace {
 
 /// Which points of each robot, and what of them besides where they are.
-struct Asked {
+struct TrajectoryParameters {
     Revision since = 0;
     bool with_times = false;
 };
@@ -95,7 +95,7 @@ void append_feature(std::string& text, const std::string& robot, const Points& p
     text += "}}";
 }
 
-std::size_t bytes_about(const mapping::Snapshot& snapshot, const Asked& asked) {
+std::size_t bytes_about(const mapping::Snapshot& snapshot, const TrajectoryParameters& asked) {
     const std::size_t point_bytes = asked.with_times ? 60 : 24;
     const std::size_t old = session::count_old_points(snapshot, asked.since);
     std::size_t points = old;
@@ -118,7 +118,7 @@ Result<Response> get_trajectory(session::SessionRegistry& sessions, store::ScanL
     if (!session) return session.error();
 
     const auto snapshot = (*session)->snapshot();
-    const Asked asked{since_in(*snapshot, *since), *with_times};
+    const TrajectoryParameters asked{since_in(*snapshot, *since), *with_times};
     auto slot = slots.take(bytes_about(*snapshot, asked));
     if (!slot) return slot.error();
     const auto old = session::read_old_paths(log, (*session)->info().id, *snapshot, asked.since,

@@ -1,14 +1,13 @@
 #include "tests/integration/robot_client/fake_server.hpp"
 
+#include "common/net/await_tuple.hpp"
 #include "common/wire/compression.hpp"
 #include "common/wire/frame_decoder.hpp"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
@@ -20,11 +19,7 @@ namespace scanloom::robot {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-namespace {
-
-constexpr auto kUse = asio::as_tuple(asio::use_awaitable);
-
-} // namespace
+namespace {} // namespace
 
 struct FakeServer::Link {
     net::LinkStream socket;
@@ -40,7 +35,7 @@ struct FakeServer::Link {
         if (is_silent) co_return true;
         std::string frame;
         wire::encode(message, frame);
-        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(frame), kUse);
+        const auto [failed, count] = co_await asio::async_write(socket, asio::buffer(frame), kAwaitTuple);
         co_return !failed;
     }
 };
@@ -69,7 +64,7 @@ void FakeServer::reopen() {
 
 asio::awaitable<void> FakeServer::accept() {
     for (;;) {
-        auto [failed, socket] = co_await acceptor_.async_accept(kUse);
+        auto [failed, socket] = co_await acceptor_.async_accept(kAwaitTuple);
         if (failed) co_return;
         LinkScript script = scripts_[std::min(links_++, scripts_.size() - 1)];
         asio::co_spawn(io_, serve(std::move(socket), std::move(script)), asio::detached);
@@ -79,12 +74,13 @@ asio::awaitable<void> FakeServer::accept() {
 asio::awaitable<void> FakeServer::serve(Socket socket, LinkScript script) {
     net::LinkStream stream = tls_ ? net::LinkStream(std::move(socket), *tls_) : net::LinkStream(std::move(socket));
     Link link{std::move(stream), std::move(script), {}, 0, 0, 0, 0, false};
-    const auto [refused] = co_await link.socket.async_handshake(net::LinkStream::Role::kServer, kUse);
+    const auto [refused] = co_await link.socket.async_handshake(net::LinkStream::Role::kServer, kAwaitTuple);
     if (refused) co_return;
     wire::FrameDecoder decoder(wire::kFrameBytesMax);
     for (;;) {
         const auto room = decoder.prepare(4096);
-        const auto [failed, count] = co_await link.socket.async_read_some(asio::buffer(room.data(), room.size()), kUse);
+        const auto [failed, count] =
+            co_await link.socket.async_read_some(asio::buffer(room.data(), room.size()), kAwaitTuple);
         if (failed) co_return;
         decoder.commit(count);
         for (;;) {
@@ -134,7 +130,7 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
         co_return false;
     }
     if (link.script.answer_hello_with) {
-        co_await asio::async_write(link.socket, asio::buffer(*link.script.answer_hello_with), kUse);
+        co_await asio::async_write(link.socket, asio::buffer(*link.script.answer_hello_with), kAwaitTuple);
         co_return false;
     }
     durable_ = stored_.size(); // what was stored without being acknowledged survived
@@ -198,7 +194,7 @@ asio::awaitable<bool> FakeServer::take(Link& link, const wire::ScanBatch& batch,
         if (script.silent_after_scans == link.scans) link.is_silent = true;
         if (script.stop_reading_after_scans == link.scans) {
             asio::steady_timer never(io_, asio::steady_timer::time_point::max());
-            co_await never.async_wait(kUse);
+            co_await never.async_wait(kAwaitTuple);
         }
     }
     if (++link.batches % script.ack_every != 0 || link.is_silent) co_return true;

@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using testing_support::CertificateFiles;
 using testing_support::write_certificate;
 
-std::vector<Observation> recording(std::size_t scans) {
+std::vector<Observation> recorded_scans(std::size_t scans) {
     const auto sensor = std::make_shared<const Sensor>(
         Sensor{0, SensorKind::kLaser, "laser", {}, UniformAngles{-1.5, 0.01, 300}, 0.0, 0.0, 10.0});
     std::vector<Observation> made(scans, Observation{sensor, {}});
@@ -58,7 +58,7 @@ protected:
     }
 
     Result<> run(UplinkOptions made, std::size_t scans = 200) {
-        RecordedSource source(recording(scans));
+        RecordedSource source(recorded_scans(scans));
         RecordingFeed feed(source, {});
         uplink_.emplace(io_, std::move(made), feed);
         Result<> outcome = Error{Errc::kTimeout, "it did not end"};

@@ -9,12 +9,12 @@
 namespace scanloom::lab {
 namespace {
 
-const cv::Vec3b kBlue(190, 95, 0);
-const cv::Vec3b kOrange(0, 120, 235);
+const cv::Vec3b kPanelBlue(190, 95, 0);
+const cv::Vec3b kPanelOrange(0, 120, 235);
 const cv::Vec3b kPale(200, 200, 200);
-const cv::Vec3b kRed(40, 30, 210);
+const cv::Vec3b kPanelRed(40, 30, 210);
 const cv::Vec3b kBlack(0, 0, 0);
-const cv::Vec3b kWhite(255, 255, 255);
+const cv::Vec3b kPanelWhite(255, 255, 255);
 
 /// Two bars at x = 0 and 4 in the first capture; in the second the right one has gone 2 m up. The lidar is at (2, -2).
 /// 0.3 m around all, in halves of 600 pixels: x from -0.5 to 4.5 (120 pixels a metre), y from 2.3 down to -2.3.
@@ -38,20 +38,20 @@ protected:
 TEST_F(LandmarkPicture, HasTheFirstCaptureOnTheLeftAndTheSecondOnTheRight) {
     ASSERT_EQ(picture_.cols, 600 + 12 + 600);
     ASSERT_EQ(picture_.rows, 552);
-    EXPECT_EQ(at(-0.1195, -0.004, 0), kBlue);
-    EXPECT_EQ(at(-0.1195, -0.004, 1), kOrange);
-    EXPECT_EQ(at(3.8805, -0.004, 0), kBlue);
+    EXPECT_EQ(at(-0.1195, -0.004, 0), kPanelBlue);
+    EXPECT_EQ(at(-0.1195, -0.004, 1), kPanelOrange);
+    EXPECT_EQ(at(3.8805, -0.004, 0), kPanelBlue);
     EXPECT_EQ(at(3.8805, -0.004, 1), kPale) << "what only the other has";
     EXPECT_EQ(at(3.8805, 1.996, 0), kPale);
-    EXPECT_EQ(at(3.8805, 1.996, 1), kOrange);
-    EXPECT_EQ(at(2.0, 1.0, 0), kWhite);
+    EXPECT_EQ(at(3.8805, 1.996, 1), kPanelOrange);
+    EXPECT_EQ(at(2.0, 1.0, 0), kPanelWhite);
 }
 
 TEST_F(LandmarkPicture, RingsLandmarksWithoutAMatchAndMarksTheLidar) {
-    EXPECT_EQ(at(0.0, 0.0, 0), kBlue);
-    EXPECT_EQ(at(0.0, 0.0, 1), kOrange);
-    EXPECT_EQ(at(4.0, 7.0 / 120.0, 0), kRed);
-    EXPECT_EQ(at(4.0, 2.0 + 7.0 / 120.0, 1), kRed);
+    EXPECT_EQ(at(0.0, 0.0, 0), kPanelBlue);
+    EXPECT_EQ(at(0.0, 0.0, 1), kPanelOrange);
+    EXPECT_EQ(at(4.0, 7.0 / 120.0, 0), kPanelRed);
+    EXPECT_EQ(at(4.0, 2.0 + 7.0 / 120.0, 1), kPanelRed);
     for (const int panel : {0, 1}) EXPECT_EQ(at(2.0, -2.0, panel), kBlack);
 }
 
@@ -70,7 +70,7 @@ TEST_F(LandmarkPicture, JoinsMatchesByDashedLines) {
     EXPECT_GT(light, 100);
     EXPECT_GT(changes, 20);
     for (int column = 100; column < 500; ++column) {
-        EXPECT_EQ(picture_.at<cv::Vec3b>(200, column), kWhite) << "no other lines: " << column;
+        EXPECT_EQ(picture_.at<cv::Vec3b>(200, column), kPanelWhite) << "no other lines: " << column;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "lab/trials.hpp"
 
 #include "lab/each_index.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +28,6 @@ Verdict verdict(const landmarks::Alignment& found, const std::optional<Pose2>& t
 
 TEST(Trials, AreRightWithinTwoCentimetresAndHalfADegreeIfTheyAreClear) {
     const Pose2 truth{1.0, 2.0, 3.1};
-    constexpr double kDegree = std::numbers::pi / 180.0;
     EXPECT_EQ(verdict(found_at({1.012, 2.015, 3.1}), truth), Verdict::kRight);
     EXPECT_EQ(verdict(found_at({1.015, 2.015, 3.1}), truth), Verdict::kWrong);
     EXPECT_EQ(verdict(found_at({1.0, 2.0, 3.1 + 0.4 * kDegree}), truth), Verdict::kRight);

@@ -2,17 +2,15 @@
 
 #include "robot_client/sim/random.hpp"
 #include "robot_client/sim/ray_casting.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 namespace scanloom::lab {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// 2 x 1.2 m inside walls of 0.2 m, with a pillar.
 robot::World corridor() {

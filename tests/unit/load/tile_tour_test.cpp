@@ -7,7 +7,7 @@
 namespace scanloom::load {
 namespace {
 
-constexpr Micros kPeriod = 50 * kMillisecond;
+constexpr Micros kTourPeriod = 50 * kMillisecond;
 constexpr Micros kFirst = 3 * kSecond;
 
 TEST(TileTour, TilesTakeTheTurnsAndListsNone) {
@@ -25,7 +25,7 @@ TEST(TileTour, TilesTakeTheTurnsAndListsNone) {
             EXPECT_EQ(step.layer, list.layer);
             EXPECT_EQ(step.tile.x, x);
             EXPECT_EQ(step.tile.y, x + 1);
-            EXPECT_EQ(step.at, turn += kPeriod);
+            EXPECT_EQ(step.at, turn += kTourPeriod);
         }
     }
 }
@@ -35,7 +35,7 @@ TEST(TileTour, AMapWithoutTilesIsAskedForOnceATurn) {
     for (int n = 0; n < 5; ++n) {
         const auto list = tour.next();
         EXPECT_TRUE(list.is_list);
-        EXPECT_EQ(list.at, kFirst + n * kPeriod);
+        EXPECT_EQ(list.at, kFirst + n * kTourPeriod);
         tour.listed({});
     }
 }

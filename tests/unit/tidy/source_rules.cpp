@@ -81,7 +81,7 @@ const std::vector<Folder> kFolders = {
      .may_include = {"common/error", "common/geometry", "common/ros_map", "common/scan", "robot_client/drive"},
      .pure = true},
     {.path = "robot_client/source",
-     .may_include = {"common/error", "common/geometry", "common/hash", "common/ros_map", "common/scan",
+     .may_include = {"common/error", "common/geometry", "common/hash", "common/net", "common/ros_map", "common/scan",
                      "robot_client/drive", "robot_client/sim"}},
     {.path = "robot_client/spool",
      .may_include = {"common/error", "common/scan", "common/wire", "robot_client/source"}},

@@ -1,14 +1,13 @@
 #include "common/geometry/pose2.hpp"
 
+#include "tests/support/angles.hpp"
+
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <random>
 
 namespace scanloom {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TEST(Pose2, NormalizedAnglesLieInTheHalfOpenTurn) {
     EXPECT_DOUBLE_EQ(normalize_angle(kPi), kPi);

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::vector<Message> one_of_each() {
+std::vector<Message> a_message_of_each_kind() {
     return {example_hello(),
             Welcome{"00000000000000ff", 13631, Limits{1U << 20, 4096, 1024}, 2U << 20, true},
             example_sensor(),
@@ -39,7 +39,7 @@ std::vector<Message> one_of_each() {
 }
 
 TEST(Messages, EveryKindSurvivesTheWire) {
-    const auto messages = one_of_each();
+    const auto messages = a_message_of_each_kind();
     ASSERT_EQ(messages.size(), std::variant_size_v<Message>);
     for (std::size_t kind = 0; kind < messages.size(); ++kind) {
         ASSERT_EQ(messages[kind].index(), kind);
@@ -51,7 +51,7 @@ TEST(Messages, EveryKindSurvivesTheWire) {
 
 TEST(Messages, AreNamedAsTheirFrameFields) {
     const auto* frame = v1::Frame::descriptor();
-    for (const auto& message : one_of_each()) {
+    for (const auto& message : a_message_of_each_kind()) {
         const auto* field = frame->FindFieldByName(std::string(name_of(message)));
         ASSERT_NE(field, nullptr) << name_of(message);
         v1::Frame proto;
@@ -190,7 +190,7 @@ void expect_decoded_or_explained(std::string_view body) {
 }
 
 TEST(Messages, EveryTruncationIsDecodedOrExplained) {
-    for (const auto& message : one_of_each()) {
+    for (const auto& message : a_message_of_each_kind()) {
         const std::string body = body_of(message);
         for (std::size_t bytes = 0; bytes < body.size(); ++bytes) {
             SCOPED_TRACE(std::string(name_of(message)) + " cut to " + std::to_string(bytes));
@@ -202,7 +202,7 @@ TEST(Messages, EveryTruncationIsDecodedOrExplained) {
 }
 
 TEST(Messages, EveryFlippedBitIsDecodedOrExplained) {
-    for (const auto& message : one_of_each()) {
+    for (const auto& message : a_message_of_each_kind()) {
         const std::string body = body_of(message);
         for (std::size_t bit = 0; bit < body.size() * 8; ++bit) {
             std::string flipped = body;

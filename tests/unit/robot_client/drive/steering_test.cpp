@@ -2,17 +2,15 @@
 
 #include "robot_client/drive/body.hpp"
 #include "robot_client/drive/way_ahead.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A robot at the origin that heads along x, and three beams that end at each place.
 Senses senses_of(const std::vector<Point2>& places) {

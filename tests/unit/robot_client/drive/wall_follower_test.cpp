@@ -1,6 +1,7 @@
 #include "robot_client/drive/wall_follower.hpp"
 
 #include "robot_client/drive/sectors.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -96,7 +97,6 @@ TEST(WallFollower, LeavesWhatItHasGoneAround) {
 }
 
 TEST(Sectors, EachBeamCountsInItsSectorAndInvalidOnesNowhere) {
-    constexpr double kDegree = std::numbers::pi / 180.0;
     Sensor laser;
     laser.angles = UniformAngles{-180.0 * kDegree, 30.0 * kDegree, 12};
     Scan scan; //     -180 -150 -120 -90  -60   -30   0   30        60  90   120  150

@@ -1,20 +1,18 @@
 #include "robot_client/sim/cone.hpp"
 
 #include "robot_client/sim/random.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kFar = std::numeric_limits<double>::infinity();
-constexpr double kDegree = kPi / 180.0;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Whether a point is within an angle of the axis, by the angle itself.
 bool is_in(const Cone& cone, const Point2& point) {
@@ -27,7 +25,7 @@ double nearest_of_points(const Cone& cone, const Segment& segment, double step) 
     const Point2 a{segment.ax, segment.ay};
     const Point2 b{segment.bx, segment.by};
     const int count = static_cast<int>(std::ceil((b - a).norm() / step)) + 1;
-    double nearest = kFar;
+    double nearest = kNever;
     for (int n = 0; n <= count; ++n) {
         const Point2 point = a + static_cast<double>(n) / count * (b - a);
         if (is_in(cone, point)) nearest = std::min(nearest, (point - cone.apex).norm());
@@ -38,7 +36,7 @@ double nearest_of_points(const Cone& cone, const Segment& segment, double step) 
 /// The same on the rim of a disc.
 double nearest_of_points(const Cone& cone, const Disc& disc, double step) {
     const int count = static_cast<int>(std::ceil(2.0 * kPi * disc.radius / step));
-    double nearest = kFar;
+    double nearest = kNever;
     for (int n = 0; n < count; ++n) {
         const double angle = 2.0 * kPi * n / count;
         const Point2 point = disc.centre + disc.radius * Point2{std::cos(angle), std::sin(angle)};
@@ -53,8 +51,8 @@ TEST(Cone, HearsAWallWhereGeometrySays) {
     EXPECT_NEAR(distance_within(ahead, Segment{2.0, 0.2, 2.0, 1.0}), std::hypot(2.0, 0.2), 1e-12) << "its end";
     EXPECT_NEAR(distance_within(ahead, Segment{1.0, 0.5, 3.0, 0.5}), 0.5 / std::sin(15.0 * kDegree), 1e-12)
         << "where it comes into the cone";
-    EXPECT_EQ(distance_within(ahead, Segment{-2.0, -1.0, -2.0, 1.0}), kFar) << "behind";
-    EXPECT_EQ(distance_within(ahead, Segment{2.0, 0.6, 2.0, 1.0}), kFar) << "beside";
+    EXPECT_EQ(distance_within(ahead, Segment{-2.0, -1.0, -2.0, 1.0}), kNever) << "behind";
+    EXPECT_EQ(distance_within(ahead, Segment{2.0, 0.6, 2.0, 1.0}), kNever) << "beside";
     EXPECT_EQ(distance_within(ahead, Segment{0.0, -1.0, 0.0, 1.0}), 0.0) << "through the apex";
 }
 
@@ -70,12 +68,12 @@ TEST(Cone, HearsTheNearestOfAllPointsOfASegment) {
         const double exact = distance_within(cone, segment);
         const double sampled = nearest_of_points(cone, segment, kStep);
         ASSERT_LE(exact, sampled + 1e-12) << i;
-        if (sampled < kFar) {
+        if (sampled < kNever) {
             ASSERT_GE(exact, sampled - kStep) << i;
             ++heard;
-        } else if (exact < kFar) { // less of it is in the cone than the points are apart
+        } else if (exact < kNever) { // less of it is in the cone than the points are apart
             const Cone wider(cone.apex, cone.yaw, 2.0 * cone.half + 4.0 * kStep / exact);
-            ASSERT_LT(nearest_of_points(wider, segment, kStep / 4.0), kFar) << i;
+            ASSERT_LT(nearest_of_points(wider, segment, kStep / 4.0), kNever) << i;
         }
     }
     EXPECT_GT(heard, 1000);
@@ -96,7 +94,7 @@ TEST(Cone, HearsTheNearestOfAllPointsOfADisc) {
         const double exact = distance_within(cone, disc);
         const double sampled = nearest_of_points(cone, disc, kStep);
         ASSERT_LE(exact, sampled + 1e-12) << i;
-        if (sampled == kFar) continue; // less of it than the points are apart
+        if (sampled == kNever) continue; // less of it than the points are apart
         ASSERT_GE(exact, sampled - kStep) << i;
         ++heard;
     }

@@ -1,6 +1,7 @@
 #include "robot_client/sim/laser.hpp"
 
 #include "robot_client/sim/ray_casting.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +11,6 @@
 
 namespace scanloom::robot {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(Lasers, LookWhereTheirDescriptionSays) {
     const auto ends = [](const char* name) {

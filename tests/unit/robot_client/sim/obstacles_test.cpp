@@ -2,19 +2,18 @@
 
 #include "robot_client/sim/random.hpp"
 #include "robot_client/sim/ray_casting.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 namespace scanloom::robot {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Segments of all lengths and directions, many of them along the axes or meeting one another.

@@ -2,17 +2,15 @@
 
 #include "robot_client/sim/random.hpp"
 #include "robot_client/sim/world.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TEST(RayCasting, MeetsAWallWhereGeometrySays) {
     const std::vector<Segment> wall = {{2.0, -1.0, 2.0, 1.0}};

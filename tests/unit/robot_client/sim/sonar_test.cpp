@@ -2,21 +2,19 @@
 
 #include "robot_client/sim/cone.hpp"
 #include "robot_client/sim/ray_casting.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Sensor ring() { return find_sonar("ring16").value(); }
 
-Point2 free_place(const World& world, Random& random) {
+Point2 place_with_room(const World& world, Random& random) {
     for (;;) {
         const Box& floor = world.floors[random.index(world.floors.size())];
         const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
@@ -66,7 +64,7 @@ TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
     for (const NamedWorld& named : kWorlds) {
         const World world = named.make();
         for (int i = 0; i < 15; ++i) {
-            const Point2 place = free_place(world, random);
+            const Point2 place = place_with_room(world, random);
             const Pose2 pose{place.x(), place.y(), random.uniform(-kPi, kPi)};
             const auto ranges = listen(world, sonar, pose, std::nullopt, random);
             ASSERT_EQ(ranges.size(), 16U);

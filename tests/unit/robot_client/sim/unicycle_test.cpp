@@ -1,6 +1,7 @@
 #include "robot_client/sim/unicycle.hpp"
 
 #include "robot_client/sim/random.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +9,6 @@
 
 namespace scanloom::robot {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TEST(Unicycle, StraightOnAndOnTheSpot) {
     const Pose2 straight = moved({1, 2, kPi / 2}, {0.5, 0.0});

@@ -1,5 +1,7 @@
 #include "robot_client/source/carmen_line.hpp"
 
+#include "tests/support/angles.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,8 +15,6 @@ namespace scanloom::robot {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 CarmenScan scan_of(std::string_view line) {
     auto parsed = parse_carmen_line(line);

@@ -2,18 +2,15 @@
 
 #include "common/wire/frame_decoder.hpp"
 #include "common/wire/messages.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Ld06Turn turn_of(std::vector<Ld06Beam> beams) { return {12.5, std::move(beams)}; }
 

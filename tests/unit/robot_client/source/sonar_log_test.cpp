@@ -1,5 +1,6 @@
 #include "robot_client/source/sonar_log.hpp"
 
+#include "tests/support/angles.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
@@ -16,8 +17,6 @@ namespace {
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class SonarLogs : public testing::Test {
 protected:

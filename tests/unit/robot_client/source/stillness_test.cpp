@@ -1,20 +1,18 @@
 #include "robot_client/source/stillness.hpp"
 
 #include "robot_client/source/ld06_capture.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/unit/robot_client/source/carried_lidar.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 namespace scanloom::robot {
 namespace {
 
 using Verdict = Stillness::Verdict;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Stillness learnt(const std::vector<Observation>& turns) {
     Stillness stillness;

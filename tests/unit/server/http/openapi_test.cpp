@@ -13,7 +13,7 @@
 namespace scanloom::http {
 namespace {
 
-boost::json::object document() {
+boost::json::object described_api() {
     return boost::json::parse(get_openapi(Call{{}, {}, {}}).value().body.bytes()).as_object();
 }
 
@@ -38,7 +38,7 @@ TEST(OpenApi, DescribesEveryRouteAndNoOther) {
     std::set<std::string> routed;
     for (const auto& route : routes()) routed.insert(std::string(route.method) + " " + std::string(route.pattern));
     std::set<std::string> described;
-    const auto whole = document();
+    const auto whole = described_api();
     for (const auto& path : whole.at("paths").as_object()) {
         for (const auto& method : path.value().as_object()) {
             const bool is_get = boost::urls::grammar::ci_is_equal(method.key(), "get");
@@ -50,7 +50,7 @@ TEST(OpenApi, DescribesEveryRouteAndNoOther) {
 }
 
 TEST(OpenApi, EveryReferenceLeadsSomewhere) {
-    const auto whole = document();
+    const auto whole = described_api();
     const boost::json::value root = whole;
     std::size_t count = 0;
     walk(root, [&](const boost::json::value& value) {
@@ -65,7 +65,7 @@ TEST(OpenApi, EveryReferenceLeadsSomewhere) {
 }
 
 TEST(OpenApi, EveryVariableOfAPathIsAParameterOfItsOperations) {
-    const boost::json::value root = document();
+    const boost::json::value root = described_api();
     for (const auto& path : root.at("paths").as_object()) {
         for (const auto& operation : path.value().as_object()) {
             std::set<std::string> described;

@@ -36,7 +36,7 @@ double typical_distance(const std::vector<Point2>& points, std::size_t k) {
     return 0.0;
 }
 
-double oracle(const std::vector<Point2>& cloud, std::size_t min_points) {
+double eps_oracle(const std::vector<Point2>& cloud, std::size_t min_points) {
     std::map<std::pair<double, double>, Point2> squares;
     for (const Point2& point : cloud)
         squares.try_emplace({std::floor(point.x() * 10.0), std::floor(point.y() * 10.0)}, point);
@@ -54,7 +54,7 @@ TEST(AdaptiveEps, IsWhatALookAtAllPairsGives) {
         auto cloud = random_points(random, random() % 150);
         for (Point2& point : cloud) point *= 0.5; // so that few answers are the most
         const std::size_t min_points = 1 + random() % 12;
-        const double expected = oracle(cloud, min_points);
+        const double expected = eps_oracle(cloud, min_points);
         ASSERT_NEAR(eps_of(cloud, min_points), expected, 1e-12) << "round " << round;
         between += expected > 0.1 && expected < 0.5 ? 1 : 0;
     }

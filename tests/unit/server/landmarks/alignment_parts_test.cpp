@@ -2,13 +2,14 @@
 #include "server/landmarks/alignment_evidence.hpp"
 #include "server/landmarks/alignment_search.hpp"
 #include "server/landmarks/refinement.hpp"
+#include "tests/support/angles.hpp"
+#include "tests/unit/server/landmarks/pose_errors.hpp"
 #include "tests/unit/server/landmarks/random_points.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 // What an alignment is made of: surface elements, hypotheses, refinement, evidence.
 
@@ -16,8 +17,6 @@ namespace scanloom::landmarks {
 namespace {
 
 using namespace testing_support;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The border of a room that no turn maps to itself, around the origin, with noise.
 std::vector<Point2> odd_room(std::mt19937& random) {
@@ -41,9 +40,6 @@ std::vector<Point2> seen_from(const Pose2& place, std::vector<Point2> points) {
 
 /// Seen from the origin.
 std::vector<Surfel> surfels_around(const std::vector<Point2>& points) { return surfels_of(CloudView{points}); }
-
-double metres_off(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-double degrees_off(const Pose2& a, const Pose2& b) { return std::abs(normalize_angle(a.yaw - b.yaw)) / kDegree; }
 
 TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
     std::mt19937 random(1);

@@ -1,5 +1,6 @@
 #include "robot_client/sim/standing_robot.hpp"
 #include "server/landmarks/alignment.hpp"
+#include "tests/support/angles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace scanloom::landmarks {
 namespace {
@@ -15,8 +15,6 @@ namespace {
 using robot::Box;
 using robot::TwoCaptures;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Off {
     double metres;

@@ -14,7 +14,7 @@ namespace {
 using namespace testing_support;
 
 /// Continuity from models.md, section 7, the major axis found by trying directions. Pre  there is a major axis.
-Continuity oracle(const std::vector<Point2>& points, double eps) {
+Continuity continuity_oracle(const std::vector<Point2>& points, double eps) {
     const auto variance_along = [&](double angle, std::vector<double>& places) {
         places.clear();
         for (const Point2& point : points) places.push_back(point.x() * std::cos(angle) + point.y() * std::sin(angle));
@@ -61,7 +61,7 @@ TEST(Continuity, IsWhatTheDefinitionSays) {
                                 3.0 + along * std::sin(turn) + across * std::cos(turn));
         }
         const double eps = uniform(random, 0.02, 0.4);
-        const auto expected = oracle(points, eps);
+        const auto expected = continuity_oracle(points, eps);
         if (expected.linearity < 0.01) continue; // no axis is the major one
         const auto found = continuity_of(points, eps);
         EXPECT_NEAR(found.linearity, expected.linearity, 1e-6) << "round " << round;

@@ -1,4 +1,5 @@
 #include "server/landmarks/filter_figures.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/unit/server/landmarks/random_points.hpp"
 
 #include <gmock/gmock.h>
@@ -6,14 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace scanloom::landmarks {
 namespace {
 
 using namespace testing_support;
-
-constexpr double kPi = std::numbers::pi;
 
 /// Of each reading and its neighbours, fewer at the ends.
 std::vector<RangeMm> medians_of(const std::vector<RangeMm>& ranges, std::size_t window) {

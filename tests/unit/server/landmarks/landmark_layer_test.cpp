@@ -17,13 +17,13 @@ using testing::SizeIs;
 
 constexpr std::size_t kBeams = 360;
 
-const Sensor kLaser{.id = 1,
-                    .kind = SensorKind::kLaser,
-                    .name = "laser",
-                    .angles = UniformAngles{0.0, 2 * std::numbers::pi / kBeams, kBeams},
-                    .aperture = 0.02,
-                    .range_min = 0.05,
-                    .range_max = 12.0};
+const Sensor kPillarLaser{.id = 1,
+                          .kind = SensorKind::kLaser,
+                          .name = "laser",
+                          .angles = UniformAngles{0.0, 2 * std::numbers::pi / kBeams, kBeams},
+                          .aperture = 0.02,
+                          .range_min = 0.05,
+                          .range_max = 12.0};
 
 /// Round pillars, and nothing else.
 const std::vector<Point2> kPillars = {{3.0, 1.0}, {1.0, -3.0}, {-2.5, -1.5}, {-1.0, 3.2}};
@@ -47,14 +47,14 @@ protected:
     Scan scan(const Pose2& pose) {
         Scan scan{.seq = revision_, .stamp = 0.1 * static_cast<double>(revision_), .sensor = 1, .pose = pose};
         for (std::size_t beam = 0; beam < kBeams; ++beam) {
-            scan.ranges.push_back(range_to_pillars({pose.x, pose.y}, pose.yaw + beam_angle(kLaser.angles, beam)));
+            scan.ranges.push_back(range_to_pillars({pose.x, pose.y}, pose.yaw + beam_angle(kPillarLaser.angles, beam)));
         }
         return scan;
     }
 
     void see(LandmarkLayer& layer, RobotIndex robot, const Pose2& pose) {
         ++revision_;
-        const auto ended = cutters_[robot].add(scan(pose), kLaser, revision_);
+        const auto ended = cutters_[robot].add(scan(pose), kPillarLaser, revision_);
         if (ended) layer.add({robot, *ended, revision_});
     }
 

@@ -24,7 +24,7 @@ double median_of(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-Landmark oracle(const std::vector<Point2>& points, double eps) {
+Landmark landmark_oracle(const std::vector<Point2>& points, double eps) {
     std::vector<double> x;
     std::vector<double> y;
     for (const Point2& point : points) {
@@ -54,7 +54,7 @@ TEST(Landmark, TellsOfEachClusterWhatALookAtItsPointsDoes) {
             if (cluster != kNoise) members[static_cast<std::size_t>(cluster)].push_back(points[n]);
         }
         std::vector<Landmark> expected;
-        for (const auto& cluster : members) expected.push_back(oracle(cluster, eps));
+        for (const auto& cluster : members) expected.push_back(landmark_oracle(cluster, eps));
         ASSERT_EQ(find_landmarks(points, {min_points, eps}).value(), expected) << "round " << round;
         count += expected.size();
     }

@@ -1,13 +1,14 @@
 #include "robot_client/sim/standing_robot.hpp"
 #include "server/landmarks/localization.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/unit/server/landmarks/located_robot.hpp"
+#include "tests/unit/server/landmarks/pose_errors.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace scanloom::landmarks {
 namespace {
@@ -15,13 +16,6 @@ namespace {
 using namespace testing_support;
 using robot::Box;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-double metres_off(const Pose2& pose, const Pose2& truth) { return std::hypot(pose.x - truth.x, pose.y - truth.y); }
-double degrees_off(const Pose2& pose, const Pose2& truth) {
-    return std::abs(normalize_angle(pose.yaw - truth.yaw)) / kDegree;
-}
 
 void expect_right(const Alignment& found, const Pose2& truth, const std::string& where = "") {
     EXPECT_EQ(found.certainty, Certainty::kClear) << where << ": " << found.why;

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// The first of the nearest.
-std::size_t nearest_of(const Point2& place, const std::vector<Point2>& points) {
+std::size_t index_of_nearest(const Point2& place, const std::vector<Point2>& points) {
     std::size_t nearest = 0;
     for (std::size_t n = 1; n < points.size(); ++n) {
         if ((points[n] - place).squaredNorm() < (points[nearest] - place).squaredNorm()) nearest = n;
@@ -29,9 +29,10 @@ std::vector<Match> all_matches(const std::vector<Point2>& first, const std::vect
     std::vector<Match> matches;
     if (second.empty()) return matches;
     for (std::size_t n = 0; n < first.size(); ++n) {
-        const std::size_t there = nearest_of(first[n], second);
+        const std::size_t there = index_of_nearest(first[n], second);
         const double distance = (second[there] - first[n]).norm();
-        if (nearest_of(second[there], first) == n && distance <= tolerance) matches.push_back({n, there, distance});
+        if (index_of_nearest(second[there], first) == n && distance <= tolerance)
+            matches.push_back({n, there, distance});
     }
     return matches;
 }

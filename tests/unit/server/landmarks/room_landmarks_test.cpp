@@ -20,7 +20,7 @@ std::vector<Point2> capture(const robot::World& world, const Pose2& place, int t
     return points;
 }
 
-const std::vector<Pose2> kPlaces = {{-3.3, 1.2, 1.0}, {1.5, -3.0, 0.3}, {3.5, 3.4, -2.0}, {-3.5, -3.7, 0.0}};
+const std::vector<Pose2> kStands = {{-3.3, 1.2, 1.0}, {1.5, -3.0, 0.3}, {3.5, 3.4, -2.0}, {-3.5, -3.7, 0.0}};
 
 /// The cluster of most points that lie on the border of a box.
 std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points, const Clustering& clustering) {
@@ -35,7 +35,7 @@ std::int32_t cluster_on(const robot::Box& box, const std::vector<Point2>& points
 
 TEST(RoomLandmarks, AreNeitherOneBlobNorDust) {
     const auto room = robot::make_room();
-    for (const Pose2& place : kPlaces) {
+    for (const Pose2& place : kStands) {
         for (const int turns : {1, 10, 50}) {
             const auto points = capture(room, place, turns);
             const auto survey = survey_landmarks(points).value();
@@ -50,7 +50,7 @@ TEST(RoomLandmarks, AreNeitherOneBlobNorDust) {
 
 TEST(RoomLandmarks, FreeStandingFurnitureIsToldApart) {
     const auto room = robot::make_room();
-    const auto points = capture(room, kPlaces[0], 50);
+    const auto points = capture(room, kStands[0], 50);
     const auto clustering = survey_landmarks(points)->clustering;
     // Table, sofa, pillar and bed of make_room().
     std::vector<std::int32_t> clusters;
@@ -63,7 +63,7 @@ TEST(RoomLandmarks, FreeStandingFurnitureIsToldApart) {
 
 TEST(RoomLandmarks, MoreTurnsFindTheSame) {
     const auto room = robot::make_room();
-    for (const Pose2& place : kPlaces) {
+    for (const Pose2& place : kStands) {
         const auto ten = find_landmarks(capture(room, place, 10)).value();
         const auto hundred = find_landmarks(capture(room, place, 100)).value();
         const double ratio = static_cast<double>(hundred.size()) / static_cast<double>(ten.size());

@@ -1,3 +1,4 @@
+#include "tests/support/angles.hpp"
 #include "tests/support/laser_oracle.hpp"
 
 #include "server/mapping/projection.hpp"
@@ -9,7 +10,6 @@
 #include <array>
 #include <iostream>
 #include <map>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,8 +17,6 @@
 /// Occupancy and HIMM of woven maps, after sequences of scans, against brute force over cells and beams.
 namespace scanloom::mapping {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Some scans of one sensor from nearly the same place.
 struct Run {

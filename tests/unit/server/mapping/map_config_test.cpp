@@ -1,11 +1,12 @@
 #include "server/mapping/map_config.hpp"
 
+#include "tests/support/angles.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <iomanip>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
@@ -37,7 +38,6 @@ struct Bounds {
 };
 
 const double kNan = NAN;
-const double kPi = std::numbers::pi;
 
 const std::vector<Bounds> kBounds = {
     {"cell_size", {0.0, -0.05, 0.00999, 1.00001, 1e300, HUGE_VAL, kNan}, {0.01, 0.05, 0.1, 0.5, 1.0}},

@@ -1,6 +1,7 @@
 #include "server/mapping/sonar_layer.hpp"
 
 #include "server/mapping/projection.hpp"
+#include "tests/support/angles.hpp"
 #include "tests/support/murphy_oracle.hpp"
 #include "tests/support/random_angles.hpp"
 #include "tests/support/snapshot_cells.hpp"
@@ -9,7 +10,6 @@
 
 #include <iostream>
 #include <map>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,9 +17,6 @@
 /// Murphy's sonar model, against the same in probabilities by the product rule.
 namespace scanloom::mapping {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 TEST(SonarProbability, IsThatOfTheWorkedExample) {
     // R 5, r 2.5, a 0, half 15 degrees: w = 0.75.

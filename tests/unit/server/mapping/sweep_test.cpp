@@ -1,19 +1,16 @@
 #include "server/mapping/sweep/sweep.hpp"
 
+#include "tests/support/angles.hpp"
 #include "tests/support/kernel_against_oracle.hpp"
 #include "tests/support/random_angles.hpp"
 
 #include <gtest/gtest.h>
 
 #include <new>
-#include <numbers>
 #include <random>
 
 namespace scanloom::mapping {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 class RandomCases {
 public:

@@ -11,17 +11,18 @@ namespace {
 
 using namespace testing_support;
 
-constexpr grid::CellBox kBox{-50, -40, 40, 50};
+constexpr grid::CellBox kSearchBox{-50, -40, 40, 50};
 
 /// Ground mostly free, with a few obstacles and patches of danger.
 ClassView patchy(std::mt19937& random) {
     ClassMap map;
     std::vector<Cell> patches;
     for (int patch = 0; patch < 6; ++patch) {
-        patches.push_back({kBox.i_begin + random_below(random, 90), kBox.j_begin + random_below(random, 90)});
+        patches.push_back(
+            {kSearchBox.i_begin + random_below(random, 90), kSearchBox.j_begin + random_below(random, 90)});
     }
-    for (std::int32_t j = kBox.j_begin; j < kBox.j_end; ++j) {
-        for (std::int32_t i = kBox.i_begin; i < kBox.i_end; ++i) {
+    for (std::int32_t j = kSearchBox.j_begin; j < kSearchBox.j_end; ++j) {
+        for (std::int32_t i = kSearchBox.i_begin; i < kSearchBox.i_end; ++i) {
             const bool danger = std::ranges::any_of(
                 patches, [&](Cell patch) { return std::abs(i - patch.i) < 9 && std::abs(j - patch.j) < 7; });
             const bool obstacle = random_below(random, 100) < 2;
@@ -36,15 +37,15 @@ TEST(CostSearch, EveryCellCostsTheLeastOfAllWays) {
     for (int round = 0; round < 16; ++round) {
         const PassabilityOptions options{round % 4 == 0 ? 0.1 : 0.0, 0.7 * (round % 3), false};
         const auto view = patchy(random);
-        const Oracle oracle(view, kBox, 0.05, options);
+        const Oracle oracle(view, kSearchBox, 0.05, options);
         const auto passability = make_passability(view, 0.05, options).value();
         const Cell start{random_below(random, 80) - 40, random_below(random, 80) - 30};
         if (!oracle.enterable(start)) continue;
         CostSearch search(passability);
         search.from(*passability.spot_of(start));
         const auto costs = oracle.costs(start);
-        for (std::int32_t j = kBox.j_begin; j < kBox.j_end; ++j) {
-            for (std::int32_t i = kBox.i_begin; i < kBox.i_end; ++i) {
+        for (std::int32_t j = kSearchBox.j_begin; j < kSearchBox.j_end; ++j) {
+            for (std::int32_t i = kSearchBox.i_begin; i < kSearchBox.i_end; ++i) {
                 const double cost = search.cost(*passability.spot_of({i, j}));
                 const auto expected = costs.find({j, i});
                 ASSERT_EQ(cost < kInfinite, expected != costs.end()) << "cell " << i << ", " << j;

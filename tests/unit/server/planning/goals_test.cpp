@@ -14,7 +14,7 @@ using namespace testing_support;
 using classify::find_frontiers;
 using testing::HasSubstr;
 
-constexpr double kCellSize = 0.05;
+constexpr double kGoalCellSize = 0.05;
 
 ExplorationOptions for_a_point() {
     ExplorationOptions options;
@@ -37,7 +37,7 @@ ClassView partly_seen(std::mt19937& random, int unseen_places) {
 std::optional<Point2> somewhere_free(std::mt19937& random, const ClassView& view) {
     const Cell cell{random_below(random, 250), random_below(random, 250)};
     if (class_at(view, cell) != CellClass::kFree) return std::nullopt;
-    return centre(cell, kCellSize);
+    return centre(cell, kGoalCellSize);
 }
 
 /// The nearest of some cells; of equally near ones the first.
@@ -75,10 +75,10 @@ TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
         const auto robot = somewhere_free(random, view);
         if (!robot) continue;
         const auto frontiers = find_frontiers(view);
-        auto passability = make_passability(view, kCellSize, {.on_known = true}).value();
+        auto passability = make_passability(view, kGoalCellSize, {.on_known = true}).value();
         CostSearch search(passability);
         search.from(open_start(passability, *robot).value());
-        const auto goals = frontier_goals(view, kCellSize, frontiers, *robot).value();
+        const auto goals = frontier_goals(view, kGoalCellSize, frontiers, *robot).value();
         ASSERT_EQ(goals.size(), frontiers.size());
         for (std::size_t place = 0; place < goals.size(); ++place) {
             // Rings of free cells around the frontier: the first with a reachable free cell that sees it has the goal.
@@ -99,7 +99,7 @@ TEST(Goals, AreTheNearestFreeCellsThatSeeTheFrontierWithTheCheapestWay) {
                 double in_ring = kInfinite;
                 for (const Cell cell : ring) {
                     if (!sees(view, cell, nearest_of(frontiers[place].cells, cell))) continue;
-                    const double cost = search.cost(*passability.spot_of(cell)) * kCellSize;
+                    const double cost = search.cost(*passability.spot_of(cell)) * kGoalCellSize;
                     const bool danger = class_at(view, cell) == CellClass::kDanger;
                     (danger ? in_ring : best) = std::min(danger ? in_ring : best, cost);
                 }
@@ -185,8 +185,8 @@ TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
         const auto view = partly_seen(random, 6);
         const auto robot = somewhere_free(random, view);
         if (!robot) continue;
-        const auto goals = frontier_goals(view, kCellSize, find_frontiers(view), *robot).value();
-        const auto next = next_goal(view, kCellSize, *robot).value();
+        const auto goals = frontier_goals(view, kGoalCellSize, find_frontiers(view), *robot).value();
+        const auto next = next_goal(view, kGoalCellSize, *robot).value();
         double least = kInfinite;
         for (const auto& goal : goals) least = std::min(least, goal ? goal->cost : kInfinite);
         ASSERT_EQ(next.outcome, least < kInfinite ? Exploration::kGoal : Exploration::kComplete);
@@ -194,7 +194,7 @@ TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
         ++found;
         EXPECT_EQ(next.goal->cost, least);
         EXPECT_EQ(next.path.points.front(), *robot);
-        EXPECT_NEAR((next.path.points.back() - centre(next.goal->cell, kCellSize)).norm(), 0.0, 1e-9);
+        EXPECT_NEAR((next.path.points.back() - centre(next.goal->cell, kGoalCellSize)).norm(), 0.0, 1e-9);
         EXPECT_LE(next.path.cost, next.goal->cost * (1.0 + 1e-9));
         EXPECT_LE(next.path.length_m, next.goal->length_m + 1e-9);
     }
@@ -213,7 +213,7 @@ TEST(NextGoal, RobotsThatAskOneAfterTheOtherNeverGetTheSameFrontier) {
         for (int n = 0; n < 4; ++n) {
             const auto robot = somewhere_free(random, view);
             if (!robot) continue;
-            const auto next = next_goal(view, kCellSize, *robot, targets).value();
+            const auto next = next_goal(view, kGoalCellSize, *robot, targets).value();
             all_taken += next.outcome == Exploration::kTakenByOthers ? 1 : 0;
             if (!next.goal) continue;
             EXPECT_TRUE(given.insert(next.goal->frontier).second) << "frontier " << next.goal->frontier;
@@ -243,10 +243,10 @@ TEST(NextGoal, ARobotTooNearToAWallIsNotSentNearer) {
         ExplorationOptions options;
         options.passability.body_radius_m = 0.1;
         options.frontier_size_min = 1;
-        const Oracle oracle(view, {0, 0, 40, 40}, kCellSize, options.passability);
+        const Oracle oracle(view, {0, 0, 40, 40}, kGoalCellSize, options.passability);
         const Cell start{random_below(random, 40), random_below(random, 40)};
         if (oracle.enterable(start)) continue;
-        const auto next = next_goal(view, kCellSize, centre(start, kCellSize), {}, options);
+        const auto next = next_goal(view, kGoalCellSize, centre(start, kGoalCellSize), {}, options);
         if (!next || !next->goal) continue;
         ++given;
         ASSERT_TRUE(oracle.enterable(next->goal->cell)) << start.i << ", " << start.j;
@@ -295,9 +295,9 @@ TEST(NextGoal, FrontiersNarrowerThanTheBodyDoNotCountByDefault) {
     const auto view = drawn({"..............", "..............", "..............", ".............f", ".............f",
                              ".............f", "..............", "..............", ".............."});
     options.frontier_size_min.reset();
-    EXPECT_EQ(next_goal(view, kCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kComplete);
+    EXPECT_EQ(next_goal(view, kGoalCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kComplete);
     options.frontier_size_min = 3;
-    EXPECT_EQ(next_goal(view, kCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kGoal);
+    EXPECT_EQ(next_goal(view, kGoalCellSize, {0.3, 0.2}, {}, options)->outcome, Exploration::kGoal);
 }
 
 TEST(NextGoal, CellsGivenUpCountForNothing) {
@@ -350,13 +350,13 @@ TEST(NextGoal, NobodyElseGoesWhereWallsMayBeHidden) {
     const auto view = classified({0, 0, 100, 24}, 3, [](Cell cell) {
         return cell.i < 24 || (cell.j >= 10 && cell.j < 13) ? OccType::kFree : OccType::kUnexplored; // a narrow lane
     });
-    EXPECT_EQ(next_goal(view, kCellSize, {0.6, 0.6})->outcome, Exploration::kGoal);
-    EXPECT_EQ(next_goal(view, kCellSize, {0.6, 0.6}, {}, {}, frontier_up_to(60, view))->outcome,
+    EXPECT_EQ(next_goal(view, kGoalCellSize, {0.6, 0.6})->outcome, Exploration::kGoal);
+    EXPECT_EQ(next_goal(view, kGoalCellSize, {0.6, 0.6}, {}, {}, frontier_up_to(60, view))->outcome,
               Exploration::kComplete);
 }
 
 TEST(NextGoal, TheBodyKeepsToKnownGround) {
-    const auto next = next_goal(clearing(), kCellSize, {0.6, 0.6}).value();
+    const auto next = next_goal(clearing(), kGoalCellSize, {0.6, 0.6}).value();
     ASSERT_TRUE(next.goal);
     for (const Point2& point : next.path.points) {
         EXPECT_GE(std::min({point.x(), point.y(), 1.2 - point.x(), 1.2 - point.y()}), 0.15);
@@ -365,17 +365,17 @@ TEST(NextGoal, TheBodyKeepsToKnownGround) {
 
 TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
     const auto lane = classified({0, 0, 60, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
-    const auto at_hand = next_goal(lane, kCellSize, {0.1, 0.075}).value();
+    const auto at_hand = next_goal(lane, kGoalCellSize, {0.1, 0.075}).value();
     ASSERT_EQ(at_hand.outcome, Exploration::kGoal);
     EXPECT_LT(at_hand.path.length_m, 0.2);
-    const auto further = next_goal(lane, kCellSize, {0.1, 0.075}, {}, {}, frontier_up_to(40, lane)).value();
+    const auto further = next_goal(lane, kGoalCellSize, {0.1, 0.075}, {}, {}, frontier_up_to(40, lane)).value();
     ASSERT_EQ(further.outcome, Exploration::kGoal);
     EXPECT_GT(further.path.length_m, 1.5);
 }
 
 TEST(NextGoal, IsKnownToARobotThatDoesNotSeeItsOwnCell) {
-    EXPECT_EQ(next_goal(clearing(), kCellSize, {-0.02, 0.6})->outcome, Exploration::kGoal);
-    EXPECT_THAT(next_goal(clearing(), kCellSize, {-0.25, 0.6}).error().message, HasSubstr("unknown space"));
+    EXPECT_EQ(next_goal(clearing(), kGoalCellSize, {-0.02, 0.6})->outcome, Exploration::kGoal);
+    EXPECT_THAT(next_goal(clearing(), kGoalCellSize, {-0.25, 0.6}).error().message, HasSubstr("unknown space"));
 }
 
 TEST(NextGoal, WhatCannotBeIsRefused) {

@@ -1,0 +1,13 @@
+#include "tests/fault/row_short_form.hpp"
+
+/// The rows of every `./scanloom test`: kills, spoiled links and restarts.
+namespace scanloom::fault {
+namespace {
+
+TEST(MainFaultRow, KillNine) { expect_passed(short_form_of("kill")); }
+TEST(MainFaultRow, SpoiledLinks) { expect_passed(short_form_of("link")); }
+TEST(MainFaultRow, RestartsUnderManyRobots) { expect_passed(short_form_of("restart")); }
+TEST(MainFaultRow, Simulation) { expect_passed(short_form_of("simulation")); }
+
+} // namespace
+} // namespace scanloom::fault

@@ -1,0 +1,17 @@
+#include "tests/fault/row_short_form.hpp"
+
+/// The rows of `./scanloom test --all`.
+namespace scanloom::fault {
+namespace {
+
+TEST(OtherFaultRow, DamagedStores) { expect_passed(short_form_of("corrupt")); }
+TEST(OtherFaultRow, JumpingClocks) { expect_passed(short_form_of("clock")); }
+TEST(OtherFaultRow, PowerCuts) { expect_passed(short_form_of("power")); }
+TEST(OtherFaultRow, FullDisks) { expect_passed(short_form_of("disk")); }
+TEST(OtherFaultRow, FailingSyncs) { expect_passed(short_form_of("sync")); }
+TEST(OtherFaultRow, OutagesAndKilledRobots) { expect_passed(short_form_of("spool")); }
+TEST(OtherFaultRow, StallingDisks) { expect_passed(short_form_of("stall")); }
+TEST(OtherFaultRow, Soak) { expect_passed(short_form_of("soak")); }
+
+} // namespace
+} // namespace scanloom::fault

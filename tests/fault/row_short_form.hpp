@@ -1,0 +1,31 @@
+#pragma once
+
+#include "tests/fault/row.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+/// The short form of a row: what `./scanloom fault ROW` runs.
+namespace scanloom::fault {
+
+/// Runs the row `name` as often as its short form asks for, with seed 1.
+/// @throws std::invalid_argument if there is no such row
+[[nodiscard]] inline Outcome short_form_of(std::string_view name) {
+    const Row* row = find_row(name);
+    if (row == nullptr) throw std::invalid_argument(fmt::format("there is no row {}", name));
+    return row->run({.seed = 1, .count = row->count_short});
+}
+
+/// Fails the test if scans were lost, doubled or shown differently, or if nothing was tried.
+inline void expect_passed(const Outcome& outcome) {
+    for (const auto& sentence : outcome.amiss) ADD_FAILURE() << sentence;
+    EXPECT_EQ(outcome.lost, 0U);
+    EXPECT_EQ(outcome.twice, 0U);
+    EXPECT_TRUE(outcome.digest_equal);
+    if (outcome.skipped) GTEST_SKIP() << *outcome.skipped;
+    EXPECT_GT(outcome.acknowledged, 0U) << "nothing was tried";
+}
+
+} // namespace scanloom::fault

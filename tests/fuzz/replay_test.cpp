@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+using Fuzzer = int(const std::uint8_t* data, std::size_t size);
+Fuzzer carmen_line_fuzzer;
+Fuzzer carmen_log_fuzzer;
+Fuzzer checkpoint_fuzzer;
+Fuzzer config_fuzzer;
+Fuzzer frame_decoder_fuzzer;
+Fuzzer http_form_fuzzer;
+Fuzzer http_json_fuzzer;
+Fuzzer http_target_fuzzer;
+Fuzzer ld06_fuzzer;
+Fuzzer live_request_fuzzer;
+Fuzzer log_codec_fuzzer;
+Fuzzer log_file_fuzzer;
+Fuzzer messages_fuzzer;
+Fuzzer ros_map_fuzzer;
+Fuzzer store_key_fuzzer;
+Fuzzer table_carving_fuzzer;
+Fuzzer tokens_fuzzer;
+
+namespace scanloom::fuzz {
+namespace {
+
+struct Named {
+    const char* name;
+    Fuzzer* fuzzer;
+};
+
+const Named kFuzzers[] = {
+    {"carmen_line", carmen_line_fuzzer},
+    {"carmen_log", carmen_log_fuzzer},
+    {"checkpoint", checkpoint_fuzzer},
+    {"config", config_fuzzer},
+    {"frame_decoder", frame_decoder_fuzzer},
+    {"http_form", http_form_fuzzer},
+    {"http_json", http_json_fuzzer},
+    {"http_target", http_target_fuzzer},
+    {"ld06", ld06_fuzzer},
+    {"live_request", live_request_fuzzer},
+    {"log_codec", log_codec_fuzzer},
+    {"log_file", log_file_fuzzer},
+    {"messages", messages_fuzzer},
+    {"ros_map", ros_map_fuzzer},
+    {"store_key", store_key_fuzzer},
+    {"table_carving", table_carving_fuzzer},
+    {"tokens", tokens_fuzzer},
+};
+
+class FuzzCorpus : public testing::TestWithParam<Named> {};
+
+/// Feeds a fuzzer every file of its corpus once. A fuzzer aborts on an input that breaks one of its claims.
+TEST_P(FuzzCorpus, EveryFilePasses) {
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(CORPUS) / GetParam().name)) {
+        SCOPED_TRACE(entry.path());
+        std::ifstream file(entry.path(), std::ios::binary);
+        const std::string bytes(std::istreambuf_iterator<char>(file), {});
+        EXPECT_EQ(GetParam().fuzzer(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), 0);
+        ++files;
+    }
+    EXPECT_GT(files, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FuzzCorpus, testing::ValuesIn(kFuzzers),
+                         [](const auto& each) { return each.param.name; });
+
+} // namespace
+} // namespace scanloom::fuzz
