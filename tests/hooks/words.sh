@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Finds words of words.txt in the lines that a change adds to comments, texts and documents.
+# usage: words.sh [--cached | COMMIT]        (--cached: what is about to be committed, the default)
+set -euo pipefail
+cd "$(git rev-parse --show-toplevel)"
+
+found=$(git diff --unified=0 "${1:---cached}" -- '*.cpp' '*.hpp' '*.ts' '*.md' '*.proto' scanloom '*.sh' ':!tests/hooks' |
+    awk '
+        FNR == NR { if ($0 !~ /^#/ && NF > 0) { split($0, part, /  +/); instead[part[1]] = part[2] } next }
+        /^\+\+\+ b\// { file = substr($0, 7); next }
+        # Comments and strings of sources, every line of documents.
+        /^\+/ && (file ~ /\.md$/ || /\/\/|"|^\+ *#|^\+ *\*/) {
+            line = tolower(substr($0, 2))
+            for (word in instead)
+                if (match(line, "(^|[^a-z_])" word "([^a-z_]|$)"))
+                    print file ": \"" word "\": write " instead[word] ": " substr($0, 2, 100)
+        }' tests/hooks/words.txt -)
+[[ -z $found ]] && exit 0
+echo "$found" >&2
+echo "words.sh: these words are not plain technical English; git commit --no-verify commits them all the same" >&2
+exit 1
