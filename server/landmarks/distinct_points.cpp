@@ -22,7 +22,7 @@ struct Place {
 
 std::vector<Place> sorted_places(std::span<const Point2> cloud) {
     std::vector<Place> places(cloud.size());
-    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x(), cloud[n].y(), n};
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x, cloud[n].y, n};
     std::sort(places.begin(), places.end());
     return places;
 }
