@@ -18,13 +18,13 @@ constexpr double kMargin = 0.3; // metres around what is seen
 } // namespace
 
 tiles::Extent extent_around(const Point2& point, std::initializer_list<std::span<const Point2>> clouds) {
-    tiles::Extent extent{point.x(), point.y(), point.x(), point.y()};
+    tiles::Extent extent{point.x, point.y, point.x, point.y};
     for (const auto cloud : clouds) {
         for (const Point2& other : cloud) {
-            extent.min_x = std::min(extent.min_x, other.x());
-            extent.min_y = std::min(extent.min_y, other.y());
-            extent.max_x = std::max(extent.max_x, other.x());
-            extent.max_y = std::max(extent.max_y, other.y());
+            extent.min_x = std::min(extent.min_x, other.x);
+            extent.min_y = std::min(extent.min_y, other.y);
+            extent.max_x = std::max(extent.max_x, other.x);
+            extent.max_y = std::max(extent.max_y, other.y);
         }
     }
     return {extent.min_x - kMargin, extent.min_y - kMargin, extent.max_x + kMargin, extent.max_y + kMargin};
@@ -38,8 +38,8 @@ int Panel::width() const { return static_cast<int>(std::ceil((part.max_x - part.
 int Panel::height() const { return static_cast<int>(std::ceil((part.max_y - part.min_y) * pixels_per_metre)); }
 
 cv::Point Panel::at(const Point2& point) const {
-    return {left + static_cast<int>(std::floor((point.x() - part.min_x) * pixels_per_metre)),
-            static_cast<int>(std::floor((part.max_y - point.y()) * pixels_per_metre))};
+    return {left + static_cast<int>(std::floor((point.x - part.min_x) * pixels_per_metre)),
+            static_cast<int>(std::floor((part.max_y - point.y) * pixels_per_metre))};
 }
 
 void draw_cloud(cv::Mat& picture, const Panel& panel, std::span<const Point2> points, const cv::Scalar& colour) {

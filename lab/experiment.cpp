@@ -18,7 +18,7 @@ constexpr double kPicturedNoiseCell = 0.05; // metres
 /// What pictures show: the room, 10 x 10 m, and some margin.
 tiles::Extent pictured_part() {
     constexpr double kHalf = 5.3;
-    return {kRoomMiddle.x() - kHalf, kRoomMiddle.y() - kHalf, kRoomMiddle.x() + kHalf, kRoomMiddle.y() + kHalf};
+    return {kRoomMiddle.x - kHalf, kRoomMiddle.y - kHalf, kRoomMiddle.x + kHalf, kRoomMiddle.y + kHalf};
 }
 
 ScanTimes times_of(std::vector<double> seconds) {

@@ -51,7 +51,7 @@ std::vector<bool> beams_at_corners(const Scan& scan, const Sensor& sensor) {
     std::vector<bool> at_corner(count, false);
     for (std::size_t n = 0; n < count; ++n) {
         const Point2 bend = points[(n + count - 1) % count] - 2.0 * points[n] + points[(n + 1) % count];
-        if (bend.norm() <= kCornerBend) continue;
+        if (norm(bend) <= kCornerBend) continue;
         for (std::size_t near = count + n - kCornerReach; near <= count + n + kCornerReach; ++near) {
             at_corner[near % count] = true;
         }

@@ -20,7 +20,7 @@ void for_each_point(std::span<const Scan> scans, const Sensor& sensor, Visit&& v
             const auto reading = reading_of(scan.ranges[n], rules);
             if (!reading || !reading->is_hit) continue;
             const double angle = beam_angle(angles, n);
-            visit(scan, transform(sensor.mount, reading->metres * Point2(std::cos(angle), std::sin(angle))));
+            visit(scan, transform(sensor.mount, reading->metres * Point2{std::cos(angle), std::sin(angle)}));
         }
     }
 }

@@ -20,7 +20,7 @@ tiles::Bytes located_png(const robot::MappedWorld& scene, const Pose2& T_map_fou
     }
     std::vector<Point2> view;
     for (const Point2& point : scene.seen) view.push_back(transform(T_map_found, point));
-    const Point2 sensor(T_map_found.x, T_map_found.y);
+    const Point2 sensor{T_map_found.x, T_map_found.y};
 
     const Panel panel = Panel::fitting(extent_around(sensor, {map, places, view}), kSizeMax, kSizeMax);
     cv::Mat picture(panel.height(), panel.width(), CV_8UC3, kWhite);

@@ -32,7 +32,7 @@ struct Canvas {
         const auto drawn = [](double metres) {
             return static_cast<int>(std::lround((metres * kPixelsPerMetre - 0.5) * (1 << kShift)));
         };
-        return {drawn(point.x() - part.min_x), drawn(part.max_y - point.y())};
+        return {drawn(point.x - part.min_x), drawn(part.max_y - point.y)};
     }
 
     [[nodiscard]] int length(double metres) const {
@@ -96,7 +96,7 @@ void draw_run(cv::Mat& picture, const Canvas& canvas, const Recording& recording
         const RangeMm range = newest.ranges[beam];
         if (range == kInvalidRange || range == kNoReturn) continue;
         const double angle = beam_angle(recording.laser.angles, beam);
-        const Point2 point = transform(newest.pose, range * 1e-3 * Point2(std::cos(angle), std::sin(angle)));
+        const Point2 point = transform(newest.pose, range * 1e-3 * Point2{std::cos(angle), std::sin(angle)});
         cv::circle(picture, canvas.at(point), canvas.length(0.02), kPointColour, cv::FILLED, cv::LINE_8, kShift);
     }
     const Point2 robot{newest.pose.x, newest.pose.y};

@@ -12,8 +12,8 @@ robot::World world_of(std::string_view name) {
     robot::World world = robot::find_world(name).value();
     const auto move = [](std::vector<robot::Box> boxes) {
         for (robot::Box& box : boxes) {
-            box = {box.x_min + kRoomMiddle.x(), box.y_min + kRoomMiddle.y(), box.x_max + kRoomMiddle.x(),
-                   box.y_max + kRoomMiddle.y()};
+            box = {box.x_min + kRoomMiddle.x, box.y_min + kRoomMiddle.y, box.x_max + kRoomMiddle.x,
+                   box.y_max + kRoomMiddle.y};
         }
         return boxes;
     };

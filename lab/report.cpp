@@ -56,7 +56,7 @@ Items conditions(const Matrix& matrix) {
             "every run from a start.",
             matrix.scans, matrix.starts.size()),
         fmt::format("The room's middle is at ({}, {}) m, so that no wall stands on the border between two cells.",
-                    kRoomMiddle.x(), kRoomMiddle.y()),
+                    kRoomMiddle.x, kRoomMiddle.y),
         "Noise: none; gaussian, ranges with sigma 0.02 m and beam angles with sigma 0.005 rad, beams without a return "
         "left out (elsewhere they are free up to 5 m); 1_cell and 3_cells, each reading too long by 0 up to one or "
         "three cells, evenly spread.",

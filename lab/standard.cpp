@@ -22,10 +22,10 @@ void mark_discs(const std::vector<robot::Disc>& discs, double reach, double cell
     for (const robot::Disc& disc : discs) {
         const double radius = disc.radius + reach;
         const auto first = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres / cell_size)); };
-        for (std::int32_t j = first(disc.centre.y() - radius); j <= first(disc.centre.y() + radius); ++j) {
-            for (std::int32_t i = first(disc.centre.x() - radius); i <= first(disc.centre.x() + radius); ++i) {
+        for (std::int32_t j = first(disc.centre.y - radius); j <= first(disc.centre.y + radius); ++j) {
+            for (std::int32_t i = first(disc.centre.x - radius); i <= first(disc.centre.x + radius); ++i) {
                 const Point2 centre{(i + 0.5) * cell_size, (j + 0.5) * cell_size};
-                if (mask.contains({i, j}) && (centre - disc.centre).norm() <= radius) mask.at({i, j}) = value;
+                if (mask.contains({i, j}) && norm(centre - disc.centre) <= radius) mask.at({i, j}) = value;
             }
         }
     }

@@ -22,8 +22,8 @@ public:
 
 private:
     [[nodiscard]] bool sees(const Pose2& pose, const Point2& point) const {
-        const double dx = point.x() - pose.x;
-        const double dy = point.y() - pose.y;
+        const double dx = point.x - pose.x;
+        const double dy = point.y - pose.y;
         const double square = dx * dx + dy * dy;
         if (square >= range_max_ * range_max_) return false;
         const double yaw = std::atan2(dy, dx);
@@ -50,13 +50,13 @@ void see_free_cells(const robot::TruthGrid& truth, const Views& views, CellMask&
 void see_side(const robot::Segment& side, double cell_size_m, const Views& views, CellMask& seen) {
     const Point2 begin{side.ax, side.ay};
     const Point2 along = Point2{side.bx, side.by} - begin;
-    const Point2 inward = Point2{-along.y(), along.x()} / along.norm() * kHairsBreadth; // sides turn counter-clockwise
-    const int steps = static_cast<int>(std::ceil(along.norm() / std::min(0.02, cell_size_m / 4.0)));
+    const Point2 inward = Point2{-along.y, along.x} / norm(along) * kHairsBreadth; // sides turn counter-clockwise
+    const int steps = static_cast<int>(std::ceil(norm(along) / std::min(0.02, cell_size_m / 4.0)));
     for (int n = 0; n < steps; ++n) {
         const Point2 point = begin + (n + 0.5) / steps * along;
         const Point2 in_cells = (point + inward) / cell_size_m;
-        const grid::Cell cell{static_cast<std::int32_t>(std::floor(in_cells.x())),
-                              static_cast<std::int32_t>(std::floor(in_cells.y()))};
+        const grid::Cell cell{static_cast<std::int32_t>(std::floor(in_cells.x)),
+                              static_cast<std::int32_t>(std::floor(in_cells.y))};
         if (seen.contains(cell) && !seen.at(cell)) seen.at(cell) = views.see(point);
     }
 }

@@ -17,8 +17,8 @@ struct PointMm {
 
 /// The nearest one; `metres` within 2e6 of the origin, as far as millimetres can be counted.
 [[nodiscard]] inline PointMm in_millimetres(const Point2& metres) noexcept {
-    return {static_cast<std::int32_t>(std::lround(metres.x() * 1000.0)),
-            static_cast<std::int32_t>(std::lround(metres.y() * 1000.0))};
+    return {static_cast<std::int32_t>(std::lround(metres.x * 1000.0)),
+            static_cast<std::int32_t>(std::lround(metres.y * 1000.0))};
 }
 
 [[nodiscard]] inline Point2 in_metres(const PointMm& point) noexcept { return {point.x * 0.001, point.y * 0.001}; }

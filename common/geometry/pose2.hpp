@@ -1,13 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
+#include "common/geometry/point2.hpp"
 
 #include <cmath>
 #include <numbers>
 
 namespace scanloom {
-
-using Point2 = Eigen::Vector2d; ///< metres
 
 /// The same direction in (-pi, pi].
 [[nodiscard]] inline double normalize_angle(double angle_rad) noexcept {
@@ -48,7 +46,7 @@ struct Pose2 {
 [[nodiscard]] inline Point2 transform(const Pose2& T_a_b, const Point2& point_b) noexcept {
     const double c = std::cos(T_a_b.yaw);
     const double s = std::sin(T_a_b.yaw);
-    return {T_a_b.x + c * point_b.x() - s * point_b.y(), T_a_b.y + s * point_b.x() + c * point_b.y()};
+    return {T_a_b.x + c * point_b.x - s * point_b.y, T_a_b.y + s * point_b.x + c * point_b.y};
 }
 
 } // namespace scanloom

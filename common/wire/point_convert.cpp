@@ -46,8 +46,8 @@ void append_differences(std::span<const PointMm> points, Differences& out) {
 }
 
 void write_point(const Point2& point, v1::Point& out) {
-    out.set_x(point.x());
-    out.set_y(point.y());
+    out.set_x(point.x);
+    out.set_y(point.y);
 }
 
 void write_refusal(const Error& refusal, v1::Refusal& out) {

@@ -37,7 +37,7 @@ Result<> read_points(std::string_view field, const Coordinates& proto, std::size
         if (auto ok = check_coordinate(fmt::format("{}[{}]", field, n), proto[n]); !ok) return ok;
     }
     points.reserve(count / 2);
-    for (int n = 0; n < proto.size(); n += 2) points.emplace_back(proto[n], proto[n + 1]);
+    for (int n = 0; n < proto.size(); n += 2) points.push_back({proto[n], proto[n + 1]});
     return {};
 }
 
@@ -104,8 +104,8 @@ Result<Coverage> read_coverage(const v1::Coverage& proto) {
 void write(const std::vector<Point2>& points, Coordinates& out) {
     out.Reserve(static_cast<int>(2 * points.size()));
     for (const Point2& point : points) {
-        out.Add(point.x());
-        out.Add(point.y());
+        out.Add(point.x);
+        out.Add(point.y);
     }
 }
 

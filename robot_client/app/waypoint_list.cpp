@@ -41,7 +41,7 @@ std::optional<Point2> as_waypoint(std::string_view text) {
     if (between == std::string_view::npos) return std::nullopt;
     const auto x = as_coordinate(text.substr(0, between));
     const auto y = as_coordinate(text.substr(between + 1));
-    return x && y ? std::optional(Point2(*x, *y)) : std::nullopt;
+    return x && y ? std::optional(Point2{*x, *y}) : std::nullopt;
 }
 
 Error no_waypoint(std::string_view where, std::size_t number, std::string_view text) {
@@ -102,7 +102,7 @@ Result<std::vector<Point2>> read_waypoints(const std::string& list) {
 
 std::string to_text(const std::vector<Point2>& waypoints) {
     std::vector<std::string> texts;
-    for (const Point2& waypoint : waypoints) texts.push_back(fmt::format("{},{}", waypoint.x(), waypoint.y()));
+    for (const Point2& waypoint : waypoints) texts.push_back(fmt::format("{},{}", waypoint.x, waypoint.y));
     return fmt::format("{}", fmt::join(texts, ";"));
 }
 

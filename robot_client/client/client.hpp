@@ -60,7 +60,7 @@ struct PlanOptions {
     std::optional<double> danger_cost; ///< what a metre in danger costs more than another, 0 to 1000; none: 1
 };
 
-/// Straight from point to point, metres in the map frame (x() and y()).
+/// Straight from point to point, metres in the map frame.
 struct Path {
     std::vector<Point2> points; ///< at least 1
     double length = 0.0;        ///< metres
@@ -100,7 +100,7 @@ struct ExplorationGoal {
         kComplete,      ///< nothing can be reached any more
     };
     Outcome outcome = Outcome::kComplete;
-    std::vector<Point2> path;   ///< with kGoal: the way there, metres in the map frame (x() and y())
+    std::vector<Point2> path;   ///< with kGoal: the way there, metres in the map frame
     Point2 target{0.0, 0.0};    ///< with kGoal: what to look at from its end
     bool in_danger = false;     ///< with kGoal: its end is near an obstacle, as there was no other place to stand
     std::uint32_t given_up = 0; ///< cells of frontiers that count no more, as robots looked at them in vain
@@ -108,10 +108,10 @@ struct ExplorationGoal {
 
 /// What locate() keeps to.
 struct LocateOptions {
-    /// The robot is no more than `radius` metres from there, along each axis of the map. Around (x(), y()), metres.
+    /// The robot is no more than `radius` metres from `point` along each axis of the map.
     struct Near {
-        Point2 point{0.0, 0.0};
-        double radius = 0.0; ///< more than 0, at most 1000
+        Point2 point{0.0, 0.0}; ///< metres, map frame
+        double radius = 0.0;    ///< more than 0, at most 1000
     };
     std::optional<Near> near = {}; ///< none: anywhere in the map
 };

@@ -15,7 +15,7 @@ void for_cells_under(const Ground& ground, const Point2& position, Visit&& visit
     for (std::int32_t dy = -reach; dy <= reach; ++dy) {
         for (std::int32_t dx = -reach; dx <= reach; ++dx) {
             const Spot spot{centre.x + dx, centre.y + dy};
-            if (!ground.is_free(spot) || (ground.centre_of(spot) - position).norm() > kBodyRadius) continue;
+            if (!ground.is_free(spot) || norm(ground.centre_of(spot) - position) > kBodyRadius) continue;
             visit(spot);
         }
     }

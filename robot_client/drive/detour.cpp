@@ -25,7 +25,7 @@ constexpr int kDetourBlockedStepsMax = 40;
 
 bool any_within(const std::vector<Point2>& places, double x_min, double x_max, double y_min, double y_max) {
     return std::ranges::any_of(places, [&](const Point2& place) {
-        return place.x() > x_min && place.x() < x_max && place.y() > y_min && place.y() < y_max;
+        return place.x > x_min && place.x < x_max && place.y > y_min && place.y < y_max;
     });
 }
 
@@ -40,25 +40,25 @@ std::vector<Point2> unexpected_obstacles(const Ground& ground, const Senses& sen
 
 Point2 Detour::Line::to_line(const Point2& point) const {
     const Point2 offset = point - begin;
-    return {offset.dot(ahead), ahead.x() * offset.y() - ahead.y() * offset.x()};
+    return {dot(offset, ahead), ahead.x * offset.y - ahead.y * offset.x};
 }
 
 Point2 Detour::Line::to_map(const Point2& point) const {
-    return begin + point.x() * ahead + point.y() * Point2(-ahead.y(), ahead.x());
+    return begin + point.x * ahead + point.y * Point2{-ahead.y, ahead.x};
 }
 
 std::optional<Detour> Detour::plan(const Ground& ground, const Senses& senses, const Point2& end) {
     const Point2 begin = position_of(senses.pose);
-    const double length = (end - begin).norm();
+    const double length = norm(end - begin);
     if (length <= 0.0) return std::nullopt;
     const Line line{begin, (end - begin) / length, length};
     std::vector<Point2> obstacles;
     double first = kSeenAhead;
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {
         const Point2 place = line.to_line(obstacle);
-        if (place.x() <= 0.0 || place.x() >= kSeenAhead) continue;
+        if (place.x <= 0.0 || place.x >= kSeenAhead) continue;
         obstacles.push_back(place);
-        if (std::abs(place.y()) < kKeptClear) first = std::min(first, place.x());
+        if (std::abs(place.y) < kKeptClear) first = std::min(first, place.x);
     }
     const auto offset = side(ground, line, obstacles, first);
     if (!offset) return std::nullopt;
@@ -74,10 +74,10 @@ std::optional<double> Detour::side(const Ground& ground, const Line& line, const
     for (bool grows = true; grows;) {
         grows = false;
         for (const Point2& place : obstacles) {
-            const bool belongs = place.y() > right - kNoWayBetween && place.y() < left + kNoWayBetween;
-            if (!belongs || (place.y() >= right && place.y() <= left)) continue;
-            right = std::min(right, place.y());
-            left = std::max(left, place.y());
+            const bool belongs = place.y > right - kNoWayBetween && place.y < left + kNoWayBetween;
+            if (!belongs || (place.y >= right && place.y <= left)) continue;
+            right = std::min(right, place.y);
+            left = std::max(left, place.y);
             grows = true;
         }
     }
@@ -124,7 +124,7 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
         state_ = State::kBackOnLine;
     } else if (may_return(ground, place)) {
         part_ = Part::kBack;
-        follower_ = PathFollower({position, line_.to_map({place.x(), 0.0})});
+        follower_ = PathFollower({position, line_.to_map({place.x, 0.0})});
     } else {
         state_ = room_ < line_.length ? State::kFailed : State::kPastEnd;
     }
@@ -148,16 +148,16 @@ void Detour::remember(const Ground& ground, const Senses& senses) {
     const auto [low, high] = std::minmax({0.0, offset_});
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {
         const Point2 place = line_.to_line(obstacle);
-        if (place.y() > low - kBeside && place.y() < high + kBeside) seen_.push_back({place, step_});
+        if (place.y > low - kBeside && place.y < high + kBeside) seen_.push_back({place, step_});
     }
 }
 
 /// From beside the line straight back to it.
 bool Detour::may_return(const Ground& ground, const Point2& on_line) const {
-    if (on_line.x() < first_obstacle_ + kBeside) return false;
-    const auto is_in_the_way = [&](const Seen& seen) { return std::abs(seen.place.x() - on_line.x()) < kBeside; };
+    if (on_line.x < first_obstacle_ + kBeside) return false;
+    const auto is_in_the_way = [&](const Seen& seen) { return std::abs(seen.place.x - on_line.x) < kBeside; };
     return std::ranges::none_of(seen_, is_in_the_way) &&
-           ground.fits_along(line_.to_map(on_line), line_.to_map({on_line.x(), 0.0}));
+           ground.fits_along(line_.to_map(on_line), line_.to_map({on_line.x, 0.0}));
 }
 
 } // namespace scanloom::robot

@@ -31,7 +31,7 @@ Point2 free_place(const Senses& senses) {
         most = free;
         best_yaw = yaw;
     }
-    return position_of(senses.pose) + most * Point2(std::cos(best_yaw), std::sin(best_yaw));
+    return position_of(senses.pose) + most * Point2{std::cos(best_yaw), std::sin(best_yaw)};
 }
 
 std::string as_text(double seconds) {
@@ -103,7 +103,7 @@ Velocity Explore::go_on(const Senses& senses) {
 
 void Explore::ask_another_way(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
-    if (times_blocked_ > 0 && (position - blocked_at_).norm() > kElsewhere) times_blocked_ = 0;
+    if (times_blocked_ > 0 && norm(position - blocked_at_) > kElsewhere) times_blocked_ = 0;
     if (times_blocked_ == 0) blocked_at_ = position;
     times_blocked_ += 1;
     task_ = Task::kAsk;
@@ -113,7 +113,7 @@ void Explore::ask_another_way(const Senses& senses) {
 }
 
 void Explore::note(const Point2& position) {
-    if (has_begun_) driven_ += (position - last_).norm();
+    if (has_begun_) driven_ += norm(position - last_);
     has_begun_ = true;
     last_ = position;
     steps_ += 1;

@@ -37,8 +37,8 @@ Ground Ground::without(std::span<const Point2> obstacles, double clearance_m) co
 
 Spot Ground::spot_of(const Point2& point) const noexcept {
     const double per_metre = 1.0 / plan_.cell_size;
-    return {static_cast<std::int32_t>(std::floor(point.x() * per_metre)) - plan_.i_begin,
-            static_cast<std::int32_t>(std::floor(point.y() * per_metre)) - plan_.j_begin};
+    return {static_cast<std::int32_t>(std::floor(point.x * per_metre)) - plan_.i_begin,
+            static_cast<std::int32_t>(std::floor(point.y * per_metre)) - plan_.j_begin};
 }
 
 Point2 Ground::centre_of(Spot spot) const noexcept {
@@ -47,7 +47,7 @@ Point2 Ground::centre_of(Spot spot) const noexcept {
 
 /// Looks at points a quarter of a cell apart: a corner that is cut between them is cut by a small part of a cell.
 bool Ground::fits_along(const Point2& from, const Point2& to) const noexcept {
-    const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / plan_.cell_size * 4.0)));
+    const int pieces = std::max(1, static_cast<int>(std::ceil(norm(to - from) / plan_.cell_size * 4.0)));
     for (int n = 0; n <= pieces; ++n) {
         const double part = static_cast<double>(n) / pieces;
         if (!fits(spot_of(from + part * (to - from)))) return false;

@@ -143,7 +143,7 @@ std::optional<Spot> nearest_fitting(const Ground& ground, const Point2& point) {
         for (std::int32_t dx = -reach; dx <= reach; ++dx) {
             const Spot spot{centre.x + dx, centre.y + dy};
             if (!ground.fits(spot)) continue;
-            const double distance = (ground.centre_of(spot) - point).norm();
+            const double distance = norm(ground.centre_of(spot) - point);
             if (distance >= least) continue;
             least = distance;
             nearest = spot;

@@ -15,13 +15,13 @@ void NearObstacles::see(const Senses& senses) {
     const Point2 position{senses.pose.x, senses.pose.y};
     step_ += 1;
     for (const Point2& place : senses.obstacles) {
-        if ((place - position).norm() > kNear) continue;
-        const std::pair square{std::llround(place.x() / kSquare), std::llround(place.y() / kSquare)};
+        if (norm(place - position) > kNear) continue;
+        const std::pair square{std::llround(place.x / kSquare), std::llround(place.y / kSquare)};
         seen_.insert_or_assign(square, Seen{place, step_});
     }
     std::erase_if(seen_, [&](const auto& one) {
         const Seen& seen = one.second;
-        return seen.step <= step_ - kRememberedSteps || (seen.place - position).norm() > kNear;
+        return seen.step <= step_ - kRememberedSteps || norm(seen.place - position) > kNear;
     });
 }
 

@@ -22,8 +22,8 @@ constexpr double kShort = 0.01;
 constexpr double kGentleCorner = 0.3;
 
 Point2 along(const Point2& from, const Point2& to) {
-    const double length = (to - from).norm();
-    return length > 0.0 ? Point2((to - from) / length) : Point2(0.0, 0.0);
+    const double length = norm(to - from);
+    return length > 0.0 ? (to - from) / length : Point2{};
 }
 
 } // namespace
@@ -34,7 +34,7 @@ Velocity PathFollower::step(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
     pass_corners(position);
     if (has_arrived()) return {};
-    const double to_corner = (way_[passed_ + 1] - position).norm();
+    const double to_corner = norm(way_[passed_ + 1] - position);
     const double yaw = direction(position, aim(position));
     const double free = free_ahead(senses, senses.pose.yaw);
     const bool is_in_the_way = free < to_corner - kSlack;
@@ -54,8 +54,8 @@ Velocity PathFollower::step(const Senses& senses) {
 
 double PathFollower::left(const Point2& position) const {
     if (has_arrived()) return 0.0;
-    double metres = (way_[passed_ + 1] - position).norm();
-    for (std::size_t n = passed_ + 1; n + 1 < way_.size(); ++n) metres += (way_[n + 1] - way_[n]).norm();
+    double metres = norm(way_[passed_ + 1] - position);
+    for (std::size_t n = passed_ + 1; n + 1 < way_.size(); ++n) metres += norm(way_[n + 1] - way_[n]);
     return metres;
 }
 
@@ -64,8 +64,8 @@ void PathFollower::pass_corners(const Point2& position) {
     while (!has_arrived()) {
         const Point2& end = way_[passed_ + 1];
         const Point2 left = end - position;
-        const bool is_beyond = left.norm() < kNearEnd && left.dot(along(way_[passed_], end)) <= 0.0;
-        if (left.norm() > kAtCorner && !is_beyond) return;
+        const bool is_beyond = norm(left) < kNearEnd && dot(left, along(way_[passed_], end)) <= 0.0;
+        if (norm(left) > kAtCorner && !is_beyond) return;
         passed_ += 1;
     }
 }
@@ -74,8 +74,8 @@ Point2 PathFollower::aim(const Point2& position) const {
     const Point2& begin = way_[passed_];
     const Point2& end = way_[passed_ + 1];
     const Point2 ahead = along(begin, end);
-    const double length = (end - begin).norm();
-    const double foot = (position - begin).dot(ahead);
+    const double length = norm(end - begin);
+    const double foot = dot(position - begin, ahead);
     return begin + std::clamp(foot + kAhead, 0.0, length) * ahead;
 }
 
@@ -83,7 +83,7 @@ bool PathFollower::stops_at_next_corner() const {
     if (passed_ + 2 >= way_.size()) return true;
     const Point2 before = along(way_[passed_], way_[passed_ + 1]);
     const Point2 after = along(way_[passed_ + 1], way_[passed_ + 2]);
-    return before.dot(after) < std::cos(kGentleCorner);
+    return dot(before, after) < std::cos(kGentleCorner);
 }
 
 } // namespace scanloom::robot

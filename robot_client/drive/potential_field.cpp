@@ -17,14 +17,14 @@ constexpr double kDistanceMin = 0.02; // metres from the rim: nearer counts as t
 constexpr std::size_t kFieldDirections = 24;
 
 std::size_t direction_of(const Point2& offset) {
-    const double turn = std::atan2(offset.y(), offset.x()) / (2.0 * std::numbers::pi) + 0.5; // 0 .. 1
+    const double turn = std::atan2(offset.y, offset.x) / (2.0 * std::numbers::pi) + 0.5; // 0 .. 1
     return std::min(static_cast<std::size_t>(turn * kFieldDirections), kFieldDirections - 1);
 }
 
 Point2 repulsion(const Point2& offset) {
-    const double rho = std::max(offset.norm() - kBodyRadius, kDistanceMin);
+    const double rho = std::max(norm(offset) - kBodyRadius, kDistanceMin);
     if (rho >= kReach) return {0.0, 0.0};
-    return -kRepulsion * (1.0 / rho - 1.0 / kReach) / (rho * rho) * offset.normalized();
+    return -kRepulsion * (1.0 / rho - 1.0 / kReach) / (rho * rho) * normalized(offset);
 }
 
 } // namespace
@@ -35,10 +35,10 @@ Point2 potential_force(const Point2& position, const Point2& goal, std::span<con
     for (const Point2& obstacle : obstacles) {
         const Point2 offset = obstacle - position;
         Point2& known = nearest[direction_of(offset)];
-        if (offset.norm() < known.norm()) known = offset;
+        if (norm(offset) < norm(known)) known = offset;
     }
     Point2 force = kAttraction * (goal - position);
-    if (force.norm() > 1.0) force.normalize();
+    if (norm(force) > 1.0) force = normalized(force);
     for (const Point2& offset : nearest) force += repulsion(offset);
     return force;
 }

@@ -34,7 +34,7 @@ std::vector<Point2> obstacles_of(const Scan& scan, const Sensor& sensor) {
         if (mm == kInvalidRange || mm == kNoReturn) continue;
         const double range = static_cast<double>(mm) / 1000.0;
         const double yaw = T_map_sensor.yaw + beam_angle(angles, i);
-        obstacles.emplace_back(T_map_sensor.x + range * std::cos(yaw), T_map_sensor.y + range * std::sin(yaw));
+        obstacles.push_back({T_map_sensor.x + range * std::cos(yaw), T_map_sensor.y + range * std::sin(yaw)});
     }
     return obstacles;
 }

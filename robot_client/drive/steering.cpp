@@ -20,7 +20,7 @@ double turn_for(double aside) { return std::clamp(kGain * aside, -kEasyTurn, kEa
 
 } // namespace
 
-double direction(const Point2& from, const Point2& to) { return std::atan2(to.y() - from.y(), to.x() - from.x()); }
+double direction(const Point2& from, const Point2& to) { return std::atan2(to.y - from.y, to.x - from.x); }
 
 Velocity turn_to(const Pose2& pose, double yaw) { return {0.0, turn_for(normalize_angle(yaw - pose.yaw))}; }
 

@@ -17,11 +17,11 @@ double free_ahead(const Senses& senses, double yaw) {
     std::array<double, 3> nearest{kNothing, kNothing, kNothing}; // rising
     const Point2 ahead{std::cos(yaw), std::sin(yaw)};
     for (const Point2& obstacle : senses.obstacles) {
-        const Point2 offset = obstacle - Point2(senses.pose.x, senses.pose.y);
-        const double forward = offset.dot(ahead);
+        const Point2 offset = obstacle - Point2{senses.pose.x, senses.pose.y};
+        const double forward = dot(offset, ahead);
         if (forward <= 0.0) continue;
-        const double radius = offset.norm() < kKeptClear ? kTouching : kKeptClear;
-        const double aside = offset.x() * ahead.y() - offset.y() * ahead.x();
+        const double radius = norm(offset) < kKeptClear ? kTouching : kKeptClear;
+        const double aside = offset.x * ahead.y - offset.y * ahead.x;
         if (std::abs(aside) >= radius) continue;
         const double free = std::max(0.0, forward - std::sqrt(radius * radius - aside * aside));
         if (free >= nearest.back()) continue;

@@ -20,8 +20,8 @@ constexpr double kForceMin = 1e-9; // shorter ones point nowhere
 /// Of a point from the straight way between two others, metres.
 double distance_to(const Point2& point, const Point2& from, const Point2& to) {
     const Point2 way = to - from;
-    const double part = way.squaredNorm() > 0.0 ? (point - from).dot(way) / way.squaredNorm() : 0.0;
-    return (from + std::clamp(part, 0.0, 1.0) * way - point).norm();
+    const double part = squared_norm(way) > 0.0 ? dot(point - from, way) / squared_norm(way) : 0.0;
+    return norm(from + std::clamp(part, 0.0, 1.0) * way - point);
 }
 
 } // namespace
@@ -49,7 +49,7 @@ std::string Waypoints::remarks() const {
     text += fmt::format(", {} given up:", given_up_.size());
     for (std::size_t n = 0; n < std::min(given_up_.size(), kGivenUpTold); ++n) {
         const std::string why = explain_ ? explain_(given_up_[n]) : std::string();
-        text += fmt::format("{} ({}, {}) {}", n > 0 ? "," : "", given_up_[n].x(), given_up_[n].y(),
+        text += fmt::format("{} ({}, {}) {}", n > 0 ? "," : "", given_up_[n].x, given_up_[n].y,
                             why.empty() ? "no way found" : why);
     }
     if (given_up_.size() > kGivenUpTold) text += fmt::format(", and {} more", given_up_.size() - kGivenUpTold);
@@ -70,7 +70,7 @@ void Waypoints::begin_with_nearest(const Point2& position) {
     const auto distance = [&](const Point2& goal) {
         const bool is_hidden = std::ranges::any_of(
             seen_, [&](const Point2& obstacle) { return distance_to(obstacle, position, goal) < kBodyRadius; });
-        return std::pair(is_hidden, (goal - position).norm());
+        return std::pair(is_hidden, norm(goal - position));
     };
     std::rotate(goals_.begin(), std::ranges::min_element(goals_, {}, distance), goals_.end());
 }
@@ -83,7 +83,7 @@ void Waypoints::go_on_to_next() {
 
 Velocity Waypoints::go(const Senses& senses) {
     const Point2 position = position_of(senses.pose);
-    const double distance = (goals_[next_] - position).norm();
+    const double distance = norm(goals_[next_] - position);
     if (distance < kArrived) {
         is_turning_ = true;
         turn_ = FullTurn();
@@ -95,8 +95,8 @@ Velocity Waypoints::go(const Senses& senses) {
         return {};
     }
     const Point2 force = potential_force(position, goals_[next_], near_.places());
-    if (force.norm() < kForceMin) return {};
-    const double speed = std::min(kForwardMax * std::min(1.0, force.norm()), braking_speed(distance));
+    if (norm(force) < kForceMin) return {};
+    const double speed = std::min(kForwardMax * std::min(1.0, norm(force)), braking_speed(distance));
     return drive_towards(senses, direction({0.0, 0.0}, force), speed);
 }
 

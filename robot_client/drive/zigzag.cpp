@@ -81,7 +81,7 @@ void Zigzag::begin_next_lane(const Point2& position) {
         if (lanes_.empty()) break; // all are swept, or none that is left can be got to
         const Lane lane = lanes_.front();
         lanes_.pop_front();
-        const bool from_west = (lane.west - position).norm() <= (lane.east - position).norm();
+        const bool from_west = norm(lane.west - position) <= norm(lane.east - position);
         lane_begin_ = from_west ? lane.west : lane.east;
         lane_end_ = from_west ? lane.east : lane.west;
         lane_detours_ = 0;

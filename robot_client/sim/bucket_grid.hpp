@@ -69,11 +69,11 @@ public:
     template <class Reach, class Visit>
     void visit_outwards(const Point2& point, Reach&& reach, Visit&& visit) const {
         if (shapes_.empty()) return;
-        const int column = frame_.column_of(point.x());
-        const int row = frame_.row_of(point.y());
+        const int column = frame_.column_of(point.x);
+        const int row = frame_.row_of(point.y);
         const Box home = frame_.box_of(column, row);
         const double to_border =
-            std::min({point.x() - home.x_min, home.x_max - point.x(), point.y() - home.y_min, home.y_max - point.y()}) -
+            std::min({point.x - home.x_min, home.x_max - point.x, point.y - home.y_min, home.y_max - point.y}) -
             slack(); // of the bucket it is in
         const int nearest_ring = std::max({0, -column, -row, column - (frame_.columns - 1), row - (frame_.rows - 1)});
         const int farthest_ring =

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Point2& a, const Point2& b) { return a.x * b.y - a.y * b.x; }
 
 Point2 along(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
 
@@ -39,15 +39,15 @@ double distance_within(const Cone& cone, const Segment& segment) {
     cut(cross(a, cone.left_end), cross(b, cone.left_end));
     if (begin > end) return kNever;
     const Point2 side = b - a;
-    const double foot = std::clamp(-a.dot(side) / side.squaredNorm(), begin, end);
-    return (a + foot * side).norm();
+    const double foot = std::clamp(-dot(a, side) / squared_norm(side), begin, end);
+    return norm(a + foot * side);
 }
 
 double distance_within(const Cone& cone, const Disc& disc) {
     const Point2 to_centre = disc.centre - cone.apex;
-    if (to_centre.norm() <= disc.radius) return 0.0;
+    if (norm(to_centre) <= disc.radius) return 0.0;
     const bool looks_at_centre = cross(cone.right_end, to_centre) >= 0.0 && cross(to_centre, cone.left_end) >= 0.0;
-    if (looks_at_centre) return to_centre.norm() - disc.radius;
+    if (looks_at_centre) return norm(to_centre) - disc.radius;
     // seen from outside, a disc is the nearer the less a ray passes beside its centre
     return std::min(cast_ray(disc, cone.apex, cone.yaw + cone.half), cast_ray(disc, cone.apex, cone.yaw - cone.half));
 }

@@ -97,8 +97,8 @@ double Obstacles::distance(const Point2& point) const {
 
 bool Obstacles::contain(const Point2& point) const {
     const BucketFrame& frame = solids_.frame();
-    const int column = frame.column_of(point.x());
-    const int row = frame.row_of(point.y());
+    const int column = frame.column_of(point.x);
+    const int row = frame.row_of(point.y);
     if (column < 0 || column >= frame.columns || row < 0 || row >= frame.rows) return false;
     return std::ranges::any_of(solids_.in(column, row), [&](const Box& box) { return box.contains(point); });
 }

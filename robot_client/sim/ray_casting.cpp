@@ -12,7 +12,7 @@ constexpr double kEndSlack = 1e-9;
 } // namespace
 
 Ray::Ray(const Point2& from, double yaw_rad)
-    : origin_x(from.x()), origin_y(from.y()), direction_x(std::cos(yaw_rad)), direction_y(std::sin(yaw_rad)) {}
+    : origin_x(from.x), origin_y(from.y), direction_x(std::cos(yaw_rad)), direction_y(std::sin(yaw_rad)) {}
 
 double cast_ray(const Segment& segment, const Ray& ray, double nearest) noexcept {
     // origin + length * direction = a + share * (b - a), solved by Cramer's rule
@@ -46,8 +46,8 @@ double cast_ray(std::span<const Segment> segments, const Point2& origin, double 
 
 double cast_ray(const Disc& disc, const Point2& origin, double yaw_rad) {
     const Point2 to_centre = disc.centre - origin;
-    const double along = to_centre.x() * std::cos(yaw_rad) + to_centre.y() * std::sin(yaw_rad);
-    const double aside = to_centre.y() * std::cos(yaw_rad) - to_centre.x() * std::sin(yaw_rad);
+    const double along = to_centre.x * std::cos(yaw_rad) + to_centre.y * std::sin(yaw_rad);
+    const double aside = to_centre.y * std::cos(yaw_rad) - to_centre.x * std::sin(yaw_rad);
     const double square = disc.radius * disc.radius - aside * aside;
     if (square < 0.0) return std::numeric_limits<double>::infinity();
     const double half_chord = std::sqrt(square);

@@ -38,15 +38,15 @@ bool touch(const Segment& segment, const Box& box) noexcept {
 double distance(const Segment& segment, const Point2& point) {
     const double along_x = segment.bx - segment.ax;
     const double along_y = segment.by - segment.ay;
-    const double to_x = point.x() - segment.ax;
-    const double to_y = point.y() - segment.ay;
+    const double to_x = point.x - segment.ax;
+    const double to_y = point.y - segment.ay;
     const double share =
         std::clamp((to_x * along_x + to_y * along_y) / (along_x * along_x + along_y * along_y), 0.0, 1.0);
     return std::hypot(to_x - share * along_x, to_y - share * along_y);
 }
 
 double distance(const Disc& disc, const Point2& point) {
-    return std::max(0.0, (point - disc.centre).norm() - disc.radius);
+    return std::max(0.0, norm(point - disc.centre) - disc.radius);
 }
 
 } // namespace scanloom::robot

@@ -22,7 +22,7 @@ struct Box {
     double y_max = 0.0;
 
     [[nodiscard]] bool contains(const Point2& point) const noexcept {
-        return point.x() >= x_min && point.x() <= x_max && point.y() >= y_min && point.y() <= y_max;
+        return point.x >= x_min && point.x <= x_max && point.y >= y_min && point.y <= y_max;
     }
 
     friend bool operator==(const Box&, const Box&) = default;

@@ -15,7 +15,7 @@ Pose2 choose_start(const World& world, Random& random) {
         const Box& floor = world.starts[random.index(world.starts.size())];
         const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
         if (clearance(world, place) < world.start_clearance) continue;
-        return {place.x(), place.y(), random.uniform(-std::numbers::pi, std::numbers::pi)};
+        return {place.x, place.y, random.uniform(-std::numbers::pi, std::numbers::pi)};
     }
 }
 

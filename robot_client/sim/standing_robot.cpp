@@ -22,7 +22,7 @@ std::vector<Point2> standing_capture(const World& world, const Pose2& place, int
         for (std::size_t n = 0; n < ranges.size(); ++n) {
             if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
             const double angle = beam_angle(laser.angles, n);
-            points.push_back(1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle)));
+            points.push_back(1e-3 * ranges[n] * Point2{std::cos(angle), std::sin(angle)});
         }
     }
     return points;
@@ -53,9 +53,11 @@ World with_door(const World& world, const Box& door) {
 Pose2 free_place(const World& world, Random& random) {
     for (;;) {
         const Box& start = world.starts[random.index(world.starts.size())];
-        const Point2 place(random.uniform(start.x_min, start.x_max), random.uniform(start.y_min, start.y_max));
+        const double y = random.uniform(start.y_min, start.y_max); // y first: recorded results depend on the order
+        const double x = random.uniform(start.x_min, start.x_max);
+        const Point2 place{x, y};
         if (clearance(world, place) < kClearance) continue;
-        return {place.x(), place.y(), any_direction(random)};
+        return {place.x, place.y, any_direction(random)};
     }
 }
 

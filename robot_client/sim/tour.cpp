@@ -17,16 +17,16 @@ void visit(std::vector<Point2>& tour, const Point2& before, const Point2& inside
 /// The southern corridor eastwards, the northern one westwards, and every room.
 std::vector<Point2> office_tour() {
     std::vector<Point2> tour;
-    tour.emplace_back(-13.4, -3.0);
+    tour.push_back({-13.4, -3.0});
     for (const double door : {-10.4, -4.4, 1.6, 7.6, 13.6}) visit(tour, {door, -3.0}, {door - 0.6, -6.5});
-    tour.emplace_back(13.8, 0.0);
+    tour.push_back({13.8, 0.0});
     for (const double door : {10.4, 4.4, -1.6, -7.6, -13.6}) {
         visit(tour, {door, 3.0}, {door + 0.8, 6.5});
         if (door == 10.4) visit(tour, {7.0, 3.0}, {7.0, 1.3});   // a meeting room
         if (door == 4.4) visit(tour, {0.0, 3.0}, {0.0, 0.0});    // the kitchen
         if (door == -1.6) visit(tour, {-7.0, 3.0}, {-7.0, 1.3}); // the other meeting room
     }
-    tour.emplace_back(-13.8, 0.0);
+    tour.push_back({-13.8, 0.0});
     return tour;
 }
 
@@ -38,7 +38,7 @@ std::vector<Point2> hall_tour() {
     visit(tour, {1.0, 13.3}, {1.0, 16.8});
     tour.insert(tour.end(), {{12.0, 17.0}, {21.5, 18.0}});
     visit(tour, {21.5, 12.0}, {27.0, 12.0});
-    tour.emplace_back(21.5, 6.0);
+    tour.push_back({21.5, 6.0});
     visit(tour, {21.5, 0.0}, {26.5, 0.0});
     visit(tour, {21.5, -6.0}, {27.0, -6.0});
     visit(tour, {21.5, -17.5}, {27.0, -17.5});

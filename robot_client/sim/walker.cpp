@@ -9,7 +9,7 @@ namespace {
 
 double length_of(const std::vector<Point2>& loop) {
     double length = 0.0;
-    for (std::size_t i = 0; i < loop.size(); ++i) length += (loop[(i + 1) % loop.size()] - loop[i]).norm();
+    for (std::size_t i = 0; i < loop.size(); ++i) length += norm(loop[(i + 1) % loop.size()] - loop[i]);
     return length;
 }
 
@@ -22,14 +22,14 @@ Disc body_of(const Walker& walker) {
     double left = std::fmod(walker.walked, length);
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Point2 side = loop[(i + 1) % loop.size()] - loop[i];
-        if (left < side.norm()) return {loop[i] + left / side.norm() * side, walker.radius};
-        left -= side.norm();
+        if (left < norm(side)) return {loop[i] + left / norm(side) * side, walker.radius};
+        left -= norm(side);
     }
     return {loop.front(), walker.radius}; // rounding: all the way round
 }
 
 void walk(Walker& walker, const Point2& robot, double seconds) {
-    const auto distance_to_robot = [&](const Walker& at) { return (body_of(at).centre - robot).norm(); };
+    const auto distance_to_robot = [&](const Walker& at) { return norm(body_of(at).centre - robot); };
     Walker next = walker;
     next.walked += walker.pace * seconds;
     const bool comes_nearer = distance_to_robot(next) < distance_to_robot(walker);

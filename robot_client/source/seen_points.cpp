@@ -15,10 +15,10 @@ void SeenPoints::add(const Scan& scan, const Sensor& sensor) {
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit) continue;
         const double angle = beam_angle(angles, beam);
-        const Point2 met = transform(T_odom_sensor, reading->metres * Point2(std::cos(angle), std::sin(angle)));
-        if (met.cwiseAbs().maxCoeff() <= kCoordinateMax) points_.push_back(in_millimetres(met));
+        const Point2 met = transform(T_odom_sensor, reading->metres * Point2{std::cos(angle), std::sin(angle)});
+        if (max_abs(met) <= kCoordinateMax) points_.push_back(in_millimetres(met));
     }
-    sum_of_places_ += Point2(T_odom_sensor.x, T_odom_sensor.y);
+    sum_of_places_ += Point2{T_odom_sensor.x, T_odom_sensor.y};
     ++scans_;
 }
 

@@ -67,7 +67,7 @@ std::string fingerprint_of(const SimulatorOptions& options, std::string_view dri
     }
     for (const Walker& walker : options.world.walkers) {
         lines.add("walker", walker.radius, walker.pace, walker.walked);
-        for (const Point2& corner : walker.loop) lines.add("corner", corner.x(), corner.y());
+        for (const Point2& corner : walker.loop) lines.add("corner", corner.x, corner.y);
     }
     if (const auto& start = options.start) lines.add("start", start->x, start->y, start->yaw);
     return "simulation:" + lines.hex().substr(0, 32);

@@ -11,7 +11,7 @@ std::string points_csv(std::span<const landmarks::CloudPoint> points, std::span<
     text.reserve(points.size() * kPointTextBytes);
     for (const auto& point : points) {
         fmt::format_to(std::back_inserter(text), "{:.5f},{:.4f},{:.4f},{:.4f},{},{},{}\n", point.angle, point.distance,
-                       point.position.x(), point.position.y(), point.seen, robots[point.robot], point.revision);
+                       point.position.x, point.position.y, point.seen, robots[point.robot], point.revision);
     }
     return text;
 }
@@ -23,7 +23,7 @@ std::string points_ply(std::span<const landmarks::CloudPoint> points) {
                                    points.size());
     text.reserve(points.size() * kPointTextBytes);
     for (const auto& point : points) {
-        fmt::format_to(std::back_inserter(text), "{:.4f} {:.4f} 0 {}\n", point.position.x(), point.position.y(),
+        fmt::format_to(std::back_inserter(text), "{:.4f} {:.4f} 0 {}\n", point.position.x, point.position.y,
                        point.seen);
     }
     return text;

@@ -10,8 +10,8 @@ namespace {
 
 grid::Cell cell_of(const Point2& point, double cell_size) {
     const double per_metre = 1.0 / cell_size;
-    return {static_cast<std::int32_t>(std::floor(point.x() * per_metre)),
-            static_cast<std::int32_t>(std::floor(point.y() * per_metre))};
+    return {static_cast<std::int32_t>(std::floor(point.x * per_metre)),
+            static_cast<std::int32_t>(std::floor(point.y * per_metre))};
 }
 
 Point2 centre_of(grid::Cell cell, double cell_size) { return {(cell.i + 0.5) * cell_size, (cell.j + 0.5) * cell_size}; }

@@ -7,11 +7,11 @@ namespace scanloom::guide {
 namespace {
 
 bool is_within(const Pose2& pose, const Point2& place, double radius) {
-    return std::hypot(pose.x - place.x(), pose.y - place.y()) <= radius;
+    return std::hypot(pose.x - place.x, pose.y - place.y) <= radius;
 }
 
 bool heads(const Pose2& pose, const Point2& from, const Point2& to) {
-    const double direction = std::atan2(to.y() - from.y(), to.x() - from.x());
+    const double direction = std::atan2(to.y - from.y, to.x - from.x);
     return std::abs(normalize_angle(pose.yaw - direction)) <= kLookingWithin;
 }
 

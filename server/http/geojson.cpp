@@ -30,11 +30,11 @@ void append_list(std::string& text, const Items& items, Write&& write) {
 
 } // namespace
 
-boost::json::array position(const Point2& point) { return {rounded_metres(point.x()), rounded_metres(point.y())}; }
+boost::json::array position(const Point2& point) { return {rounded_metres(point.x), rounded_metres(point.y)}; }
 
 std::string point_geometry(const Point2& point) {
     std::string text = R"({"type":"Point","coordinates":)";
-    append_position(text, point.x(), point.y());
+    append_position(text, point.x, point.y);
     return text += '}';
 }
 
@@ -42,7 +42,7 @@ std::string line_string(std::span<const Point2> points) {
     std::vector<Point2> line(points.begin(), points.end());
     if (line.size() == 1) line.push_back(line.front());
     std::string text = R"({"type":"LineString","coordinates":)";
-    append_list(text, line, [&](const Point2& point) { append_position(text, point.x(), point.y()); });
+    append_list(text, line, [&](const Point2& point) { append_position(text, point.x, point.y); });
     return text += '}';
 }
 

@@ -92,7 +92,7 @@ struct Search {
         if (!path) return path.error();
         const grid::Cell cell = next->goal->target;
         return wire::Goal{wire::Exploration::kGoal, std::move(*path),
-                          Point2(cell.i + 0.5, cell.j + 0.5) * maps.config.cell_size, given_up, next->goal->in_danger};
+                          Point2{cell.i + 0.5, cell.j + 0.5} * maps.config.cell_size, given_up, next->goal->in_danger};
     }
 
     [[nodiscard]] Result<wire::Coverage> operator()(const wire::CoverageRequest& request) const {
@@ -128,7 +128,7 @@ wire::Message reply_from(const Kind& request, const Asker& asker, const Services
     if (!start) {
         const auto pose = guide::pose_of(*maps, asker.robot);
         if (!pose) return reply(request, maps->revision, pose.error());
-        start = Point2(pose->x, pose->y);
+        start = Point2{pose->x, pose->y};
     }
     auto found = Search{asker, *maps, goals, guide::Patience(services.sessions), *start}(request);
     if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // of goals the book knows

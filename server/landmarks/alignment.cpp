@@ -40,7 +40,7 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
 
 /// T between the clouds' own frames.
 Pose2 with_origins(const Pose2& pose, const Point2& first_from, const Point2& second_from) {
-    return compose({first_from.x(), first_from.y(), 0.0}, compose(pose, {-second_from.x(), -second_from.y(), 0.0}));
+    return compose({first_from.x, first_from.y, 0.0}, compose(pose, {-second_from.x, -second_from.y, 0.0}));
 }
 
 } // namespace

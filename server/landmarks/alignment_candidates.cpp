@@ -1,5 +1,7 @@
 #include "server/landmarks/alignment_candidates.hpp"
 
+#include "server/landmarks/eigen_point.hpp"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -39,7 +41,7 @@ WeakDirection weak_direction(const LineFit& fit) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     const Eigen::Matrix2d translation = fit.normal_matrix.topLeftCorner<2, 2>();
     axes.computeDirect(translation / std::max(1.0, static_cast<double>(fit.used)));
-    return {axes.eigenvectors().col(0), axes.eigenvalues()[0]};
+    return {from_eigen(axes.eigenvectors().col(0)), axes.eigenvalues()[0]};
 }
 
 double Candidate::score() const {
@@ -59,7 +61,7 @@ Difference difference(const Candidate& one, const Candidate& other, double thing
     }
     for (const auto& [middle, _] : for_one) {
         double around = 0.0;
-        for (const auto& [place, more] : for_one) around += (place - middle).norm() <= thing_radius ? more : 0.0;
+        for (const auto& [place, more] : for_one) around += norm(place - middle) <= thing_radius ? more : 0.0;
         between.of_one_thing = std::max(between.of_one_thing, around);
     }
     return between;
@@ -100,7 +102,7 @@ void add_slid(const Seen& first, const Seen& second, const Candidate& best, std:
     const Point2 along = weak_direction(best.fit).direction;
     for (int step = -kSlideSteps; step <= kSlideSteps; ++step) {
         const Point2 slid = kSlideStep * step * along;
-        candidates.push_back(judged(first, second, {from.x + slid.x(), from.y + slid.y(), from.yaw}));
+        candidates.push_back(judged(first, second, {from.x + slid.x, from.y + slid.y, from.yaw}));
     }
 }
 

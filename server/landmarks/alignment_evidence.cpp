@@ -19,8 +19,8 @@ bool is_matched(const Surface& surface, const Surfel& there, const Point2& place
     if (distance > kSameSurface) return false;
     const Surfel& here = surface.surfels()[index];
     if (!here.is_straight()) return true;
-    if (std::abs(here.normal.dot(place - here.position)) > kSameLine) return false;
-    return !there.is_straight() || std::abs(here.normal.dot(transform(rotation, there.normal))) >= kSameSurfaceCosine;
+    if (std::abs(dot(here.normal, place - here.position)) > kSameLine) return false;
+    return !there.is_straight() || std::abs(dot(here.normal, transform(rotation, there.normal))) >= kSameSurfaceCosine;
 }
 
 } // namespace
@@ -29,14 +29,14 @@ Horizon::Horizon(std::span<const Point2> points, const Point2& from) : from_(fro
     reaches_.fill({kInfinite, 0.0});
     for (const Point2& point : points) {
         Reach& reach = reaches_[sector_of(point - from)];
-        const double range = (point - from).norm();
+        const double range = norm(point - from);
         reach = {std::min(reach.nearest, range), std::max(reach.furthest, range)};
         reach_ = std::max(reach_, range);
     }
 }
 
 std::size_t Horizon::sector_of(const Point2& offset) {
-    const double turns = std::atan2(offset.y(), offset.x()) / (2.0 * std::numbers::pi) + 0.5;
+    const double turns = std::atan2(offset.y, offset.x) / (2.0 * std::numbers::pi) + 0.5;
     return static_cast<std::size_t>(turns * static_cast<double>(kSectors)) % kSectors;
 }
 
@@ -49,7 +49,7 @@ Horizon::Verdict Horizon::at(const Point2& place) const {
         around = {std::min(around.nearest, reach.nearest), std::max(around.furthest, reach.furthest)};
     }
     if (around.nearest > around.furthest) return Verdict::kUnknown;
-    const double range = offset.norm();
+    const double range = norm(offset);
     if (range < around.nearest - kDepth) return Verdict::kOpen;
     return range > around.furthest + kDepth ? Verdict::kHidden : Verdict::kUnknown;
 }

@@ -26,7 +26,7 @@ public:
     [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, to the furthest that was seen
     /// Whether anything as far away was seen at all, whichever way: quicker told than at(), which is kOpen for no
     /// other.
-    [[nodiscard]] bool reaches(const Point2& place) const { return (place - from_).squaredNorm() < reach_ * reach_; }
+    [[nodiscard]] bool reaches(const Point2& place) const { return squared_norm(place - from_) < reach_ * reach_; }
 
 private:
     static constexpr std::size_t kSectors = 360;

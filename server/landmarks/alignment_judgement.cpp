@@ -189,7 +189,7 @@ Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
         alignment.certainty = Certainty::kAmbiguous;
         alignment.why = fmt::format("hardly anything holds the pose along ({:.2f}, {:.2f}), as in a corridor: look "
                                     "from where its end can be seen",
-                                    direction.x(), direction.y());
+                                    direction.x, direction.y);
     } else if (rival) {
         alignment.certainty = Certainty::kAmbiguous;
         alignment.why = rivalled(best, *rival, first);
@@ -197,7 +197,7 @@ Alignment judge(const std::vector<Candidate>& candidates, LaidOn first) {
         alignment.certainty = Certainty::kUndetermined;
         alignment.why = fmt::format("along ({:.2f}, {:.2f}) the place is known to within {:.0f} cm only, as what both "
                                     "show is little or far away: look for more turns, or from nearer to things",
-                                    direction.x(), direction.y(), std::ceil(300.0 * alignment.position_sigma));
+                                    direction.x, direction.y, std::ceil(300.0 * alignment.position_sigma));
     }
     return alignment;
 }

@@ -32,7 +32,7 @@ Result<> check(std::span<const PointPair> pairs) {
 }
 
 double squared_distance(const Pose2& T_first_second, const PointPair& pair) {
-    return (pair.first - transform(T_first_second, pair.second)).squaredNorm();
+    return squared_norm(pair.first - transform(T_first_second, pair.second));
 }
 
 /// Pre  the pairs are checked.
@@ -41,8 +41,8 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
     double heaviest = 0.0;
     for (const PointPair& pair : pairs) heaviest = std::max(heaviest, pair.weight);
     double weights = 0.0;
-    Point2 first_centre(0.0, 0.0);
-    Point2 second_centre(0.0, 0.0);
+    Point2 first_centre{0.0, 0.0};
+    Point2 second_centre{0.0, 0.0};
     for (std::size_t n = 0; n < pairs.size(); ++n) {
         if (pairs[n].weight == 0.0) continue;
         const double weight = pairs[n].weight / heaviest;
@@ -65,12 +65,12 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
         const double weight = pairs[n].weight / heaviest;
         const Point2 first = pairs[n].first - first_centre;
         const Point2 second = pairs[n].second - second_centre;
-        along += weight * second.dot(first);
-        across += weight * (second.x() * first.y() - second.y() * first.x());
-        first_extent += weight * first.squaredNorm();
-        second_extent += weight * second.squaredNorm();
+        along += weight * dot(second, first);
+        across += weight * (second.x * first.y - second.y * first.x);
+        first_extent += weight * squared_norm(first);
+        second_extent += weight * squared_norm(second);
     }
-    const double size = std::max(first_centre.cwiseAbs().maxCoeff(), second_centre.cwiseAbs().maxCoeff());
+    const double size = std::max(max_abs(first_centre), max_abs(second_centre));
     const double rounding = 1e-14 * size * size * weights; // of equal points, once their mean is taken off
     if (std::hypot(along, across) <= kUndetermined * std::sqrt(first_extent * second_extent) + rounding) {
         return Error{Errc::kInvalidField, "the pairs determine no rotation, as all points of one side are equal or any "
@@ -78,7 +78,7 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
     }
     const Pose2 rotation{0.0, 0.0, normalize_angle(std::atan2(across, along))};
     const Point2 translation = first_centre - transform(rotation, second_centre);
-    fit.T_first_second = {translation.x(), translation.y(), rotation.yaw};
+    fit.T_first_second = {translation.x, translation.y, rotation.yaw};
     double squares = 0.0;
     for (const std::size_t n : fit.used) {
         squares += pairs[n].weight / heaviest * squared_distance(fit.T_first_second, pairs[n]);
@@ -136,7 +136,7 @@ void for_each_consensus(std::span<const PointPair> pairs, double inlier_distance
         for (std::size_t j = i + 1; j < some.size(); ++j) {
             const PointPair a = at(pairs, some[i]);
             const PointPair b = at(pairs, some[j]);
-            const double stretch = (a.first - b.first).norm() - (a.second - b.second).norm();
+            const double stretch = norm(a.first - b.first) - norm(a.second - b.second);
             if (std::abs(stretch) > 2.0 * inlier_distance) continue;
             const auto fit = least_squares(std::vector{a, b});
             if (fit) visit(consensus_on(fit->T_first_second, pairs, inlier_distance));

@@ -42,11 +42,11 @@ public:
         std::ranges::fill(votes_, 0);
         for (const Surfel& there : second) {
             for (const Surfel& here : first) {
-                const double x = here.position.x() - there.position.x() + reach_;
-                const double y = here.position.y() - there.position.y() + reach_;
+                const double x = here.position.x - there.position.x + reach_;
+                const double y = here.position.y - there.position.y + reach_;
                 if (!(x >= 0.0 && y >= 0.0 && x < 2.0 * reach_ && y < 2.0 * reach_)) continue;
                 const bool comparable = here.is_straight() && there.is_straight();
-                if (comparable && std::abs(here.normal.dot(there.normal)) < kComparableCosine) continue;
+                if (comparable && std::abs(dot(here.normal, there.normal)) < kComparableCosine) continue;
                 ++votes_[index(static_cast<int>(x / kCell), static_cast<int>(y / kCell))];
             }
         }

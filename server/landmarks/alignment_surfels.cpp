@@ -1,5 +1,7 @@
 #include "server/landmarks/alignment_surfels.hpp"
 
+#include "server/landmarks/eigen_point.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -27,7 +29,8 @@ struct Moments {
     void add(const Point2& point, double distance) {
         ++count;
         sum += point;
-        squares += point * point.transpose();
+        const Eigen::Vector2d column = to_eigen(point);
+        squares += column * column.transpose();
         distances += distance;
     }
     void add(const Moments& other) {
@@ -37,7 +40,10 @@ struct Moments {
         distances += other.distances;
     }
     [[nodiscard]] Point2 mean() const { return sum / count; }
-    [[nodiscard]] Eigen::Matrix2d covariance() const { return squares / count - mean() * mean().transpose(); }
+    [[nodiscard]] Eigen::Matrix2d covariance() const {
+        const Eigen::Vector2d column = to_eigen(mean());
+        return squares / count - column * column.transpose();
+    }
 };
 
 using Cells = std::map<CellKey, Moments>;
@@ -67,8 +73,8 @@ Surfel surfel(const Cells& cells, CellKey key, const Moments& moments, double ar
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(all.covariance());
     if (axes.eigenvalues()[1] < kExtent || axes.eigenvalues()[0] > kStraight * axes.eigenvalues()[1]) return surfel;
-    surfel.normal = axes.eigenvectors().col(0);
-    surfel.position += surfel.normal * surfel.normal.dot(all.mean() - surfel.position);
+    surfel.normal = from_eigen(axes.eigenvectors().col(0));
+    surfel.position += surfel.normal * dot(surfel.normal, all.mean() - surfel.position);
     return surfel;
 }
 
@@ -84,9 +90,9 @@ std::vector<Surfel> surfels_of(std::span<const CloudView> views, double around) 
     for (const CloudView& view : views) {
         for (const Point2& point : view.points) {
             const Point2 offset = point - origin;
-            cells[{static_cast<std::int64_t>(std::floor(offset.y() * kCellsPerMetre)),
-                   static_cast<std::int64_t>(std::floor(offset.x() * kCellsPerMetre))}]
-                .add(offset, (point - view.from).norm());
+            cells[{static_cast<std::int64_t>(std::floor(offset.y * kCellsPerMetre)),
+                   static_cast<std::int64_t>(std::floor(offset.x * kCellsPerMetre))}]
+                .add(offset, norm(point - view.from));
         }
     }
     for (const auto& [key, moments] : cells) {

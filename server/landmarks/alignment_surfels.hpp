@@ -14,7 +14,7 @@ inline constexpr double kSurfelSpacing = 0.1; ///< metres
 struct Surfel {
     Point2 position{0.0, 0.0}; ///< metres; of a straight one, on the line through the points around it
     Point2 normal{0.0, 0.0};   ///< of that line, a unit vector, either way; zero where the surface is not straight
-    [[nodiscard]] bool is_straight() const { return normal.x() != 0.0 || normal.y() != 0.0; }
+    [[nodiscard]] bool is_straight() const { return normal.x != 0.0 || normal.y != 0.0; }
 };
 
 /// The surface elements of what was seen from some places, all in one frame, by rows.

@@ -32,9 +32,9 @@ void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit) continue;
         const double direction = T_map_sensor.yaw + beam_angle(angles, beam);
-        const Point2 met(T_map_sensor.x + reading->metres * std::cos(direction),
-                         T_map_sensor.y + reading->metres * std::sin(direction));
-        if (met.cwiseAbs().maxCoeff() <= kCoordinateLimit) capture.points.push_back(in_millimetres(met));
+        const Point2 met{T_map_sensor.x + reading->metres * std::cos(direction),
+                         T_map_sensor.y + reading->metres * std::sin(direction)};
+        if (max_abs(met) <= kCoordinateLimit) capture.points.push_back(in_millimetres(met));
     }
 }
 

@@ -28,7 +28,7 @@ CellIndex::CellIndex(std::span<const Point2> points, double side) : order_(point
     const double per_metre = 1.0 / side;
     const auto cell_of = [&](double metres) { return static_cast<std::int64_t>(std::floor(metres * per_metre)); };
     std::vector<Place> places(points.size());
-    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cell_of(points[n].y()), cell_of(points[n].x()), n};
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cell_of(points[n].y), cell_of(points[n].x), n};
     std::sort(places.begin(), places.end());
     for (std::uint32_t n = 0; n < places.size(); ++n) {
         const Place& place = places[n];

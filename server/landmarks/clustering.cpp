@@ -74,11 +74,11 @@ public:
             auto& tree = trees_[cell];
             if (!tree) tree.emplace(candidates);
             const std::size_t found = tree->nearest(place)->index;
-            return {(candidates[found] - place).squaredNorm(), indices(cell)[found]};
+            return {squared_norm(candidates[found] - place), indices(cell)[found]};
         }
         Near nearest;
         for (std::size_t n = 0; n < candidates.size(); ++n) {
-            nearest = std::min(nearest, Near{(candidates[n] - place).squaredNorm(), indices(cell)[n]});
+            nearest = std::min(nearest, Near{squared_norm(candidates[n] - place), indices(cell)[n]});
         }
         return nearest;
     }
@@ -114,7 +114,7 @@ private:
     [[nodiscard]] const CellIndex::Cell& cell_at(std::size_t cell) const { return cells_.cells()[cell]; }
 
     [[nodiscard]] bool near(std::uint32_t a, std::uint32_t b) const {
-        return (distinct_.points[a] - distinct_.points[b]).squaredNorm() <= squared_eps_;
+        return squared_norm(distinct_.points[a] - distinct_.points[b]) <= squared_eps_;
     }
 
     void find_core(std::size_t cell) {

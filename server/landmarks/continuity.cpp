@@ -16,30 +16,30 @@ struct Axes {
 /// From the first point, so that equal points have exactly no extent.
 Axes axes_of(std::span<const Point2> points) {
     const auto count = static_cast<double>(points.size());
-    Point2 mean(0.0, 0.0);
+    Point2 mean{0.0, 0.0};
     for (const Point2& point : points) mean += (point - points.front()) / count;
     double xx = 0.0;
     double xy = 0.0;
     double yy = 0.0;
     for (const Point2& point : points) {
         const Point2 off = point - points.front() - mean;
-        xx += off.x() * off.x() / count;
-        xy += off.x() * off.y() / count;
-        yy += off.y() * off.y() / count;
+        xx += off.x * off.x / count;
+        xy += off.x * off.y / count;
+        yy += off.y * off.y / count;
     }
     const double middle = 0.5 * (xx + yy);
     const double apart = std::hypot(0.5 * (xx - yy), xy);
     Axes axes{middle + apart, std::max(middle - apart, 0.0)};
     // Of the two ways to write the eigenvector, the one that does not cancel.
-    const Point2 direction = xx >= yy ? Point2(axes.major - yy, xy) : Point2(xy, axes.major - xx);
-    if (direction.norm() > 0.0) axes.direction = direction.normalized();
+    const Point2 direction = xx >= yy ? Point2{axes.major - yy, xy} : Point2{xy, axes.major - xx};
+    if (norm(direction) > 0.0) axes.direction = normalized(direction);
     return axes;
 }
 
 std::vector<double> gaps_along(std::span<const Point2> points, const Point2& direction) {
     std::vector<double> places(points.size());
     std::ranges::transform(points, places.begin(),
-                           [&](const Point2& point) { return (point - points.front()).dot(direction); });
+                           [&](const Point2& point) { return dot(point - points.front(), direction); });
     std::ranges::sort(places);
     std::vector<double> gaps(places.size() - 1);
     for (std::size_t n = 0; n < gaps.size(); ++n) gaps[n] = places[n + 1] - places[n];

@@ -22,7 +22,7 @@ struct CellPlace {
 
 std::vector<CellPlace> sorted_places(std::span<const Point2> cloud) {
     std::vector<CellPlace> places(cloud.size());
-    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x(), cloud[n].y(), n};
+    for (std::uint32_t n = 0; n < places.size(); ++n) places[n] = {cloud[n].x, cloud[n].y, n};
     std::sort(places.begin(), places.end());
     return places;
 }

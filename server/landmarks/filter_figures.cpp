@@ -19,7 +19,7 @@ Points points_of(std::span<const RangeMm> ranges, const BeamAngles& angles) {
         if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
         const double range = 1e-3 * ranges[n];
         const double angle = beam_angle(angles, n);
-        points[n] = Point2(range * std::cos(angle), range * std::sin(angle));
+        points[n] = Point2{range * std::cos(angle), range * std::sin(angle)};
     }
     return points;
 }
@@ -30,7 +30,7 @@ double rmse(const Points& before, const Points& after) {
     for (std::size_t n = 0; n < before.size(); ++n) {
         assert(before[n].has_value() == after[n].has_value());
         if (!before[n]) continue;
-        sum += (*after[n] - *before[n]).squaredNorm();
+        sum += squared_norm(*after[n] - *before[n]);
         ++count;
     }
     return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
@@ -47,8 +47,8 @@ Point2 roughness(const Points& points, bool full_circle) {
         const auto& c = points[(n + 2) % count];
         if (!a || !b || !c) continue;
         const Point2 bend = *a - 2.0 * *b + *c;
-        x.push_back(std::abs(bend.x()));
-        y.push_back(std::abs(bend.y()));
+        x.push_back(std::abs(bend.x));
+        y.push_back(std::abs(bend.y));
     }
     if (x.empty()) return {0.0, 0.0};
     return {median(x), median(y)};
@@ -69,8 +69,8 @@ FilterFigures filter_figures(std::span<const RangeMm> before, std::span<const Ra
     const bool full_circle = is_full_circle(angles);
     const Point2 rough_before = roughness(points_before, full_circle);
     const Point2 rough_after = roughness(points_after, full_circle);
-    return {rmse(points_before, points_after), reduction(rough_before.x(), rough_after.x()),
-            reduction(rough_before.y(), rough_after.y())};
+    return {rmse(points_before, points_after), reduction(rough_before.x, rough_after.x),
+            reduction(rough_before.y, rough_after.y)};
 }
 
 bool is_full_circle(const BeamAngles& angles) {

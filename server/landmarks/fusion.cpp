@@ -37,8 +37,8 @@ struct Group {
     Sorted y;
 
     void add(const Point2& point) {
-        x.add(point.x());
-        y.add(point.y());
+        x.add(point.x);
+        y.add(point.y);
     }
 };
 
@@ -47,11 +47,11 @@ class Squares {
 public:
     explicit Squares(double threshold) : reach_(threshold), side_(std::max(threshold, 0.5)) {}
 
-    void put(std::uint32_t group, const Point2& place) { groups_[key_of(place.x(), place.y())].push_back(group); }
+    void put(std::uint32_t group, const Point2& place) { groups_[key_of(place.x, place.y)].push_back(group); }
 
     void move(std::uint32_t group, const Point2& from, const Point2& to) {
-        const auto before = key_of(from.x(), from.y());
-        if (before == key_of(to.x(), to.y())) return;
+        const auto before = key_of(from.x, from.y);
+        if (before == key_of(to.x, to.y)) return;
         std::erase(groups_[before], group);
         put(group, to);
     }
@@ -60,8 +60,8 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> near_to(const std::vector<Point2>& cloud) const {
         std::vector<std::uint64_t> keys;
         for (const auto& point : cloud) { // a square is no smaller than the threshold: these are all
-            for (const double y : {point.y() - reach_, point.y(), point.y() + reach_}) {
-                for (const double x : {point.x() - reach_, point.x(), point.x() + reach_}) keys.push_back(key_of(x, y));
+            for (const double y : {point.y - reach_, point.y, point.y + reach_}) {
+                for (const double x : {point.x - reach_, point.x, point.x + reach_}) keys.push_back(key_of(x, y));
             }
         }
         std::ranges::sort(keys);
@@ -132,7 +132,7 @@ private:
 
     void join(std::uint32_t group, const Point2& point) {
         groups_[group].add(point);
-        const Point2 place(groups_[group].x.median(), groups_[group].y.median());
+        const Point2 place{groups_[group].x.median(), groups_[group].y.median()};
         squares_.move(group, medians_[group], place);
         medians_[group] = place;
     }

@@ -44,17 +44,17 @@ Landmark landmark_of(std::span<const Point2> points, double eps) {
         return median(values);
     };
     Landmark landmark;
-    landmark.position = {median_of([](const Point2& point) { return point.x(); }),
-                         median_of([](const Point2& point) { return point.y(); })};
+    landmark.position = {median_of([](const Point2& point) { return point.x; }),
+                         median_of([](const Point2& point) { return point.y; })};
     landmark.points = points.size();
     Point2 low = points.front();
     Point2 high = points.front();
     for (const Point2& point : points) {
-        low = low.cwiseMin(point);
-        high = high.cwiseMax(point);
+        low = min_corner(low, point);
+        high = max_corner(high, point);
     }
     landmark.size = high - low;
-    landmark.spread = median_of([&](const Point2& point) { return (point - landmark.position).norm(); });
+    landmark.spread = median_of([&](const Point2& point) { return norm(point - landmark.position); });
     landmark.continuity = continuity_of(points, eps).mean();
     return landmark;
 }

@@ -10,8 +10,8 @@ namespace scanloom::landmarks {
 namespace {
 
 std::pair<std::int32_t, std::int32_t> cell_of(const Point2& position) {
-    return {static_cast<std::int32_t>(std::floor(position.y() / kTolerance)),
-            static_cast<std::int32_t>(std::floor(position.x() / kTolerance))};
+    return {static_cast<std::int32_t>(std::floor(position.y / kTolerance)),
+            static_cast<std::int32_t>(std::floor(position.x / kTolerance))};
 }
 
 /// Of the sightings that are kept.
@@ -70,7 +70,7 @@ void LandmarkMap::add_new(const Landmark& landmark, Revision revision) {
     auto& block = writable(blocks_.size() - 1);
     const auto id = static_cast<std::uint32_t>(size_++);
     auto& known = block.landmarks.emplace_back(MapLandmark{id, 1, revision, revision, landmark});
-    known.sightings[0] = {landmark.position.x(), landmark.position.y()};
+    known.sightings[0] = {landmark.position.x, landmark.position.y};
     block.revision = revision;
     place(id, landmark.position);
 }
@@ -79,7 +79,7 @@ void LandmarkMap::see_again(std::uint32_t id, const Landmark& landmark, Revision
     auto& block = writable(id / kLandmarkBlock);
     auto& known = block.landmarks[id % kLandmarkBlock];
     take_away(id, known.landmark.position);
-    known.sightings[known.seen % kSightingsKept] = {landmark.position.x(), landmark.position.y()};
+    known.sightings[known.seen % kSightingsKept] = {landmark.position.x, landmark.position.y};
     known.seen += 1;
     known.last = revision;
     known.landmark = landmark;

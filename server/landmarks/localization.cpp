@@ -25,7 +25,7 @@ constexpr std::size_t kViewSurfelsMax = 4000;
 constexpr double kBeyond = 1.0; // metres that are looked at beyond what the view shows
 
 /// Metres between two places along the axis where it is more.
-double apart(const Point2& a, const Point2& b) { return (a - b).cwiseAbs().maxCoeff(); }
+double apart(const Point2& a, const Point2& b) { return max_abs(a - b); }
 
 /// Of the views those that may show something of what is seen from within the neighbourhood.
 ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near, double reach) {
@@ -94,7 +94,7 @@ std::vector<Pose2> Search::repetitions(double yaw) const {
 }
 
 std::vector<Pose2> Search::in_map(std::vector<Pose2> poses) const {
-    for (Pose2& pose : poses) pose = {pose.x + within_.middle.x(), pose.y + within_.middle.y(), pose.yaw};
+    for (Pose2& pose : poses) pose = {pose.x + within_.middle.x, pose.y + within_.middle.y, pose.yaw};
     return poses;
 }
 
@@ -129,7 +129,7 @@ Neighbourhood within(const Extent& extent, const std::optional<Neighbourhood>& n
 std::string nothing_there(const std::optional<Neighbourhood>& near) {
     if (!near) return "all that the session's lasers have seen has gone since: go where it has been mapped";
     return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say another place, or none",
-                       near->radius, near->middle.x(), near->middle.y());
+                       near->radius, near->middle.x, near->middle.y);
 }
 
 } // namespace
@@ -182,8 +182,7 @@ Result<Alignment> locate(const ReferenceViews& views, const CloudView& view, con
     rank(candidates);
     Alignment found = judge(candidates, LaidOn::kMap);
     const auto in_map = [&](const Pose2& pose) {
-        return compose({map->middle().x(), map->middle().y(), 0.0},
-                       compose(pose, {-view.from.x(), -view.from.y(), 0.0}));
+        return compose({map->middle().x, map->middle().y, 0.0}, compose(pose, {-view.from.x, -view.from.y, 0.0}));
     };
     found.T_first_second = in_map(found.T_first_second);
     if (found.rival) found.rival = in_map(*found.rival);

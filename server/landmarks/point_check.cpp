@@ -10,13 +10,13 @@ Result<> check_points(std::span<const Point2> points, std::string_view name) {
                                                   points.size(), kPointsMax)};
     }
     for (std::size_t n = 0; n < points.size(); ++n) {
-        if (!points[n].allFinite()) {
+        if (!is_finite(points[n])) {
             return Error{Errc::kInvalidField, fmt::format("{}[{}] is not finite: leave it out", name, n)};
         }
-        if (points[n].cwiseAbs().maxCoeff() > kPointCoordinateMax) {
+        if (max_abs(points[n]) > kPointCoordinateMax) {
             return Error{Errc::kInvalidField,
                          fmt::format("{}[{}] is ({:g}, {:g}), further than {:g} m from the origin: leave it out", name,
-                                     n, points[n].x(), points[n].y(), kPointCoordinateMax)};
+                                     n, points[n].x, points[n].y, kPointCoordinateMax)};
         }
     }
     return {};

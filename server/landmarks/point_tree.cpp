@@ -5,6 +5,7 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -21,7 +22,7 @@ struct Cloud {
 
     [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
     [[nodiscard]] double kdtree_get_pt(std::uint32_t index, std::size_t axis) const {
-        return points[index][static_cast<Eigen::Index>(axis)];
+        return axis == 0 ? points[index].x : points[index].y;
     }
     template <class Bounds>
     bool kdtree_get_bbox(Bounds&) const {
@@ -125,8 +126,9 @@ struct PointTree::Tree {
 
     template <class Results>
     void search(Results& results, const Point2& place) const {
-        assert(place.allFinite());
-        index.findNeighbors(results, place.data(), nanoflann::SearchParams());
+        assert(is_finite(place));
+        const std::array coordinates = {place.x, place.y};
+        index.findNeighbors(results, coordinates.data(), nanoflann::SearchParams());
     }
 
     Cloud cloud;
@@ -135,7 +137,7 @@ struct PointTree::Tree {
 
 PointTree::PointTree(std::span<const Point2> points) {
     assert(points.size() <= kPointsMax);
-    assert(std::ranges::all_of(points, [](const Point2& point) { return point.allFinite(); }));
+    assert(std::ranges::all_of(points, [](const Point2& point) { return is_finite(point); }));
     tree_ = std::make_unique<const Tree>(points);
 }
 

@@ -24,8 +24,8 @@ void ReferenceLayer::add(const RobotCapture& ended) {
     const Capture& capture = ended.capture;
     if (capture.points.empty()) return;
     const double turns = normalize_angle(capture.pose.yaw) / (2.0 * std::numbers::pi) + 0.5;
-    const PlaceKey key{static_cast<std::int64_t>(std::floor(capture.from.y() / kPlaceSize)),
-                       static_cast<std::int64_t>(std::floor(capture.from.x() / kPlaceSize)),
+    const PlaceKey key{static_cast<std::int64_t>(std::floor(capture.from.y / kPlaceSize)),
+                       static_cast<std::int64_t>(std::floor(capture.from.x / kPlaceSize)),
                        static_cast<std::int64_t>(std::floor(turns * kDirections)) % kDirections};
     ReferenceViews& views = places_[key];
     views.push_back(std::make_shared<const ReferenceView>(reference_view_of(ended)));

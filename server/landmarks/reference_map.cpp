@@ -1,8 +1,7 @@
 #include "server/landmarks/reference_map.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
+#include <limits>
 
 namespace scanloom::landmarks {
 namespace {
@@ -12,12 +11,17 @@ constexpr double kBeenThere = 0.3; // metres from where somebody saw from
 } // namespace
 
 std::optional<Extent> extent_of(ReferenceViewSpan views) {
-    Eigen::AlignedBox2d bounds;
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    Point2 low{kInfinite, kInfinite};
+    Point2 high{-kInfinite, -kInfinite};
     for (const auto& view : views) {
-        for (const PointMm& point : view->points) bounds.extend(in_metres(point));
+        for (const PointMm& point : view->points) {
+            low = min_corner(low, in_metres(point));
+            high = max_corner(high, in_metres(point));
+        }
     }
-    if (bounds.isEmpty()) return std::nullopt;
-    return Extent{bounds.center(), 0.5 * bounds.sizes().maxCoeff()};
+    if (low.x > high.x) return std::nullopt; // no points
+    return Extent{(low + high) / 2.0, 0.5 * max_abs(high - low)};
 }
 
 Result<ReferenceMap> ReferenceMap::of(ReferenceViewSpan views, const Point2& middle,
@@ -55,19 +59,19 @@ bool ReferenceMap::has_gone(const Point2& place) const {
 Seen ReferenceMap::around(const Point2& place, double radius) const {
     std::vector<Surfel> near;
     std::ranges::copy_if(surfels_, std::back_inserter(near), [&](const Surfel& surfel) {
-        return (surfel.position - place).squaredNorm() <= radius * radius;
+        return squared_norm(surfel.position - place) <= radius * radius;
     });
     Seen seen{Surface(std::move(near)), {}, true};
     for (const Horizon& horizon : horizons_) {
         const double far = radius + horizon.reach();
-        if ((horizon.from() - place).squaredNorm() < far * far) seen.horizons.push_back(&horizon);
+        if (squared_norm(horizon.from() - place) < far * far) seen.horizons.push_back(&horizon);
     }
     return seen;
 }
 
 bool ReferenceMap::is_possible(const Point2& place) const {
     return std::ranges::any_of(horizons_, [&](const Horizon& horizon) {
-        if ((horizon.from() - place).squaredNorm() < kBeenThere * kBeenThere) return true;
+        if (squared_norm(horizon.from() - place) < kBeenThere * kBeenThere) return true;
         return horizon.reaches(place) && horizon.at(place) != Horizon::Verdict::kHidden;
     });
 }

@@ -58,8 +58,8 @@ struct NormalEquations {
     std::size_t used = 0;
 
     void add(const Point2& normal, const Point2& from_second_origin, double residual, double weight) {
-        const Point2 turned(-from_second_origin.y(), from_second_origin.x());
-        const Eigen::Vector3d jacobian(normal.x(), normal.y(), normal.dot(turned));
+        const Point2 turned{-from_second_origin.y, from_second_origin.x};
+        const Eigen::Vector3d jacobian(normal.x, normal.y, dot(normal, turned));
         matrix += weight * jacobian * jacobian.transpose();
         gradient -= weight * residual * jacobian;
         squares += weight * residual * residual;
@@ -73,16 +73,16 @@ void add(NormalEquations& equations, const Surfel& here, const Surfel& there, co
     if (here.is_straight() != there.is_straight()) return;
     const Point2 offset = there.position - here.position;
     const Point2 from_origin = there.position - origin;
-    const double off = here.is_straight() ? line.dot(offset) : offset.norm();
+    const double off = here.is_straight() ? dot(line, offset) : norm(offset);
     const double closeness = 1.0 - off * off / (kResidualMax * kResidualMax);
     if (closeness <= 0.0) return;
     if (here.is_straight()) {
-        if (std::abs(here.normal.dot(there.normal)) < kCorrespondingCosine) return;
+        if (std::abs(dot(here.normal, there.normal)) < kCorrespondingCosine) return;
         equations.add(line, from_origin, off, closeness * closeness); // Tukey's biweight
         equations.agreement += closeness * closeness * closeness;     // and what it makes most
     } else {
-        equations.add({1.0, 0.0}, from_origin, offset.x(), kRoundWeight);
-        equations.add({0.0, 1.0}, from_origin, offset.y(), kRoundWeight);
+        equations.add({1.0, 0.0}, from_origin, offset.x, kRoundWeight);
+        equations.add({0.0, 1.0}, from_origin, offset.y, kRoundWeight);
         equations.agreement += kRoundWeight * closeness;
     }
     ++equations.used;
@@ -91,7 +91,7 @@ void add(NormalEquations& equations, const Surfel& here, const Surfel& there, co
 /// Of both surfaces' elements, each with the nearest of the other and by the line of that one.
 NormalEquations normal_equations(const Surface& first, const Surface& second, const Pose2& pose) {
     NormalEquations equations;
-    const Point2 origin(pose.x, pose.y);
+    const Point2 origin{pose.x, pose.y};
     const Pose2 back = inverse(pose);
     for (const Surfel& element : second.surfels()) {
         const Surfel there = transformed(pose, element);

@@ -18,8 +18,8 @@ Result<std::vector<CloudPoint>> fuse_captures(std::span<const RobotCapture> capt
     for (const auto& point : *fused) {
         const auto& [robot, capture, ended] = captures[point.first];
         const Point2 from_robot = transform(inverse(capture.pose), point.position);
-        points.push_back({std::atan2(from_robot.y(), from_robot.x()), from_robot.norm(), point.position, point.clouds,
-                          robot, ended});
+        points.push_back(
+            {std::atan2(from_robot.y, from_robot.x), norm(from_robot), point.position, point.clouds, robot, ended});
     }
     return points;
 }

@@ -11,21 +11,21 @@ namespace {
 class Capsule {
 public:
     Capsule(const Point2& a, const Point2& b, double radius) : a_(a), b_(b), radius_(radius) {
-        const double length = (b - a).norm();
+        const double length = norm(b - a);
         if (length == 0.0) return;
         const Point2 along = (b - a) / length;
-        beside_ = along.y() >= 0.0 ? Point2(along.y(), -along.x()) : Point2(-along.y(), along.x());
+        beside_ = along.y >= 0.0 ? Point2{along.y, -along.x} : Point2{-along.y, along.x};
         beside_ *= radius;
     }
 
-    [[nodiscard]] double bottom() const { return std::min(a_.y(), b_.y()) - radius_; }
-    [[nodiscard]] double top() const { return std::max(a_.y(), b_.y()) + radius_; }
+    [[nodiscard]] double bottom() const { return std::min(a_.y, b_.y) - radius_; }
+    [[nodiscard]] double top() const { return std::max(a_.y, b_.y) + radius_; }
 
     /// How far it reaches to the right between two heights. It is convex: the nearer to its rightmost point, the
     /// further. Pre  it reaches between them.
     [[nodiscard]] double right(double low, double high) const {
-        const auto [lowest, highest] = std::minmax(a_.y(), b_.y());
-        const double rightmost = a_.x() > b_.x() ? a_.y() : a_.x() < b_.x() ? b_.y() : std::clamp(low, lowest, highest);
+        const auto [lowest, highest] = std::minmax(a_.y, b_.y);
+        const double rightmost = a_.x > b_.x ? a_.y : a_.x < b_.x ? b_.y : std::clamp(low, lowest, highest);
         return right_at(std::clamp(rightmost, std::max(low, bottom()), std::min(high, top())));
     }
 
@@ -34,16 +34,16 @@ private:
         double right = std::max(right_of_disc(a_, y), right_of_disc(b_, y));
         const Point2 from = a_ + beside_;
         const Point2 to = b_ + beside_;
-        if (from.y() != to.y() && y >= std::min(from.y(), to.y()) && y <= std::max(from.y(), to.y())) {
-            right = std::max(right, from.x() + (to.x() - from.x()) * (y - from.y()) / (to.y() - from.y()));
+        if (from.y != to.y && y >= std::min(from.y, to.y) && y <= std::max(from.y, to.y)) {
+            right = std::max(right, from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y));
         }
         return right;
     }
 
     [[nodiscard]] double right_of_disc(const Point2& centre, double y) const {
-        const double dy = std::abs(y - centre.y());
+        const double dy = std::abs(y - centre.y);
         if (dy > radius_) return -std::numeric_limits<double>::infinity();
-        return centre.x() + std::sqrt(radius_ * radius_ - dy * dy);
+        return centre.x + std::sqrt(radius_ * radius_ - dy * dy);
     }
 
     Point2 a_;
@@ -52,7 +52,7 @@ private:
     Point2 beside_ = {0.0, 0.0}; // from the centre to the straight part of the right border
 };
 
-Point2 mirrored(const Point2& point) { return {-point.x(), point.y()}; }
+Point2 mirrored(const Point2& point) { return {-point.x, point.y}; }
 
 } // namespace
 

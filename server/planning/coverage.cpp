@@ -95,7 +95,7 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
     if (reachable.count() == 0) {
         return Error{Errc::kNoPath, fmt::format("from ({:g}, {:g}) a body of radius {} m reaches no free cell of the "
                                                 "region: give another start or region",
-                                                start.x(), start.y(), known_ground.body_radius_m)};
+                                                start.x, start.y, known_ground.body_radius_m)};
     }
     BitGrid way_out = passability->enterable;
     way_out.subtract(passability->fits);

@@ -21,7 +21,7 @@ Point2 centre_of(Spot spot) { return {spot.x + 0.5, spot.y + 0.5}; }
 bool straight_on(const Point2& a, const Point2& b, const Point2& c) {
     const Point2 ab = b - a;
     const Point2 bc = c - b;
-    return ab.x() * bc.y() - ab.y() * bc.x() == 0.0 && ab.dot(bc) >= 0.0;
+    return ab.x * bc.y - ab.y * bc.x == 0.0 && dot(ab, bc) >= 0.0;
 }
 
 /// The cells' centres between the two points, without those that lie on a straight line between others.
@@ -98,7 +98,7 @@ private:
 };
 
 Path within_a_cell(const Passability& passability, Spot cell, const Point2& start, const Point2& goal) {
-    const double length = (goal - start).norm();
+    const double length = norm(goal - start);
     const double factor = passability.danger.test(cell) ? 1.0 + passability.options.danger_cost : 1.0;
     return {{start, goal}, length, length * factor};
 }
@@ -113,13 +113,12 @@ Path to_path(const Passability& passability, const std::vector<Spot>& cells, con
     if (shape == Shape::kStraightened) points = Straightener(passability, points).straightened();
     Path path;
     for (std::size_t at = 0; at + 1 < points.size(); ++at) {
-        path.length_m += (points[at + 1] - points[at]).norm() * passability.cell_size_m;
+        path.length_m += norm(points[at + 1] - points[at]) * passability.cell_size_m;
         path.cost += cost_of_step(passability, points[at], points[at + 1]) * passability.cell_size_m;
     }
-    for (const Point2& point : points) {
-        path.points.push_back((point + Point2(passability.window.i_begin, passability.window.j_begin)) *
-                              passability.cell_size_m);
-    }
+    const Point2 corner{static_cast<double>(passability.window.i_begin),
+                        static_cast<double>(passability.window.j_begin)};
+    for (const Point2& point : points) path.points.push_back((point + corner) * passability.cell_size_m);
     path.points.front() = start; // to the last bit
     path.points.back() = goal;
     return path;
@@ -136,8 +135,8 @@ Result<Path> plan_path(const classify::ClassView& classes, double cell_size_m, c
     if (!last) return last.error();
     if (!connected(passability->enterable, *first).test(*last)) {
         return Error{Errc::kNoPath,
-                     fmt::format("there is no way from ({:g}, {:g}) to ({:g}, {:g}) for a body of radius {} m",
-                                 start.x(), start.y(), goal.x(), goal.y(), options.body_radius_m)};
+                     fmt::format("there is no way from ({:g}, {:g}) to ({:g}, {:g}) for a body of radius {} m", start.x,
+                                 start.y, goal.x, goal.y, options.body_radius_m)};
     }
     CostSearch search(*passability);
     search.between(*first, *last);

@@ -44,14 +44,14 @@ std::optional<double> cost_beside(const Passability& passability, const Point2& 
 } // namespace
 
 std::optional<double> cost_of_line(const Passability& passability, const Point2& from, const Point2& to) {
-    const double length = (to - from).norm();
+    const double length = norm(to - from);
     if (length == 0.0) return 0.0;
-    if (is_border(from.x(), to.x())) return cost_beside(passability, from, to, {0.5, 0.0});
-    if (is_border(from.y(), to.y())) return cost_beside(passability, from, to, {0.0, 0.5});
+    if (is_border(from.x, to.x)) return cost_beside(passability, from, to, {0.5, 0.0});
+    if (is_border(from.y, to.y)) return cost_beside(passability, from, to, {0.0, 0.5});
     const BitGrid& enterable = passability.enterable;
-    Axis x(from.x(), to.x());
-    Axis y(from.y(), to.y());
-    Spot at{static_cast<std::int32_t>(std::floor(from.x())), static_cast<std::int32_t>(std::floor(from.y()))};
+    Axis x(from.x, to.x);
+    Axis y(from.y, to.y);
+    Spot at{static_cast<std::int32_t>(std::floor(from.x)), static_cast<std::int32_t>(std::floor(from.y))};
     double in_danger = 0.0;
     for (double entered = 0.0;;) {
         if (!enterable.test(at)) return std::nullopt;

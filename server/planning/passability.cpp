@@ -41,11 +41,11 @@ Result<> check(const PassabilityOptions& options) {
 /// Errors  kInvalidField: not finite, or beyond where cells are numbered.
 Result<grid::Cell> cell_of(const Point2& point, double cell_size_m) {
     const double cells_per_metre = 1.0 / cell_size_m;
-    const double i = std::floor(point.x() * cells_per_metre);
-    const double j = std::floor(point.y() * cells_per_metre);
+    const double i = std::floor(point.x * cells_per_metre);
+    const double j = std::floor(point.y * cells_per_metre);
     const auto end = static_cast<double>(kChunkEnd * kSide);
     if (!(std::abs(i) < end && std::abs(j) < end)) { // also when it is NaN
-        return invalid(fmt::format("the point ({}, {}) has no cell in any map", point.x(), point.y()));
+        return invalid(fmt::format("the point ({}, {}) has no cell in any map", point.x, point.y));
     }
     return grid::Cell{static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
 }
@@ -123,7 +123,7 @@ Result<Spot> ground_at(const Passability& passability, const Point2& point, std:
     const auto cell = cell_of(point, passability.cell_size_m);
     if (!cell) return prefixed(fmt::format("{}: ", which), cell.error());
     const auto refusal = [&](std::string_view why) {
-        return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x(), point.y(), why)};
+        return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x, point.y, why)};
     };
     if (passability.window.empty()) return refusal("outside the map: no laser has explored anything yet");
     const auto spot = passability.spot_of(*cell);
@@ -207,8 +207,8 @@ std::optional<Spot> Passability::spot_of(grid::Cell cell) const noexcept {
 
 std::optional<Spot> Passability::spot_at(const Point2& point) const noexcept {
     const double cells_per_metre = 1.0 / cell_size_m;
-    const double x = std::floor(point.x() * cells_per_metre) - window.i_begin;
-    const double y = std::floor(point.y() * cells_per_metre) - window.j_begin;
+    const double x = std::floor(point.x * cells_per_metre) - window.i_begin;
+    const double y = std::floor(point.y * cells_per_metre) - window.j_begin;
     if (!(x >= 0.0 && x < ground.width() && y >= 0.0 && y < ground.height())) return std::nullopt;
     return Spot{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
 }
@@ -218,8 +218,8 @@ Point2 to_cells(const Passability& passability, const Point2& point, Spot cell) 
         return std::clamp(x, static_cast<double>(lowest), std::nextafter(lowest + 1.0, 0.0));
     };
     const Point2 scaled = point * (1.0 / passability.cell_size_m);
-    return {within(scaled.x() - passability.window.i_begin, cell.x),
-            within(scaled.y() - passability.window.j_begin, cell.y)};
+    return {within(scaled.x - passability.window.i_begin, cell.x),
+            within(scaled.y - passability.window.j_begin, cell.y)};
 }
 
 Result<Passability> make_passability(const ClassView& classes, double cell_size_m, const PassabilityOptions& options,
@@ -266,7 +266,7 @@ Result<Spot> check_goal(const Passability& passability, const Point2& goal) {
     return Error{Errc::kNoPath,
                  fmt::format("the goal ({:g}, {:g}) is nearer to an obstacle {}than the body radius of {} "
                              "m: give a point further away from it",
-                             goal.x(), goal.y(), passability.options.on_known ? "or to unknown ground " : "",
+                             goal.x, goal.y, passability.options.on_known ? "or to unknown ground " : "",
                              passability.options.body_radius_m)};
 }
 

@@ -14,7 +14,7 @@ Result<> check(std::span<const Point2> corners) {
                      fmt::format("region has {} corners; it must have 3 .. {}", corners.size(), kRegionCornersMax)};
     }
     for (std::size_t n = 0; n < corners.size(); ++n) {
-        if (!corners[n].allFinite()) {
+        if (!is_finite(corners[n])) {
             return Error{Errc::kInvalidField, fmt::format("region[{}] is not a finite point", n)};
         }
     }
@@ -27,8 +27,8 @@ std::vector<double> crossings(std::span<const Point2> corners, double y) {
     for (std::size_t n = 0; n < corners.size(); ++n) {
         const Point2& a = corners[n];
         const Point2& b = corners[(n + 1) % corners.size()];
-        if ((a.y() <= y) == (b.y() <= y)) continue;
-        places.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+        if ((a.y <= y) == (b.y <= y)) continue;
+        places.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
     }
     std::ranges::sort(places);
     return places;
@@ -41,7 +41,7 @@ Result<BitGrid> cells_inside(const Passability& passability, std::span<const Poi
     BitGrid inside(passability.ground.width(), passability.ground.height());
     const double width = passability.ground.width();
     for (std::int32_t y = 0; y < inside.height(); ++y) {
-        const auto places = crossings(corners, passability.centre_of({0, y}).y());
+        const auto places = crossings(corners, passability.centre_of({0, y}).y);
         for (std::size_t n = 0; n + 1 < places.size(); n += 2) {
             // The first column whose centre is not left of the edge.
             const auto column = [&](double x) {

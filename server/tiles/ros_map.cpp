@@ -66,7 +66,7 @@ Bytes map_pgm(const MapImage& image, const mapping::MapConfig& config) {
 
 std::string map_yaml(const MapFrame& frame) {
     const auto origin = frame.origin();
-    return ros_yaml("map.pgm", frame.cell_size, origin.x(), origin.y());
+    return ros_yaml("map.pgm", frame.cell_size, origin.x, origin.y);
 }
 
 } // namespace scanloom::tiles

@@ -26,7 +26,7 @@ std::vector<Point2> capture(const Pose2& place, std::size_t count, std::uint64_t
         for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
             if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
             const double angle = beam_angle(laser.angles, n);
-            points.push_back(1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle)));
+            points.push_back(1e-3 * ranges[n] * Point2{std::cos(angle), std::sin(angle)});
         }
     }
     return points;

@@ -29,9 +29,9 @@ std::vector<Point2> make_capture(Cloud cloud, std::size_t count) {
         for (std::size_t n = 0; n < ranges.size() && points.size() < count; ++n) {
             if (ranges[n] == kInvalidRange || ranges[n] == kNoReturn) continue;
             const double angle = beam_angle(laser.angles, n);
-            points.push_back(transform(place, 1e-3 * ranges[n] * Point2(std::cos(angle), std::sin(angle))));
+            points.push_back(transform(place, 1e-3 * ranges[n] * Point2{std::cos(angle), std::sin(angle)}));
             if (cloud != kJittered) continue;
-            points.back() += Point2(random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4));
+            points.back() += Point2{random.uniform(-5e-4, 5e-4), random.uniform(-5e-4, 5e-4)};
         }
     }
     return points;

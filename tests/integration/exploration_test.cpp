@@ -28,7 +28,7 @@ const Point2 kMiddle{0.137, 0.163};
 robot::World moved(const robot::World& world) {
     const auto move = [](std::vector<robot::Box> boxes) {
         for (robot::Box& box : boxes) {
-            box = {box.x_min + kMiddle.x(), box.y_min + kMiddle.y(), box.x_max + kMiddle.x(), box.y_max + kMiddle.y()};
+            box = {box.x_min + kMiddle.x, box.y_min + kMiddle.y, box.x_max + kMiddle.x, box.y_max + kMiddle.y};
         }
         return boxes;
     };
@@ -144,7 +144,7 @@ private:
             }
         }
         const grid::Cell target = next->goal->target;
-        robot.go(next->path.points, Point2(target.i + 0.5, target.j + 0.5) * kCellSize);
+        robot.go(next->path.points, Point2{target.i + 0.5, target.j + 0.5} * kCellSize);
         return true;
     }
 

@@ -61,7 +61,7 @@ wire::PlanRequest plan_to(const Point2& goal, std::uint64_t id = 1) { return {.i
 TEST_F(RequestsTest, APlanIsThePathThatPlanningFinds) {
     auto& ingest = start();
     const auto robot = looking_around("r");
-    robot->send(wire::PlanRequest{.id = 7, .start = Point2(1.0, 1.0), .goal = {2.5, 0.2}, .body_radius = 0.2});
+    robot->send(wire::PlanRequest{.id = 7, .start = Point2{1.0, 1.0}, .goal = {2.5, 0.2}, .body_radius = 0.2});
     const auto reply = robot->receive_kind<wire::PlanReply>();
     const auto maps = ingest.snapshot("lab");
     planning::PassabilityOptions options;
@@ -76,7 +76,7 @@ TEST_F(RequestsTest, WithoutAStartTheRobotsNewestScanIsMeant) {
     start();
     const auto robot = looking_around("r");
     robot->send(plan_to({2.5, 0.2}));
-    EXPECT_EQ(robot->receive_kind<wire::PlanReply>().path.value().points.front(), Point2(0.5, 1.25));
+    EXPECT_EQ(robot->receive_kind<wire::PlanReply>().path.value().points.front(), (Point2{0.5, 1.25}));
     const auto mute = welcomed(port(), hello("mute"));
     mute->send(plan_to({2.5, 0.2}));
     EXPECT_EQ(mute->receive_kind<wire::PlanReply>().path.error().code, Errc::kNoPath);
@@ -164,8 +164,8 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
     auto& ingest = start();
     const auto frontier_of = [&](const Point2& target) {
         const auto frontiers = classify::find_frontiers(ingest.snapshot("lab")->classes, 10);
-        const grid::Cell cell{static_cast<std::int32_t>(std::floor(target.x() / 0.05)),
-                              static_cast<std::int32_t>(std::floor(target.y() / 0.05))};
+        const grid::Cell cell{static_cast<std::int32_t>(std::floor(target.x / 0.05)),
+                              static_cast<std::int32_t>(std::floor(target.y / 0.05))};
         return std::ranges::find_if(
                    frontiers, [&](const auto& one) { return std::ranges::find(one.cells, cell) != one.cells.end(); }) -
                frontiers.begin();
@@ -175,7 +175,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
     first->send(wire::GoalRequest{.id = 1, .frontier_size_min = 10});
     const auto goal = first->receive_kind<wire::GoalReply>().goal.value();
     ASSERT_EQ(goal.exploration, wire::Exploration::kGoal);
-    EXPECT_EQ(goal.path->points.front(), Point2(0.5, 1.25));
+    EXPECT_EQ(goal.path->points.front(), (Point2{0.5, 1.25}));
 
     // As HTTP does it for b.
     const auto session = ingest.sessions().find("lab");
@@ -187,7 +187,7 @@ TEST_F(RequestsTest, TwoRobotsNeverGetTheSameFrontierOverTheirLinksAndBesides) {
                                  guide::GoalBook::Clock::now(), options)
                            .value();
     ASSERT_TRUE(other.goal);
-    const Point2 target = Point2(other.goal->target.i + 0.5, other.goal->target.j + 0.5) * 0.05;
+    const Point2 target = Point2{other.goal->target.i + 0.5, other.goal->target.j + 0.5} * 0.05;
     EXPECT_NE(frontier_of(target), frontier_of(*goal.target));
 
     std::set<std::ptrdiff_t> given = {frontier_of(target), frontier_of(*goal.target)};
@@ -214,7 +214,7 @@ TEST_F(RequestsTest, WhatARobotLooksAtInVainIsGivenUp) {
     const Point2 place = goal.path->points.back();
     const Point2 ahead = *goal.target - place;
     Scan blind = scan_with_a_gap(2);
-    blind.pose = {place.x(), place.y(), std::atan2(ahead.y(), ahead.x())};
+    blind.pose = {place.x, place.y, std::atan2(ahead.y, ahead.x)};
     std::ranges::fill(blind.ranges, kInvalidRange);
     robot->send(wire::ScanBatch{{blind}});
     robot->wait_for_ack(2);
@@ -233,7 +233,7 @@ TEST_F(RequestsTest, ACoverageCoversTheGroundOfItsRegion) {
     const auto coverage = reply.coverage.value();
     EXPECT_NEAR(coverage.free_area, 1.0, 0.1);
     EXPECT_NEAR(coverage.covered_area, coverage.free_area, 0.1);
-    EXPECT_EQ(coverage.path.points.front(), Point2(0.5, 1.25));
+    EXPECT_EQ(coverage.path.points.front(), (Point2{0.5, 1.25}));
     EXPECT_GT(coverage.path.length, 3.0);
 
     robot->send(wire::CoverageRequest{.id = 6});
@@ -249,7 +249,7 @@ TEST_F(RequestsTest, ARobotIsAnsweredOnTheMapsOfItsOwnSession) {
     start();
     const auto here = looking_around("r", "here");
     const auto elsewhere = welcomed(port(), hello("r", "elsewhere"));
-    elsewhere->send(wire::PlanRequest{.id = 1, .start = Point2(1.0, 1.0), .goal = {2.5, 0.2}});
+    elsewhere->send(wire::PlanRequest{.id = 1, .start = Point2{1.0, 1.0}, .goal = {2.5, 0.2}});
     EXPECT_THAT(elsewhere->receive_kind<wire::PlanReply>().path.error().message, testing::HasSubstr("outside the map"));
 }
 

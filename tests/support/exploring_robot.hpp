@@ -42,7 +42,7 @@ public:
     /// Pre  has not arrived.
     void step(mapping::Projection& maps) {
         if (!advance(kStep)) {
-            if ((*target_ - place()).norm() > 0.0) pose_.yaw = direction(*target_ - place());
+            if (norm(*target_ - place()) > 0.0) pose_.yaw = direction(*target_ - place());
             target_.reset();
         }
         least_clearance_ = std::min(least_clearance_, robot::clearance(*world_, place()));
@@ -50,25 +50,25 @@ public:
     }
 
 private:
-    static double direction(const Point2& along) { return std::atan2(along.y(), along.x()); }
+    static double direction(const Point2& along) { return std::atan2(along.y, along.x); }
 
     /// @return whether it was anywhere but at the end of its way.
     bool advance(double metres) {
         bool moved = false;
         while (metres > 0.0 && passed_ + 1 < way_.size()) {
             const Point2 left = way_[passed_ + 1] - place();
-            const double length = left.norm();
+            const double length = norm(left);
             if (length > 0.0) {
                 pose_.yaw = direction(left);
                 moved = true;
             }
             if (length <= metres) {
-                pose_.x = way_[passed_ + 1].x();
-                pose_.y = way_[passed_ + 1].y();
+                pose_.x = way_[passed_ + 1].x;
+                pose_.y = way_[passed_ + 1].y;
                 ++passed_;
             } else {
-                pose_.x += metres / length * left.x();
-                pose_.y += metres / length * left.y();
+                pose_.x += metres / length * left.x;
+                pose_.y += metres / length * left.y;
             }
             metres -= length;
         }

@@ -45,7 +45,7 @@ public:
         } else if (found->goal) {
             stop.outcome = robot::NextStop::Outcome::kGoal;
             stop.path = std::move(found->path.points);
-            stop.target = Point2(found->goal->target.i + 0.5, found->goal->target.j + 0.5) * maps.config.cell_size;
+            stop.target = Point2{found->goal->target.i + 0.5, found->goal->target.j + 0.5} * maps.config.cell_size;
         }
         return stop;
     }

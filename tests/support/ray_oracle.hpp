@@ -94,8 +94,8 @@ inline bool meets(Point2 from, Point2 to, grid::Cell cell, double cell_size, dou
     for (int axis = 0; axis < 2; ++axis) {
         const double low = (axis == 0 ? cell.i : cell.j) * cell_size - grown;
         const double high = low + cell_size + 2.0 * grown;
-        const double start = from[axis];
-        const double way = to[axis] - start;
+        const double start = axis == 0 ? from.x : from.y;
+        const double way = (axis == 0 ? to.x : to.y) - start;
         if (way == 0.0) {
             if (start < low || start > high) return false;
             continue;
@@ -114,7 +114,7 @@ using OpinionMap = std::map<std::pair<std::int32_t, std::int32_t>, MayBe>; // by
 /// Bresenham's line to each cell that the end may lie in.
 inline OpinionMap bresenham_opinions(const RayScene& scene, const RayBeam& beam, Point2 end) {
     const grid::Cell start = cell_of(scene.T_map_sensor.x, scene.T_map_sensor.y, scene.cell_size);
-    const auto ends = cells_near(end.x(), end.y(), scene.cell_size);
+    const auto ends = cells_near(end.x, end.y, scene.cell_size);
     std::map<std::pair<std::int32_t, std::int32_t>, std::pair<MayBe, std::size_t>> said; // and by how many lines
     for (const auto& last : ends) {
         for (const auto& cell : line_of_cells(start, last)) {
@@ -131,9 +131,9 @@ inline OpinionMap bresenham_opinions(const RayScene& scene, const RayBeam& beam,
 /// Every square that the segment crosses.
 inline OpinionMap traversal_opinions(const RayScene& scene, const RayBeam& beam, Point2 end) {
     const Point2 from{scene.T_map_sensor.x, scene.T_map_sensor.y};
-    const grid::Cell start = cell_of(from.x(), from.y(), scene.cell_size);
-    const auto ends = cells_near(end.x(), end.y(), scene.cell_size);
-    const auto last = cell_of(end.x(), end.y(), scene.cell_size);
+    const grid::Cell start = cell_of(from.x, from.y, scene.cell_size);
+    const auto ends = cells_near(end.x, end.y, scene.cell_size);
+    const auto last = cell_of(end.x, end.y, scene.cell_size);
     const MayBe at_end = beam.is_hit ? kMayBeOccupied : kMayBeFree;
     OpinionMap opinions;
     for (std::int32_t j = std::min(start.j, last.j) - 1; j <= std::max(start.j, last.j) + 1; ++j) {
@@ -154,11 +154,11 @@ inline OpinionMap traversal_opinions(const RayScene& scene, const RayBeam& beam,
 /// The cells whose centres are as near to the hit as hit_radius are hit, too.
 inline void add_hit_radius(const RayScene& scene, Point2 hit, OpinionMap& opinions) {
     const auto reach = static_cast<std::int32_t>(std::ceil(scene.hit_radius / scene.cell_size)) + 1;
-    const grid::Cell middle = cell_of(hit.x(), hit.y(), scene.cell_size);
+    const grid::Cell middle = cell_of(hit.x, hit.y, scene.cell_size);
     for (std::int32_t j = middle.j - reach; j <= middle.j + reach; ++j) {
         for (std::int32_t i = middle.i - reach; i <= middle.i + reach; ++i) {
             const double distance =
-                std::hypot((i + 0.5) * scene.cell_size - hit.x(), (j + 0.5) * scene.cell_size - hit.y());
+                std::hypot((i + 0.5) * scene.cell_size - hit.x, (j + 0.5) * scene.cell_size - hit.y);
             if (distance > scene.hit_radius + kPointMoves) continue;
             auto& may_be = opinions.try_emplace({j, i}, kMayBeNothing).first->second;
             may_be = distance <= scene.hit_radius - kPointMoves ? kMayBeOccupied : may_be | kMayBeOccupied;

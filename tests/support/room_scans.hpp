@@ -38,12 +38,12 @@ inline double room_range(const Point2& from, double direction_rad) {
             if (distance > 0.0 && across >= low && across <= high) nearest = std::min(nearest, distance);
         };
         for (const double x : {box.left, box.right}) {
-            const double distance = (x - from.x()) / dx;
-            meet(distance, from.y() + distance * dy, box.bottom, box.top);
+            const double distance = (x - from.x) / dx;
+            meet(distance, from.y + distance * dy, box.bottom, box.top);
         }
         for (const double y : {box.bottom, box.top}) {
-            const double distance = (y - from.y()) / dy;
-            meet(distance, from.x() + distance * dx, box.left, box.right);
+            const double distance = (y - from.y) / dy;
+            meet(distance, from.x + distance * dx, box.left, box.right);
         }
     }
     return nearest;

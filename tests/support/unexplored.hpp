@@ -109,8 +109,8 @@ private:
             reached[index(at)] = true;
             open.push_back(at);
         };
-        const double x = robot.x() / claim_.cell_size - area_.i_begin;
-        const double y = robot.y() / claim_.cell_size - area_.j_begin;
+        const double x = robot.x / claim_.cell_size - area_.i_begin;
+        const double y = robot.y / claim_.cell_size - area_.j_begin;
         const double near = claim_.clearance / claim_.cell_size + 1.0;
         for (std::int32_t row = 0; row < height_; ++row) {
             for (std::int32_t column = 0; column < width_; ++column) {

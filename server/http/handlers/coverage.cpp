@@ -19,12 +19,12 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kMembers = {"start", "spacing", "region", "body_radius"};
 
-Result<Position> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
+Result<Place> start_of(const boost::json::object& body, const mapping::Snapshot& maps) {
     if (const auto* start = body.if_contains("start")) return read_place(*start, "start", maps);
     if (maps.robots.size() == 1) {
         const auto pose = guide::pose_of(maps, 0);
         if (!pose) return prefixed("start is missing: ", pose.error());
-        return Position{pose->x, pose->y, maps.robots[0].body_radius};
+        return Place{{pose->x, pose->y}, maps.robots[0].body_radius};
     }
     return Error{Errc::kInvalidField, fmt::format(R"(start is missing, and the session has {} robots; give [x, y] or )"
                                                   R"({{"robot": "name"}})",
@@ -79,7 +79,7 @@ Result<Response> post_coverage(const MapsLookup& maps, const AnswerSlots& slots,
     const auto options = options_of(*body, start->body_radius);
     if (!options) return options.error();
 
-    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point(), *options,
+    auto coverage = planning::plan_coverage(snapshot.classes, snapshot.config.cell_size, start->point, *options,
                                             guide::Patience(maps.sessions()));
     if (!coverage) return coverage.error();
     auto slot =

@@ -62,7 +62,7 @@ Result<Offers> cheapest_offers(const mapping::Snapshot& maps, const std::vector<
     for (const RobotIndex robot : robots) {
         const auto& pose = *maps.robots[robot].pose;
         const auto goals =
-            planning::frontier_goals(maps.classes, maps.config.cell_size, frontiers, Point2(pose.x, pose.y), options);
+            planning::frontier_goals(maps.classes, maps.config.cell_size, frontiers, Point2{pose.x, pose.y}, options);
         if (!goals && goals.error().code != Errc::kNoPath) return goals.error();
         if (!goals) continue;
         offers.robots.push_back(robot);
@@ -81,7 +81,7 @@ std::string feature_of(const mapping::Snapshot& maps, const classify::Frontier& 
     const auto size = static_cast<double>(frontier.cells.size());
     boost::json::object properties{{"cells", frontier.cells.size()},
                                    {"area", rounded_metres(size * cell_size * cell_size)},
-                                   {"centroid", position(Point2(frontier.centroid_x, frontier.centroid_y) * cell_size)},
+                                   {"centroid", position(Point2{frontier.centroid_x, frontier.centroid_y} * cell_size)},
                                    {"reachable", offer.has_value()},
                                    {"robot", nullptr},
                                    {"goal", nullptr},
@@ -91,7 +91,7 @@ std::string feature_of(const mapping::Snapshot& maps, const classify::Frontier& 
     if (offer) {
         const auto& goal = offer->goal;
         properties["robot"] = maps.robots[offer->robot].name;
-        properties["goal"] = position(Point2(goal.cell.i + 0.5, goal.cell.j + 0.5) * cell_size);
+        properties["goal"] = position(Point2{goal.cell.i + 0.5, goal.cell.j + 0.5} * cell_size);
         properties["in_danger"] = goal.in_danger;
         properties["length"] = rounded_metres(goal.length_m);
         properties["cost"] = rounded_metres(goal.cost);

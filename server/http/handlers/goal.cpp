@@ -25,7 +25,7 @@ std::string_view name_of(planning::Exploration outcome) {
 }
 
 std::string point_text(const Point2& point) {
-    return fmt::format(R"({{"x":{},"y":{}}})", rounded_metres(point.x()), rounded_metres(point.y()));
+    return fmt::format(R"({{"x":{},"y":{}}})", rounded_metres(point.x), rounded_metres(point.y));
 }
 
 std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
@@ -36,7 +36,7 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
     const grid::Cell target = next.goal->target;
     return head + fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{},"cost":{}}})",
                               point_text(next.path.points.back()),
-                              point_text(Point2(target.i + 0.5, target.j + 0.5) * maps.config.cell_size),
+                              point_text(Point2{target.i + 0.5, target.j + 0.5} * maps.config.cell_size),
                               next.goal->in_danger, line_string(next.path.points), rounded_metres(next.path.length_m),
                               rounded_metres(next.path.cost));
 }
@@ -57,7 +57,7 @@ Result<Response> get_goal(const MapsLookup& maps, guide::GoalBook& goals, const 
     if (!pose) return pose.error();
 
     const auto next =
-        goals.next(found->session, snapshot, *robot, Point2(pose->x, pose->y), guide::GoalBook::Clock::now(), *options);
+        goals.next(found->session, snapshot, *robot, Point2{pose->x, pose->y}, guide::GoalBook::Clock::now(), *options);
     if (!next) return next.error();
     auto slot = slots.take(next->path.points.size() * kPointTextBytes);
     if (!slot) return slot.error();

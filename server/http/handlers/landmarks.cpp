@@ -32,7 +32,7 @@ struct LandmarkQuery {
     [[nodiscard]] bool wants(const landmarks::MapLandmark& one) const {
         const auto& at = one.landmark.position;
         const bool inside =
-            !bbox || (at.x() >= bbox->min_x && at.x() <= bbox->max_x && at.y() >= bbox->min_y && at.y() <= bbox->max_y);
+            !bbox || (at.x >= bbox->min_x && at.x <= bbox->max_x && at.y >= bbox->min_y && at.y <= bbox->max_y);
         return one.last > since && one.seen >= seen_min && inside;
     }
 };

@@ -43,8 +43,7 @@ Result<Response> post_plan(const MapsLookup& maps, const AnswerSlots& slots, con
     const auto options = passability_options(*body, from->body_radius);
     if (!options) return options.error();
 
-    const auto path =
-        planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point(), to->point(), *options);
+    const auto path = planning::plan_path(snapshot.classes, snapshot.config.cell_size, from->point, *to, *options);
     if (!path) return path.error();
     auto slot = slots.take(path->points.size() * kPointTextBytes);
     if (!slot) return slot.error();

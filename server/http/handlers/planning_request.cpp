@@ -97,7 +97,7 @@ Result<planning::PassabilityOptions> passability_options(const boost::json::obje
     return options;
 }
 
-Result<Position> read_point(const boost::json::value& value, std::string_view name) {
+Result<Point2> read_point(const boost::json::value& value, std::string_view name) {
     if (!value.is_array() || value.get_array().size() != 2) {
         return invalid(fmt::format("{} is not a point; give [x, y] in metres", name));
     }
@@ -105,13 +105,15 @@ Result<Position> read_point(const boost::json::value& value, std::string_view na
     if (!x) return x.error();
     const auto y = read_coordinate(value.get_array()[1], fmt::format("{}[1]", name));
     if (!y) return y.error();
-    return Position{*x, *y, {}};
+    return Point2{*x, *y};
 }
 
-Result<Position> read_place(const boost::json::value& value, std::string_view name, const mapping::Snapshot& maps) {
+Result<Place> read_place(const boost::json::value& value, std::string_view name, const mapping::Snapshot& maps) {
     if (!value.is_object()) {
-        if (value.is_array()) return read_point(value, name);
-        return invalid(fmt::format(R"({} is neither [x, y] nor {{"robot": "name"}})", name));
+        if (!value.is_array()) return invalid(fmt::format(R"({} is neither [x, y] nor {{"robot": "name"}})", name));
+        const auto point = read_point(value, name);
+        if (!point) return point.error();
+        return Place{*point};
     }
     constexpr std::array<std::string_view, 1> kKnown = {"robot"};
     const auto within = fmt::format("{}: ", name);
@@ -122,7 +124,7 @@ Result<Position> read_place(const boost::json::value& value, std::string_view na
     if (!index) return prefixed(fmt::format("{} is robot {}: ", name, in_quotes(*robot)), index.error());
     const auto pose = guide::pose_of(maps, *index);
     if (!pose) return prefixed(within, pose.error());
-    return Position{pose->x, pose->y, maps.robots[*index].body_radius};
+    return Place{{pose->x, pose->y}, maps.robots[*index].body_radius};
 }
 
 Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name) {
@@ -143,7 +145,7 @@ Result<std::vector<Point2>> read_region(const boost::json::value& value, std::st
     for (const auto& corner : *corners) {
         const auto point = read_point(corner, fmt::format("{}[{}]", name, polygon.size()));
         if (!point) return point.error();
-        polygon.push_back(point->point());
+        polygon.push_back(*point);
     }
     return polygon;
 }

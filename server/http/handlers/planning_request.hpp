@@ -18,13 +18,10 @@
 /// What requests for ways have in common. All errors name the field.
 namespace scanloom::http {
 
-/// A point as JSON has it, in metres of the map frame. (An Eigen vector in a Result would claim to be made of errors.)
-struct Position {
-    double x = 0.0;
-    double y = 0.0;
+/// Where a path begins.
+struct Place {
+    Point2 point;                           ///< metres, map frame
     std::optional<double> body_radius = {}; ///< metres, of the robot that is there, where one was named that states it
-
-    [[nodiscard]] Point2 point() const { return {x, y}; }
 };
 
 /// MapsLookup::find() for a search: none is begun while the server shuts down.
@@ -45,12 +42,12 @@ struct Position {
 
 /// [x, y], in metres.
 /// Errors  kInvalidField: something else, or further out than any robot may be.
-[[nodiscard]] Result<Position> read_point(const boost::json::value& value, std::string_view name);
+[[nodiscard]] Result<Point2> read_point(const boost::json::value& value, std::string_view name);
 
 /// [x, y], or {"robot": name}: where that robot is.
 /// Errors  kInvalidField; kNotFound: no such robot; kNoPath: nobody knows where it is.
-[[nodiscard]] Result<Position> read_place(const boost::json::value& value, std::string_view name,
-                                          const mapping::Snapshot& maps);
+[[nodiscard]] Result<Place> read_place(const boost::json::value& value, std::string_view name,
+                                       const mapping::Snapshot& maps);
 
 /// A polygon's corners [[x, y], ...], or a box [min_x, min_y, max_x, max_y].
 /// Errors  kInvalidField.

@@ -50,11 +50,11 @@ wire::TileChanges changes_of(const mapping::Snapshot& maps, mapping::Layer layer
 wire::LiveLandmark to_wire(const landmarks::MapLandmark& one) noexcept {
     const auto& landmark = one.landmark;
     return {one.id,
-            landmark.position.x(),
-            landmark.position.y(),
+            landmark.position.x,
+            landmark.position.y,
             one.seen,
-            static_cast<float>(landmark.size.x()),
-            static_cast<float>(landmark.size.y()),
+            static_cast<float>(landmark.size.x),
+            static_cast<float>(landmark.size.y),
             static_cast<float>(landmark.spread),
             static_cast<float>(landmark.continuity),
             static_cast<std::uint32_t>(landmark.points),

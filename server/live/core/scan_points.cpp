@@ -18,7 +18,7 @@ wire::ScanPoints points_of(const mapping::FoldedScan& folded, std::size_t stride
         const auto reading = reading_of(scan.ranges[beam], rules);
         if (!reading || !reading->is_hit || hits++ % stride != 0) continue;
         const double direction = out.origin.yaw + beam_angle(angles, beam);
-        out.points.push_back(in_millimetres(reading->metres * Point2(std::cos(direction), std::sin(direction))));
+        out.points.push_back(in_millimetres(reading->metres * Point2{std::cos(direction), std::sin(direction)}));
     }
     return out;
 }

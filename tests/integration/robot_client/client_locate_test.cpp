@@ -42,7 +42,7 @@ TEST_F(ClientLocate, TellsWhatTheServerFound) {
     ASSERT_EQ(server_in_the_test_.fake().locates().size(), 1U);
     const auto& asked = server_in_the_test_.fake().locates()[0];
     EXPECT_EQ(asked.points.size(), 10U * 199U);
-    EXPECT_EQ(asked.from, Point2(1.0, 2.0));
+    EXPECT_EQ(asked.from, (Point2{1.0, 2.0}));
     EXPECT_EQ(asked.near, (wire::Near{{4.0, 5.0}, 6.0}));
     EXPECT_TRUE(server_in_the_test_.fake().stored().empty()) << "what is asked with is not stored";
 }

@@ -25,7 +25,7 @@ TEST_F(ClientQuestions, AreAnsweredAsTheServerFindsIt) {
     EXPECT_EQ(goal->given_up, 0U);
     const auto way = client->plan({1.0, 0.0}, 20s);
     ASSERT_TRUE(way) << way.error().message;
-    EXPECT_LT((way->points.back() - Point2(1.0, 0.0)).norm(), 0.2);
+    EXPECT_LT(norm(way->points.back() - Point2{1.0, 0.0}), 0.2);
     EXPECT_GE(way->length, 0.8);
     EXPECT_GE(way->cost, way->length);
     EXPECT_GT(way->revision, 0U);
@@ -47,9 +47,9 @@ TEST_F(ClientQuestions, KeepToTheOptionsGiven) {
     serve();
     const auto client = Client::start(options()).value();
     send(*client, 1, 5);
-    const auto from = client->plan({1.0, 0.0}, 20s, {.start = Point2(0.5, 0.0)});
+    const auto from = client->plan({1.0, 0.0}, 20s, {.start = Point2{0.5, 0.0}});
     ASSERT_TRUE(from) << from.error().message;
-    EXPECT_LT((from->points.front() - Point2(0.5, 0.0)).norm(), 0.2);
+    EXPECT_LT(norm(from->points.front() - Point2{0.5, 0.0}), 0.2);
     EXPECT_FALSE(client->plan({-2.0, 0.0}, 20s)) << "nothing is known there";
     EXPECT_TRUE(client->plan({-2.0, 0.0}, 20s, {.allow_unknown = true}));
     EXPECT_THAT(client->plan({1.0, 0.0}, 20s, {.danger_cost = -1.0}).error().message, HasSubstr("danger_cost"));
@@ -72,10 +72,10 @@ TEST_F(ClientQuestions, ThatNoServerTakesAreRefusedByNameAndDisturbNothing) {
     };
     refused(client->plan({kNan, 1.0}, 20s), Errc::kInvalidField, "goal.x is nan");
     refused(client->plan({0.0, 1e300}, 20s), Errc::kInvalidField, "goal.y is 1e+300");
-    refused(client->plan({0.0, 1.0}, 20s, {.start = Point2(kNan, 0.0)}), Errc::kInvalidField, "start.x is nan");
-    refused(client->coverage(20s, {.start = Point2(2e6, 0.0)}), Errc::kInvalidField, "start.x is 2e+06");
+    refused(client->plan({0.0, 1.0}, 20s, {.start = Point2{kNan, 0.0}}), Errc::kInvalidField, "start.x is nan");
+    refused(client->coverage(20s, {.start = Point2{2e6, 0.0}}), Errc::kInvalidField, "start.x is 2e+06");
     refused(client->coverage(20s, {.region = {{0.0, kNan}}}), Errc::kInvalidField, "region[1] is nan");
-    refused(client->coverage(20s, {.region = std::vector<Point2>(4097, Point2(0.0, 0.0))}), Errc::kTooLarge,
+    refused(client->coverage(20s, {.region = std::vector<Point2>(4097, Point2{0.0, 0.0})}), Errc::kTooLarge,
             "region has 4097 corners");
     refused(client->plan({1.0, 0.0}, 20s, {.body_radius = kNan}), Errc::kInvalidField, "body_radius");
     refused(client->coverage(20s, {.spacing = kNan}), Errc::kInvalidField, "spacing");
@@ -111,7 +111,7 @@ TEST_F(ClientQuestions, WhoseAskerHasLeftAreForgotten) {
     EXPECT_TRUE(way) << way.error().message;
     EXPECT_TRUE(client->close(20s));
     ASSERT_EQ(server.fake().plans().size(), 1U);
-    EXPECT_EQ(server.fake().plans()[0].goal, Point2(2.0, 0.0));
+    EXPECT_EQ(server.fake().plans()[0].goal, (Point2{2.0, 0.0}));
 }
 
 } // namespace

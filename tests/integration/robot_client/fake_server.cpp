@@ -146,7 +146,7 @@ asio::awaitable<bool> FakeServer::greet(Link& link, const wire::Hello& hello) {
 asio::awaitable<bool> FakeServer::meet(Link& link, const wire::PlanRequest& request) {
     plans_.push_back(request);
     if (link.script.hang_up_after_requests == ++link.requests) co_return false;
-    const wire::Path path{{Point2(0.0, 0.0), request.goal}, request.goal.norm(), request.goal.norm()};
+    const wire::Path path{{Point2{0.0, 0.0}, request.goal}, norm(request.goal), norm(request.goal)};
     const wire::Message reply = wire::PlanReply{request.id, 1, path};
     co_return co_await link.send(reply);
 }

@@ -30,7 +30,7 @@ protected:
     /// Asks within a run of the robot's program, and ends that.
     asio::awaitable<void> ask(Uplink& uplink, ScriptedSource& source) {
         const Locate locate = located_by(uplink, kNear, kFirstPlace);
-        answer_ = co_await locate(points(), Point2(0.5, 0.25));
+        answer_ = co_await locate(points(), Point2{0.5, 0.25});
         source.end();
     }
 
@@ -44,7 +44,7 @@ protected:
         ScriptedSource source;
         const auto ask_four_times = [&]() -> asio::awaitable<void> {
             const Locate locate = located_by(*uplink_, kNear, kFirstPlace);
-            for (int times = 0; times < 4; ++times) static_cast<void>(co_await locate(points(), Point2(0.5, 0.25)));
+            for (int times = 0; times < 4; ++times) static_cast<void>(co_await locate(points(), Point2{0.5, 0.25}));
             source.end();
         };
         EXPECT_TRUE(run(source, nullptr, [&] {
@@ -70,7 +70,7 @@ TEST_F(LocationTest, IsWhatTheServerAnswers) {
     EXPECT_EQ((*answer_)->yaw_sigma, 0.02);
     ASSERT_EQ(server_.locates().size(), 1U);
     EXPECT_EQ(server_.locates()[0].points, points());
-    EXPECT_EQ(server_.locates()[0].from, Point2(0.5, 0.25));
+    EXPECT_EQ(server_.locates()[0].from, (Point2{0.5, 0.25}));
     EXPECT_EQ(server_.locates()[0].near, kNear);
 }
 
@@ -130,7 +130,7 @@ TEST_F(LocationTest, ThatNobodyWaitsForAnyMoreLeavesRoomForOthers) {
         const auto until_asked = [&]() -> asio::awaitable<void> {
             while (server_.locates().empty()) co_await asio::post(asio::use_awaitable);
         };
-        co_await (locate(points(), Point2(0.0, 0.0)) || until_asked());
+        co_await (locate(points(), Point2{0.0, 0.0}) || until_asked());
         serve({});
         co_await ask(*uplink_, source);
     };

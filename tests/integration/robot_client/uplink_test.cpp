@@ -107,7 +107,7 @@ TEST_F(UplinkTest, WhatIsAskedIsAnsweredAmongTheScans) {
     };
     EXPECT_TRUE(run(options()));
     expect_all_stored_once();
-    EXPECT_THAT(ends, ElementsAre(Point2(100.0, 4.0), Point2(200.0, 4.0)));
+    EXPECT_THAT(ends, ElementsAre(Point2{100.0, 4.0}, Point2{200.0, 4.0}));
 }
 
 TEST_F(UplinkTest, WhatWasAskedOnALinkThatBrokeIsAskedAgain) {

@@ -25,8 +25,8 @@ TEST(DoorRoom, IsTheSimulatorsRoomButForTheDoor) {
     for (int degree = 0; degree < 360; ++degree) {
         const double yaw = degree * std::numbers::pi / 180.0;
         const double expected = look(room, -3.3, -3.3, yaw);
-        const Point2 end = Point2(-3.3, -3.3) + expected * Point2(std::cos(yaw), std::sin(yaw));
-        if (std::abs(end.x() - 5.0) < 1e-6 && end.y() > 2.1 && end.y() < 3.3) continue;
+        const Point2 end = Point2{-3.3, -3.3} + expected * Point2{std::cos(yaw), std::sin(yaw)};
+        if (std::abs(end.x - 5.0) < 1e-6 && end.y > 2.1 && end.y < 3.3) continue;
         EXPECT_NEAR(look(closed, -3.3, -3.3, yaw), expected, 1e-9) << degree;
     }
 }
@@ -34,8 +34,8 @@ TEST(DoorRoom, IsTheSimulatorsRoomButForTheDoor) {
 TEST(DoorRoom, ItsPlacesAreFreeAndSeeTheDoorAndTheSecondOne) {
     const auto world = make_door_room(Door::kOpen);
     const auto sees = [&](const Pose2& from, const Point2& to) {
-        const Point2 way = to - Point2(from.x, from.y);
-        return look(world, from.x, from.y, std::atan2(way.y(), way.x())) >= way.norm() - 1e-6;
+        const Point2 way = to - Point2{from.x, from.y};
+        return look(world, from.x, from.y, std::atan2(way.y, way.x)) >= norm(way) - 1e-6;
     };
     const Pose2& second = kDoorRoomPlaces[1];
     for (const Pose2& place : kDoorRoomPlaces) {

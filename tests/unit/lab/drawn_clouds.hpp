@@ -10,7 +10,7 @@ namespace scanloom::lab {
 inline std::vector<Point2> bars(const std::vector<Point2>& places) {
     std::vector<Point2> points;
     for (const Point2& place : places) {
-        for (int n = -5; n <= 5; ++n) points.push_back(place + Point2(0.04 * n, 0.0));
+        for (int n = -5; n <= 5; ++n) points.push_back(place + Point2{0.04 * n, 0.0});
     }
     return points;
 }

@@ -21,8 +21,8 @@ Sensor cross() {
 }
 
 void expect_near(const Point2& point, double x, double y) {
-    EXPECT_NEAR(point.x(), x, 1e-9);
-    EXPECT_NEAR(point.y(), y, 1e-9);
+    EXPECT_NEAR(point.x, x, 1e-9);
+    EXPECT_NEAR(point.y, y, 1e-9);
 }
 
 TEST(LidarCaptures, PointsAreWhereBeamsMetSomethingSeenFromTheMount) {

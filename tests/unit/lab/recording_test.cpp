@@ -25,7 +25,7 @@ TEST(Drive, GoesOnceAroundTheRoomWithoutTouchingTheWalker) {
         EXPECT_EQ(path.front(), start.pose);
         for (const Point2& corner : {Point2{-4, -4}, Point2{4, -4}, Point2{4, 4}, Point2{-4, 4}}) {
             EXPECT_TRUE(std::ranges::any_of(path, [&](const Pose2& pose) {
-                return (Point2{pose.x, pose.y} - corner).norm() < 1.5;
+                return norm(Point2{pose.x, pose.y} - corner) < 1.5;
             })) << start.name;
         }
         const auto recording = record(kMatrix.scenes[1], path, noise("none"), 0.1, 1);
@@ -66,7 +66,7 @@ TEST(Recordings, OfTheDynamicSceneHoldAWalkerWhoGoesOnAndIsSeen) {
     const auto path = drive_from(kMatrix.starts[0], kScansDefault);
     const auto empty = record(kMatrix.scenes[0], path, noise("none"), 0.1, 1);
     const auto walked = record(kMatrix.scenes[1], path, noise("none"), 0.1, 1);
-    EXPECT_NEAR((walked.walkers[31].at(0).centre - walked.walkers[1].at(0).centre).norm(), 3.0, 1e-6);
+    EXPECT_NEAR(norm(walked.walkers[31].at(0).centre - walked.walkers[1].at(0).centre), 3.0, 1e-6);
     std::size_t scans_with_walker = 0;
     for (std::size_t n = 0; n < path.size(); ++n) scans_with_walker += walked.scans[n].ranges != empty.scans[n].ranges;
     EXPECT_GT(scans_with_walker, kScansDefault / 8);

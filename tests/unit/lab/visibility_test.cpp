@@ -3,6 +3,7 @@
 #include "robot_client/sim/random.hpp"
 #include "robot_client/sim/ray_casting.hpp"
 #include "tests/support/angles.hpp"
+#include "tests/support/point_text.hpp"
 
 #include <gtest/gtest.h>
 
@@ -77,10 +78,10 @@ TEST(VisibleCells, AgreeWithCastingARayToEachFreeCell) {
         for (const Pose2& pose : path) {
             const Point2 local = transform(inverse(pose), centre);
             const double free =
-                robot::cast_ray(room.outlines, {pose.x, pose.y}, std::atan2(centre.y() - pose.y, centre.x() - pose.x));
-            wanted |= local.x() > 0.0 && local.norm() < 5.0 && local.norm() < free;
+                robot::cast_ray(room.outlines, {pose.x, pose.y}, std::atan2(centre.y - pose.y, centre.x - pose.x));
+            wanted |= local.x > 0.0 && norm(local) < 5.0 && norm(local) < free;
         }
-        EXPECT_EQ(seen.at(cell) != 0, wanted) << centre.transpose();
+        EXPECT_EQ(seen.at(cell) != 0, wanted) << testing_support::text_of(centre);
     });
 }
 

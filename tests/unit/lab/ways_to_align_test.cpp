@@ -68,7 +68,7 @@ TEST_F(WaysToAlignTest, AreOffByWhereTheSecondLidarWouldBe) {
 TEST_F(WaysToAlignTest, PairsThatDisagreeTakeNoPart) {
     const auto first = seen(Door::kClosed);
     auto second = first;
-    second.survey.landmarks[2].position.x() += 0.2;
+    second.survey.landmarks[2].position.x += 0.2;
     const auto [by_landmarks, by_surfaces] = ways_of(first, second);
     ASSERT_TRUE(by_landmarks.fit);
     EXPECT_EQ(by_landmarks.fit->agreeing, by_landmarks.pairs - 1);

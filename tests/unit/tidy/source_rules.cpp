@@ -118,6 +118,7 @@ const std::vector<Package> kPackages = {
     {"google/protobuf/", {"common/wire"}},
     {"openssl/", {"common/hash", "common/net", "server/access", "server/guard", "server/http"}},
     {"toml++/", {"server/access"}},
+    {"Eigen/", {"server/landmarks"}},
     {"nanoflann.hpp", {"server/landmarks"}},
     {"yaml-cpp/", {"common/ros_map"}},
     {"opencv2/", {"server/tiles", "lab"}},

@@ -36,7 +36,7 @@ TEST(Pose2, InverseUndoesAnyPose) {
         EXPECT_NEAR(identity.y, 0.0, 1e-9);
         EXPECT_NEAR(identity.yaw, 0.0, 1e-9);
         const Point2 point{metres(random), metres(random)};
-        EXPECT_LT((transform(inverse(pose), transform(pose, point)) - point).norm(), 1e-9);
+        EXPECT_LT(norm(transform(inverse(pose), transform(pose, point)) - point), 1e-9);
     }
 }
 

@@ -35,8 +35,8 @@ TEST(BadLocateRequest, IsRefusedByTheNameOfItsField) {
              r.points[3] = {0, 1'000'000'001};
          },
          "locate_request.points[7] leads to 1000000001 mm; at most 1000000000"},
-        {[](LocateRequest& r) { r.from.x() = kNan; }, "locate_request.from.x is nan;"},
-        {[](LocateRequest& r) { r.near->point.y() = -kInfinity; }, "locate_request.near.y is -inf;"},
+        {[](LocateRequest& r) { r.from.x = kNan; }, "locate_request.from.x is nan;"},
+        {[](LocateRequest& r) { r.near->point.y = -kInfinity; }, "locate_request.near.y is -inf;"},
         {[](LocateRequest& r) { r.near->radius = 0.0; }, "locate_request.radius is 0 m;"},
         {[](LocateRequest& r) { r.near->radius = 1000.5; }, "locate_request.radius is 1000.5 m;"},
         {[](LocateRequest& r) { r.near->radius = kNan; }, "locate_request.radius is nan m;"},

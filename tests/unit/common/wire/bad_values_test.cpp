@@ -231,10 +231,10 @@ TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
 
 TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
     const Spoilt<PlanRequest> kSpoilt[] = {
-        {[](PlanRequest& r) { r.start->x() = kNan; }, "plan_request.start.x is nan;"},
-        {[](PlanRequest& r) { r.start->y() = 1.1e6; }, "plan_request.start.y is 1.1e+06;"},
-        {[](PlanRequest& r) { r.goal.x() = kInfinity; }, "plan_request.goal.x is inf;"},
-        {[](PlanRequest& r) { r.goal.y() = -1e300; }, "plan_request.goal.y is -1e+300;"},
+        {[](PlanRequest& r) { r.start->x = kNan; }, "plan_request.start.x is nan;"},
+        {[](PlanRequest& r) { r.start->y = 1.1e6; }, "plan_request.start.y is 1.1e+06;"},
+        {[](PlanRequest& r) { r.goal.x = kInfinity; }, "plan_request.goal.x is inf;"},
+        {[](PlanRequest& r) { r.goal.y = -1e300; }, "plan_request.goal.y is -1e+300;"},
     };
     for (const auto& spoilt : kSpoilt) {
         PlanRequest request = example_plan_request();
@@ -249,15 +249,15 @@ TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
 
 TEST(BadGoalRequest, IsRefusedByTheNameOfItsField) {
     GoalRequest request = example_goal_request();
-    request.start->y() = kNan;
+    request.start->y = kNan;
     expect_refused(body_of(request), Errc::kInvalidField, "goal_request.start.y is nan;");
 }
 
 TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
     const Spoilt<CoverageRequest> kSpoilt[] = {
-        {[](CoverageRequest& r) { r.start->x() = kNan; }, "coverage_request.start.x is nan;"},
-        {[](CoverageRequest& r) { r.region[1].y() = kNan; }, "coverage_request.region[3] is nan;"},
-        {[](CoverageRequest& r) { r.region[2].x() = -2e6; }, "coverage_request.region[4] is -2e+06;"},
+        {[](CoverageRequest& r) { r.start->x = kNan; }, "coverage_request.start.x is nan;"},
+        {[](CoverageRequest& r) { r.region[1].y = kNan; }, "coverage_request.region[3] is nan;"},
+        {[](CoverageRequest& r) { r.region[2].x = -2e6; }, "coverage_request.region[4] is -2e+06;"},
         {[](CoverageRequest& r) {
              r.region.assign(kRegionPointsMax + 1, {1.0, 1.0});
          },
@@ -277,8 +277,8 @@ TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
 TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
     const Spoilt<Path> kSpoilt[] = {
         {[](Path& p) { p.points.clear(); }, "points is empty;"},
-        {[](Path& p) { p.points[1].x() = kNan; }, "points[2] is nan;"},
-        {[](Path& p) { p.points[2].y() = 1.1e6; }, "points[5] is 1.1e+06;"},
+        {[](Path& p) { p.points[1].x = kNan; }, "points[2] is nan;"},
+        {[](Path& p) { p.points[2].y = 1.1e6; }, "points[5] is 1.1e+06;"},
         {[](Path& p) {
              p.points.assign(kPathPointsMax + 1, {0.0, 0.0});
          },
@@ -291,7 +291,7 @@ TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
         Path path = example_path();
         spoilt.spoil(path);
         expect_refused(body_of(PlanReply{1, 2, path}), spoilt.code, std::string("plan_reply.path.") + spoilt.beginning);
-        expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, path, Point2(0.0, 0.0)}}), spoilt.code,
+        expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, path, Point2{0.0, 0.0}}}), spoilt.code,
                        std::string("goal_reply.goal.path.") + spoilt.beginning);
         expect_refused(body_of(CoverageReply{1, 2, Coverage{path, 2.0, 1.0}}), spoilt.code,
                        std::string("coverage_reply.coverage.path.") + spoilt.beginning);
@@ -307,7 +307,7 @@ TEST(BadReply, IsRefusedByTheNameOfItsField) {
                    "coverage_reply.coverage.cell_size is nan;");
     expect_refused(body_of(CoverageReply{1, 2, Coverage{example_path(), 1.0, -1.0}}), Errc::kInvalidField,
                    "coverage_reply.coverage.covered_area is -1;");
-    expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), Point2(kNan, 0.0)}}),
+    expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), Point2{kNan, 0.0}}}),
                    Errc::kInvalidField, "goal_reply.goal.target.x is nan;");
     expect_refused(body_of(GoalReply{1, 2, Goal{Exploration::kGoal, example_path(), std::nullopt}}),
                    Errc::kInvalidField, "goal_reply.goal.exploration does not go with path and target;");

@@ -84,7 +84,7 @@ inline Path example_path() { return {{{0.5, -1.25}, {2.0, 3.0}, {-1e6, 1e6}}, 7.
 
 inline PlanRequest example_plan_request() {
     return {.id = 0xFEDCBA9876543210U,
-            .start = Point2(1.5, -2.5),
+            .start = Point2{1.5, -2.5},
             .goal = {-3.25, 4.0},
             .allow_unknown = true,
             .body_radius = 0.25,
@@ -92,10 +92,10 @@ inline PlanRequest example_plan_request() {
 }
 
 inline GoalRequest example_goal_request() {
-    return {.id = 18, .start = Point2(1.5, -2.5), .body_radius = 0.25, .frontier_size_min = 9};
+    return {.id = 18, .start = Point2{1.5, -2.5}, .body_radius = 0.25, .frontier_size_min = 9};
 }
 
-inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2(-1e6, 1e6), 17, true}; }
+inline Goal example_goal() { return {Exploration::kGoal, example_path(), Point2{-1e6, 1e6}, 17, true}; }
 
 inline LocateRequest example_locate_request() {
     LocateRequest request{20, {}, {0.25, -0.5}, Near{{-1e6, 12.5}, 1000.0}};
@@ -108,7 +108,7 @@ inline Correction example_correction() { return {{1.0, 2.0, -0.5}, 99, 0.875, 0.
 
 inline CoverageRequest example_coverage_request() {
     return {.id = 19,
-            .start = Point2(1.5, -2.5),
+            .start = Point2{1.5, -2.5},
             .body_radius = 0.25,
             .spacing = 0.5,
             .region = {{0.0, 0.0}, {4.0, 0.0}, {0.0, 5.0}}};

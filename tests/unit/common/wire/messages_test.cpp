@@ -76,7 +76,7 @@ TEST(Messages, WhatIsOptionalMayBeAbsent) {
         EXPECT_EQ(decode(body_of(request)).value(), request);
     }
     const Message point =
-        PlanRequest{.start = Point2(0.0, 0.0), .goal = {0.0, 0.0}, .body_radius = 0.0, .danger_cost = 0.0};
+        PlanRequest{.start = Point2{0.0, 0.0}, .goal = {0.0, 0.0}, .body_radius = 0.0, .danger_cost = 0.0};
     EXPECT_EQ(decode(body_of(point)).value(), point) << "what is 0 is not absent";
 
     Scan scan = example_scan();
@@ -136,12 +136,12 @@ TEST(Messages, TheLargestScanAndTheLargestBatchArePossible) {
 }
 
 TEST(Messages, TheLongestPathFitsAFrame) {
-    const Path path{std::vector<Point2>(kPathPointsMax, Point2(-1e5 / 3.0, 1e6 / 3.0)), 1e9 / 3.0, 1e10 / 3.0};
-    const Path short_path{{Point2(1.0, 2.0)}, 0.0, 0.0};
+    const Path path{std::vector<Point2>(kPathPointsMax, Point2{-1e5 / 3.0, 1e6 / 3.0}), 1e9 / 3.0, 1e10 / 3.0};
+    const Path short_path{{Point2{1.0, 2.0}}, 0.0, 0.0};
     const std::vector<CellRun> runs(kPathPointsMax - 1, {INT32_MIN, INT32_MAX, INT32_MAX});
     for (const Message& reply :
          {Message(PlanReply{UINT64_MAX, UINT64_MAX, path}),
-          Message(GoalReply{UINT64_MAX, UINT64_MAX, Goal{Exploration::kGoal, path, Point2(0.1, 0.2)}}),
+          Message(GoalReply{UINT64_MAX, UINT64_MAX, Goal{Exploration::kGoal, path, Point2{0.1, 0.2}}}),
           Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{path, 0.1, 0.2}}),
           Message(CoverageReply{UINT64_MAX, UINT64_MAX, Coverage{short_path, 0.1, 0.2, runs, 0.05}})}) {
         EXPECT_LE(body_of(reply).size(), kFrameBytesMax);

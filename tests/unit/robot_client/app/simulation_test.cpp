@@ -2,6 +2,7 @@
 
 #include "robot_client/app/waypoint_list.hpp"
 #include "robot_client/sim/tour.hpp"
+#include "tests/support/point_text.hpp"
 #include "tests/support/temporary_directory.hpp"
 
 #include <gmock/gmock.h>
@@ -61,7 +62,7 @@ TEST(Simulation, WaypointsWhereNoRobotCanBeAreToldWithTheReason) {
     const Box inner = *std::ranges::find_if(
         room.solids, [](const Box& box) { return std::max(std::abs(box.x_min), std::abs(box.x_max)) < 4.0; });
     const Point2 middle{(inner.x_min + inner.x_max) / 2.0, (inner.y_min + inner.y_max) / 2.0};
-    const Point2 beside{inner.x_min - 0.1, middle.y()};
+    const Point2 beside{inner.x_min - 0.1, middle.y};
     auto source = prepared("waypoints", "room", to_text({{40.0, 0.0}, middle, beside})).source;
     while (*source->next()) {
     }
@@ -92,7 +93,7 @@ TEST(Simulation, EveryWorldWithANameHasATourThatKeepsClearOfWhatStandsThere) {
         const auto tour = tour_of(named.name);
         EXPECT_GT(tour.size(), 5U) << named.name;
         for (const Point2& waypoint : tour) {
-            EXPECT_GT(clearance(world, waypoint), 0.5) << named.name << ' ' << waypoint.transpose();
+            EXPECT_GT(clearance(world, waypoint), 0.5) << named.name << ' ' << testing_support::text_of(waypoint);
         }
     }
     EXPECT_TRUE(tour_of("somewhere").empty());

@@ -32,7 +32,7 @@ public:
         double seconds, const std::function<void()>& each_scan = [] {}) {
         for (int n = 0; n < static_cast<int>(seconds / kScanPeriod) && !is_done(); ++n) {
             const Pose2 pose = simulator_.next_scan().pose;
-            way_.emplace_back(pose.x, pose.y);
+            way_.push_back({pose.x, pose.y});
             clearance_min_ = std::min(clearance_min_, clearance(simulator_.world(), way_.back()));
             each_scan();
         }
@@ -47,7 +47,7 @@ public:
     /// How near it came to a point, metres.
     [[nodiscard]] double nearest_to(const Point2& point) const {
         double nearest = std::numeric_limits<double>::infinity();
-        for (const Point2& place : way_) nearest = std::min(nearest, (place - point).norm());
+        for (const Point2& place : way_) nearest = std::min(nearest, norm(place - point));
         return nearest;
     }
 

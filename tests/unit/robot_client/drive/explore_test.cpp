@@ -35,7 +35,7 @@ TEST(Explore, LooksAllAroundBeforeItAsks) {
     EXPECT_FALSE(robot.explore->is_asking());
     EXPECT_FALSE(robot.asks_within(3.5));
     EXPECT_TRUE(robot.asks_within(2.0));
-    EXPECT_EQ(robot.driven.way().back(), Point2(-2.0, 0.0));
+    EXPECT_EQ(robot.driven.way().back(), (Point2{-2.0, 0.0}));
 }
 
 TEST(Explore, GoesToTheEndOfItsWayAndLooksAtTheTargetBeforeItAsksAgain) {

@@ -106,7 +106,7 @@ TEST(GroundPaths, ARobotThatStandsTooNearFindsItsWayOut) {
     const Ground ground(drawn_plan(kTwoRooms, 0.1), 0.06);
     const auto way = find_way(ground, {0.14, 0.14}, {0.25, 0.45});
     ASSERT_TRUE(way);
-    EXPECT_EQ(way->front(), Point2(0.14, 0.14));
+    EXPECT_EQ(way->front(), (Point2{0.14, 0.14}));
 }
 
 TEST(GroundPaths, TheNearestTargetIsThatOfTheShortestWay) {

@@ -31,7 +31,7 @@ private:
 double distance_to_way(const Point2& point, const std::vector<Point2>& way) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t n = 0; n + 1 < way.size(); ++n) {
-        nearest = std::min(nearest, distance(Segment{way[n].x(), way[n].y(), way[n + 1].x(), way[n + 1].y()}, point));
+        nearest = std::min(nearest, distance(Segment{way[n].x, way[n].y, way[n + 1].x, way[n + 1].y}, point));
     }
     return nearest;
 }
@@ -42,7 +42,7 @@ TEST(PathFollower, KeepsToItsWayAtEveryCorner) {
     ASSERT_TRUE(driven.run(120.0));
     for (const Point2& place : driven.way()) EXPECT_LT(distance_to_way(place, way), 0.05);
     for (const Point2& corner : way) EXPECT_LT(driven.nearest_to(corner), 0.06);
-    EXPECT_LT((driven.way().back() - way.back()).norm(), 0.05);
+    EXPECT_LT(norm(driven.way().back() - way.back()), 0.05);
 }
 
 TEST(PathFollower, GoesRoundACornerOfAWallAsNearAsItsWayDoes) {
@@ -57,13 +57,13 @@ TEST(PathFollower, GoesRoundACornerOfAWallAsNearAsItsWayDoes) {
 TEST(PathFollower, ArrivesBesideAWallThatItsWayLeadsTo) {
     Driven driven(walled({}), {0, 0, 0.0}, std::make_unique<Follow>(std::vector<Point2>{{0, 0}, {2.78, 0}}));
     EXPECT_TRUE(driven.run(30.0));
-    EXPECT_GT(driven.way().back().x(), 2.65);
+    EXPECT_GT(driven.way().back().x, 2.65);
 }
 
 TEST(PathFollower, ArrivesWhereTheEndOfItsWayIsALittleTooNearToAWall) {
     Driven driven(walled({}), {0, 0, 0.0}, std::make_unique<Follow>(std::vector<Point2>{{0, 0}, {2.9, 0}}));
     EXPECT_TRUE(driven.run(30.0));
-    EXPECT_NEAR(driven.way().back().x(), 3.0 - kKeptClear, 0.03);
+    EXPECT_NEAR(driven.way().back().x, 3.0 - kKeptClear, 0.03);
     EXPECT_EQ(driven.simulator().collisions(), 0U);
 }
 
@@ -82,7 +82,7 @@ TEST(PathFollower, StopsBeforeWhatStandsInItsWayAndSaysSo) {
     Driven driven(walled({{0.5, -0.3, 1.0, 0.3}}), {-2, 0, 0.0}, std::move(follow));
     EXPECT_FALSE(driven.run(30.0));
     EXPECT_EQ(driven.simulator().collisions(), 0U);
-    EXPECT_NEAR(driven.way().back().x(), 0.5 - kKeptClear - 0.2, 0.03);
+    EXPECT_NEAR(driven.way().back().x, 0.5 - kKeptClear - 0.2, 0.03);
     EXPECT_GT(followed.blocked_max, 300);
 }
 

@@ -47,7 +47,7 @@ TEST(WayAhead, TwoBeamsAreNoise) {
     Senses senses;
     senses.obstacles = {{0.5, 0.0}, {0.5, 0.01}};
     EXPECT_EQ(free_ahead(senses, 0.0), std::numeric_limits<double>::infinity());
-    senses.obstacles.emplace_back(0.6, 0.0);
+    senses.obstacles.push_back({0.6, 0.0});
     EXPECT_NEAR(free_ahead(senses, 0.0), 0.6 - kKeptClear, 1e-12);
 }
 

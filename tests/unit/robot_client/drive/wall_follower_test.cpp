@@ -116,8 +116,8 @@ TEST(Obstacles, AreWhereBeamsWithAReturnEnded) {
     scan.ranges = {1000, 2000, kNoReturn, 0};
     const auto obstacles = obstacles_of(scan, laser);
     ASSERT_EQ(obstacles.size(), 2U);
-    EXPECT_LT((obstacles[0] - Point2(1.0, 3.5)).norm(), 1e-9);
-    EXPECT_LT((obstacles[1] - Point2(-1.0, 2.5)).norm(), 1e-9);
+    EXPECT_LT(norm(obstacles[0] - Point2{1.0, 3.5}), 1e-9);
+    EXPECT_LT(norm(obstacles[1] - Point2{-1.0, 2.5}), 1e-9);
 }
 
 } // namespace

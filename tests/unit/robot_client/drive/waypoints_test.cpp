@@ -14,24 +14,24 @@ namespace scanloom::robot {
 namespace {
 
 TEST(PotentialField, DrawsStraightToAGoalInTheOpen) {
-    EXPECT_LT((potential_force({1.0, 1.0}, {4.0, 5.0}, {}) - Point2(0.6, 0.8)).norm(), 1e-12) << "limited to 1";
-    EXPECT_LT((potential_force({1.0, 1.0}, {1.3, 1.4}, {}) - Point2(0.3, 0.4)).norm(), 1e-12) << "as far as it is";
+    EXPECT_LT(norm(potential_force({1.0, 1.0}, {4.0, 5.0}, {}) - Point2{0.6, 0.8}), 1e-12) << "limited to 1";
+    EXPECT_LT(norm(potential_force({1.0, 1.0}, {1.3, 1.4}, {}) - Point2{0.3, 0.4}), 1e-12) << "as far as it is";
 }
 
 TEST(PotentialField, RepelsByTheFirasFunctionOfTheDistanceFromTheBody) {
     const Point2 here{0.0, 0.0};
     const double rho = 0.1;
     const double repulsion = 0.002 * (1.0 / rho - 1.0 / 0.5) / (rho * rho);
-    const Point2 force = potential_force(here, here, std::vector{Point2(0.0, -(kBodyRadius + rho))});
-    EXPECT_NEAR(force.x(), 0.0, 1e-12);
-    EXPECT_NEAR(force.y(), repulsion, 1e-12) << "away from it";
-    EXPECT_EQ(potential_force(here, here, std::vector{Point2(0.0, -(kBodyRadius + 0.51))}), here) << "too far to count";
+    const Point2 force = potential_force(here, here, std::vector{Point2{0.0, -(kBodyRadius + rho)}});
+    EXPECT_NEAR(force.x, 0.0, 1e-12);
+    EXPECT_NEAR(force.y, repulsion, 1e-12) << "away from it";
+    EXPECT_EQ(potential_force(here, here, std::vector{Point2{0.0, -(kBodyRadius + 0.51)}}), here) << "too far to count";
 }
 
 TEST(PotentialField, CountsTheNearestOfEachDirectionOnly) {
     const std::vector<Point2> one{{0.4, 0.02}};
     std::vector<Point2> many;
-    for (int n = 0; n < 50; ++n) many.emplace_back(0.4 + 0.001 * n, 0.02);
+    for (int n = 0; n < 50; ++n) many.push_back({0.4 + 0.001 * n, 0.02});
     EXPECT_EQ(potential_force({0, 0}, {1, 1}, one), potential_force({0, 0}, {1, 1}, many));
 }
 
@@ -61,7 +61,7 @@ TEST(Waypoints, AreReachedInTheirOrderWithAFullTurnAtEach) {
     double turned = 0.0; // while next to the first waypoint
     ASSERT_TRUE(driven.run(120.0, [&] {
         const Pose2& pose = driven.simulator().pose();
-        if (going.reached() == 0 && (driven.way().back() - goals[0]).norm() < 0.1) {
+        if (going.reached() == 0 && norm(driven.way().back() - goals[0]) < 0.1) {
             turned += std::abs(normalize_angle(pose.yaw - last_yaw));
         }
         last_yaw = pose.yaw;
@@ -100,7 +100,7 @@ TEST(Waypoints, OneThatCannotBeReachedIsGivenUpAndTheNextIsGoneTo) {
 TEST(Waypoints, ThoseThatAreGivenUpAreToldWithTheReasonOfTheFirstFew) {
     const std::vector<Point2> beyond{{9.0, 0.0}, {9.5, 0.0}, {9.0, 1.0}, {9.0, 2.0},
                                      {9.0, 3.0}, {9.0, 4.0}, {9.0, 5.0}};
-    const auto explain = [](const Point2& place) { return place.x() > 9.0 ? "far out" : ""; };
+    const auto explain = [](const Point2& place) { return place.x > 9.0 ? "far out" : ""; };
     auto waypoints = std::make_unique<Waypoints>(beyond, TourStart::kFirst, explain);
     const Waypoints& going = *waypoints;
     Driven driven(walled({}), {0, 0, 0}, std::move(waypoints));

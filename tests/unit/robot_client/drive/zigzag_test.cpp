@@ -19,7 +19,7 @@ std::vector<Block> lanes_of(const std::vector<std::string_view>& rows, double sp
 
 std::vector<double> heights(const Block& block) {
     std::vector<double> heights;
-    for (const Lane& lane : block) heights.push_back(lane.west.y());
+    for (const Lane& lane : block) heights.push_back(lane.west.y);
     return heights;
 }
 
@@ -28,8 +28,8 @@ TEST(Lanes, AreEvenlySpacedFromTheLowestRowToTheHighest) {
     ASSERT_EQ(blocks.size(), 1U);
     EXPECT_EQ(heights(blocks[0]), (std::vector{0.5, 3.5, 6.5}));
     for (const Lane& lane : blocks[0]) {
-        EXPECT_EQ(lane.west.x(), 0.5);
-        EXPECT_EQ(lane.east.x(), 3.5);
+        EXPECT_EQ(lane.west.x, 0.5);
+        EXPECT_EQ(lane.east.x, 3.5);
     }
 }
 
@@ -44,7 +44,7 @@ TEST(Lanes, SomethingInTheMiddleMakesFourBlocks) {
     ASSERT_EQ(blocks.size(), 4U);
     EXPECT_EQ(heights(blocks[0]), (std::vector{0.5, 1.5})) << "below";
     EXPECT_EQ(heights(blocks[1]), (std::vector{2.5, 3.5})) << "on the left";
-    EXPECT_EQ(blocks[1][0].east.x(), 1.5);
+    EXPECT_EQ(blocks[1][0].east.x, 1.5);
     EXPECT_EQ(heights(blocks[2]), (std::vector{2.5, 3.5})) << "on the right";
     EXPECT_EQ(heights(blocks[3]), (std::vector{4.5, 5.5})) << "above";
 }
@@ -95,7 +95,7 @@ TEST(Zigzag, GoesAroundWhatThePlanDoesNotKnowAndBackToItsLane) {
     EXPECT_GE(swept.zigzag->detours(), 2) << "several lanes lead through it";
     EXPECT_EQ(swept.zigzag->lanes_given_up(), 0);
     EXPECT_GT(swept.zigzag->coverage(), 0.9);
-    for (const Point2& behind : {Point2(1.6, 0.0), Point2(0.0, 0.0)}) EXPECT_LT(swept.driven.nearest_to(behind), 0.15);
+    for (const Point2& behind : {Point2{1.6, 0.0}, Point2{0.0, 0.0}}) EXPECT_LT(swept.driven.nearest_to(behind), 0.15);
 }
 
 TEST(Zigzag, ADetourIsAStepAsideAWayPastAndAWayBack) {
@@ -103,7 +103,7 @@ TEST(Zigzag, ADetourIsAStepAsideAWayPastAndAWayBack) {
     swept.driven.run(1200.0);
     // past it, beside lanes that lead along x: at least its length, at one distance from it
     const auto beside = std::ranges::count_if(swept.driven.way(), [](const Point2& place) {
-        return place.x() > 0.5 && place.x() < 1.1 && std::abs(std::abs(place.y()) - 0.3 - 0.27) < 0.04;
+        return place.x > 0.5 && place.x < 1.1 && std::abs(std::abs(place.y) - 0.3 - 0.27) < 0.04;
     });
     EXPECT_GT(beside, 10);
 }

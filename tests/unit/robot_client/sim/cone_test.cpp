@@ -17,18 +17,18 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Whether a point is within an angle of the axis, by the angle itself.
 bool is_in(const Cone& cone, const Point2& point) {
     const Point2 to = point - cone.apex;
-    return std::abs(normalize_angle(std::atan2(to.y(), to.x()) - cone.yaw)) <= cone.half;
+    return std::abs(normalize_angle(std::atan2(to.y, to.x) - cone.yaw)) <= cone.half;
 }
 
 /// The nearest of points on a segment `step` metres apart, of those within the cone.
 double nearest_of_points(const Cone& cone, const Segment& segment, double step) {
     const Point2 a{segment.ax, segment.ay};
     const Point2 b{segment.bx, segment.by};
-    const int count = static_cast<int>(std::ceil((b - a).norm() / step)) + 1;
+    const int count = static_cast<int>(std::ceil(norm(b - a) / step)) + 1;
     double nearest = kNever;
     for (int n = 0; n <= count; ++n) {
         const Point2 point = a + static_cast<double>(n) / count * (b - a);
-        if (is_in(cone, point)) nearest = std::min(nearest, (point - cone.apex).norm());
+        if (is_in(cone, point)) nearest = std::min(nearest, norm(point - cone.apex));
     }
     return nearest;
 }
@@ -40,7 +40,7 @@ double nearest_of_points(const Cone& cone, const Disc& disc, double step) {
     for (int n = 0; n < count; ++n) {
         const double angle = 2.0 * kPi * n / count;
         const Point2 point = disc.centre + disc.radius * Point2{std::cos(angle), std::sin(angle)};
-        if (is_in(cone, point)) nearest = std::min(nearest, (point - cone.apex).norm());
+        if (is_in(cone, point)) nearest = std::min(nearest, norm(point - cone.apex));
     }
     return nearest;
 }

@@ -77,13 +77,13 @@ TEST(CellShapes, OutlinesHaveASolidOnTheirLeftAndNoneOnTheirRight) {
         for (const Segment& side : outlines_of(map, frame)) {
             const Point2 a{side.ax, side.ay};
             const Point2 along = Point2{side.bx, side.by} - a;
-            const Point2 left = Point2{-along.y(), along.x()} / along.norm() * 0.1;
-            for (double at = 0.25; at < along.norm(); at += 0.5) {
-                const Point2 point = a + at / along.norm() * along;
+            const Point2 left = Point2{-along.y, along.x} / norm(along) * 0.1;
+            for (double at = 0.25; at < norm(along); at += 0.5) {
+                const Point2 point = a + at / norm(along) * along;
                 ASSERT_TRUE(is_solid(point + left));
                 ASSERT_FALSE(is_solid(point - left));
             }
-            length += along.norm();
+            length += norm(along);
         }
         double wanted = 0.0; // every cell's sides, but those between two occupied ones
         for (std::size_t n = 0; n < map.cells.size(); ++n) {

@@ -25,14 +25,14 @@ std::vector<Segment> random_segments(Random& random, std::size_t count) {
     while (segments.size() < count) {
         const double length = extent * std::pow(random.uniform(0.0, 1.0), 3.0);
         const Point2 a{x + random.uniform(0.0, extent), y + random.uniform(0.0, extent)};
-        const Point2 b{a.x() + random.uniform(-length, length), a.y() + random.uniform(-length, length)};
+        const Point2 b{a.x + random.uniform(-length, length), a.y + random.uniform(-length, length)};
         switch (random.index(4)) {
-        case 0: segments.push_back({a.x(), a.y(), b.x(), a.y()}); break;
-        case 1: segments.push_back({a.x(), a.y(), a.x(), b.y()}); break;
+        case 0: segments.push_back({a.x, a.y, b.x, a.y}); break;
+        case 1: segments.push_back({a.x, a.y, a.x, b.y}); break;
         case 2:
-            if (!segments.empty()) segments.push_back({segments.back().bx, segments.back().by, b.x(), b.y()});
+            if (!segments.empty()) segments.push_back({segments.back().bx, segments.back().by, b.x, b.y});
             break;
-        default: segments.push_back({a.x(), a.y(), b.x(), b.y()}); break;
+        default: segments.push_back({a.x, a.y, b.x, b.y}); break;
         }
     }
     return segments;
@@ -53,7 +53,7 @@ double random_yaw(Random& random, const Point2& origin, const std::vector<Segmen
     const Segment& target = segments[random.index(segments.size())];
     switch (random.index(3)) {
     case 0: return kPi / 2.0 * static_cast<double>(random.index(4)); // along the axes
-    case 1: return std::atan2(target.ay - origin.y(), target.ax - origin.x());
+    case 1: return std::atan2(target.ay - origin.y, target.ax - origin.x);
     default: return random.uniform(-kPi, kPi);
     }
 }

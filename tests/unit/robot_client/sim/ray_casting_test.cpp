@@ -38,9 +38,9 @@ TEST(RayCasting, MeetsADiscWhereGeometrySays) {
     Random random(5);
     for (int i = 0; i < 1000; ++i) {
         const double yaw = ahead + random.uniform(-0.1, 0.1);
-        const Point2 hit = cast_ray(disc, {0, 0}, yaw) * Point2(std::cos(yaw), std::sin(yaw));
-        EXPECT_NEAR((hit - disc.centre).norm(), disc.radius, 1e-9);
-        EXPECT_LT(hit.norm(), 5.0) << "its near side";
+        const Point2 hit = cast_ray(disc, {0, 0}, yaw) * Point2{std::cos(yaw), std::sin(yaw)};
+        EXPECT_NEAR(norm(hit - disc.centre), disc.radius, 1e-9);
+        EXPECT_LT(norm(hit), 5.0) << "its near side";
     }
 }
 
@@ -53,7 +53,7 @@ TEST(RayCasting, AClosedOutlineIsClosedAtItsCorners) {
         const double v = random.uniform(0.05, 0.95 - u);
         const Point2 origin{0.1 + u * 3.2 + v * 1.8, 0.1 + u * 0.6 + v * 2.2};
         const Segment& corner = triangle[random.index(3)];
-        const double yaw = std::atan2(corner.ay - origin.y(), corner.ax - origin.x());
+        const double yaw = std::atan2(corner.ay - origin.y, corner.ax - origin.x);
         ASSERT_LT(cast_ray(triangle, origin, yaw), 4.0) << "through the corner at " << corner.ax;
     }
 }
@@ -62,7 +62,7 @@ TEST(RayCasting, AClosedOutlineIsClosedAtItsCorners) {
 double march(const World& world, const Point2& origin, double yaw, double step) {
     const double step_x = step * std::cos(yaw);
     const double step_y = step * std::sin(yaw);
-    for (double length = 0.0, x = origin.x(), y = origin.y(); length < 75.0; length += step, x += step_x, y += step_y) {
+    for (double length = 0.0, x = origin.x, y = origin.y; length < 75.0; length += step, x += step_x, y += step_y) {
         for (const Box& box : world.solids) {
             if (x >= box.x_min && x <= box.x_max && y >= box.y_min && y <= box.y_max) return length;
         }
@@ -105,7 +105,7 @@ TEST_P(Worlds, NoRayLeavesTheWorldNotEvenThroughItsCorners) {
             ASSERT_LT(cast_ray(world_.outlines, origin, beam * kPi / 1800.0), 73.0);
         }
         for (const Segment& segment : world_.outlines) {
-            const double to_corner = std::atan2(segment.ay - origin.y(), segment.ax - origin.x());
+            const double to_corner = std::atan2(segment.ay - origin.y, segment.ax - origin.x);
             ASSERT_LT(cast_ray(world_.outlines, origin, to_corner), 73.0);
         }
     }

@@ -40,13 +40,13 @@ double nearest_ray(const World& world, const Point2& origin, double yaw, double 
     std::vector<double> directions;
     for (int n = 0; n <= 200; ++n) directions.push_back(yaw + (n / 200.0 - 0.5) * aperture);
     const auto add = [&](double x, double y) {
-        const double direction = std::atan2(y - origin.y(), x - origin.x());
+        const double direction = std::atan2(y - origin.y, x - origin.x);
         if (std::abs(normalize_angle(direction - yaw)) <= aperture / 2.0) directions.push_back(direction);
     };
     for (const Segment& side : world.outlines) {
         add(side.ax, side.ay);
-        add(std::clamp(origin.x(), std::min(side.ax, side.bx), std::max(side.ax, side.bx)),
-            std::clamp(origin.y(), std::min(side.ay, side.by), std::max(side.ay, side.by))); // sides lie along the axes
+        add(std::clamp(origin.x, std::min(side.ax, side.bx), std::max(side.ax, side.bx)),
+            std::clamp(origin.y, std::min(side.ay, side.by), std::max(side.ay, side.by))); // sides lie along the axes
     }
     double nearest = HUGE_VAL;
     for (const double direction : directions) {
@@ -65,7 +65,7 @@ TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
         const World world = named.make();
         for (int i = 0; i < 15; ++i) {
             const Point2 place = place_with_room(world, random);
-            const Pose2 pose{place.x(), place.y(), random.uniform(-kPi, kPi)};
+            const Pose2 pose{place.x, place.y, random.uniform(-kPi, kPi)};
             const auto ranges = listen(world, sonar, pose, std::nullopt, random);
             ASSERT_EQ(ranges.size(), 16U);
             for (std::size_t beam = 0; beam < 16; ++beam) {

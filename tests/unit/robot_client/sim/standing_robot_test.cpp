@@ -17,7 +17,7 @@ World rooms() {
     return office;
 }
 
-double apart(const Point2& a, const Point2& b) { return (a - b).norm(); }
+double apart(const Point2& a, const Point2& b) { return norm(a - b); }
 
 TEST(StandingRobot, IsWhereRobotsMayBePutThoughADoorIsShut) {
     const World office = rooms();
@@ -41,7 +41,7 @@ TEST(StandingRobot, DoorsShutOffWhatIsBehindThem) {
     EXPECT_FALSE(sees(with_door(office, doors_of(office).front()), corridor, room));
     for (const World& world : {make_room(), make_office(), make_hall()}) {
         for (const Box& door : doors_of(world)) {
-            const Point2 middle(0.5 * (door.x_min + door.x_max), 0.5 * (door.y_min + door.y_max));
+            const Point2 middle{0.5 * (door.x_min + door.x_max), 0.5 * (door.y_min + door.y_max)};
             EXPECT_GT(clearance(world, middle), 0.0) << world.name << ": nothing stands where the door is";
         }
     }
@@ -65,7 +65,7 @@ TEST(MappedWorld, EachOfItsPlacesIsNearAnEarlierOne) {
         ASSERT_EQ(mapped.map.size(), 6U);
         std::vector<Point2> places;
         for (const auto& view : mapped.map) places.push_back(view.from);
-        places.emplace_back(mapped.truth.x, mapped.truth.y);
+        places.push_back({mapped.truth.x, mapped.truth.y});
         for (std::size_t n = 1; n < places.size(); ++n) {
             EXPECT_TRUE(std::any_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(n),
                                     [&](const Point2& earlier) { return apart(earlier, places[n]) <= 3.0; }))

@@ -18,29 +18,29 @@ Point2 place_after(double seconds) {
 }
 
 TEST(Walker, GoesRoundItsLoopAtItsPace) {
-    EXPECT_LT((place_after(0.0) - Point2(0, 0)).norm(), 1e-9);
-    EXPECT_LT((place_after(1.5) - Point2(1.5, 0)).norm(), 1e-9);
-    EXPECT_LT((place_after(3.0) - Point2(2, 1)).norm(), 1e-9);
-    EXPECT_LT((place_after(7.0) - Point2(0, 1)).norm(), 1e-9);
-    EXPECT_LT((place_after(80.5) - Point2(0.5, 0)).norm(), 1e-9);
+    EXPECT_LT(norm(place_after(0.0) - Point2{0, 0}), 1e-9);
+    EXPECT_LT(norm(place_after(1.5) - Point2{1.5, 0}), 1e-9);
+    EXPECT_LT(norm(place_after(3.0) - Point2{2, 1}), 1e-9);
+    EXPECT_LT(norm(place_after(7.0) - Point2{0, 1}), 1e-9);
+    EXPECT_LT(norm(place_after(80.5) - Point2{0.5, 0}), 1e-9);
     EXPECT_EQ(body_of(square()).radius, 0.25);
 }
 
 TEST(Walker, WaitsForARobotInItsWayAndGoesOnWhenItHasGone) {
     Walker walker = square();
     for (int step = 0; step < 200; ++step) walk(walker, {1.5, 0.0}, 0.05);
-    const double distance_waiting = (body_of(walker).centre - Point2(1.5, 0.0)).norm();
+    const double distance_waiting = norm(body_of(walker).centre - Point2{1.5, 0.0});
     EXPECT_GE(distance_waiting, kWalkerDistance - 1e-9);
     EXPECT_LT(distance_waiting, kWalkerDistance + 0.06);
     walk(walker, {100.0, 100.0}, 1.0);
-    EXPECT_GT(body_of(walker).centre.x(), 1.5);
+    EXPECT_GT(body_of(walker).centre.x, 1.5);
 }
 
 TEST(Walker, GoesAwayFromARobotThatCameTooNear) {
     Walker walker = square();
     walker.walked = 1.0;
     for (int step = 0; step < 20; ++step) walk(walker, {0.5, 0.0}, 0.05);
-    EXPECT_NEAR(body_of(walker).centre.x(), 2.0, 1e-9);
+    EXPECT_NEAR(body_of(walker).centre.x, 2.0, 1e-9);
 }
 
 TEST(Walker, StandsInARobotsWay) {

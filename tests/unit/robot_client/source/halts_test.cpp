@@ -46,7 +46,7 @@ TEST_F(HaltsTest, AreAskedAboutOnceTenTurnsInARowAreAlike) {
     const auto question = halts_.question();
     ASSERT_TRUE(question);
     EXPECT_EQ(question->points().size(), 3600U);
-    EXPECT_EQ(question->from(), Point2(0.0, 0.0));
+    EXPECT_EQ(question->from(), (Point2{0.0, 0.0}));
     EXPECT_THAT(given(), IsEmpty());
 }
 
@@ -111,7 +111,7 @@ TEST_F(HaltsTest, GoOnWhilePeopleWalkBy) {
     halts_.answer(kLocated);
     for (int n = 0; n < 30; ++n) {
         const Point2 at{kHere.x + 0.6, kHere.y - 1.5 + 0.1 * n};
-        lidar_.world().walkers = {{.loop = {at, {at.x(), at.y() + 1.0}}}};
+        lidar_.world().walkers = {{.loop = {at, {at.x, at.y + 1.0}}}};
         stand(kHere, 1);
     }
     halts_.end();
@@ -142,7 +142,7 @@ TEST_F(HaltsTest, AreInTheFrameOfTheOdometry) {
     auto turns = lidar_.turns_at(kHere, 10);
     for (auto& turn : turns) turn.scan.pose = odometry;
     add(std::move(turns));
-    EXPECT_LT((halts_.question()->from() - Point2(0.5, -0.25)).norm(), 1e-12);
+    EXPECT_LT(norm(halts_.question()->from() - Point2{0.5, -0.25}), 1e-12);
     halts_.answer(kLocated);
     EXPECT_EQ(given().front().pose, compose(kLocated.T_map_odom, odometry));
 }

@@ -73,7 +73,7 @@ protected:
 
     asio::awaitable<Result<Located>> answer(Result<Located> located, std::size_t points, Point2 from) {
         EXPECT_GE(points, 3000U);
-        EXPECT_EQ(from, Point2(0.0, 0.0));
+        EXPECT_EQ(from, (Point2{0.0, 0.0}));
         co_return located;
     }
 

@@ -30,7 +30,7 @@ TEST(PointsSeen, AreWhereBeamsMetSomething) {
     seen.add(scan_of({1000, kInvalidRange, 2000, kNoReturn}), laser());
     seen.add(scan_of({99, 10'000, 9999, 100}), laser());
     EXPECT_THAT(seen.points(), ElementsAre(PointMm{1000, 0}, PointMm{-2000, 0}, PointMm{-9999, 0}, PointMm{0, -100}));
-    EXPECT_EQ(seen.from(), Point2(0.0, 0.0));
+    EXPECT_EQ(seen.from(), (Point2{0.0, 0.0}));
 }
 
 TEST(PointsSeen, AreInTheFrameOfThePoses) {
@@ -39,9 +39,9 @@ TEST(PointsSeen, AreInTheFrameOfThePoses) {
     SeenPoints seen;
     seen.add(scan_of({1000, 0, 0, 0}, {1.0, 2.0, std::numbers::pi / 2}), mounted);
     EXPECT_THAT(seen.points(), ElementsAre(PointMm{0, 2500}));
-    EXPECT_LT((seen.from() - Point2(1.0, 2.5)).norm(), 1e-12);
+    EXPECT_LT(norm(seen.from() - Point2{1.0, 2.5}), 1e-12);
     seen.add(scan_of({0, 0, 0, 0}, {2.0, 2.0, std::numbers::pi / 2}), mounted);
-    EXPECT_LT((seen.from() - Point2(1.5, 2.5)).norm(), 1e-12) << "between the places";
+    EXPECT_LT(norm(seen.from() - Point2{1.5, 2.5}), 1e-12) << "between the places";
 }
 
 TEST(PointsSeen, WhereNoCoordinateReachesAreNone) {

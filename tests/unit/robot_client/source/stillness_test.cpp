@@ -36,9 +36,9 @@ Observation as_from(const Pose2& T_was_is, Observation turn) {
         RangeMm& range = turn.scan.ranges[beam];
         const double angle = beam_angle(angles, beam);
         const bool is_hit = range != kInvalidRange && range != kNoReturn;
-        const Point2 met = transform(inverse(T_was_is), range * 1e-3 * Point2(std::cos(angle), std::sin(angle)));
-        seen_at.push_back(is_hit ? std::atan2(met.y(), met.x()) : angle - T_was_is.yaw);
-        if (is_hit) range = to_range_mm(met.norm());
+        const Point2 met = transform(inverse(T_was_is), range * 1e-3 * Point2{std::cos(angle), std::sin(angle)});
+        seen_at.push_back(is_hit ? std::atan2(met.y, met.x) : angle - T_was_is.yaw);
+        if (is_hit) range = to_range_mm(norm(met));
     }
     turn.scan.angles = std::move(seen_at);
     return turn;
@@ -127,7 +127,7 @@ TEST(ASensor, ThatPeopleWalkAroundStands) {
         const auto stillness = learnt(lidar.turns_at(here, Stillness::kTurnsMax));
         for (const auto& step : moves_of(0.5)) {
             const Point2 there{here.x + step.x, here.y + step.y};
-            lidar.world().walkers = {{.loop = {there, {there.x() + 1.0, there.y()}}}};
+            lidar.world().walkers = {{.loop = {there, {there.x + 1.0, there.y}}}};
             EXPECT_EQ(judged(stillness, lidar.turn_at(here)), Verdict::kStill);
         }
         lidar.world().walkers.clear();

@@ -440,7 +440,7 @@ TEST_F(ConversationTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
     const auto messages = said();
     ASSERT_EQ(messages.size(), 3U);
     const auto request = std::get<wire::PlanRequest>(messages[0]);
-    EXPECT_EQ(request.goal, Point2(1.0, 2.0));
+    EXPECT_EQ(request.goal, (Point2{1.0, 2.0}));
     EXPECT_TRUE(replies.empty());
     const wire::PlanReply reply{request.id, 5, Error{Errc::kNoPath, "a wall"}};
     EXPECT_FALSE(conversation_.receive(reply, now_));

@@ -32,7 +32,7 @@ protected:
         const auto goal = book_.next(session, maps_, robot, {1.2, 0.25}, now_, kPoint).value();
         if (goal.outcome == Exploration::kTakenByOthers) return '-';
         if (goal.outcome == Exploration::kComplete) return 'c';
-        return goal.path.points.back().x() < 1.5 ? 'l' : 'r';
+        return goal.path.points.back().x < 1.5 ? 'l' : 'r';
     }
 
     planning::NextGoal ask(RobotIndex robot) {
@@ -43,9 +43,9 @@ protected:
     void scan_at(const planning::NextGoal& goal, RobotIndex robot, double turned_away = 0.0) {
         const Point2 place = goal.path.points.back();
         const Point2 target =
-            Point2(goal.goal->target.i + 0.5, goal.goal->target.j + 0.5) * maps_.config.cell_size - place;
+            Point2{goal.goal->target.i + 0.5, goal.goal->target.j + 0.5} * maps_.config.cell_size - place;
         auto& state = maps_.robots[robot];
-        state.pose = Pose2{place.x(), place.y(), std::atan2(target.y(), target.x()) + turned_away};
+        state.pose = Pose2{place.x, place.y, std::atan2(target.y, target.x) + turned_away};
         state.scan_count += 1;
         state.stamp += 1.0;
         trajectory_.append({0, state.stamp, *state.pose});
@@ -80,7 +80,7 @@ TEST_F(GoalBookTest, WhoAsksAgainGivesBackWhatItHad) {
     EXPECT_EQ(next(0), 'l');
     maps_.classes = testing_support::drawn({"f............................f"});
     ASSERT_TRUE(book_.next(session_, maps_, 0, {2.8, 0.05}, now_, kPoint)); // now nearer to the right
-    EXPECT_EQ(book_.next(session_, maps_, 1, {1.2, 0.05}, now_, kPoint).value().path.points.back().x() < 1.5, true);
+    EXPECT_EQ(book_.next(session_, maps_, 1, {1.2, 0.05}, now_, kPoint).value().path.points.back().x < 1.5, true);
 }
 
 TEST_F(GoalBookTest, AGoalCountsNoLongerWhenItsRobotHasLeft) {
@@ -127,7 +127,7 @@ TEST_F(GoalBookTest, GoalsAreTakenFromMapsOfOtherCellsToo) {
     maps_.config.cell_size = 0.05;
     const std::string row = "f" + std::string(58, '.') + "f";
     maps_.classes = testing_support::drawn({row});
-    EXPECT_GT(book_.next(session_, maps_, 1, {1.2, 0.025}, now_, kPoint).value().path.points.back().x(), 1.5);
+    EXPECT_GT(book_.next(session_, maps_, 1, {1.2, 0.025}, now_, kPoint).value().path.points.back().x, 1.5);
 }
 
 TEST_F(GoalBookTest, ARefusedRequestLeavesNoGoal) {
@@ -154,7 +154,7 @@ TEST_F(GoalBookTest, AFrontierLookedAtInVainIsNobodysGoalAnyMore) {
     EXPECT_EQ(left.given_up, 0U);
     scan_at(left, 0);
     const auto right = ask(0);
-    EXPECT_GT(right.path.points.back().x(), 1.5);
+    EXPECT_GT(right.path.points.back().x, 1.5);
     EXPECT_EQ(right.given_up, 3U);
     EXPECT_EQ(next(1), '-') << "the left one is none for the other robot either";
     scan_at(right, 0);

@@ -19,7 +19,7 @@ struct CountingWatcher : session::Watcher {
 
 Way way(WayKind kind, std::size_t points = 2) {
     Way way{kind, {}, static_cast<double>(points - 1), 7};
-    for (std::size_t n = 0; n < points; ++n) way.points.emplace_back(static_cast<double>(n), 0.0);
+    for (std::size_t n = 0; n < points; ++n) way.points.push_back({static_cast<double>(n), 0.0});
     return way;
 }
 
@@ -213,7 +213,7 @@ TEST_F(WayBookTest, OfAWayThatIsTooLongTheBeginningIsKept) {
     give_way(0, way(WayKind::kCoverage, WayBook::kWayPointsMax + 5));
     const auto kept = page().robots[0].way;
     EXPECT_EQ(kept->points.size(), WayBook::kWayPointsMax);
-    EXPECT_EQ(kept->points.back().x(), static_cast<double>(WayBook::kWayPointsMax - 1));
+    EXPECT_EQ(kept->points.back().x, static_cast<double>(WayBook::kWayPointsMax - 1));
     EXPECT_EQ(kept->points_left_out, 5U);
     EXPECT_EQ(kept->length_m, static_cast<double>(WayBook::kWayPointsMax + 4)) << "of all of it";
 }

@@ -59,13 +59,13 @@ double number(const boost::json::value& value) { return value.to_number<double>(
 std::vector<Point2> points_of(const boost::json::value& line) {
     std::vector<Point2> points;
     for (const auto& point : line.at("coordinates").as_array())
-        points.emplace_back(number(point.at(0)), number(point.at(1)));
+        points.push_back({number(point.at(0)), number(point.at(1))});
     return points;
 }
 
 double length_of(const std::vector<Point2>& points) {
     double length = 0.0;
-    for (std::size_t n = 0; n + 1 < points.size(); ++n) length += (points[n + 1] - points[n]).norm();
+    for (std::size_t n = 0; n + 1 < points.size(); ++n) length += norm(points[n + 1] - points[n]);
     return length;
 }
 
@@ -219,15 +219,15 @@ TEST_F(ApiPlanningTest, APlanIsThePathThatPlanningFinds) {
     EXPECT_EQ(answer.at("geometry").at("type"), "LineString");
     const auto points = points_of(answer.at("geometry"));
     ASSERT_EQ(points.size(), expected.points.size());
-    for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT((points[n] - expected.points[n]).norm(), 2e-6);
+    for (std::size_t n = 0; n < points.size(); ++n) EXPECT_LT(norm(points[n] - expected.points[n]), 2e-6);
     EXPECT_NEAR(number(answer.at("properties").at("length")), expected.length_m, 1e-6);
     EXPECT_NEAR(number(answer.at("properties").at("cost")), expected.cost, 1e-6);
 }
 
 TEST_F(ApiPlanningTest, APlanMayBeginAtARobot) {
     const auto points = points_of(post_json("plan", R"({"from":{"robot":"r1"},"to":[2.5,0.2]})").at("geometry"));
-    EXPECT_EQ(points.front(), Point2(kX, kY));
-    EXPECT_EQ(points.back(), Point2(2.5, 0.2));
+    EXPECT_EQ(points.front(), (Point2{kX, kY}));
+    EXPECT_EQ(points.back(), (Point2{2.5, 0.2}));
 }
 
 TEST_F(ApiPlanningTest, WaysForARobotAreForItsBodyUnlessAnotherIsAskedFor) {
@@ -256,7 +256,7 @@ TEST_F(ApiPlanningTest, OptionsOfAPlanAreHeeded) {
     const std::string beyond = R"({"from":[1.0,1.0],"to":[-2.5,1.0])";
     EXPECT_THAT(detail(post("plan", beyond + "}"), Status::conflict), HasSubstr("the goal (-2.5, 1) is "));
     const auto around = post_json("plan", beyond + R"(,"allow_unknown":true})");
-    EXPECT_EQ(points_of(around.at("geometry")).back(), Point2(-2.5, 1.0));
+    EXPECT_EQ(points_of(around.at("geometry")).back(), (Point2{-2.5, 1.0}));
     const auto near_wall = R"({"from":[1.0,1.0],"to":[3.4,1.25],"body_radius":)";
     EXPECT_THAT(detail(post("plan", std::string(near_wall) + "0.5}"), Status::conflict), HasSubstr("body radius"));
     const auto cheap = post_json("plan", std::string(near_wall) + R"(0,"danger_cost":0})");
@@ -345,7 +345,7 @@ TEST_F(ApiPlanningTest, ARegionIsAPolygonOrABox) {
 }
 
 TEST_F(ApiPlanningTest, WithoutAStartTheOnlyRobotIsMeant) {
-    EXPECT_EQ(points_of(post_json("coverage", "{}").at("features").at(0).at("geometry")).front(), Point2(kX, kY));
+    EXPECT_EQ(points_of(post_json("coverage", "{}").at("features").at(0).at("geometry")).front(), (Point2{kX, kY}));
     stream("a", "r2", {scan_with_a_gap()});
     expect_bad("coverage", "{}", "start is missing, and the session has 2 robots");
     post_json("coverage", R"({"start":{"robot":"r2"}})");
@@ -389,9 +389,9 @@ TEST_F(ApiPlanningTest, AGoalIsTheFrontierWithTheCheapestWay) {
     const auto expected = planning::next_goal(maps()->classes, cell_size(), {kX, kY}).value();
     ASSERT_EQ(answer.at("outcome"), "goal");
     const auto points = points_of(answer.at("path"));
-    EXPECT_EQ(points.front(), Point2(kX, kY));
-    EXPECT_EQ(points.back(), Point2(number(answer.at("goal").at("x")), number(answer.at("goal").at("y"))));
-    EXPECT_LT((points.back() - expected.path.points.back()).norm(), 2e-6);
+    EXPECT_EQ(points.front(), (Point2{kX, kY}));
+    EXPECT_EQ(points.back(), (Point2{number(answer.at("goal").at("x")), number(answer.at("goal").at("y"))}));
+    EXPECT_LT(norm(points.back() - expected.path.points.back()), 2e-6);
     EXPECT_NEAR(number(answer.at("target").at("x")), (expected.goal->target.i + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("target").at("y")), (expected.goal->target.j + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("length")), expected.path.length_m, 1e-6);
@@ -465,7 +465,7 @@ TEST_F(ApiPlanningTest, AWeaveIsPlannedOnAsTheSessionIs) {
                     number(frontiers(weave).at("features").at(0).at("properties").at("cells")),
                 0.01, 1e-9);
     const auto plan = post_json("plan?" + weave, R"({"from":[1.0,1.0],"to":[2.5,0.2]})");
-    EXPECT_EQ(points_of(plan.at("geometry")).back(), Point2(2.5, 0.2));
+    EXPECT_EQ(points_of(plan.at("geometry")).back(), (Point2{2.5, 0.2}));
     post_json("coverage?" + weave, "{}");
     EXPECT_EQ(get_json("/api/v1/sessions/a/goal?robot=r1&" + weave).at("outcome"), "goal");
 }

@@ -24,7 +24,7 @@ double typical_distance(const std::vector<Point2>& points, std::size_t k) {
     std::vector<double> distances;
     for (const Point2& point : points) {
         std::vector<double> all;
-        for (const Point2& other : points) all.push_back(std::hypot(other.x() - point.x(), other.y() - point.y()));
+        for (const Point2& other : points) all.push_back(std::hypot(other.x - point.x, other.y - point.y));
         std::ranges::sort(all);
         distances.push_back(all[std::min(k, all.size() - 1)]); // the first is the point itself
     }
@@ -39,7 +39,7 @@ double typical_distance(const std::vector<Point2>& points, std::size_t k) {
 double eps_oracle(const std::vector<Point2>& cloud, std::size_t min_points) {
     std::map<std::pair<double, double>, Point2> squares;
     for (const Point2& point : cloud)
-        squares.try_emplace({std::floor(point.x() * 10.0), std::floor(point.y() * 10.0)}, point);
+        squares.try_emplace({std::floor(point.x * 10.0), std::floor(point.y * 10.0)}, point);
     std::vector<Point2> thinned;
     for (const auto& [square, point] : squares) thinned.push_back(point);
     double eps = typical_distance(thinned, 5);
@@ -67,7 +67,7 @@ TEST(AdaptiveEps, DoesNotShrinkWithTheTurnsOfAStandingLidar) {
     std::vector<Point2> wall;
     const auto turn = [&] {
         for (int beam = 0; beam < 100; ++beam) {
-            wall.emplace_back(0.08 * beam + uniform(random, -0.01, 0.01), uniform(random, -0.02, 0.02));
+            wall.push_back({0.08 * beam + uniform(random, -0.01, 0.01), uniform(random, -0.02, 0.02)});
         }
     };
     turn();
@@ -81,7 +81,7 @@ TEST(AdaptiveEps, DoesNotShrinkWithTheTurnsOfAStandingLidar) {
 
 TEST(AdaptiveEps, EqualPointsAreOneSurface) {
     std::vector<Point2> cloud;
-    for (int n = 0; n < 50; ++n) cloud.emplace_back(0.15 * n, 0.0);
+    for (int n = 0; n < 50; ++n) cloud.push_back({0.15 * n, 0.0});
     const double once = eps_of(cloud);
     for (int n = 0; n < 50 * 99; ++n) cloud.push_back(cloud[static_cast<std::size_t>(n)]);
     EXPECT_EQ(eps_of(cloud), once);
@@ -89,7 +89,7 @@ TEST(AdaptiveEps, EqualPointsAreOneSurface) {
 
 TEST(AdaptiveEps, GrowsWithMinPointsAsTheCloudIsThin) {
     std::vector<Point2> line;
-    for (int n = 0; n < 400; ++n) line.emplace_back(0.025 * n, 0.0);
+    for (int n = 0; n < 400; ++n) line.push_back({0.025 * n, 0.0});
     EXPECT_NEAR(eps_of(line, 5), 0.3, 0.01); // three squares on either side at most
     EXPECT_NEAR(eps_of(line, 20), 0.3, 0.01);
     EXPECT_NEAR(eps_of(line, 30), 0.375, 1e-9);
@@ -99,14 +99,14 @@ TEST(AdaptiveEps, GrowsWithMinPointsAsTheCloudIsThin) {
 TEST(AdaptiveEps, HasALeastAndAMostAnswer) {
     EXPECT_EQ(eps_of({}), kThinningSide);
     EXPECT_EQ(eps_of({{3.0, 4.0}}), kThinningSide);
-    EXPECT_EQ(eps_of(std::vector<Point2>(10'000, Point2(3.0, 4.0)), 7), kThinningSide);
+    EXPECT_EQ(eps_of(std::vector<Point2>(10'000, Point2{3.0, 4.0}), 7), kThinningSide);
     EXPECT_EQ(eps_of({{0.0, 0.0}, {1000.0, 0.0}}), kAdaptiveEpsMax);
 }
 
 TEST(AdaptiveEps, LargeCloudsAreSampled) {
     std::mt19937 random(3);
     std::vector<Point2> cloud;
-    for (int n = 0; n < 25'000; ++n) cloud.emplace_back(uniform(random, 0.0, 30.0), uniform(random, 0.0, 30.0));
+    for (int n = 0; n < 25'000; ++n) cloud.push_back({uniform(random, 0.0, 30.0), uniform(random, 0.0, 30.0)});
     // 12 points within a circle: pi r^2 * 25000 / 900 = 12
     EXPECT_NEAR(eps_of(cloud, 12), 0.42, 0.03);
 }

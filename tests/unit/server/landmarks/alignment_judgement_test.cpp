@@ -37,7 +37,7 @@ public:
         Candidate candidate = candidate_;
         candidate.findings = findings_;
         candidate.second_in_first = evidence_of(findings_);
-        for (std::size_t n = 0; n < kElements; ++n) candidate.places.emplace_back(0.1 * static_cast<double>(n), 0.0);
+        for (std::size_t n = 0; n < kElements; ++n) candidate.places.push_back({0.1 * static_cast<double>(n), 0.0});
         return candidate;
     }
 

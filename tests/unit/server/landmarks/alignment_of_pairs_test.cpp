@@ -24,8 +24,8 @@ std::vector<PointPair> random_pairs(std::mt19937& random, const Pose2& T_first_s
                                     double noise) {
     std::vector<PointPair> pairs;
     for (std::size_t n = 0; n < count; ++n) {
-        const Point2 second(uniform(random, -5.0, 5.0), uniform(random, -5.0, 5.0));
-        const Point2 off(uniform(random, -noise, noise), uniform(random, -noise, noise));
+        const Point2 second{uniform(random, -5.0, 5.0), uniform(random, -5.0, 5.0)};
+        const Point2 off{uniform(random, -noise, noise), uniform(random, -noise, noise)};
         pairs.push_back({transform(T_first_second, second) + off, second, uniform(random, 0.1, 3.0)});
     }
     return pairs;
@@ -34,7 +34,7 @@ std::vector<PointPair> random_pairs(std::mt19937& random, const Pose2& T_first_s
 double weighted_squares(const std::vector<PointPair>& pairs, const Pose2& pose) {
     double squares = 0.0;
     for (const auto& [first, second, weight] : pairs) {
-        squares += weight * (first - transform(pose, second)).squaredNorm();
+        squares += weight * squared_norm(first - transform(pose, second));
     }
     return squares;
 }
@@ -43,12 +43,12 @@ double weighted_squares(const std::vector<PointPair>& pairs, const Pose2& pose) 
 Pose2 searched(const std::vector<PointPair>& pairs) {
     const auto best_with = [&](double yaw) {
         double weights = 0.0;
-        Point2 sum(0.0, 0.0);
+        Point2 sum{0.0, 0.0};
         for (const auto& [first, second, weight] : pairs) {
             sum += weight * (first - transform({0.0, 0.0, yaw}, second));
             weights += weight;
         }
-        return Pose2{sum.x() / weights, sum.y() / weights, yaw};
+        return Pose2{sum.x / weights, sum.y / weights, yaw};
     };
     Pose2 best;
     double step = std::numbers::pi / 90.0;
@@ -96,7 +96,7 @@ TEST(AlignmentOfPairs, FindsAnExactTransformAlsoOfTwoPairsAndOnALine) {
         const Pose2 pose = random_pose(random);
         std::vector<PointPair> pairs;
         for (int n = 0; n < 2 + round % 4; ++n) {
-            const Point2 second(1.0 + n, 2.0 + 0.5 * n);
+            const Point2 second{1.0 + n, 2.0 + 0.5 * n};
             pairs.push_back({transform(pose, second), second});
         }
         ASSERT_LT(distance(align_pairs(pairs)->T_first_second, pose), 1e-9);
@@ -105,12 +105,12 @@ TEST(AlignmentOfPairs, FindsAnExactTransformAlsoOfTwoPairsAndOnALine) {
 
 TEST(AlignmentOfPairs, NeverMirrors) {
     std::vector<PointPair> pairs;
-    for (const Point2& second : {Point2(0.0, 0.0), Point2(4.0, 0.0), Point2(0.0, 1.0)}) {
-        pairs.push_back({{second.x(), -second.y()}, second});
+    for (const Point2& second : {Point2{0.0, 0.0}, Point2{4.0, 0.0}, Point2{0.0, 1.0}}) {
+        pairs.push_back({{second.x, -second.y}, second});
     }
     const auto fit = align_pairs(pairs).value();
     EXPECT_GT(fit.rms, 0.3) << "a reflection would fit exactly";
-    EXPECT_NEAR((transform(fit.T_first_second, {4.0, 0.0}) - transform(fit.T_first_second, {0.0, 0.0})).norm(), 4.0,
+    EXPECT_NEAR(norm(transform(fit.T_first_second, {4.0, 0.0}) - transform(fit.T_first_second, {0.0, 0.0})), 4.0,
                 1e-12);
 }
 
@@ -196,11 +196,11 @@ TEST(AlignmentOfPairs, WhatCannotBeIsRefused) {
         pairs[1].weight = bad;
         EXPECT_THAT(align_pairs(pairs).error().message, HasSubstr("pairs[1].weight"));
         pairs = good;
-        pairs[2].first.x() = bad;
+        pairs[2].first.x = bad;
         EXPECT_THAT(align_pairs(pairs).error().message, HasSubstr("pairs[2].first"));
         EXPECT_THAT(align_pairs_robustly(pairs, 0.1).error().message, HasSubstr("pairs[2].first"));
         pairs = good;
-        pairs[0].second.y() = bad;
+        pairs[0].second.y = bad;
         EXPECT_THAT(align_pairs(pairs).error().message, HasSubstr("pairs[0].second"));
         EXPECT_THAT(align_pairs_robustly(good, bad).error().message, HasSubstr("inlier_distance"));
     }

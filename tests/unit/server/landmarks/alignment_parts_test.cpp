@@ -26,7 +26,7 @@ std::vector<Point2> odd_room(std::mt19937& random) {
         const Point2& a = corners[side];
         const Point2& b = corners[(side + 1) % corners.size()];
         for (int n = 0; n < 600; ++n) {
-            const Point2 noise(uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02));
+            const Point2 noise{uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02)};
             points.push_back(a + (b - a) * uniform(random, 0.0, 1.0) + noise);
         }
     }
@@ -46,17 +46,17 @@ TEST(Surfels, LieOnTheWallHoweverDenselyItWasSeen) {
     std::vector<Point2> points;
     for (int n = 0; n < 4000; ++n) {
         const double x = n % 4 == 0 ? uniform(random, 0.0, 4.0) : uniform(random, 0.0, 1.0);
-        points.emplace_back(x, 7.0 + uniform(random, -0.02, 0.02));
+        points.push_back({x, 7.0 + uniform(random, -0.02, 0.02)});
     }
     const auto surfels = surfels_around(points);
     EXPECT_LE(surfels.size(), 84U);
     for (const Surfel& surfel : surfels) {
         ASSERT_TRUE(surfel.is_straight());
-        EXPECT_NEAR(surfel.position.y(), 7.0, 0.006);
-        EXPECT_GT(std::abs(surfel.normal.y()), 0.99);
+        EXPECT_NEAR(surfel.position.y, 7.0, 0.006);
+        EXPECT_GT(std::abs(surfel.normal.y), 0.99);
     }
     EXPECT_TRUE(surfels_of(std::span<const CloudView>(), 0.0).empty());
-    EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2(1.0, 1.0))).front().is_straight());
+    EXPECT_FALSE(surfels_around(std::vector<Point2>(9, Point2{1.0, 1.0})).front().is_straight());
 }
 
 TEST(Surfels, FarOffHaveTheDirectionOfTheWallNotOfTheBeamsNoise) {
@@ -68,11 +68,11 @@ TEST(Surfels, FarOffHaveTheDirectionOfTheWallNotOfTheBeamsNoise) {
         for (int degree = 20; degree < 45; ++degree) {
             const double range = 4.0 / std::sin(degree * kDegree) + range_noise(random);
             const double angle = degree * kDegree + angle_noise(random);
-            points.emplace_back(range * std::cos(angle), range * std::sin(angle));
+            points.push_back({range * std::cos(angle), range * std::sin(angle)});
         }
     }
     const auto surfels = surfels_around(points);
-    const auto along = std::ranges::count_if(surfels, [](const auto& one) { return std::abs(one.normal.y()) > 0.97; });
+    const auto along = std::ranges::count_if(surfels, [](const auto& one) { return std::abs(one.normal.y) > 0.97; });
     EXPECT_GT(along, 2 * std::ssize(surfels) / 3);
 }
 

@@ -197,10 +197,10 @@ TEST(Alignment, InALongCorridorIsAmbiguousAlongIt) {
 TEST(Alignment, BetweenTwoParallelLinesIsHeldByNothingAlongThem) {
     std::vector<Point2> lines;
     for (int n = -80; n <= 80; ++n) {
-        lines.emplace_back(0.1 * n, 1.0);
-        lines.emplace_back(0.1 * n + 0.05, 1.0);
-        lines.emplace_back(0.1 * n, -1.3);
-        lines.emplace_back(0.1 * n + 0.05, -1.3);
+        lines.push_back({0.1 * n, 1.0});
+        lines.push_back({0.1 * n + 0.05, 1.0});
+        lines.push_back({0.1 * n, -1.3});
+        lines.push_back({0.1 * n + 0.05, -1.3});
     }
     const auto alignment = align({.points = lines}, {.points = lines}).value();
     EXPECT_EQ(alignment.certainty, Certainty::kAmbiguous);
@@ -256,10 +256,10 @@ TEST(Alignment, IsTheSameEveryTimeAndInAnyFrame) {
 
 TEST(Alignment, PointsThatDetermineNothingHaveNoClearOne) {
     std::vector<Point2> wall;
-    for (int n = 0; n < 400; ++n) wall.emplace_back(-2.0 + 0.01 * n, 1.5);
-    const std::vector<Point2> heap(100, Point2(1.0, 1.0));
+    for (int n = 0; n < 400; ++n) wall.push_back({-2.0 + 0.01 * n, 1.5});
+    const std::vector<Point2> heap(100, Point2{1.0, 1.0});
     std::vector<Point2> circle;
-    for (int n = 0; n < 720; ++n) circle.emplace_back(3.0 * std::cos(n * kDegree / 2), 3.0 * std::sin(n * kDegree / 2));
+    for (int n = 0; n < 720; ++n) circle.push_back({3.0 * std::cos(n * kDegree / 2), 3.0 * std::sin(n * kDegree / 2)});
     for (const auto& points : {wall, heap, circle}) {
         const auto alignment = align({.points = points}, {.points = points}).value();
         EXPECT_NE(alignment.certainty, Certainty::kClear);
@@ -279,13 +279,13 @@ TEST(Alignment, ATurnAloneDoesAsWell) {
 }
 
 TEST(Alignment, WhatCannotBeIsRefused) {
-    const std::vector<Point2> good(20, Point2(1.0, 1.0));
+    const std::vector<Point2> good(20, Point2{1.0, 1.0});
     EXPECT_THAT(align({.points = {}}, {.points = good}).error().message, HasSubstr("first has 0 points"));
     EXPECT_THAT(align({.points = good}, {.points = std::span(good).first(19)}).error().message,
                 HasSubstr("second has 19 points"));
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
         auto points = good;
-        points[7].y() = bad;
+        points[7].y = bad;
         EXPECT_THAT(align({.points = points}, {.points = good}).error().message, HasSubstr("first.points[7]"));
         EXPECT_THAT(align({.points = good}, {good, {bad, 0.0}}).error().message, HasSubstr("second.from"));
         EXPECT_THAT(align({.points = good}, {.points = good}, {.distance_max = bad}).error().message,

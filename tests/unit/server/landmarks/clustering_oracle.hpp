@@ -14,8 +14,8 @@ struct ClusteringOracle {
     std::size_t min_points;
 
     [[nodiscard]] double squared(std::size_t a, std::size_t b) const {
-        const double dx = points[a].x() - points[b].x();
-        const double dy = points[a].y() - points[b].y();
+        const double dx = points[a].x - points[b].x;
+        const double dy = points[a].y - points[b].y;
         return dx * dx + dy * dy;
     }
 

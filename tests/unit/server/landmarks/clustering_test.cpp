@@ -40,9 +40,9 @@ TEST(Clustering, DenseCloudsAreWhatTheDefinitionsSay) {
         // Heaps of hundreds of points, as far from each other as eps, about.
         std::vector<Point2> points;
         for (int heap = 0; heap < 6; ++heap) {
-            const Point2 middle(0.14 * heap, uniform(random, -0.05, 0.05));
+            const Point2 middle{0.14 * heap, uniform(random, -0.05, 0.05)};
             for (int n = 0; n < 200; ++n) {
-                points.push_back(middle + Point2(uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02)));
+                points.push_back(middle + Point2{uniform(random, -0.02, 0.02), uniform(random, -0.02, 0.02)});
             }
         }
         const double eps = uniform(random, 0.09, 0.13);
@@ -56,7 +56,7 @@ TEST(Clustering, FarFromTheOriginPointsAreGroupedAsNearIt) {
     std::mt19937 random(3);
     for (int round = 0; round < 300; ++round) {
         auto points = random_points(random, 80);
-        for (Point2& point : points) point += Point2(1e7 - 8.0, -1e7 + 8.0);
+        for (Point2& point : points) point += Point2{1e7 - 8.0, -1e7 + 8.0};
         const double eps = 0.25 * static_cast<double>(1 + random() % 4);
         ASSERT_EQ(dbscan(points, eps, 4).value(), (ClusteringOracle{points, eps, 4}.run())) << "round " << round;
     }
@@ -64,7 +64,7 @@ TEST(Clustering, FarFromTheOriginPointsAreGroupedAsNearIt) {
 
 TEST(Clustering, TheSmallestEpsWorksAtTheFurthestPlace) {
     std::vector<Point2> points;
-    for (int n = 0; n < 60; ++n) points.emplace_back(1e7 - 4e-7 * n, -1e7 + 4e-7 * (n % 3));
+    for (int n = 0; n < 60; ++n) points.push_back({1e7 - 4e-7 * n, -1e7 + 4e-7 * (n % 3)});
     for (const double eps : {kEpsMin, 1.3e-6, 4e-6}) {
         EXPECT_EQ(dbscan(points, eps, 4).value(), (ClusteringOracle{points, eps, 4}.run())) << eps;
     }
@@ -76,12 +76,12 @@ TEST(Clustering, ABorderPointFollowsTheNearestCorePointAndOfEquallyNearOnesTheFi
     std::vector<Point2> points{{0.0, 0.0}};
     for (const double side : {-1.0, 1.0}) {
         for (const Point2& point :
-             {Point2(1.0, 0.0), Point2(2.0, 0.0), Point2(2.0, 0.0), Point2(1.0, 1.0), Point2(1.0, -1.0)}) {
-            points.emplace_back(side * point.x(), point.y());
+             {Point2{1.0, 0.0}, Point2{2.0, 0.0}, Point2{2.0, 0.0}, Point2{1.0, 1.0}, Point2{1.0, -1.0}}) {
+            points.push_back({side * point.x, point.y});
         }
     }
     EXPECT_THAT(dbscan(points, 1.25, 5)->cluster_of, ElementsAre(0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1));
-    points[0].x() = 0.125;
+    points[0].x = 0.125;
     EXPECT_THAT(dbscan(points, 1.25, 5)->cluster_of, ElementsAre(1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1));
 }
 
@@ -92,14 +92,14 @@ TEST(Clustering, ClustersAreNumberedByTheirFirstCorePoint) {
 }
 
 TEST(Clustering, EqualPointsCountEach) {
-    const std::vector<Point2> points(5, Point2(3.0, 4.0));
+    const std::vector<Point2> points(5, Point2{3.0, 4.0});
     EXPECT_THAT(dbscan(points, 0.1, 5)->cluster_of, Each(0));
     EXPECT_THAT(dbscan(points, 0.1, 6)->cluster_of, Each(kNoise));
 }
 
 TEST(Clustering, StepsOfExactlyEpsJoin) {
     std::vector<Point2> points;
-    for (int n = 0; n < 20; ++n) points.emplace_back(0.25 * n, 0.0);
+    for (int n = 0; n < 20; ++n) points.push_back({0.25 * n, 0.0});
     EXPECT_EQ(dbscan(points, 0.25, 3)->clusters, 1U);
     EXPECT_EQ(dbscan(points, std::nextafter(0.25, 0.0), 3)->clusters, 0U);
 }

@@ -17,7 +17,7 @@ using namespace testing_support;
 Continuity continuity_oracle(const std::vector<Point2>& points, double eps) {
     const auto variance_along = [&](double angle, std::vector<double>& places) {
         places.clear();
-        for (const Point2& point : points) places.push_back(point.x() * std::cos(angle) + point.y() * std::sin(angle));
+        for (const Point2& point : points) places.push_back(point.x * std::cos(angle) + point.y * std::sin(angle));
         double mean = 0.0;
         for (const double place : places) mean += place;
         mean /= static_cast<double>(places.size());
@@ -57,8 +57,8 @@ TEST(Continuity, IsWhatTheDefinitionSays) {
         for (std::size_t n = 0; n < 2 + random() % 40; ++n) {
             const double along = uniform(random, -1.0, 1.0) * (random() % 4 == 0 ? 2.0 : 1.0);
             const double across = uniform(random, -0.5, 0.5) * width;
-            points.emplace_back(5.0 + along * std::cos(turn) - across * std::sin(turn),
-                                3.0 + along * std::sin(turn) + across * std::cos(turn));
+            points.push_back({5.0 + along * std::cos(turn) - across * std::sin(turn),
+                              3.0 + along * std::sin(turn) + across * std::cos(turn)});
         }
         const double eps = uniform(random, 0.02, 0.4);
         const auto expected = continuity_oracle(points, eps);
@@ -71,9 +71,9 @@ TEST(Continuity, IsWhatTheDefinitionSays) {
 }
 
 TEST(Continuity, AStraightWallOfEvenStepsIsWhole) {
-    for (const Point2& step : {Point2(0.1, 0.0), Point2(0.0, 0.1), Point2(0.1, 0.1), Point2(-0.1, 0.05)}) {
+    for (const Point2& step : {Point2{0.1, 0.0}, Point2{0.0, 0.1}, Point2{0.1, 0.1}, Point2{-0.1, 0.05}}) {
         std::vector<Point2> wall;
-        for (int n = 0; n < 30; ++n) wall.push_back(Point2(100.0, -200.0) + n * step);
+        for (int n = 0; n < 30; ++n) wall.push_back(Point2{100.0, -200.0} + n * step);
         EXPECT_NEAR(continuity_of(wall, 0.1).mean(), 1.0, 1e-6);
     }
 }
@@ -96,7 +96,7 @@ TEST(Continuity, ASquareHasNoLine) {
 TEST(Continuity, WithoutExtentThereIsNone) {
     EXPECT_EQ(continuity_of({}, 0.1), Continuity{});
     EXPECT_EQ(continuity_of(std::vector<Point2>{{1.0, 2.0}}, 0.1), Continuity{});
-    EXPECT_EQ(continuity_of(std::vector<Point2>(7, Point2(0.1, 0.7)), 0.1), Continuity{});
+    EXPECT_EQ(continuity_of(std::vector<Point2>(7, Point2{0.1, 0.7}), 0.1), Continuity{});
 }
 
 TEST(Continuity, TwoPointsAreALine) {

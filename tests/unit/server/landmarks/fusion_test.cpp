@@ -26,8 +26,8 @@ Point2 middle(const Cloud& points) {
     std::vector<double> x;
     std::vector<double> y;
     for (const Point2& point : points) {
-        x.push_back(point.x());
-        y.push_back(point.y());
+        x.push_back(point.x);
+        y.push_back(point.y);
     }
     return {middle(x), middle(y)};
 }
@@ -35,7 +35,7 @@ Point2 middle(const Cloud& points) {
 std::size_t nearest_of(const Point2& place, const Cloud& points) {
     std::size_t nearest = 0;
     for (std::size_t n = 1; n < points.size(); ++n) {
-        if ((points[n] - place).squaredNorm() < (points[nearest] - place).squaredNorm()) nearest = n;
+        if (squared_norm(points[n] - place) < squared_norm(points[nearest] - place)) nearest = n;
     }
     return nearest;
 }
@@ -48,8 +48,8 @@ std::vector<Cloud> groups_of(const std::vector<Cloud>& clouds, double threshold)
         for (const Cloud& group : groups) places.push_back(middle(group));
         for (std::size_t n = 0; n < cloud.size(); ++n) {
             const std::size_t group = places.empty() ? 0 : nearest_of(cloud[n], places);
-            const bool joins = !places.empty() && (cloud[n] - places[group]).norm() <= threshold &&
-                               nearest_of(places[group], cloud) == n;
+            const bool joins =
+                !places.empty() && norm(cloud[n] - places[group]) <= threshold && nearest_of(places[group], cloud) == n;
             if (joins) {
                 groups[group].push_back(cloud[n]);
             } else {
@@ -93,7 +93,7 @@ TEST(Fusion, CorrespondingPointsBecomeTheirMedianPerAxis) {
     const std::vector<Cloud> clouds = {{{0.0, 0.0}}, {{0.2, 0.1}}, {{0.1, 0.3}}};
     const auto fused = fuse(clouds, 0.5).value();
     ASSERT_EQ(fused.size(), 1U);
-    EXPECT_EQ(fused[0].position, Point2(0.1, 0.1));
+    EXPECT_EQ(fused[0].position, (Point2{0.1, 0.1}));
     EXPECT_EQ(fused[0].clouds, 3U);
 }
 

@@ -31,10 +31,10 @@ constexpr double kRadius = 0.25;
 
 RangeMm range_to_pillars(const Point2& from, double direction) {
     double nearest = INFINITY;
-    const Point2 along(std::cos(direction), std::sin(direction));
+    const Point2 along{std::cos(direction), std::sin(direction)};
     for (const auto& pillar : kPillars) {
-        const double ahead = (pillar - from).dot(along);
-        const double aside = std::abs(along.x() * (pillar - from).y() - along.y() * (pillar - from).x());
+        const double ahead = dot(pillar - from, along);
+        const double aside = std::abs(along.x * (pillar - from).y - along.y * (pillar - from).x);
         if (ahead > 0 && aside < kRadius) {
             nearest = std::min(nearest, ahead - std::sqrt(kRadius * kRadius - aside * aside));
         }
@@ -74,8 +74,8 @@ TEST_F(LandmarkLayerTest, ThingsThatAreSeenFromSeveralPlacesAreTheSameLandmarks)
         const auto& found = state.landmarks[id];
         EXPECT_EQ(found.seen, 3U);
         const auto nearest = std::ranges::min(
-            kPillars, {}, [&](const Point2& pillar) { return (pillar - found.landmark.position).norm(); });
-        EXPECT_LT((nearest - found.landmark.position).norm(), kRadius + 0.01);
+            kPillars, {}, [&](const Point2& pillar) { return norm(pillar - found.landmark.position); });
+        EXPECT_LT(norm(nearest - found.landmark.position), kRadius + 0.01);
     }
     EXPECT_EQ(state.sums.persistence_pairs, 2U);
     EXPECT_THAT(state.sums.persistence, DoubleNear(2.0, 1e-12));

@@ -20,7 +20,7 @@ TEST(LandmarkMap, WhatIsSeenAgainIsTheSameAndTheRestIsNew) {
     EXPECT_EQ(view[1].first, 10U);
     EXPECT_EQ(view[1].last, 20U);
     EXPECT_EQ(view[0].seen, 1U);
-    EXPECT_EQ(view[2].landmark.position, Point2(0.3, 0)) << "0.3 m off is another";
+    EXPECT_EQ(view[2].landmark.position, (Point2{0.3, 0})) << "0.3 m off is another";
     EXPECT_EQ(view[3].id, 3U);
 }
 
@@ -29,19 +29,19 @@ TEST(LandmarkMap, ItsPlaceIsTheMedianOfTheLastSightings) {
     std::mt19937 random(1);
     std::vector<Point2> sightings;
     for (int n = 0; n < 40; ++n) {
-        const Point2 seen(0.001 * static_cast<double>(random() % 100), 0.001 * static_cast<double>(random() % 100));
+        const Point2 seen{0.001 * static_cast<double>(random() % 100), 0.001 * static_cast<double>(random() % 100)};
         sightings.push_back(seen);
-        map.add(std::vector{at(seen.x(), seen.y())}, 100 + static_cast<Revision>(n));
+        map.add(std::vector{at(seen.x, seen.y)}, 100 + static_cast<Revision>(n));
         const auto kept = std::min(sightings.size(), kSightingsKept);
         std::vector<double> x;
         std::vector<double> y;
         for (auto back = sightings.rbegin(); back != sightings.rbegin() + static_cast<std::ptrdiff_t>(kept); ++back) {
-            x.push_back(back->x());
-            y.push_back(back->y());
+            x.push_back(back->x);
+            y.push_back(back->y);
         }
         std::ranges::sort(x);
         std::ranges::sort(y);
-        const Point2 median(0.5 * (x[(kept - 1) / 2] + x[kept / 2]), 0.5 * (y[(kept - 1) / 2] + y[kept / 2]));
+        const Point2 median{0.5 * (x[(kept - 1) / 2] + x[kept / 2]), 0.5 * (y[(kept - 1) / 2] + y[kept / 2])};
         const auto view = map.snapshot();
         ASSERT_EQ(view.size(), 1U);
         EXPECT_EQ(view[0].landmark.position, median);
@@ -86,7 +86,7 @@ public:
 
 private:
     static double distance(const Landmark& seen, const Point2& known) {
-        return (seen.position - known).squaredNorm() > 0 ? (seen.position - known).norm() : 0.0;
+        return squared_norm(seen.position - known) > 0 ? norm(seen.position - known) : 0.0;
     }
 
     static Point2 place_of(const std::vector<Point2>& sightings) {
@@ -94,8 +94,8 @@ private:
         std::vector<double> x;
         std::vector<double> y;
         for (std::size_t n = sightings.size() - kept; n < sightings.size(); ++n) {
-            x.push_back(sightings[n].x());
-            y.push_back(sightings[n].y());
+            x.push_back(sightings[n].x);
+            y.push_back(sightings[n].y);
         }
         std::ranges::sort(x);
         std::ranges::sort(y);

@@ -28,15 +28,15 @@ Landmark landmark_oracle(const std::vector<Point2>& points, double eps) {
     std::vector<double> x;
     std::vector<double> y;
     for (const Point2& point : points) {
-        x.push_back(point.x());
-        y.push_back(point.y());
+        x.push_back(point.x);
+        y.push_back(point.y);
     }
-    const Point2 position(median_of(x), median_of(y));
+    const Point2 position{median_of(x), median_of(y)};
     std::vector<double> distances;
-    for (const Point2& point : points) distances.push_back((point - position).norm());
+    for (const Point2& point : points) distances.push_back(norm(point - position));
     const auto [left, right] = std::ranges::minmax(x);
     const auto [bottom, top] = std::ranges::minmax(y);
-    return {position, points.size(), Point2(right - left, top - bottom), median_of(distances),
+    return {position, points.size(), Point2{right - left, top - bottom}, median_of(distances),
             continuity_of(points, eps).mean()};
 }
 
@@ -74,19 +74,19 @@ TEST(Landmark, TheEpsIsAdaptedWhereNoneIsGiven) {
 
 TEST(Landmark, AFewStrayPointsDoNotMoveIt) {
     std::vector<Point2> points;
-    for (int n = 0; n < 101; ++n) points.emplace_back(0.01 * n, 2.0);
-    for (int n = 0; n < 9; ++n) points.emplace_back(1.0, 2.02 + 0.02 * n);
+    for (int n = 0; n < 101; ++n) points.push_back({0.01 * n, 2.0});
+    for (int n = 0; n < 9; ++n) points.push_back({1.0, 2.02 + 0.02 * n});
     const auto landmarks = find_landmarks(points, {5, 0.1}).value();
     ASSERT_THAT(landmarks, SizeIs(1));
-    EXPECT_NEAR(landmarks[0].position.x(), 0.5, 0.06);
-    EXPECT_EQ(landmarks[0].position.y(), 2.0);
+    EXPECT_NEAR(landmarks[0].position.x, 0.5, 0.06);
+    EXPECT_EQ(landmarks[0].position.y, 2.0);
     EXPECT_EQ(landmarks[0].points, 110U);
-    EXPECT_NEAR(landmarks[0].size.x(), 1.0, 1e-12);
-    EXPECT_NEAR(landmarks[0].size.y(), 0.18, 1e-12);
+    EXPECT_NEAR(landmarks[0].size.x, 1.0, 1e-12);
+    EXPECT_NEAR(landmarks[0].size.y, 0.18, 1e-12);
 }
 
 TEST(Landmark, EqualPointsAreOneWithoutSize) {
-    const auto landmarks = find_landmarks(std::vector<Point2>(500, Point2(0.1, 0.7))).value();
+    const auto landmarks = find_landmarks(std::vector<Point2>(500, Point2{0.1, 0.7})).value();
     ASSERT_THAT(landmarks, SizeIs(1));
     EXPECT_EQ(landmarks[0], (Landmark{{0.1, 0.7}, 500, {0.0, 0.0}, 0.0, 0.0}));
 }
@@ -94,19 +94,19 @@ TEST(Landmark, EqualPointsAreOneWithoutSize) {
 TEST(Landmark, TooFewPointsHaveNone) {
     EXPECT_THAT(find_landmarks({}).value(), IsEmpty());
     EXPECT_THAT(find_landmarks(std::vector<Point2>{{1.0, 2.0}}).value(), IsEmpty());
-    EXPECT_THAT(find_landmarks(std::vector<Point2>(4, Point2(1.0, 2.0))).value(), IsEmpty());
+    EXPECT_THAT(find_landmarks(std::vector<Point2>(4, Point2{1.0, 2.0})).value(), IsEmpty());
     EXPECT_THAT(survey_landmarks({})->clustering.cluster_of, IsEmpty());
     EXPECT_EQ(survey_landmarks({})->eps, kThinningSide);
 }
 
 TEST(Landmark, WhatIsWrongIsNamed) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<Point2> points(10, Point2(1.0, 2.0));
+    const std::vector<Point2> points(10, Point2{1.0, 2.0});
     EXPECT_THAT(find_landmarks(points, {0}).error().message, HasSubstr("min_points is 0"));
     EXPECT_THAT(find_landmarks(points, {0, 0.1}).error().message, HasSubstr("min_points is 0"));
     EXPECT_THAT(find_landmarks(points, {5, 0.0}).error().message, HasSubstr("eps is 0"));
     EXPECT_THAT(find_landmarks(points, {5, nan}).error().message, HasSubstr("eps is nan"));
-    for (const Point2& bad : {Point2(nan, 0.0), Point2(0.0, HUGE_VAL), Point2(1e9, 0.0)}) {
+    for (const Point2& bad : {Point2{nan, 0.0}, Point2{0.0, HUGE_VAL}, Point2{1e9, 0.0}}) {
         const auto refused = find_landmarks(std::vector<Point2>{{1.0, 2.0}, bad});
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, Errc::kInvalidField);

@@ -147,7 +147,7 @@ TEST(Localization, FarFromTheMapsOriginIsAsGood) {
     ReferenceViews far;
     for (const auto& view : map_of(world, kPlaces)) {
         ReferenceView moved = *view;
-        moved.from += Point2(500'000.0, -300'000.0);
+        moved.from += Point2{500'000.0, -300'000.0};
         for (auto& point : moved.points) point = {point.x + 500'000'000, point.y - 300'000'000};
         far.push_back(std::make_shared<const ReferenceView>(std::move(moved)));
     }
@@ -160,7 +160,7 @@ TEST(Localization, InOneOfTwoEqualRoomsIsAmbiguousUntilItIsSaidWhich) {
     auto map = map_of(world, kPlaces);
     for (const auto& view : map_of(world, kPlaces)) {
         ReferenceView other = *view;
-        other.from.x() += 20.0;
+        other.from.x += 20.0;
         for (auto& point : other.points) point.x += 20'000;
         map.push_back(std::make_shared<const ReferenceView>(std::move(other)));
     }
@@ -240,7 +240,7 @@ TEST(Localization, WhereNothingWasSeenIsToldFromWhereItIsNotKnown) {
 TEST(Localization, InAMapThatIsTooWideNeedsANeighbourhood) {
     auto map = map_of(furnished(), kPlaces);
     ReferenceView far = *map.front();
-    far.from.x() += 300.0;
+    far.from.x += 300.0;
     for (auto& point : far.points) point.x += 300'000;
     map.push_back(std::make_shared<const ReferenceView>(std::move(far)));
     const auto seen = seen_at(furnished(), kTruth);
@@ -263,13 +263,13 @@ TEST(Localization, OfWhatIsNoViewIsRefused) {
     EXPECT_THAT(locate(map, {.points = std::vector<Point2>(19, {1.0, 1.0})}).error().message,
                 HasSubstr("what is seen has 19 points; 20 or more"));
     std::vector<Point2> points(30, {1.0, 1.0});
-    points[7].x() = std::numeric_limits<double>::quiet_NaN();
+    points[7].x = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(locate(map, {.points = points}).error().code, Errc::kInvalidField);
     // of one point, however often it was seen, no pose can be told
     const auto point = locate(map, {.points = std::vector<Point2>(50, {1.0, 1.0})}).value();
     EXPECT_EQ(point.certainty, Certainty::kUndetermined);
     std::vector<Point2> line;
-    for (int n = 0; n < 200; ++n) line.emplace_back(0.02 * n - 2.0, 1.0);
+    for (int n = 0; n < 200; ++n) line.push_back({0.02 * n - 2.0, 1.0});
     EXPECT_NE(locate(map, {.points = line}).value().certainty, Certainty::kClear);
 }
 

@@ -19,7 +19,7 @@ using testing::IsEmpty;
 std::size_t index_of_nearest(const Point2& place, const std::vector<Point2>& points) {
     std::size_t nearest = 0;
     for (std::size_t n = 1; n < points.size(); ++n) {
-        if ((points[n] - place).squaredNorm() < (points[nearest] - place).squaredNorm()) nearest = n;
+        if (squared_norm(points[n] - place) < squared_norm(points[nearest] - place)) nearest = n;
     }
     return nearest;
 }
@@ -30,7 +30,7 @@ std::vector<Match> all_matches(const std::vector<Point2>& first, const std::vect
     if (second.empty()) return matches;
     for (std::size_t n = 0; n < first.size(); ++n) {
         const std::size_t there = index_of_nearest(first[n], second);
-        const double distance = (second[there] - first[n]).norm();
+        const double distance = norm(second[there] - first[n]);
         if (index_of_nearest(second[there], first) == n && distance <= tolerance)
             matches.push_back({n, there, distance});
     }

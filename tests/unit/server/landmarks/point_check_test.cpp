@@ -19,7 +19,7 @@ TEST(PointCheck, PointsThatCanBeWorkedWithPass) {
 TEST(PointCheck, NamesTheFirstPointThatIsNotFinite) {
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity()}) {
-        for (const Point2& point : {Point2(bad, 0.0), Point2(0.0, bad)}) {
+        for (const Point2& point : {Point2{bad, 0.0}, Point2{0.0, bad}}) {
             const auto checked = check_points(std::vector<Point2>{{1.0, 2.0}, point, point});
             ASSERT_FALSE(checked);
             EXPECT_EQ(checked.error().code, Errc::kInvalidField);

@@ -18,8 +18,8 @@ using namespace testing_support;
 std::vector<Neighbor> all_by_distance(const std::vector<Point2>& points, const Point2& place) {
     std::vector<std::pair<double, std::size_t>> squares;
     for (std::size_t n = 0; n < points.size(); ++n) {
-        const double dx = points[n].x() - place.x();
-        const double dy = points[n].y() - place.y();
+        const double dx = points[n].x - place.x;
+        const double dy = points[n].y - place.y;
         squares.emplace_back(dx * dx + dy * dy, n);
     }
     std::ranges::sort(squares);
@@ -35,7 +35,7 @@ TEST(PointTree, FindsWhatALookAtEveryPointFinds) {
         const PointTree tree(points);
         ASSERT_EQ(tree.size(), points.size());
         const Point2 place = round % 2 == 0 ? points[random() % points.size()]
-                                            : Point2(uniform(random, -4.0, 4.0), uniform(random, -4.0, 4.0));
+                                            : Point2{uniform(random, -4.0, 4.0), uniform(random, -4.0, 4.0)};
         const auto all = all_by_distance(points, place);
         ASSERT_EQ(tree.nearest(place), all.front());
         const std::size_t count = random() % (points.size() + 5);
@@ -44,13 +44,13 @@ TEST(PointTree, FindsWhatALookAtEveryPointFinds) {
                                                                                       std::min(count, points.size()))));
         const double radius = 0.25 * static_cast<double>(random() % 8);
         const auto end = std::ranges::find_if(
-            all, [&](const Neighbor& one) { return (points[one.index] - place).squaredNorm() > radius * radius; });
+            all, [&](const Neighbor& one) { return squared_norm(points[one.index] - place) > radius * radius; });
         ASSERT_THAT(tree.within(place, radius), testing::ElementsAreArray(all.begin(), end)) << "radius " << radius;
     }
 }
 
 TEST(PointTree, ThousandsOfEqualPointsComeInTheirOrder) {
-    std::vector<Point2> points(5000, Point2(1.0, 2.0));
+    std::vector<Point2> points(5000, Point2{1.0, 2.0});
     points[10] = {3.0, 2.0};
     const PointTree tree(points);
     EXPECT_EQ(tree.nearest({1.0, 2.0}), (Neighbor{0, 0.0}));

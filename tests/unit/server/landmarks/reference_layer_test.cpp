@@ -88,9 +88,8 @@ protected:
     static ReferenceMap map_of(const ReferenceViews& views) { return ReferenceMap::of(views, {0.5, -0.25}).value(); }
 
     [[nodiscard]] static bool has_surface_at(const ReferenceMap& map, const Point2& place) {
-        return std::ranges::any_of(map.surfels(), [&](const Surfel& surfel) {
-            return (surfel.position + map.middle() - place).norm() < 0.15;
-        });
+        return std::ranges::any_of(
+            map.surfels(), [&](const Surfel& surfel) { return norm(surfel.position + map.middle() - place) < 0.15; });
     }
 
     const robot::World empty_ = room({});
@@ -126,13 +125,13 @@ TEST_F(ReferenceMapTest, ItsExtentIsASquareAroundAllThatWasSeen) {
     const auto extent = extent_of(views_);
     ASSERT_TRUE(extent);
     EXPECT_NEAR(extent->half, 3.0, 0.1);
-    EXPECT_NEAR(extent->middle.norm(), 0.0, 0.1);
+    EXPECT_NEAR(norm(extent->middle), 0.0, 0.1);
     EXPECT_FALSE(extent_of({}));
 }
 
 TEST_F(ReferenceMapTest, ASensorMayBeWhereSomebodyHasLookedAndNotBehindWalls) {
     const auto map = map_of(views_);
-    const auto possible = [&](double x, double y) { return map.is_possible(Point2(x, y) - map.middle()); };
+    const auto possible = [&](double x, double y) { return map.is_possible(Point2{x, y} - map.middle()); };
     EXPECT_TRUE(possible(1.0, -1.0));
     EXPECT_TRUE(possible(-2.0, 0.0)) << "where somebody has been";
     EXPECT_FALSE(possible(-3.5, 0.0));
@@ -142,12 +141,12 @@ TEST_F(ReferenceMapTest, ASensorMayBeWhereSomebodyHasLookedAndNotBehindWalls) {
 
 TEST_F(ReferenceMapTest, AroundAPlaceIsWhatIsNearAndWhoMayHaveSeenIt) {
     const auto map = map_of(views_);
-    const Point2 corner = Point2(-3.0, -3.0) - map.middle();
+    const Point2 corner = Point2{-3.0, -3.0} - map.middle();
     const auto seen = map.around(corner, 1.0);
     EXPECT_FALSE(seen.surface.surfels().empty());
-    for (const Surfel& surfel : seen.surface.surfels()) EXPECT_LE((surfel.position - corner).norm(), 1.0);
+    for (const Surfel& surfel : seen.surface.surfels()) EXPECT_LE(norm(surfel.position - corner), 1.0);
     EXPECT_EQ(seen.horizons.size(), 4U);
-    EXPECT_TRUE(map.around(corner + Point2(-50.0, 0.0), 1.0).horizons.empty());
+    EXPECT_TRUE(map.around(corner + Point2{-50.0, 0.0}, 1.0).horizons.empty());
 }
 
 } // namespace

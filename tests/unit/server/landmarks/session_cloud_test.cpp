@@ -25,14 +25,14 @@ TEST(SessionCloud, PointsOfSeveralCapturesBecomeOneAndTellWhoSawThemFirst) {
     };
     const auto cloud = fuse_captures(captures, 0.05).value();
     ASSERT_EQ(cloud.size(), 3U);
-    EXPECT_EQ(cloud[0].position, Point2(1.01, 2.0));
+    EXPECT_EQ(cloud[0].position, (Point2{1.01, 2.0}));
     EXPECT_EQ(cloud[0].seen, 3U);
     EXPECT_EQ(cloud[0].robot, 1U);
     EXPECT_EQ(cloud[0].revision, 11U);
     EXPECT_THAT(cloud[0].distance, DoubleNear(std::hypot(0.01, 2.0), 1e-12));
     EXPECT_THAT(cloud[0].angle, DoubleNear(-std::atan2(0.01, 2.0), 1e-12)) << "ahead of a robot that looks along y";
     EXPECT_THAT(cloud[1].angle, DoubleNear(-std::numbers::pi / 2, 1e-12)) << "to its right";
-    EXPECT_EQ(cloud[2].position, Point2(-5.0, 0.0));
+    EXPECT_EQ(cloud[2].position, (Point2{-5.0, 0.0}));
     EXPECT_EQ(cloud[2].seen, 1U);
     EXPECT_EQ(cloud[2].robot, 0U);
     EXPECT_EQ(cloud[2].angle, std::numbers::pi);

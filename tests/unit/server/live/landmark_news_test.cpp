@@ -57,8 +57,8 @@ void expect_equal(const LiveReplay& viewer, const landmarks::LandmarkView& landm
     for (const auto& [id, told] : viewer.landmarks) {
         const auto& truth = landmarks[id];
         EXPECT_EQ(told.id(), truth.id);
-        EXPECT_EQ(told.x(), truth.landmark.position.x());
-        EXPECT_EQ(told.y(), truth.landmark.position.y());
+        EXPECT_EQ(told.x(), truth.landmark.position.x);
+        EXPECT_EQ(told.y(), truth.landmark.position.y);
         EXPECT_EQ(told.seen(), truth.seen);
         EXPECT_EQ(told.size_x(), 0.5F);
         EXPECT_EQ(told.size_y(), 0.25F);

@@ -1,4 +1,5 @@
 #include "server/planning/clearance.hpp"
+#include "tests/support/point_text.hpp"
 #include "tests/unit/server/planning/path_oracle.hpp"
 
 #include <gtest/gtest.h>
@@ -22,18 +23,18 @@ TEST(Clearance, IsThatOfTheLineFromEverySquare) {
         std::uniform_real_distribution<double> coordinate(0.0, 50.0);
         std::uniform_real_distribution<double> step(-6.0, 6.0);
         for (int line = 0; line < 200; ++line) {
-            Point2 from(coordinate(random), coordinate(random));
-            Point2 to = from + Point2(step(random), step(random));
+            Point2 from{coordinate(random), coordinate(random)};
+            Point2 to = from + Point2{step(random), step(random)};
             if (line % 4 == 0) to = from;
-            if (line % 4 == 1) to.x() = from.x();
-            if (line % 4 == 2) to.y() = from.y();
+            if (line % 4 == 1) to.x = from.x;
+            if (line % 4 == 2) to.y = from.y;
             if (line % 8 >= 4) { // where squares are met at their corners
-                from = (from * 2.0).array().round() / 2.0;
-                to = (to * 2.0).array().round() / 2.0;
+                from = {std::round(from.x * 2.0) / 2.0, std::round(from.y * 2.0) / 2.0};
+                to = {std::round(to.x * 2.0) / 2.0, std::round(to.y * 2.0) / 2.0};
             }
             const bool expected = oracle.keeps_clear(from, to);
             ASSERT_EQ(keeps_clear(passability, from, to), expected)
-                << from.transpose() << " to " << to.transpose() << ", radius " << options.body_radius_m;
+                << text_of(from) << " to " << text_of(to) << ", radius " << options.body_radius_m;
             (expected ? clear : touching) += 1;
         }
     }

@@ -2,6 +2,7 @@
 #include "server/planning/region.hpp"
 #include "server/planning/sweep.hpp"
 #include "tests/support/plan_worlds.hpp"
+#include "tests/support/point_text.hpp"
 #include "tests/unit/server/planning/path_oracle.hpp"
 
 #include <gmock/gmock.h>
@@ -19,21 +20,22 @@ using CellSet = std::set<std::pair<int, int>>; // (j, i)
 
 double distance_to_segment(const Point2& point, const Point2& a, const Point2& b) {
     const Point2 ab = b - a;
-    const double length = ab.squaredNorm();
-    const double along = length == 0.0 ? 0.0 : std::clamp((point - a).dot(ab) / length, 0.0, 1.0);
-    return (a + along * ab - point).norm();
+    const double length = squared_norm(ab);
+    const double along = length == 0.0 ? 0.0 : std::clamp(dot(point - a, ab) / length, 0.0, 1.0);
+    return norm(a + along * ab - point);
 }
 
 /// The cells whose centres are within the body's radius of the path.
 CellSet within_reach(const Path& path, double cell_size_m, double radius_m) {
     CellSet cells;
+    const Point2 margin{radius_m, radius_m};
     for (std::size_t at = 0; at + 1 < path.points.size(); ++at) {
         const Point2& a = path.points[at];
         const Point2& b = path.points[at + 1];
-        const Point2 low = (a.cwiseMin(b).array() - radius_m).matrix() / cell_size_m;
-        const Point2 high = (a.cwiseMax(b).array() + radius_m).matrix() / cell_size_m;
-        for (auto j = static_cast<int>(std::floor(low.y())); j <= high.y(); ++j) {
-            for (auto i = static_cast<int>(std::floor(low.x())); i <= high.x(); ++i) {
+        const Point2 low = (min_corner(a, b) - margin) / cell_size_m;
+        const Point2 high = (max_corner(a, b) + margin) / cell_size_m;
+        for (auto j = static_cast<int>(std::floor(low.y)); j <= high.y; ++j) {
+            for (auto i = static_cast<int>(std::floor(low.x)); i <= high.x; ++i) {
                 if (distance_to_segment(centre({i, j}, cell_size_m), a, b) <= radius_m + 1e-9) cells.insert({j, i});
             }
         }
@@ -59,7 +61,7 @@ void expect_covers(const ClassView& view, const grid::CellBox& box, double cell_
     }
     const Oracle oracle(view, box, cell_size_m, options);
     const auto costs = oracle.costs(
-        {static_cast<int>(std::floor(start.x() / cell_size_m)), static_cast<int>(std::floor(start.y() / cell_size_m))});
+        {static_cast<int>(std::floor(start.x / cell_size_m)), static_cast<int>(std::floor(start.y / cell_size_m))});
     const int reach = static_cast<int>(radius / cell_size_m) + 1;
     for (const auto& [j, i] : listed) {
         ASSERT_TRUE(region.contains({j, i}));
@@ -135,11 +137,11 @@ TEST(Coverage, FromAGapTooNarrowForTheBodyCoversTheRoomWhereItReachesMost) {
     CoverageOptions options;
     options.passability.body_radius_m = 1.2;
     const auto coverage = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
-    for (const Point2& point : coverage.path.points) EXPECT_GE(point.x(), 6.5);
+    for (const Point2& point : coverage.path.points) EXPECT_GE(point.x, 6.5);
     EXPECT_GE(coverage.unreachable.size(), 25U) << "the room on the left";
     options.region = {{1.0, 1.0}, {5.0, 1.0}, {5.0, 6.0}, {1.0, 6.0}};
     const auto left = plan_coverage(view, 1.0, {6.5, 3.5}, options).value();
-    for (const Point2& point : left.path.points) EXPECT_LE(point.x(), 6.5);
+    for (const Point2& point : left.path.points) EXPECT_LE(point.x, 6.5);
     EXPECT_GT(left.fraction, 0.7);
 }
 
@@ -162,7 +164,7 @@ TEST(Coverage, KeepsClearOnceItHasLeftANarrowStart) {
         const auto& points = coverage->path.points;
         const auto fits = [&](const Point2& point) {
             return oracle.enterable(
-                {static_cast<int>(std::floor(point.x() / 0.05)), static_cast<int>(std::floor(point.y() / 0.05))});
+                {static_cast<int>(std::floor(point.x / 0.05)), static_cast<int>(std::floor(point.y / 0.05))});
         };
         const auto out = static_cast<std::size_t>(std::ranges::find_if(points, fits) - points.begin());
         for (std::size_t at = out; at + 1 < points.size(); ++at) {
@@ -239,7 +241,7 @@ TEST(Coverage, StartsFromBesideAWallWithoutCoveringWhatIsBehindIt) {
     options.passability.body_radius_m = 1.6;
     options.region = {{0.0, 0.0}, {9.0, 0.0}, {9.0, 8.0}, {0.0, 8.0}};
     const auto coverage = plan_coverage(view, 1.0, {4.5, 3.5}, options).value();
-    EXPECT_EQ(coverage.path.points.front(), Point2(4.5, 3.5));
+    EXPECT_EQ(coverage.path.points.front(), (Point2{4.5, 3.5}));
     for (const Cell cell : coverage.unreachable) EXPECT_GT(cell.j, 2);
     EXPECT_GE(coverage.unreachable.size(), 27U) << "all that is behind the wall";
 }
@@ -307,7 +309,7 @@ TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
     const auto passability = make_passability(drawn({std::string(130, '.')}), 0.05, {}).value();
     for (int round = 0; round < 50; ++round) {
         std::vector<Point2> corners;
-        for (int n = 0; n < 3 + round % 6; ++n) corners.emplace_back(coordinate(random), coordinate(random));
+        for (int n = 0; n < 3 + round % 6; ++n) corners.push_back({coordinate(random), coordinate(random)});
         const auto inside = cells_inside(passability, corners).value();
         for (std::int32_t y = 0; y < inside.height(); ++y) {
             for (std::int32_t x = 0; x < inside.width(); ++x) {
@@ -316,11 +318,11 @@ TEST(Region, HoldsTheCellsWhoseCentresAreInsideThePolygon) {
                 for (std::size_t n = 0; n < corners.size(); ++n) {
                     const Point2 a = corners[n];
                     const Point2 b = corners[(n + 1) % corners.size()];
-                    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-                    const double x_at = a.x() + (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y());
-                    if (x_at < point.x()) expected = !expected;
+                    if ((a.y > point.y) == (b.y > point.y)) continue;
+                    const double x_at = a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y);
+                    if (x_at < point.x) expected = !expected;
                 }
-                ASSERT_EQ(inside.test({x, y}), expected) << point.transpose();
+                ASSERT_EQ(inside.test({x, y}), expected) << text_of(point);
             }
         }
     }

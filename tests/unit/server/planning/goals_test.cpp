@@ -194,7 +194,7 @@ TEST(NextGoal, IsTheReachableFrontierWithTheCheapestWay) {
         ++found;
         EXPECT_EQ(next.goal->cost, least);
         EXPECT_EQ(next.path.points.front(), *robot);
-        EXPECT_NEAR((next.path.points.back() - centre(next.goal->cell, kGoalCellSize)).norm(), 0.0, 1e-9);
+        EXPECT_NEAR(norm(next.path.points.back() - centre(next.goal->cell, kGoalCellSize)), 0.0, 1e-9);
         EXPECT_LE(next.path.cost, next.goal->cost * (1.0 + 1e-9));
         EXPECT_LE(next.path.length_m, next.goal->length_m + 1e-9);
     }
@@ -359,7 +359,7 @@ TEST(NextGoal, TheBodyKeepsToKnownGround) {
     const auto next = next_goal(clearing(), kGoalCellSize, {0.6, 0.6}).value();
     ASSERT_TRUE(next.goal);
     for (const Point2& point : next.path.points) {
-        EXPECT_GE(std::min({point.x(), point.y(), 1.2 - point.x(), 1.2 - point.y()}), 0.15);
+        EXPECT_GE(std::min({point.x, point.y, 1.2 - point.x, 1.2 - point.y}), 0.15);
     }
 }
 

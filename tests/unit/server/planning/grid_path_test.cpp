@@ -1,5 +1,6 @@
 #include "server/planning/grid_path.hpp"
 #include "server/planning/line_of_sight.hpp"
+#include "tests/support/point_text.hpp"
 #include "tests/unit/server/planning/path_oracle.hpp"
 
 #include <gmock/gmock.h>
@@ -83,8 +84,8 @@ TEST(GridPath, StraighteningStaysSafeAndNeverCostsMore) {
         if (!path) continue;
         ASSERT_LE(path->cost, steps->cost * (1.0 + 1e-9));
         shortened += path->cost < steps->cost * 0.99 ? 1 : 0;
-        if (!oracle.enterable({static_cast<int>(std::floor(start.x() / kCellSize)),
-                               static_cast<int>(std::floor(start.y() / kCellSize))})) {
+        if (!oracle.enterable({static_cast<int>(std::floor(start.x / kCellSize)),
+                               static_cast<int>(std::floor(start.y / kCellSize))})) {
             continue; // it leaves an obstacle's surroundings, through cells that the oracle keeps closed
         }
         ASSERT_NEAR(cost_of(oracle, *path).value_or(-1.0), path->cost, 1e-7);
@@ -103,7 +104,7 @@ TEST(GridPath, KeepsTheBodysRadiusFromEveryOccupiedSquare) {
         const auto anywhere = [&] {
             std::uniform_real_distribution<double> part(0.0, 1.0);
             const Cell cell = random_cell(random);
-            return Point2((cell.i + part(random)) * cell_size, (cell.j + part(random)) * cell_size);
+            return Point2{(cell.i + part(random)) * cell_size, (cell.j + part(random)) * cell_size};
         };
         const Point2 start = centre(random_cell(random), cell_size);
         const Oracle oracle(view, kBox, cell_size, options);
@@ -114,8 +115,8 @@ TEST(GridPath, KeepsTheBodysRadiusFromEveryOccupiedSquare) {
         for (std::size_t at = 0; at + 1 < path->points.size(); ++at) {
             const double slack = at + 2 == path->points.size() ? 0.05 : 2e-9;
             ASSERT_TRUE(oracle.keeps_clear(path->points[at] / cell_size, path->points[at + 1] / cell_size, slack))
-                << path->points[at].transpose() << " to " << path->points[at + 1].transpose() << ", cells of "
-                << cell_size << " m, body of " << options.body_radius_m;
+                << text_of(path->points[at]) << " to " << text_of(path->points[at + 1]) << ", cells of " << cell_size
+                << " m, body of " << options.body_radius_m;
         }
         ASSERT_TRUE(oracle.keeps_clear(path->points.back() / cell_size, path->points.back() / cell_size, 2e-9));
     }
@@ -143,11 +144,11 @@ TEST(GridPath, AStraightWayThatIsFreeIsTaken) {
         const Cell to = random_cell(random);
         const auto path = plan_path(view, kCellSize, centre(from, kCellSize), centre(to, kCellSize), options);
         const Oracle oracle(view, kBox, kCellSize, options);
-        const Point2 a(from.i + 0.5, from.j + 0.5);
-        const Point2 b(to.i + 0.5, to.j + 0.5);
+        const Point2 a{from.i + 0.5, from.j + 0.5};
+        const Point2 b{to.i + 0.5, to.j + 0.5};
         if (!path || !oracle.enterable(from) || !oracle.cost_of_line(a, b) || !oracle.keeps_clear(a, b)) continue;
         ++free;
-        ASSERT_EQ(path->points.size(), 2U) << a.transpose() << " to " << b.transpose();
+        ASSERT_EQ(path->points.size(), 2U) << text_of(a) << " to " << text_of(b);
     }
     EXPECT_GT(free, 20);
 }
@@ -162,14 +163,14 @@ TEST(GridPath, ARobotTooNearToAWallNeverComesNearer) {
         const Cell from = random_cell(random);
         const Cell to = random_cell(random);
         if (oracle.enterable(from)) continue;
-        const Point2 start(from.i + 0.5, from.j + 0.5);
+        const Point2 start{from.i + 0.5, from.j + 0.5};
         double slack = 0.0; // what the start itself lacks
         while (slack < 4.0 && !oracle.keeps_clear(start, start, slack)) slack += 0.125;
         const auto path = plan_path(view, kCellSize, centre(from, kCellSize), centre(to, kCellSize), options);
         if (!path) continue;
         ++left;
         for (const Point2& point : path->points) {
-            ASSERT_TRUE(oracle.keeps_clear(point / kCellSize, point / kCellSize, slack)) << point.transpose();
+            ASSERT_TRUE(oracle.keeps_clear(point / kCellSize, point / kCellSize, slack)) << text_of(point);
         }
     }
     EXPECT_GT(left, 20);
@@ -191,8 +192,8 @@ TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
     const Oracle oracle(view, kBox, kCellSize, options);
     int found = 0;
     for (int round = 0; round < 120; ++round) {
-        const Point2 start(x(random), y(random));
-        const Point2 goal(x(random), y(random));
+        const Point2 start{x(random), y(random)};
+        const Point2 goal{x(random), y(random)};
         const auto path = plan_path(view, kCellSize, start, goal, options);
         if (!path) continue;
         ++found;
@@ -200,7 +201,7 @@ TEST(GridPath, BeginsAndEndsAtThePointsThemselves) {
         ASSERT_EQ(path->points.back(), goal);
         double length = 0.0;
         for (std::size_t at = 0; at + 1 < path->points.size(); ++at) {
-            length += (path->points[at + 1] - path->points[at]).norm();
+            length += norm(path->points[at + 1] - path->points[at]);
         }
         ASSERT_NEAR(path->length_m, length, 1e-9);
         ASSERT_NEAR(cost_of(oracle, *path).value_or(-1.0), path->cost, 1e-7);
@@ -260,7 +261,7 @@ TEST(GridPath, ARobotThatLooksAheadLeavesTheUnknownBesideIt) {
     const PassabilityOptions careful{.body_radius_m = 0.15, .on_known = true};
     const auto path = plan_path(ahead(60, 0.577, 0), kCellSize, {0.025, 0.025}, {2.0, 0.025}, careful);
     ASSERT_TRUE(path) << path.error().message;
-    EXPECT_EQ(path->points.front(), Point2(0.025, 0.025));
+    EXPECT_EQ(path->points.front(), (Point2{0.025, 0.025}));
     EXPECT_NEAR(path->length_m, 1.975, 0.05);
 }
 
@@ -327,7 +328,7 @@ TEST(GridPath, WithinOneCellIsAStraightLine) {
 TEST(GridPath, ARobotTooNearToAWallFindsItsWayOut) {
     const auto view = drawn({"##########", "..........", "..........", "..........", "..........", ".........."});
     const auto path = plan_path(view, 1.0, {2.5, 4.5}, {8.5, 0.5}, {.body_radius_m = 1.6}).value();
-    EXPECT_EQ(path.points.front(), Point2(2.5, 4.5));
+    EXPECT_EQ(path.points.front(), (Point2{2.5, 4.5}));
     EXPECT_EQ(plan_path(view, 1.0, {8.5, 0.5}, {2.5, 4.5}, {.body_radius_m = 1.6}).error().code, Errc::kNoPath);
 }
 
@@ -341,18 +342,17 @@ TEST(LineOfSight, CostsWhatTheCellsItTouchesCost) {
         static const Oracle oracle(view, {0, 0, 60, 50}, 1.0, options);
         static const auto passability = make_passability(view, 1.0, options).value();
         std::uniform_real_distribution<double> coordinate(5.0, 45.0);
-        Point2 from(coordinate(random), coordinate(random));
-        Point2 to = from + Point2(coordinate(random) - 25.0, coordinate(random) - 25.0) * 0.4;
+        Point2 from{coordinate(random), coordinate(random)};
+        Point2 to = from + Point2{coordinate(random) - 25.0, coordinate(random) - 25.0} * 0.4;
         if (round % 2 == 0) { // centres: these lines meet corners of cells
-            from = Point2(std::floor(from.x()) + 0.5, std::floor(from.y()) + 0.5);
-            to = Point2(std::floor(to.x()) + 0.5, std::floor(to.y()) + 0.5);
+            from = Point2{std::floor(from.x) + 0.5, std::floor(from.y) + 0.5};
+            to = Point2{std::floor(to.x) + 0.5, std::floor(to.y) + 0.5};
         }
-        if (!oracle.enterable({static_cast<int>(std::floor(from.x())), static_cast<int>(std::floor(from.y()))}))
-            continue;
-        if (!oracle.enterable({static_cast<int>(std::floor(to.x())), static_cast<int>(std::floor(to.y()))})) continue;
+        if (!oracle.enterable({static_cast<int>(std::floor(from.x)), static_cast<int>(std::floor(from.y))})) continue;
+        if (!oracle.enterable({static_cast<int>(std::floor(to.x)), static_cast<int>(std::floor(to.y))})) continue;
         const auto cost = cost_of_line(passability, from, to);
         const auto expected = oracle.cost_of_line(from, to);
-        ASSERT_EQ(cost.has_value(), expected.has_value()) << from.transpose() << " to " << to.transpose();
+        ASSERT_EQ(cost.has_value(), expected.has_value()) << text_of(from) << " to " << text_of(to);
         (cost ? clear : blocked) += 1;
         ASSERT_NEAR(cost.value_or(0.0), expected.value_or(0.0), 1e-8);
     }

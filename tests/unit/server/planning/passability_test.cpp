@@ -54,7 +54,7 @@ TEST(Passability, TheWindowIsTheChunksOfTheMap) {
     EXPECT_EQ(passability.cell_at({1, 2}), (Cell{-63, -126}));
     EXPECT_EQ(passability.spot_at({-0.01, 0.26}), (Spot{63, 133}));
     EXPECT_EQ(passability.spot_at({-3.3, 0.0}), std::nullopt);
-    EXPECT_EQ(passability.centre_of({64, 128}), Point2(0.025, 0.025));
+    EXPECT_EQ(passability.centre_of({64, 128}), (Point2{0.025, 0.025}));
 }
 
 TEST(Passability, UnknownGroundReachesAroundThePointsToBeHeld) {

@@ -71,27 +71,31 @@ public:
     /// squares of all obstacles. In cells.
     [[nodiscard]] bool keeps_clear(const Point2& from, const Point2& to, double slack = 0.0) const {
         return is_inside(from, to, slack) && std::ranges::all_of(obstacles_, [&](Cell cell) {
-                   return distance(from, to, {cell.i, cell.j}) > radius_ - slack;
+                   return distance(from, to, low_corner(cell)) > radius_ - slack;
                });
     }
 
     /// The cost of a straight line in cells, or nothing when it touches the square of a cell that may not be entered.
     [[nodiscard]] std::optional<double> cost_of_line(const Point2& from, const Point2& to) const {
         double cost = 0.0;
-        const auto low = from.cwiseMin(to);
-        const auto high = from.cwiseMax(to);
-        for (auto j = static_cast<int>(std::floor(low.y())) - 1; j <= high.y(); ++j) {
-            for (auto i = static_cast<int>(std::floor(low.x())) - 1; i <= high.x(); ++i) {
+        const Point2 low = min_corner(from, to);
+        const Point2 high = max_corner(from, to);
+        for (auto j = static_cast<int>(std::floor(low.y)) - 1; j <= high.y; ++j) {
+            for (auto i = static_cast<int>(std::floor(low.x)) - 1; i <= high.x; ++i) {
                 const double part = part_inside(from, to, {i, j});
                 if (part < 0.0) continue;
                 if (!enterable({i, j})) return std::nullopt;
-                cost += part * (to - from).norm() * factor({i, j});
+                cost += part * norm(to - from) * factor({i, j});
             }
         }
         return cost;
     }
 
 private:
+    [[nodiscard]] static Point2 low_corner(Cell cell) {
+        return {static_cast<double>(cell.i), static_cast<double>(cell.j)};
+    }
+
     [[nodiscard]] bool is_obstacle(Cell cell) const {
         const auto value = class_at(view_, cell);
         const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
@@ -101,13 +105,13 @@ private:
     /// Whether a body is nowhere beyond the box, where everything is unknown; where that matters.
     [[nodiscard]] bool is_inside(const Point2& from, const Point2& to, double slack) const {
         if (!options_.on_known || options_.body_radius_m == 0.0) return true;
-        const Point2 low = from.cwiseMin(to).array() - radius_ + slack;
-        const Point2 high = from.cwiseMax(to).array() + radius_ - slack;
-        return low.x() > box_.i_begin && low.y() > box_.j_begin && high.x() < box_.i_end && high.y() < box_.j_end;
+        const Point2 low = min_corner(from, to) - Point2{radius_, radius_} + Point2{slack, slack};
+        const Point2 high = max_corner(from, to) + Point2{radius_, radius_} - Point2{slack, slack};
+        return low.x > box_.i_begin && low.y > box_.j_begin && high.x < box_.i_end && high.y < box_.j_end;
     }
 
     [[nodiscard]] bool may_be_entered(Cell cell) const {
-        const Point2 centre(cell.i + 0.5, cell.j + 0.5);
+        const Point2 centre{cell.i + 0.5, cell.j + 0.5};
         const auto value = class_at(view_, cell);
         if (value == CellClass::kOccupied) return false;
         const bool unknown = value == CellClass::kUnexplored || value == CellClass::kFrontier;
@@ -124,8 +128,8 @@ private:
     [[nodiscard]] static double distance(const Point2& from, const Point2& to, const Point2& low) {
         const auto at = [&](double part) {
             const Point2 point = from + part * (to - from);
-            const Point2 nearest = point.cwiseMax(low).cwiseMin(low + Point2(1.0, 1.0));
-            return (point - nearest).norm();
+            const Point2 nearest = min_corner(max_corner(point, low), low + Point2{1.0, 1.0});
+            return norm(point - nearest);
         };
         double begin = 0.0;
         double end = 1.0;
@@ -143,15 +147,15 @@ private:
         constexpr double kTouch = 1e-10;
         double begin = 0.0;
         double end = 1.0;
-        const Point2 low(cell.i, cell.j);
-        for (int axis = 0; axis < 2; ++axis) {
-            const double delta = to[axis] - from[axis];
+        const Point2 low = low_corner(cell);
+        for (const auto axis : {&Point2::x, &Point2::y}) {
+            const double delta = to.*axis - from.*axis;
             if (delta == 0.0) {
-                if (from[axis] < low[axis] || from[axis] > low[axis] + 1.0) return -1.0;
+                if (from.*axis < low.*axis || from.*axis > low.*axis + 1.0) return -1.0;
                 continue;
             }
-            const double a = (low[axis] - from[axis]) / delta;
-            const double b = (low[axis] + 1.0 - from[axis]) / delta;
+            const double a = (low.*axis - from.*axis) / delta;
+            const double b = (low.*axis + 1.0 - from.*axis) / delta;
             begin = std::max(begin, std::min(a, b));
             end = std::min(end, std::max(a, b));
         }

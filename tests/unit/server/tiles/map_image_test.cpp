@@ -53,8 +53,8 @@ TEST(MapImage, OfTheWholeMapIsEveryCellOfItsBounds) {
     EXPECT_EQ(frame.cells, (CellBox{-70, -150, 201, 90}));
     EXPECT_EQ(frame.width(), 271);
     EXPECT_EQ(frame.height(), 240);
-    EXPECT_DOUBLE_EQ(frame.origin().x(), -7.0);
-    EXPECT_DOUBLE_EQ(frame.origin().y(), -15.0);
+    EXPECT_DOUBLE_EQ(frame.origin().x, -7.0);
+    EXPECT_DOUBLE_EQ(frame.origin().y, -15.0);
     expect_equals_brute_force(snapshot, render_map(snapshot, Layer::kOccupancy, frame));
 }
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/geometry/point2.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace scanloom::testing_support {
+
+/// A point as failed tests print it.
+[[nodiscard]] inline std::string text_of(const Point2& point) { return fmt::format("({:g}, {:g})", point.x, point.y); }
+
+} // namespace scanloom::testing_support
