@@ -32,7 +32,7 @@ run_test() {
 # run_filtered WORD EXCLUDED_LABELS: the cases of test programs, and the other tests, whose names contain WORD.
 run_filtered() {
     local word=$1 program cases failed='' found=''
-    local programs=(core memory server robot system)
+    local programs=(core memory server http robot system)
     [[ $2 == *all* ]] || programs+=(tools faults)
     for program in "${programs[@]}"; do
         cases=$("build/tests/${program}_test" --gtest_list_tests --gtest_filter="*$word*" | grep -c '^  ' || true)
@@ -56,8 +56,8 @@ run_sanitizers() {
     need build test
     for preset in asan-ubsan tsan; do
         if (($# > 0)); then
-            make_preset "$preset" server_test
-            ctest --preset "$preset" --parallel "$(nproc)" --label-regex '^server_test$'
+            make_preset "$preset" server_test http_test
+            ctest --preset "$preset" --parallel "$(nproc)" --label-regex '^(server|http)_test$' --label-exclude '^all$'
         else
             make_preset "$preset" tests
             ctest --preset "$preset" --parallel "$(nproc)"

@@ -7,7 +7,6 @@ namespace {
 TEST(MainFaultRow, KillNine) { expect_passed(short_form_of("kill")); }
 TEST(MainFaultRow, SpoiledLinks) { expect_passed(short_form_of("link")); }
 TEST(MainFaultRow, RestartsUnderManyRobots) { expect_passed(short_form_of("restart")); }
-TEST(MainFaultRow, Simulation) { expect_passed(short_form_of("simulation")); }
 
 } // namespace
 } // namespace scanloom::fault

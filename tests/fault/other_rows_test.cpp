@@ -4,6 +4,7 @@
 namespace scanloom::fault {
 namespace {
 
+TEST(OtherFaultRow, Simulation) { expect_passed(short_form_of("simulation")); }
 TEST(OtherFaultRow, DamagedStores) { expect_passed(short_form_of("corrupt")); }
 TEST(OtherFaultRow, JumpingClocks) { expect_passed(short_form_of("clock")); }
 TEST(OtherFaultRow, PowerCuts) { expect_passed(short_form_of("power")); }

@@ -31,6 +31,14 @@ TEST_F(SimulationTest, ASeedIsTheSameStoryAgain) {
     }
 }
 
+/// The row "simulation" has more of them.
+TEST_F(SimulationTest, EveryStoryKeepsWhatWasAcknowledged) {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        const auto ending = tell({.seed = seed});
+        EXPECT_TRUE(ending.outcome.passed()) << "seed " << seed;
+    }
+}
+
 TEST_F(SimulationTest, OtherSeedsAreOtherStories) {
     EXPECT_NE(tell({.seed = 1}).fingerprint, tell({.seed = 2}).fingerprint);
 }

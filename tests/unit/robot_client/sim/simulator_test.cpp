@@ -171,9 +171,9 @@ void PrintTo(const Setting& setting, std::ostream* out) {
     *out << setting.world << ' ' << setting.laser << (setting.noisy ? " noisy" : "");
 }
 
-class WallFollowerDrives : public testing::TestWithParam<Setting> {};
+class WallFollowerTrials : public testing::TestWithParam<Setting> {};
 
-TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandstill) {
+TEST_P(WallFollowerTrials, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandstill) {
     const auto [name, laser, noisy] = GetParam();
     const World world = *find_world(name);
     std::size_t square_metres = 0;
@@ -190,7 +190,7 @@ TEST_P(WallFollowerDrives, ThreeMinutesFromTwentyPlacesWithoutCollisionOrStandst
     EXPECT_GT(square_metres / 20, 35U) << "few of them circle in a corner";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, WallFollowerDrives,
+INSTANTIATE_TEST_SUITE_P(All, WallFollowerTrials,
                          testing::Values(Setting{"room", "reference", false}, Setting{"room", "lidar360", true},
                                          Setting{"office", "reference", false}, Setting{"office", "lidar360", true},
                                          Setting{"hall", "reference", false}, Setting{"hall", "lidar360", true}));

@@ -47,6 +47,8 @@ protected:
     }
 };
 
+class ApiPointsTrials : public ApiPointsTest {};
+
 TEST_F(ApiPointsTest, EveryPointThatWasSeenIsInOneOfTheCloud) {
     const auto apart = lines("threshold=0");
     const auto fused = lines();
@@ -74,7 +76,7 @@ TEST_F(ApiPointsTest, OfOneRobotAndOfAPartOfTheLog) {
 }
 
 /// Also where a capture of a robot that stands has many scans, and another robot's begins and ends meanwhile.
-TEST_F(ApiPointsTest, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
+TEST_F(ApiPointsTrials, PartsThatFollowEachOtherHaveEveryCaptureOnce) {
     create("stand");
     const auto session = registry_.find("stand");
     auto standing = testing_support::room_scans(44); // it is in the middle of the last capture

@@ -67,15 +67,22 @@ int clear_of(const robot::World& world, int seeds) {
     return clear;
 }
 
-TEST(Alignment, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
+/// Three of the many scenes of AlignmentTrials.
+TEST(Alignment, FindsCapturesInARoomAnOfficeAndAHall) {
+    EXPECT_EQ(clear_of(robot::make_room(), 3), 3);
+    EXPECT_GE(clear_of(robot::make_office(), 3), 2);
+    EXPECT_GE(clear_of(robot::make_hall(), 3), 2);
+}
 
-TEST(Alignment, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
+TEST(AlignmentTrials, OfCapturesInARoomIsFoundWithoutAGuess) { EXPECT_GE(clear_of(robot::make_room(), 100), 99); }
+
+TEST(AlignmentTrials, OfCapturesInAnOfficeIsFoundWithoutAGuess) {
     auto office = robot::make_office();
     office.starts = {{-15.0, -10.0, 15.0, 10.0}};
     EXPECT_GE(clear_of(office, 100), 95);
 }
 
-TEST(Alignment, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
+TEST(AlignmentTrials, OfCapturesInAHallIsFoundOrSaidNotToBeKnown) { EXPECT_GE(clear_of(robot::make_hall(), 100), 95); }
 
 /// Scenes by chance on which an earlier align() was clear and wrong: half a turn off, racks further, along racks.
 TEST(Alignment, WhatExplainsSomewhatMoreIsNotTakenForTheTruth) {
@@ -155,7 +162,7 @@ TEST(Alignment, ACrateThatWasMovedAlongACorridorIsNotTakenForItsPlace) {
 }
 
 /// The legs of an L are alike: from one of them the other may be taken for it.
-TEST(Alignment, InTheLegsOfAnLIsClearOnlyWhereItIsRight) {
+TEST(AlignmentTrials, InTheLegsOfAnLIsClearOnlyWhereItIsRight) {
     const auto world = robot::make_world("L",
                                          {{-2.0, -2.0, 16.0, -1.0},
                                           {15.0, -2.0, 16.0, 2.0},

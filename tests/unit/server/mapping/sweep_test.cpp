@@ -45,17 +45,22 @@ private:
     std::mt19937 random_;
 };
 
-TEST(Sweep, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) {
+/// Compares `rounds` random scans of every shape with the naive double loop over cells and beams.
+void compare_with_oracle(int rounds) {
     std::size_t firm = 0;
     for (unsigned shape = 0; shape < testing_support::kAngleShapes; ++shape) {
         RandomCases cases(100 + shape);
-        for (int round = 0; round < 300; ++round) {
+        for (int round = 0; round < rounds; ++round) {
             const Case c = cases.next(shape);
             ASSERT_NO_FATAL_FAILURE(expect_equal_to_oracle(c, firm)) << "round " << round;
         }
     }
-    EXPECT_GT(firm, 1'000'000U) << "too few cells had a firm verdict for the comparison to mean anything";
+    EXPECT_GT(firm, 3'000U * static_cast<unsigned>(rounds)) << "too few cells had a firm verdict to compare them";
 }
+
+TEST(Sweep, EqualsTheNaiveDoubleLoopOnRandomScansOfEveryShape) { compare_with_oracle(40); }
+
+TEST(SweepTrials, EqualsTheNaiveDoubleLoopOnManyRandomScansOfEveryShape) { compare_with_oracle(300); }
 
 TEST(Sweep, OfManyStripsIsAsExactAsOneOfFew) {
     RandomCases cases(7);

@@ -81,6 +81,8 @@ protected:
     TemporaryDirectory directory_;
 };
 
+class SalvageTrials : public SalvageTest {};
+
 TEST_F(SalvageTest, OfAStoreThatIsWholeEverythingIsFoundAndNothingIsLeftBehind) {
     {
         const auto salvage = salvaged();
@@ -94,7 +96,7 @@ TEST_F(SalvageTest, OfAStoreThatIsWholeEverythingIsFoundAndNothingIsLeftBehind) 
     EXPECT_FALSE(fs::exists(at("copy")));
 }
 
-TEST_F(SalvageTest, OfATableWithBadBlocksAllIsKeptButTheEntriesThatAreHit) {
+TEST_F(SalvageTrials, OfATableWithBadBlocksAllIsKeptButTheEntriesThatAreHit) {
     std::mt19937 random(3);
     std::size_t kept = 0;
     for (int round = 0; round < 12; ++round) {
@@ -130,7 +132,7 @@ TEST_F(SalvageTest, OfATableWithoutItsEndNothingIsLostButThatEnd) {
     EXPECT_GE(kept, (2 * kInTable + kInLog) / 3);
 }
 
-TEST_F(SalvageTest, AFlippedBitAnywhereInTheEndOfATableCostsNothing) {
+TEST_F(SalvageTrials, AFlippedBitAnywhereInTheEndOfATableCostsNothing) {
     const auto original = bytes_of(largest_table());
     std::mt19937 random(5);
     for (int round = 0; round < 20; ++round) {
@@ -224,7 +226,7 @@ TEST_F(SalvageTest, WithoutAManifestASessionThatWasRemovedDoesNotComeBack) {
     EXPECT_THAT(salvaged()->sessions(), SizeIs(2));
 }
 
-TEST_F(SalvageTest, AManifestThatEndsEarlyTakesNoTableAlong) {
+TEST_F(SalvageTrials, AManifestThatEndsEarlyTakesNoTableAlong) {
     {
         auto log = open_rocksdb(at("growing")).value();
         for (SessionId id = 1; id <= 3; ++id) { // each in a table of its own, one after the other
