@@ -264,6 +264,28 @@ TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
     EXPECT_EQ(projection.snapshot().robots.front().scan_count, 10U);
 }
 
+TEST(Projection, ASensorDescribedAgainIsUsedAsItIsDescribedNow) {
+    Sensor turned = laser();
+    std::get<UniformAngles>(turned.angles).first += 1.0;
+    const std::size_t beams = beam_count(turned.angles);
+    const auto digests = [&](const std::vector<Sensor>& descriptions) {
+        Projection projection{MapConfig{}};
+        EXPECT_TRUE(projection.fold(RobotJoined{0, "r"}));
+        std::uint64_t seq = 0;
+        for (const Sensor& described : descriptions) {
+            EXPECT_TRUE(projection.fold(SensorDescribed{0, described}));
+            // Without a valid reading: it changes no cell, but the projection keeps the beams' directions.
+            Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
+            EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
+        }
+        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, 2000)};
+        EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
+        return testing_support::digests_of(projection.snapshot());
+    };
+    EXPECT_EQ(digests({laser(), turned}), digests({turned}));
+    EXPECT_NE(digests({laser()}), digests({turned})) << "the test compares nothing";
+}
+
 TEST(Projection, AReachOfTooManyCellsIsRefusedByName) {
     Sensor sensor = laser();
     sensor.range_max = 81.0;
