@@ -61,8 +61,9 @@ const std::vector<std::string> kWaysHead{
     "pairs", "agreeing", "rms mm", "landmarks off by mm", "deg", "surfaces' verdict", "surfaces off by mm", "deg"};
 
 std::vector<std::string> ways_cells(const WaysToAlign& ways) {
-    const auto& [pairs, fit, refusal] = ways.by_landmarks;
+    const auto& [pairs, found, refusal] = ways.by_landmarks;
     const auto& [alignment, error] = ways.by_surfaces;
+    const auto& fit = found; // clang 14 captures no structured binding
     const auto of_fit = [&](auto text) { return fit ? text(*fit) : std::string(kNone); };
     return {whole(pairs),
             fit ? whole(fit->agreeing) : "refused",

@@ -148,7 +148,7 @@ ExitCode run(const RobotOptions& options) {
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
     asio::co_spawn(io, show_progress(io, uplink, **feed, *prepared, console), asio::detached);
-    asio::co_spawn(io, uplink.run(), [&](std::exception_ptr failed, Result<> result) {
+    asio::co_spawn(io, uplink.run(), [&](const std::exception_ptr& failed, Result<> result) {
         if (failed) std::rethrow_exception(failed);
         outcome = std::move(result);
         io.stop();

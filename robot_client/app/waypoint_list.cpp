@@ -102,6 +102,7 @@ Result<std::vector<Point2>> read_waypoints(const std::string& list) {
 
 std::string to_text(const std::vector<Point2>& waypoints) {
     std::vector<std::string> texts;
+    texts.reserve(waypoints.size());
     for (const Point2& waypoint : waypoints) texts.push_back(fmt::format("{},{}", waypoint.x, waypoint.y));
     return fmt::format("{}", fmt::join(texts, ";"));
 }

@@ -78,7 +78,7 @@ Result<std::unique_ptr<Client>> Client::start(ClientOptions options) {
     if (!spool) return spool.error();
     LiveFeedOptions feed;
     feed.when_full = when_full;
-    feed.tell = options.tell;
+    feed.tell = std::move(options.tell);
     return std::unique_ptr<Client>(new Client(
         std::make_unique<Worker>(std::move(*uplink), std::move(*spool), std::move(feed)), options.cell_size));
 }

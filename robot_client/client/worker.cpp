@@ -83,7 +83,7 @@ Result<> Client::Worker::flush(milliseconds length) {
 
 Result<> Client::Worker::close(milliseconds length) {
     const Patience patience(length);
-    const auto flushed = wait_for(until_stored(patience), patience);
+    auto flushed = wait_for(until_stored(patience), patience);
     if (!flushed && flushed.error().code != Errc::kOverloaded) return flushed;
     {
         const std::lock_guard lock(mutex_);

@@ -44,6 +44,7 @@ std::vector<RangeMm> listen(const World& world, const Sensor& sonar, const Pose2
     world.obstacles->outlines().visit_outwards(origin, farthest, hear);
     for (const Disc& person : people_near(world, origin, sonar.range_max)) hear(person);
     std::vector<RangeMm> ranges;
+    ranges.reserve(beams.size());
     for (const Heard& beam : beams) ranges.push_back(reading(beam.nearest, sonar, noise, random));
     return ranges;
 }

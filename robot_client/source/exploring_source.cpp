@@ -43,8 +43,8 @@ asio::awaitable<Result<std::optional<Observation>>> ExploringSource::next() {
     }
     if (is_stopped_ || explore_->is_done()) co_return std::optional<Observation>{};
     Observation observation = observed(simulator_, no_return_);
-    const auto moments = static_cast<double>(resumed_after_ / simulator_.sensors().size());
-    observation.scan.stamp += moments * kScanPeriod;
+    const std::uint64_t moments = resumed_after_ / simulator_.sensors().size();
+    observation.scan.stamp += static_cast<double>(moments) * kScanPeriod;
     scans_ += 1;
     co_await wait_until_due(observation.scan.stamp);
     co_return std::optional(std::move(observation));

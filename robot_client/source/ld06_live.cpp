@@ -142,7 +142,7 @@ void Ld06Live::State::spawn(const asio::any_io_executor& executor, StopSwitch& s
         const Running running(own);
         co_await inner(std::move(self));
     };
-    const auto at_end = [self = shared_from_this()](std::exception_ptr failed) {
+    const auto at_end = [self = shared_from_this()](const std::exception_ptr& failed) {
         if (failed) std::rethrow_exception(failed);
     };
     asio::co_spawn(executor, run(shared_from_this(), stop, body),

@@ -49,9 +49,10 @@ bool is_plausible(const Ld06Packet& packet) noexcept {
     // manual was taken at 2250, and is to pass, too.
     constexpr double kSamplesPerSecondMin = 2250.0;
     constexpr double kSpanMargin = 1.5;
+    const int degrees = angles_spanned(packet) / 100; // rounded down, as the vendor does
     const double degrees_max = packet.speed * kLd06PacketPoints / kSamplesPerSecondMin * kSpanMargin;
     return packet.start_angle <= kAnglesPerTurn && packet.end_angle <= kAnglesPerTurn &&
-           packet.timestamp <= kLd06ClockWrap && angles_spanned(packet) / 100 <= degrees_max;
+           packet.timestamp <= kLd06ClockWrap && degrees <= degrees_max;
 }
 
 std::int32_t steps_spanned(const Ld06Packet& packet) noexcept {

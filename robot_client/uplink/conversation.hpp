@@ -29,6 +29,24 @@ struct ConversationOptions {
     std::chrono::milliseconds silence_max{15'000};        ///< then the link counts as dead
 };
 
+/// The state of one connection of a Conversation.
+struct ConversationLink {
+    using Time = std::chrono::steady_clock::time_point;
+
+    Time opened;
+    Time heard; ///< the newest frame that came
+    std::optional<Time> pinged;
+    bool said_hello = false;
+    bool welcomed = false;
+    bool said_goodbye = false;
+    wire::Limits limits;
+    bool zstd = false;
+    CreditWindow credit;
+    std::map<std::uint32_t, std::shared_ptr<const Sensor>> described; ///< by Sensor::id
+    std::deque<std::uint64_t> pings_to_answer;
+    std::optional<Error> cannot_send; ///< the next scan exceeds what this server takes
+};
+
 /// The robot's side of the robot link, without a socket and without a clock: what to say next, what to say again after
 /// a reconnect, how much may be under way. It outlives its links and is driven by events.
 ///
@@ -94,22 +112,6 @@ public:
     [[nodiscard]] std::uint64_t welcomes() const noexcept { return welcomes_; }
 
 private:
-    /// What is true of one connection only.
-    struct Link {
-        Time opened;
-        Time heard; ///< the newest frame that came
-        std::optional<Time> pinged;
-        bool said_hello = false;
-        bool welcomed = false;
-        bool said_goodbye = false;
-        wire::Limits limits;
-        bool zstd = false;
-        CreditWindow credit;
-        std::map<std::uint32_t, std::shared_ptr<const Sensor>> described; ///< by Sensor::id
-        std::deque<std::uint64_t> pings_to_answer;
-        std::optional<Error> cannot_send; ///< the next scan exceeds what this server takes
-    };
-
     [[nodiscard]] wire::LinkError on_error(wire::LinkError failure, Time now);
     [[nodiscard]] std::optional<wire::LinkError> on_welcome(const wire::Welcome& welcome, Time now);
     [[nodiscard]] std::optional<wire::LinkError> on_ack(const wire::Ack& ack, Time now);
@@ -124,7 +126,7 @@ private:
     SendBuffer buffer_;
     OpenRequests requests_;
     Replacements replacements_;
-    std::optional<Link> link_;
+    std::optional<ConversationLink> link_;
     std::optional<std::uint64_t> resumed_after_;
     std::string session_id_;
     Time progress_;

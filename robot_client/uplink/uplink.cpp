@@ -39,7 +39,7 @@ asio::awaitable<Result<>> Uplink::run() {
 }
 
 Result<> Uplink::outcome_when_interrupted() const {
-    const auto interrupted = [](std::string what) { return Error{Errc::kShuttingDown, "interrupted " + what}; };
+    const auto interrupted = [](const std::string& what) { return Error{Errc::kShuttingDown, "interrupted " + what}; };
     if (!conversation_.resumed_after()) {
         const std::string spooled =
             feed_.waiting() > 0 ? fmt::format(" with {} scans in the spool", feed_.waiting()) : std::string();

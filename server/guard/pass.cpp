@@ -7,7 +7,7 @@ access::TokenRef Pass::token() const {
     return token_;
 }
 
-void Pass::when_changed(std::function<void()> told) {
+void Pass::when_changed(const std::function<void()>& told) {
     bool has_changed = false;
     {
         const std::lock_guard lock(mutex_);

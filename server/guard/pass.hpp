@@ -27,7 +27,7 @@ public:
     [[nodiscard]] access::TokenRef token() const;
 
     /// From now on `told` is called, from any thread, when token() has become another; at once when it has already.
-    void when_changed(std::function<void()> told);
+    void when_changed(const std::function<void()>& told);
 
     [[nodiscard]] Purpose purpose() const noexcept { return purpose_; }
     [[nodiscard]] const std::string& session() const noexcept { return session_; }

@@ -25,7 +25,7 @@ constexpr std::size_t kOnTheirWayOutMax = 64; // connections that were asked to 
 
 } // namespace
 
-Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, ServerConfig config,
+Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, const ServerConfig& config,
                                                Answering answering, metrics::HttpCounters& counters) {
     const auto endpoint = config.endpoint;
     const bool check_host = endpoint.address().is_loopback() || !config.host_names.empty();

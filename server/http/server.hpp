@@ -37,7 +37,7 @@ public:
     ///
     /// Errors  kUnreachable, naming the endpoint: it is taken, or not an address of this machine.
     [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io, Executors executors,
-                                                                ServerConfig config, Answering answering,
+                                                                const ServerConfig& config, Answering answering,
                                                                 metrics::HttpCounters& counters);
 
     /// The port that is bound.

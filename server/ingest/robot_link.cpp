@@ -221,6 +221,7 @@ Result<> RobotLink::handle(wire::Message message) {
     }
     if (auto ok = allowance_.check(message); !ok) return over_limit(ok.error());
     if (auto request = as_request(std::move(message))) return ask(std::move(*request));
+    // NOLINTNEXTLINE(bugprone-use-after-move): as_request() leaves a message that is no request as it was
     return dialogue_.handle(std::move(message), frame_bytes_, read_, shared_from_this());
 }
 

@@ -110,9 +110,10 @@ void rank(std::vector<Candidate>& candidates) {
     if (candidates.empty()) return;
     by_score(candidates);
     const Pose2 winner = candidates.front().pose();
-    const auto same = std::ranges::stable_partition(
-        candidates, [&](const Candidate& candidate) { return !is_distinct(candidate.pose(), winner); });
-    const auto fittest = std::ranges::max_element(candidates.begin(), same.begin(), {},
+    const auto same_end = std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+        return !is_distinct(candidate.pose(), winner);
+    });
+    const auto fittest = std::ranges::max_element(candidates.begin(), same_end, {},
                                                   [](const Candidate& candidate) { return candidate.fit.agreement; });
     std::iter_swap(candidates.begin(), fittest);
 }

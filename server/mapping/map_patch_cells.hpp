@@ -30,7 +30,8 @@ void for_each_cell_of(const MapPatch& patch, double cell_size, Visit&& visit) {
     if (patch.cell_size <= cell_size * (1.0 + kSnap)) {
         for (std::size_t n = 0; n < patch.cells.size(); ++n) {
             const double x = patch.min_x + (static_cast<double>(n % patch.width) + 0.5) * patch.cell_size;
-            const double y = patch.min_y + (static_cast<double>(n / patch.width) + 0.5) * patch.cell_size;
+            const auto row = n / patch.width;
+            const double y = patch.min_y + (static_cast<double>(row) + 0.5) * patch.cell_size;
             visit(grid::Cell{ours(x), ours(y)}, patch.cells[n]);
         }
         return;

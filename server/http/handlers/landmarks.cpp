@@ -96,6 +96,7 @@ Result<Response> get_landmarks(session::SessionRegistry& sessions, session::Land
     auto slot = slots.take(wanted.size() * kLandmarkTextBytes);
     if (!slot) return slot.error();
     std::vector<std::string> features;
+    features.reserve(wanted.size());
     for (const auto* one : wanted) features.push_back(feature_of(*one));
     const auto& sums = folded->state.sums;
     return ok_text(kGeoJson, std::move(*slot),

@@ -123,7 +123,7 @@ private:
 Result<> choose(store::ScanLog& log, store::SessionId session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
     landmarks::SessionCaptures cut;
-    const auto read = session::read_captures(
+    auto read = session::read_captures(
         log, session, cut, std::min(newest, query.until.value_or(newest)),
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
         [&](Revision) { return patience(); });
