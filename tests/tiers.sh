@@ -4,10 +4,14 @@
 run_test() {
     local targets=(tests) excluded='^(all|nightly)$' filter=''
     case ${1:-} in
-        --sanitizers) run_sanitizers "${@:2}" && return ;;
+        --sanitizers)
+            run_sanitizers "${@:2}"
+            return
+            ;;
         --nightly)
             (($# == 1)) || misused "test --nightly takes no '$2'"
-            run_nightly && return
+            run_nightly
+            return
             ;;
         --all)
             targets=(tests_all "${programs[@]}") excluded='^nightly$'

@@ -103,7 +103,7 @@ TEST(LiveLandmarks, WaitForNobodyElseAndAreToldToWhoComesLater) {
 }
 
 TEST(LiveLandmarks, AreNotLookedForMoreOftenThanTheirPause) {
-    LiveServer server({.interval = 0ms, .landmarks_pause = 1h});
+    LiveServer server({.interval = 0ms, .landmarks_pause = 1h, .landmarks_turn = 1h});
     server.stream("r1", 1, 40);
     LandmarkViewer viewer(server);
     viewer.catch_up();
