@@ -53,20 +53,24 @@ run_filtered() {
     [[ -z $failed ]] || fail "tests failed; the lines above say which"
 }
 
-# run_sanitizers [--core]
+# run_sanitizers [--core]: the suites of test under both sanitizers. --core: memory errors where the bytes of strangers
+# arrive, races where the threads of sessions, store and links meet.
 run_sanitizers() {
-    local preset
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
-    for preset in asan-ubsan tsan; do
-        if (($# > 0)); then
-            make_preset "$preset" server_test http_test
-            ctest --preset "$preset" --parallel "$(nproc)" --label-regex '^(server|http)_test$' --label-exclude '^all$'
-        else
-            make_preset "$preset" tests
-            ctest --preset "$preset" --parallel "$(nproc)"
-        fi
-    done
+    if (($# == 0)); then
+        sanitize asan-ubsan tests '^suite$'
+        sanitize tsan tests '^suite$'
+    else
+        sanitize asan-ubsan http_test '^http_test$'
+        sanitize tsan server_test '^server_test$'
+    fi
+}
+
+# sanitize PRESET TARGET LABELS
+sanitize() {
+    make_preset "$1" "$2"
+    ctest --preset "$1" --parallel "$(nproc)" --label-regex "$3"
 }
 
 # run_nightly: all tests, and whatever takes hours or looks at the sources in another way.
