@@ -278,7 +278,8 @@ TEST(Projection, ASensorDescribedAgainIsUsedAsItIsDescribedNow) {
             Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
             EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
         }
-        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, 2000)};
+        Scan scan{.seq = ++seq, .sensor = 2, .ranges = std::vector<RangeMm>(beams, kInvalidRange)};
+        std::fill_n(scan.ranges.begin(), beams / 4, 2000);
         EXPECT_TRUE(projection.fold(ScanTaken{0, scan}));
         return testing_support::digests_of(projection.snapshot());
     };
