@@ -35,10 +35,9 @@ run_test() {
 
 # run_filtered WORD EXCLUDED_LABELS: the cases of test programs, and the other tests, whose names contain WORD.
 run_filtered() {
-    local word=$1 program cases failed='' found=''
-    local programs=(core memory server http robot system)
-    [[ $2 == *all* ]] || programs+=(tools faults)
-    for program in "${programs[@]}"; do
+    local word=$1 program cases failed='' found='' of_tier=(core memory server http robot system)
+    [[ $2 == *all* ]] || of_tier+=(tools faults)
+    for program in "${of_tier[@]}"; do
         cases=$("build/tests/${program}_test" --gtest_list_tests --gtest_filter="*$word*" | grep -c '^  ' || true)
         ((cases > 0)) || continue
         found=yes
