@@ -136,9 +136,13 @@ run_mutants() {
     done
     patches=(tests/mutants/${only:-*}.patch)
     [[ -f ${patches[0]} ]] || misused "there is no mutant '$only', only $(cd tests/mutants && echo *.patch)"
-    local copy=$PWD/build/mutants
-    mkdir -p "$copy"
-    git ls-files -z | tar --create --null --files-from=- | tar --extract --directory "$copy"
+    local copy=$PWD/build/mutants file
+    # Only files that differ, and with a new time: so what an interrupted run left broken is compiled again.
+    git ls-files | while read -r file; do
+        cmp --silent "$file" "$copy/$file" && continue
+        mkdir -p "$(dirname "$copy/$file")"
+        cp "$file" "$copy/$file"
+    done
     for patch in "${patches[@]}"; do
         patch --directory "$copy" --strip 1 --quiet --forward <"$patch" || fail "$patch does not apply any more; make it again"
         find_mutant "$copy" "$patch" "${tier[@]}" || missed+=("$(basename "$patch" .patch)")
