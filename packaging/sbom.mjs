@@ -18,22 +18,39 @@ export function librariesOf(program) {
 
 /** The Debian packages that files came with. Packages know them by the names before /lib became /usr/lib, or after. */
 export function ownersOf(files) {
-  const names = new Map(files.map((file) => {
-    const real = realpathSync(file);
-    return [file, [file, real, real.replace(/^\/usr/, ''), `/usr${file}`]];
-  }));
-  const told = spawnSync('dpkg-query', ['--search', ...[...names.values()].flat()], { encoding: 'utf8', maxBuffer: 1 << 26 });
-  const owners = new Map(told.stdout.split('\n').map((line) => line.match(/^([^:,]+)[^/]*: (.+)$/) ?? []).map(([, owner, name]) => [name, owner]));
-  return new Set([...names].map(([file, candidates]) => {
-    const known = candidates.find((name) => owners.has(name));
-    if (!known) throw new Error(`${file} came with no Debian package; what it is made of cannot be told`);
-    return owners.get(known);
-  }));
+  const names = new Map(
+    files.map((file) => {
+      const real = realpathSync(file);
+      return [file, [file, real, real.replace(/^\/usr/, ''), `/usr${file}`]];
+    }),
+  );
+  const told = spawnSync('dpkg-query', ['--search', ...[...names.values()].flat()], {
+    encoding: 'utf8',
+    maxBuffer: 1 << 26,
+  });
+  const owners = new Map(
+    told.stdout
+      .split('\n')
+      .map((line) => line.match(/^([^:,]+)[^/]*: (.+)$/) ?? [])
+      .map(([, owner, name]) => [name, owner]),
+  );
+  return new Set(
+    [...names].map(([file, candidates]) => {
+      const known = candidates.find((name) => owners.has(name));
+      if (!known) throw new Error(`${file} came with no Debian package; what it is made of cannot be told`);
+      return owners.get(known);
+    }),
+  );
 }
 
 function installed(name) {
   const fields = ['Package', 'Version', 'Architecture', 'source:Package', 'source:Version', 'Homepage', 'Maintainer'];
-  const values = run('dpkg-query', '--show', `--showformat=${fields.map((field) => `\${${field}}\\n`).join('')}`, name).split('\n');
+  const values = run(
+    'dpkg-query',
+    '--show',
+    `--showformat=${fields.map((field) => `\${${field}}\\n`).join('')}`,
+    name,
+  ).split('\n');
   const told = Object.fromEntries(fields.map((field, i) => [field, values[i]]));
   let copyright = '';
   try {

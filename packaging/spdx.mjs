@@ -3,13 +3,38 @@ import { createHash } from 'node:crypto';
 
 // Short names of Debian's copyright files (DEP 5), as SPDX calls them.
 const LICENCES = {
-  'apache-2.0': 'Apache-2.0', 'apache-2': 'Apache-2.0', 'asl-2.0': 'Apache-2.0', artistic: 'Artistic-1.0-Perl',
-  'bsd-2-clause': 'BSD-2-Clause', 'bsd-3-clause': 'BSD-3-Clause', 'bsd-3-clause-google': 'BSD-3-Clause', 'bsl-1.0': 'BSL-1.0',
-  'boost-1.0': 'BSL-1.0', 'cc0-1.0': 'CC0-1.0', curl: 'curl', expat: 'MIT', mit: 'MIT', 'mit/x11': 'MIT', isc: 'ISC',
-  'gpl-1+': 'GPL-1.0-or-later', 'gpl-2': 'GPL-2.0-only', 'gpl-2+': 'GPL-2.0-or-later', 'gpl-3': 'GPL-3.0-only',
-  'gpl-3+': 'GPL-3.0-or-later', 'lgpl-2': 'LGPL-2.0-only', 'lgpl-2+': 'LGPL-2.0-or-later', 'lgpl-2.0+': 'LGPL-2.0-or-later',
-  'lgpl-2.1': 'LGPL-2.1-only', 'lgpl-2.1+': 'LGPL-2.1-or-later', 'lgpl-3': 'LGPL-3.0-only', 'lgpl-3+': 'LGPL-3.0-or-later',
-  libpng: 'Libpng', 'mpl-2.0': 'MPL-2.0', 'mpl-2': 'MPL-2.0', openssl: 'OpenSSL', zlib: 'Zlib',
+  'apache-2.0': 'Apache-2.0',
+  'apache-2': 'Apache-2.0',
+  'asl-2.0': 'Apache-2.0',
+  artistic: 'Artistic-1.0-Perl',
+  'bsd-2-clause': 'BSD-2-Clause',
+  'bsd-3-clause': 'BSD-3-Clause',
+  'bsd-3-clause-google': 'BSD-3-Clause',
+  'bsl-1.0': 'BSL-1.0',
+  'boost-1.0': 'BSL-1.0',
+  'cc0-1.0': 'CC0-1.0',
+  curl: 'curl',
+  expat: 'MIT',
+  mit: 'MIT',
+  'mit/x11': 'MIT',
+  isc: 'ISC',
+  'gpl-1+': 'GPL-1.0-or-later',
+  'gpl-2': 'GPL-2.0-only',
+  'gpl-2+': 'GPL-2.0-or-later',
+  'gpl-3': 'GPL-3.0-only',
+  'gpl-3+': 'GPL-3.0-or-later',
+  'lgpl-2': 'LGPL-2.0-only',
+  'lgpl-2+': 'LGPL-2.0-or-later',
+  'lgpl-2.0+': 'LGPL-2.0-or-later',
+  'lgpl-2.1': 'LGPL-2.1-only',
+  'lgpl-2.1+': 'LGPL-2.1-or-later',
+  'lgpl-3': 'LGPL-3.0-only',
+  'lgpl-3+': 'LGPL-3.0-or-later',
+  libpng: 'Libpng',
+  'mpl-2.0': 'MPL-2.0',
+  'mpl-2': 'MPL-2.0',
+  openssl: 'OpenSSL',
+  zlib: 'Zlib',
 };
 
 const NONE = 'NOASSERTION';
@@ -42,7 +67,11 @@ export function debianPackage(told, copyright) {
     licenseDeclared: licence,
     ...(licence === NONE ? { licenseComments: `/usr/share/doc/${told.Package}/copyright tells it` } : {}),
     copyrightText: NONE,
-    externalRefs: [purl(`pkg:deb/debian/${encodeURIComponent(told.Package)}@${encodeURIComponent(told.Version)}?arch=${told.Architecture}&distro=debian-12`)],
+    externalRefs: [
+      purl(
+        `pkg:deb/debian/${encodeURIComponent(told.Package)}@${encodeURIComponent(told.Version)}?arch=${told.Architecture}&distro=debian-12`,
+      ),
+    ],
   };
 }
 
@@ -68,7 +97,11 @@ export function npmPackages(lock) {
         downloadLocation: NONE, // whatever registry serves it: purl and checksum say what it is
         filesAnalyzed: false,
         ...(entry.integrity?.startsWith('sha512-')
-          ? { checksums: [{ algorithm: 'SHA512', checksumValue: Buffer.from(entry.integrity.slice(7), 'base64').toString('hex') }] }
+          ? {
+              checksums: [
+                { algorithm: 'SHA512', checksumValue: Buffer.from(entry.integrity.slice(7), 'base64').toString('hex') },
+              ],
+            }
           : {}),
         licenseConcluded: NONE,
         licenseDeclared: expressionOf(entry.license ?? ''),
@@ -103,7 +136,10 @@ export function document({ version, architecture, created, linked, compiledIn, b
     SPDXID: 'SPDXRef-DOCUMENT',
     name: `scanloom-${version}-${architecture}`,
     documentNamespace: `https://spdx.org/spdxdocs/scanloom-${version}-${architecture}-${digest}`,
-    creationInfo: { created: `${created.toISOString().slice(0, 19)}Z`, creators: ['Tool: scanloom-package', 'Organization: The Scanloom authors'] },
+    creationInfo: {
+      created: `${created.toISOString().slice(0, 19)}Z`,
+      creators: ['Tool: scanloom-package', 'Organization: The Scanloom authors'],
+    },
     packages,
     relationships: [
       { spdxElementId: 'SPDXRef-DOCUMENT', relationshipType: 'DESCRIBES', relatedSpdxElement: own.SPDXID },
@@ -129,7 +165,10 @@ export function faultsOf(made) {
   demand(/^[a-z]+:\/\/[^#\s]+$/.test(made.documentNamespace ?? ''), 'documentNamespace is no address, or has a #');
   demand(/^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$/.test(made.creationInfo?.created ?? ''), 'creationInfo.created is no time');
   const creators = made.creationInfo?.creators ?? [];
-  demand(creators.length > 0 && creators.every((one) => /^(Tool|Organization|Person): \S/.test(one)), 'creationInfo.creators names nobody');
+  demand(
+    creators.length > 0 && creators.every((one) => /^(Tool|Organization|Person): \S/.test(one)),
+    'creationInfo.creators names nobody',
+  );
   const ids = new Set([made.SPDXID]);
   for (const one of made.packages ?? []) {
     const who = `package ${one.name ?? one.SPDXID}`;
@@ -140,15 +179,24 @@ export function faultsOf(made) {
     demand(typeof one.versionInfo === 'string' && one.versionInfo !== '', `${who} has no version`);
     demand(LOCATION.test(one.downloadLocation ?? ''), `${who}: downloadLocation is none`);
     demand(one.filesAnalyzed === false, `${who}: files that are analysed need a verification code`);
-    for (const field of ['licenseConcluded', 'licenseDeclared']) demand(EXPRESSION.test(one[field] ?? ''), `${who}: ${field} is no expression`);
-    demand(!one.supplier || /^(NOASSERTION|(Organization|Person): \S.*)$/.test(one.supplier), `${who}: supplier is nobody`);
-    for (const sum of one.checksums ?? []) demand(sum.algorithm !== 'SHA512' || /^[0-9a-f]{128}$/.test(sum.checksumValue), `${who}: no SHA512`);
+    for (const field of ['licenseConcluded', 'licenseDeclared'])
+      demand(EXPRESSION.test(one[field] ?? ''), `${who}: ${field} is no expression`);
+    demand(
+      !one.supplier || /^(NOASSERTION|(Organization|Person): \S.*)$/.test(one.supplier),
+      `${who}: supplier is nobody`,
+    );
+    for (const sum of one.checksums ?? [])
+      demand(sum.algorithm !== 'SHA512' || /^[0-9a-f]{128}$/.test(sum.checksumValue), `${who}: no SHA512`);
   }
   demand((made.packages ?? []).length > 0, 'there are no packages');
   const relationships = made.relationships ?? [];
-  demand(relationships.some((one) => one.relationshipType === 'DESCRIBES' && one.spdxElementId === 'SPDXRef-DOCUMENT'), 'what it describes is not told');
+  demand(
+    relationships.some((one) => one.relationshipType === 'DESCRIBES' && one.spdxElementId === 'SPDXRef-DOCUMENT'),
+    'what it describes is not told',
+  );
   for (const { spdxElementId, relatedSpdxElement } of relationships) {
-    for (const id of [spdxElementId, relatedSpdxElement]) demand(ids.has(id), `a relationship names ${id}, which is not there`);
+    for (const id of [spdxElementId, relatedSpdxElement])
+      demand(ids.has(id), `a relationship names ${id}, which is not there`);
   }
   return faults;
 }

@@ -46,7 +46,15 @@ try {
   await server.stop();
 }
 
-async function take({ name, session = 'intel', hash = '', size = kSize, scheme = 'light', scale = 1, act = async () => {} }) {
+async function take({
+  name,
+  session = 'intel',
+  hash = '',
+  size = kSize,
+  scheme = 'light',
+  scale = 1,
+  act = async () => {},
+}) {
   const { page } = await openPage(browser, server.address, { hash: `#session=${session}${hash}`, size, scheme, scale });
   await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
   await page.waitForSelector('#notice', { state: 'hidden' });

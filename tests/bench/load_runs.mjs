@@ -13,10 +13,21 @@ export function startServer() {
  * @returns the report of one run; throws where something was lost or could not be verified
  */
 export async function load(server, options) {
-  const flags = Object.entries(options).flatMap(([name, value]) => (value === true ? [`--${name}`] : [`--${name}`, String(value)]));
+  const flags = Object.entries(options).flatMap(([name, value]) =>
+    value === true ? [`--${name}`] : [`--${name}`, String(value)],
+  );
   const child = start(
     'scanloom-load',
-    ['--server', `127.0.0.1:${server.robotPort}`, '--http', `127.0.0.1:${server.httpPort}`, '--json', '-', '--replace', ...flags],
+    [
+      '--server',
+      `127.0.0.1:${server.robotPort}`,
+      '--http',
+      `127.0.0.1:${server.httpPort}`,
+      '--json',
+      '-',
+      '--replace',
+      ...flags,
+    ],
     { stderr: 'pipe' },
   );
   const [text, told] = await Promise.all([textOf(child.stdout), textOf(child.stderr)]);

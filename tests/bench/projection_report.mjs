@@ -46,8 +46,16 @@ tell();
 
 /** @returns {column: {mapper: microseconds a scan}} */
 function measure() {
-  const options = [`--benchmark_repetitions=${kRounds}`, '--benchmark_enable_random_interleaving=true', '--benchmark_report_aggregates_only=true', `--benchmark_min_time=${kSeconds}`, '--benchmark_format=json'];
-  const run = JSON.parse(execFileSync(program, options, { encoding: 'utf8', maxBuffer: 2 ** 28, stdio: ['ignore', 'pipe', 'ignore'] }));
+  const options = [
+    `--benchmark_repetitions=${kRounds}`,
+    '--benchmark_enable_random_interleaving=true',
+    '--benchmark_report_aggregates_only=true',
+    `--benchmark_min_time=${kSeconds}`,
+    '--benchmark_format=json',
+  ];
+  const run = JSON.parse(
+    execFileSync(program, options, { encoding: 'utf8', maxBuffer: 2 ** 28, stdio: ['ignore', 'pipe', 'ignore'] }),
+  );
   on.instruction_set = run.context.instruction_set;
   on.mrpt = run.context.mrpt;
   const found = {};
@@ -64,7 +72,9 @@ function compared(times) {
   const rank = (name) => kPlaces.indexOf(name.split(' ')[0]) + Number(name.split(' ')[1]); // cells are smaller than 1 m
   const inOrder = Object.entries(times).sort(([a], [b]) => rank(a) - rank(b));
   return inOrder.map(([name, of]) => {
-    const fastest = Object.keys(kRivals).filter((rival) => rival in of).reduce((a, b) => (of[a] <= of[b] ? a : b));
+    const fastest = Object.keys(kRivals)
+      .filter((rival) => rival in of)
+      .reduce((a, b) => (of[a] <= of[b] ? a : b));
     return {
       name,
       microseconds: of,
@@ -85,7 +95,9 @@ function geometricMean(key) {
 function tell() {
   console.log(inWords(on), `\ninstructions: ${on.instruction_set}; microseconds a scan, medians of ${kRounds}\n`);
   console.log(timesOf(counted));
-  console.log("\nAll but MRPT are written anew from their idea. fillPoly is no mapper: it knows no occupied cells, and joins the ends of beams\nby straight lines, also where no beam has been; it shows what filling one polygon costs.\n");
+  console.log(
+    '\nAll but MRPT are written anew from their idea. fillPoly is no mapper: it knows no occupied cells, and joins the ends of beams\nby straight lines, also where no beam has been; it shows what filling one polygon costs.\n',
+  );
   const ratio = (what, key) => [what, ...counted.map((column) => threeDigits(column[key]))];
   console.log(
     table(
@@ -101,7 +113,9 @@ function tell() {
     ),
   );
   tellNoise();
-  console.log(`\ngeometric mean over the fastest: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals}); on ground that is not settled yet ${threeDigits(result.mean_over_rivals_unsettled)}; over fillPoly ${threeDigits(result.mean_over_fill_poly)}`);
+  console.log(
+    `\ngeometric mean over the fastest: ${threeDigits(result.mean_over_rivals)} (aim: at least ${aims.meanOverRivals}); on ground that is not settled yet ${threeDigits(result.mean_over_rivals_unsettled)}; over fillPoly ${threeDigits(result.mean_over_fill_poly)}`,
+  );
   const isFine = (column) => Number(column.name.split(' ')[1]) <= 0.05;
   tellLimit('over the limit, cells of 0.05 m and finer', columns.filter(isFine), 'over_spans', aims.overSpans);
   tellLimit('all layers over occupancy', columns, 'all_over_occupancy', aims.allOverOccupancy);
@@ -111,14 +125,19 @@ function tell() {
 
 function tellNoise() {
   const noisy = columns.filter((column) => !counted.includes(column));
-  console.log('\nThe room again with noise, 0.02 m of each range and 0.005 rad of each direction (standard deviations): ranges jump from beam to beam\n');
+  console.log(
+    '\nThe room again with noise, 0.02 m of each range and 0.005 rad of each direction (standard deviations): ranges jump from beam to beam\n',
+  );
   console.log(timesOf(noisy));
 }
 
 /** A row for each mapper, a column for each place. */
 function timesOf(places) {
   const rows = Object.entries(mappers()).filter(([mapper]) => mapper in places[0].microseconds);
-  return table(['', ...names(places)], rows.map(([mapper, label]) => [label, ...places.map((place) => threeDigits(place.microseconds[mapper]))]));
+  return table(
+    ['', ...names(places)],
+    rows.map(([mapper, label]) => [label, ...places.map((place) => threeDigits(place.microseconds[mapper]))]),
+  );
 }
 
 function mappers() {

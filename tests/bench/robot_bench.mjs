@@ -14,7 +14,7 @@ import { startServer } from './load_runs.mjs';
 import { announce, fullOrQuick, named } from './report/arguments.mjs';
 import { memoryBytes, processorSeconds } from './report/process_use.mjs';
 
-const kBytesPerSecond = 4500 / 12 * 47;
+const kBytesPerSecond = (4500 / 12) * 47;
 const kTickMs = 20;
 const kWarmUpMs = 4000; // not measured: start, connecting
 const kMeasuredMs = fullOrQuick(15000, 3000);

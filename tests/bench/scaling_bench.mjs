@@ -33,35 +33,90 @@ const on = machineWithStore();
 const kernels = measureKernels();
 const extent = 'rooms of 100 square metres';
 const charts = [
-  { title: 'A scan, by cells', x: 'cells a metre', y: 'us', points: kernel('ScanByCellSize').map(([mm, us]) => [1000 / mm, us]), expected: 2 },
+  {
+    title: 'A scan, by cells',
+    x: 'cells a metre',
+    y: 'us',
+    points: kernel('ScanByCellSize').map(([mm, us]) => [1000 / mm, us]),
+    expected: 2,
+  },
   { title: 'A scan, by beams', x: 'beams', y: 'us', points: kernel('ScanByBeams'), expected: 1 },
   { title: 'A scan, by extent, maps held', x: extent, y: 'us', points: kernel('ScanByExtent'), expected: 0 },
   { title: 'A scan, by extent, nobody looks', x: extent, y: 'us', points: kernel('UnseenScanByExtent'), expected: 0 },
-  { title: 'Memory, by explored area', x: 'square metres, cells of 0.05 m', y: 'MB', points: memory((of) => of.bytes / 1e6), expected: 1 },
-  { title: 'Recovery without a checkpoint', x: 'scans in the log, in memory', y: 'ms', points: kernel('RecoveryByLogLength', 'real_time'), expected: 1 },
-  { title: 'The same from a store on disk', x: 'scans in the log', y: 'ms', points: kernel('RecoveryFromDisk', 'real_time'), expected: 1 },
-  { title: 'A scan, by sessions', x: 'sessions, a robot each', y: 'us of the server', points: await service(kMany, (n) => ({ robots: n })), expected: 0 },
-  { title: 'A scan, by robots of a session', x: 'robots in one session', y: 'us of the server', points: await service(kRobots, (n) => ({ robots: n, sessions: 1 })), expected: 0 },
-  { title: 'The server, by viewers', x: 'viewers of 16 sessions', y: 'us of the server a scan', points: await service(kViewers, (n) => ({ robots: 16, viewers: n })), expected: 1 },
+  {
+    title: 'Memory, by explored area',
+    x: 'square metres, cells of 0.05 m',
+    y: 'MB',
+    points: memory((of) => of.bytes / 1e6),
+    expected: 1,
+  },
+  {
+    title: 'Recovery without a checkpoint',
+    x: 'scans in the log, in memory',
+    y: 'ms',
+    points: kernel('RecoveryByLogLength', 'real_time'),
+    expected: 1,
+  },
+  {
+    title: 'The same from a store on disk',
+    x: 'scans in the log',
+    y: 'ms',
+    points: kernel('RecoveryFromDisk', 'real_time'),
+    expected: 1,
+  },
+  {
+    title: 'A scan, by sessions',
+    x: 'sessions, a robot each',
+    y: 'us of the server',
+    points: await service(kMany, (n) => ({ robots: n })),
+    expected: 0,
+  },
+  {
+    title: 'A scan, by robots of a session',
+    x: 'robots in one session',
+    y: 'us of the server',
+    points: await service(kRobots, (n) => ({ robots: n, sessions: 1 })),
+    expected: 0,
+  },
+  {
+    title: 'The server, by viewers',
+    x: 'viewers of 16 sessions',
+    y: 'us of the server a scan',
+    points: await service(kViewers, (n) => ({ robots: 16, viewers: n })),
+    expected: 1,
+  },
 ];
 const bytesPerCell = memory((of) => of.bytes_per_touched_cell);
 const recovered = ['RecoveryByLogLength', 'RecoveryFromDisk'].map((name) => kernel(name, 'items_per_second'));
 const idle = [await besideIdle(0), await besideIdle(kIdleSessions)];
-writeFileSync(file, `${JSON.stringify({ machine: on, charts, bytes_per_touched_cell: bytesPerCell, recovered_scans_per_second: recovered, idle }, null, 2)}\n`);
+writeFileSync(
+  file,
+  `${JSON.stringify({ machine: on, charts, bytes_per_touched_cell: bytesPerCell, recovered_scans_per_second: recovered, idle }, null, 2)}\n`,
+);
 writeFileSync(drawing, drawCharts(charts));
 tell();
 
 function measureKernels() {
-  const run = JSON.parse(execFileSync(program, [`--benchmark_min_time=${fullOrQuick(0.5, 0.02)}`, '--benchmark_format=json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 2 ** 26 }));
+  const run = JSON.parse(
+    execFileSync(program, [`--benchmark_min_time=${fullOrQuick(0.5, 0.02)}`, '--benchmark_format=json'], {
+      encoding: 'utf8',
+      stdio: ['ignore', 'pipe', 'ignore'],
+      maxBuffer: 2 ** 26,
+    }),
+  );
   return run.benchmarks;
 }
 
 function kernel(name, figure = 'cpu_time') {
-  return kernels.filter((benchmark) => benchmark.name.startsWith(`${name}/`)).map((benchmark) => [Number(benchmark.name.split('/')[1]), benchmark[figure]]);
+  return kernels
+    .filter((benchmark) => benchmark.name.startsWith(`${name}/`))
+    .map((benchmark) => [Number(benchmark.name.split('/')[1]), benchmark[figure]]);
 }
 
 function memory(figure) {
-  return kernels.filter((benchmark) => benchmark.name.startsWith('MemoryByArea/')).map((benchmark) => [Math.round(benchmark.square_metres), figure(benchmark)]);
+  return kernels
+    .filter((benchmark) => benchmark.name.startsWith('MemoryByArea/'))
+    .map((benchmark) => [Math.round(benchmark.square_metres), figure(benchmark)]);
 }
 
 /** Server CPU a scan, of runs that send as many scans a second whatever there is. */
@@ -76,7 +131,13 @@ async function service(counts, optionsOf) {
 }
 
 async function costOfAScan(server, options) {
-  const run = await load(server, { ...kRoom, duration: kSeconds, batch: 10, rate: kScansPerSecond / options.robots, ...options });
+  const run = await load(server, {
+    ...kRoom,
+    duration: kSeconds,
+    batch: 10,
+    rate: kScansPerSecond / options.robots,
+    ...options,
+  });
   return run.server.cpu_us_per_scan;
 }
 
@@ -91,7 +152,11 @@ async function besideIdle(sessions) {
   const us = [];
   for (let run = 0; run < kIdleRuns; ++run) us.push(await costOfAScan(server, { robots: kBusySessions }));
   await server.stop();
-  return { sessions, us: us.sort((a, b) => a - b)[Math.floor(kIdleRuns / 2)], bytes_per_session: sessions > 0 ? bytes / sessions : 0 };
+  return {
+    sessions,
+    us: us.sort((a, b) => a - b)[Math.floor(kIdleRuns / 2)],
+    bytes_per_session: sessions > 0 ? bytes / sessions : 0,
+  };
 }
 
 /**
@@ -109,14 +174,28 @@ async function untilQuiet(server) {
 function tell() {
   console.log(inWords(on), '\n');
   for (const { title, x, y, points } of charts) tellPoints(title, x, y, points);
-  tellPoints('Memory of a map: all that it keeps, by what the allocator gave out', 'square metres', 'bytes a touched cell', bytesPerCell);
+  tellPoints(
+    'Memory of a map: all that it keeps, by what the allocator gave out',
+    'square metres',
+    'bytes a touched cell',
+    bytesPerCell,
+  );
   tellPoints('Recovery without a checkpoint', 'scans in the log', 'scans/s, log in memory', recovered[0]);
   tellPoints('The same from a store on disk, files cached by the system', 'scans in the log', 'scans/s', recovered[1]);
-  tellPoints(`A scan of ${kBusySessions} sessions beside idle ones`, 'idle sessions', 'us of the server', idle.map(({ sessions, us }) => [sessions, us]));
-  console.log(`Server memory of each idle session, two scans in it: ${(idle[1].bytes_per_session / 1024).toFixed(0)} KiB`);
+  tellPoints(
+    `A scan of ${kBusySessions} sessions beside idle ones`,
+    'idle sessions',
+    'us of the server',
+    idle.map(({ sessions, us }) => [sessions, us]),
+  );
+  console.log(
+    `Server memory of each idle session, two scans in it: ${(idle[1].bytes_per_session / 1024).toFixed(0)} KiB`,
+  );
   console.log(`written to ${file} and ${drawing}`);
 }
 
 function tellPoints(title, x, y, points) {
-  console.log(`${title}\n${table([x, ...points.map(([px]) => px)], [[y, ...points.map(([, py]) => threeDigits(py))]])}\n`);
+  console.log(
+    `${title}\n${table([x, ...points.map(([px]) => px)], [[y, ...points.map(([, py]) => threeDigits(py))]])}\n`,
+  );
 }

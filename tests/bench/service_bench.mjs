@@ -25,7 +25,13 @@ const link = measureLink();
 const full = await measure({ robots: kRobots, rate: 0, batch: kBatch });
 const rate = (0.8 * full.scans.acknowledged_per_second) / kRobots;
 const most = await measure({ robots: kRobots, rate: rate.toFixed(2), batch: kBatch });
-const live = await measure({ robots: aims.liveRobots, rate: 10, batch: kBatch, 'connections-per-second': 1000, verify: 'counts' });
+const live = await measure({
+  robots: aims.liveRobots,
+  rate: 10,
+  batch: kBatch,
+  'connections-per-second': 1000,
+  verify: 'counts',
+});
 const single = await measure({ robots: 100, rate: 10, batch: 1 });
 writeFileSync(file, `${JSON.stringify({ machine: on, aims, link, full, most, live, single }, null, 2)}\n`);
 tell();
@@ -41,7 +47,9 @@ async function measure(options) {
 
 /** @returns {read, parse}: microseconds of the reader's CPU for a frame of one scan */
 function measureLink() {
-  const run = JSON.parse(execFileSync(linkBench, ['--benchmark_format=json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }));
+  const run = JSON.parse(
+    execFileSync(linkBench, ['--benchmark_format=json'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }),
+  );
   const of = (name) => run.benchmarks.find((benchmark) => benchmark.name === name).cpu_time;
   return { read: of('ReadFrames'), parse: of('ReadAndParseFrames') };
 }
@@ -66,7 +74,17 @@ function tell() {
   console.log(inWords(on), '\n');
   console.log(
     table(
-      ['', 'scans/s', 'server, us a scan', 'server, cores', 'generator, cores', 'ack p50, ms', 'p99, ms', 'generator late, p99, ms', 'server, MiB'],
+      [
+        '',
+        'scans/s',
+        'server, us a scan',
+        'server, cores',
+        'generator, cores',
+        'ack p50, ms',
+        'p99, ms',
+        'generator late, p99, ms',
+        'server, MiB',
+      ],
       [
         row(`${kRobots} robots as fast as they may, ${kBatch} scans a frame`, full),
         row('the same robots at 80 % of that', most),
@@ -75,8 +93,14 @@ function tell() {
       ],
     ),
   );
-  console.log(`\nserver CPU a scan: ${threeDigits(full.server.cpu_us_per_scan)} us (aim: at most ${aims.cpuMicroseconds}); reading a frame alone ${threeDigits(link.read)}, reading and parsing ${threeDigits(link.parse)}`);
-  console.log(`ack p99 at 80 %: ${threeDigits(most.ack_from_sending.p99_ms)} ms from sending, ${threeDigits(most.ack_from_intended.p99_ms)} from the intended time of each scan of a frame (aim: below ${aims.ackMilliseconds})`);
-  console.log(`${aims.liveRobots} robots at 10 Hz: ${live.scans.acknowledged} of ${live.scans.due} scans, the generator took ${threeDigits(live.generator.cores)} cores of ${on.cores}`);
+  console.log(
+    `\nserver CPU a scan: ${threeDigits(full.server.cpu_us_per_scan)} us (aim: at most ${aims.cpuMicroseconds}); reading a frame alone ${threeDigits(link.read)}, reading and parsing ${threeDigits(link.parse)}`,
+  );
+  console.log(
+    `ack p99 at 80 %: ${threeDigits(most.ack_from_sending.p99_ms)} ms from sending, ${threeDigits(most.ack_from_intended.p99_ms)} from the intended time of each scan of a frame (aim: below ${aims.ackMilliseconds})`,
+  );
+  console.log(
+    `${aims.liveRobots} robots at 10 Hz: ${live.scans.acknowledged} of ${live.scans.due} scans, the generator took ${threeDigits(live.generator.cores)} cores of ${on.cores}`,
+  );
   console.log(`written to ${file}`);
 }

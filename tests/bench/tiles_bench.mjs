@@ -36,7 +36,7 @@ const [result, log] = named;
 if (!result) fail('name the file for the result: tiles_bench.mjs RESULT.json [LOG]');
 const nginx = findProgram('nginx');
 const wrk = findProgram('wrk') ?? fail("wrk is missing; install Debian's wrk: ./scanloom install bench");
-if (!nginx) console.log("nginx is missing: the server is measured alone (./scanloom install bench)");
+if (!nginx) console.log('nginx is missing: the server is measured alone (./scanloom install bench)');
 
 announce('tiles', '3 minutes', '20 seconds');
 const on = machineWithStore();
@@ -48,7 +48,11 @@ const place = await mkdtemp(join(tmpdir(), 'scanloom-tiles-bench-'));
 const kept = { name: 'scanloom, a tile that is kept', pid: server.child.pid, address: tile.address, headers: [] };
 const known = { ...kept, name: 'scanloom, 304', headers: ['-H', `If-None-Match: ${tile.etag}`] };
 const rivals = nginx ? [await startNginx(1), await startNginx(cpus().length)] : [];
-const rivalsKnown = rivals.map((rival) => ({ ...rival, name: `${rival.name}, 304`, headers: ['-H', `If-None-Match: ${rival.etag}`] }));
+const rivalsKnown = rivals.map((rival) => ({
+  ...rival,
+  name: `${rival.name}, 304`,
+  headers: ['-H', `If-None-Match: ${rival.etag}`],
+}));
 const asked = [kept, ...rivals, known, ...rivalsKnown];
 const rounds = await measure();
 for (const rival of rivals) await stop(rival.child);
@@ -112,7 +116,9 @@ async function startNginx(workers) {
   await writeFile(join(root, 'tile.png'), tile.bytes);
   for (const directory of [place, root]) await chmod(directory, 0o755); // its workers may be another user
   const configuration = join(place, `nginx-${workers}.conf`);
-  await writeFile(configuration, `
+  await writeFile(
+    configuration,
+    `
     worker_processes ${workers};
     daemon off;
     pid ${join(place, `pid-${workers}`)};
@@ -129,15 +135,24 @@ async function startNginx(workers) {
       open_file_cache_valid 600s;
       types { image/png png; }
       server { listen 127.0.0.1:${port}; root ${root}; }
-    }`);
+    }`,
+  );
   const child = spawn(nginx, ['-e', 'stderr', '-c', configuration], { stdio: ['ignore', 'ignore', 'inherit'] });
   const address = `http://127.0.0.1:${port}/tile.png`;
   for (let tries = 0; ; ++tries) {
     const answer = await fetch(address).catch(() => null);
     if (answer?.status === 200) {
-      return { name: `nginx, ${workers} worker${workers === 1 ? '' : 's'}`, pid: child.pid, address, headers: [], etag: answer.headers.get('etag'), child };
+      return {
+        name: `nginx, ${workers} worker${workers === 1 ? '' : 's'}`,
+        pid: child.pid,
+        address,
+        headers: [],
+        etag: answer.headers.get('etag'),
+        child,
+      };
     }
-    if (child.exitCode !== null || tries > 100) fail(`nginx does not serve ${address}: ${answer?.status ?? 'it ended'}`);
+    if (child.exitCode !== null || tries > 100)
+      fail(`nginx does not serve ${address}: ${answer?.status ?? 'it ended'}`);
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
 }
@@ -162,7 +177,9 @@ async function measure() {
       const seconds = processorSeconds(pid) - before;
       if (/Non-2xx or 3xx|Socket errors/.test(stdout)) fail(`${name} did not answer all requests: ${stdout}`);
       const requests = Number(stdout.match(/(\d+) requests in/)[1]);
-      found.get(name).push({ rate: Number(stdout.match(/Requests\/sec: *([0-9.]+)/)[1]), us: (1e6 * seconds) / requests });
+      found
+        .get(name)
+        .push({ rate: Number(stdout.match(/Requests\/sec: *([0-9.]+)/)[1]), us: (1e6 * seconds) / requests });
     }
   }
   return found;
@@ -170,29 +187,60 @@ async function measure() {
 
 /** Prints tables, and writes the same for programs. */
 async function tell() {
-  const figures = Object.fromEntries([...rounds].map(([name, each]) => [name, { requests_per_second: median(each.map(({ rate }) => rate)), cpu_us: median(each.map(({ us }) => us)), rounds: each }]));
+  const figures = Object.fromEntries(
+    [...rounds].map(([name, each]) => [
+      name,
+      {
+        requests_per_second: median(each.map(({ rate }) => rate)),
+        cpu_us: median(each.map(({ us }) => us)),
+        rounds: each,
+      },
+    ]),
+  );
   // Round by round: what else the machine does then slows both.
-  const over = (one, other, figure) => median(rounds.get(one.name).map((round, n) => round[figure] / rounds.get(other.name)[n][figure]));
-  const ratios = rivals.map((rival, n) => ({ name: rival.name, rate: over(kept, rival, 'rate'), us: over(kept, rival, 'us'), us_304: over(known, rivalsKnown[n], 'us') }));
+  const over = (one, other, figure) =>
+    median(rounds.get(one.name).map((round, n) => round[figure] / rounds.get(other.name)[n][figure]));
+  const ratios = rivals.map((rival, n) => ({
+    name: rival.name,
+    rate: over(kept, rival, 'rate'),
+    us: over(kept, rival, 'us'),
+    us_304: over(known, rivalsKnown[n], 'us'),
+  }));
   console.log(inWords(on), '\n');
-  console.log(table([`a tile of ${tile.bytes.length} bytes, medians of ${kRounds} rounds`, 'requests/s', 'CPU, us a request'], Object.entries(figures).map(([name, of]) => [name, of.requests_per_second.toFixed(0), threeDigits(of.cpu_us)])));
+  console.log(
+    table(
+      [`a tile of ${tile.bytes.length} bytes, medians of ${kRounds} rounds`, 'requests/s', 'CPU, us a request'],
+      Object.entries(figures).map(([name, of]) => [name, of.requests_per_second.toFixed(0), threeDigits(of.cpu_us)]),
+    ),
+  );
   console.log();
   for (const { name, rate, us, us_304 } of ratios) {
     line(`of ${name}`, rate.toFixed(2), verdict(rate >= kRatioAim, `at least ${kRatioAim}`));
     line("CPU, times nginx's", us.toFixed(2), `${us_304.toFixed(2)} for a 304`);
   }
-  line('first time, mean', `${first.ms.toFixed(2)} ms`, `${verdict(first.ms < kFirstMsAim, `below ${kFirstMsAim} ms`)}, ${first.tiles} tiles of all zooms, codes and PNG`);
-  await writeFile(result, `${JSON.stringify({
-    machine: on,
-    tile_bytes: tile.bytes.length,
-    connections: kConnections,
-    asked: figures,
-    ratios: Object.fromEntries(ratios.map(({ name, ...of }) => [name, of])),
-    ratio_aim: kRatioAim,
-    first_ms: first.ms,
-    first_tiles: first.tiles,
-    first_ms_aim: kFirstMsAim,
-  }, null, 2)}\n`);
+  line(
+    'first time, mean',
+    `${first.ms.toFixed(2)} ms`,
+    `${verdict(first.ms < kFirstMsAim, `below ${kFirstMsAim} ms`)}, ${first.tiles} tiles of all zooms, codes and PNG`,
+  );
+  await writeFile(
+    result,
+    `${JSON.stringify(
+      {
+        machine: on,
+        tile_bytes: tile.bytes.length,
+        connections: kConnections,
+        asked: figures,
+        ratios: Object.fromEntries(ratios.map(({ name, ...of }) => [name, of])),
+        ratio_aim: kRatioAim,
+        first_ms: first.ms,
+        first_tiles: first.tiles,
+        first_ms_aim: kFirstMsAim,
+      },
+      null,
+      2,
+    )}\n`,
+  );
   console.log(`written to ${result}`);
 }
 

@@ -40,7 +40,17 @@ async function tellSize() {
 /** From the address being entered to cells being drawn, with the real server and nothing cached. */
 async function tellFirstMap() {
   const server = await startServer();
-  const robot = startRobot(server, 'office', 'r1', ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '20']);
+  const robot = startRobot(server, 'office', 'r1', [
+    'simulate',
+    '--world',
+    'office',
+    '--drive',
+    'wall_follower',
+    '--seed',
+    '1',
+    '--speed',
+    '20',
+  ]);
   await scansOf(server, 600);
   await stop(robot);
   const times = [];
@@ -52,7 +62,11 @@ async function tellFirstMap() {
   }
   await server.stop();
   times.sort((a, b) => a - b);
-  tell('first map, median', `${times[Math.floor(kRounds / 2)].toFixed(0)} ms`, `slowest of ${kRounds}: ${times.at(-1).toFixed(0)} ms`);
+  tell(
+    'first map, median',
+    `${times[Math.floor(kRounds / 2)].toFixed(0)} ms`,
+    `slowest of ${kRounds}: ${times.at(-1).toFixed(0)} ms`,
+  );
 }
 
 async function scansOf(server, count) {
@@ -75,12 +89,19 @@ async function tellFrames() {
   const idle = await framesPerSecond(page);
   const asked = server.tileRequests.length;
   let changes = 0;
-  const timer = setInterval(() => paint(session, (changes * 7) % (kAcross * kDown), changes++ % 100), 1000 / kChangesPerSecond);
+  const timer = setInterval(
+    () => paint(session, (changes * 7) % (kAcross * kDown), changes++ % 100),
+    1000 / kChangesPerSecond,
+  );
   const busy = await framesPerSecond(page);
   clearInterval(timer);
   const perChange = (server.tileRequests.length - asked) / changes;
   tell(`frames/s, ${shown} tiles at rest`, idle.rate.toFixed(1), `slowest of 100: ${idle.slow.toFixed(0)} ms`);
-  tell(`frames/s, ${(changes / kSeconds).toFixed(0)} of them changing a second`, busy.rate.toFixed(1), `slowest of 100: ${busy.slow.toFixed(0)} ms; ratio ${(busy.rate / idle.rate).toFixed(2)}`);
+  tell(
+    `frames/s, ${(changes / kSeconds).toFixed(0)} of them changing a second`,
+    busy.rate.toFixed(1),
+    `slowest of 100: ${busy.slow.toFixed(0)} ms; ratio ${(busy.rate / idle.rate).toFixed(2)}`,
+  );
   tell('requests for a changed tile', perChange.toFixed(2));
   await page.context().close();
   await server.vanish();

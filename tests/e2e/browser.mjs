@@ -26,7 +26,11 @@ export function launchBrowser() {
  *
  * @returns the page and its complaints: script errors, violations of the security policy, requests to elsewhere
  */
-export async function openPage(browser, address, { hash = '', size = [1280, 800], scheme = 'light', scale = 1, trusts = '' } = {}) {
+export async function openPage(
+  browser,
+  address,
+  { hash = '', size = [1280, 800], scheme = 'light', scale = 1, trusts = '' } = {},
+) {
   const context = await browser.newContext({
     viewport: { width: size[0], height: size[1] },
     colorScheme: scheme,

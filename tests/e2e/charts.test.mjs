@@ -1,7 +1,7 @@
 /** The charts of the server: rates, latencies, what is not told, and restarts. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourScheme, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
+import { colourScheme, keepPicture, says } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 
 const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
@@ -9,11 +9,10 @@ const kTitles = ['Scans per second', 'Ack latency', 'Queue', 'CPU', 'Memory'];
 describe("the server's charts", { timeout: 180_000 }, () => {
   let server;
   let page;
-  let complaints = [];
   const openPage = withFakeServer((fresh) => (server = fresh));
 
   const open = async (options) => {
-    ({ page, complaints } = await openPage(options));
+    ({ page } = await openPage(options));
     await page.waitForSelector('#server-toggle', { state: 'attached' });
   };
 

@@ -3,7 +3,9 @@ import { createHash } from 'node:crypto';
 import { liveProtocol } from '../../web/protocol.js';
 import { PbfReader, PbfWriter } from '../../web/node_modules/pbf/index.js';
 
-const { readLiveRequest, writeLiveEvent, Layer } = await import(`data:text/javascript,${encodeURIComponent(liveProtocol())}`);
+const { readLiveRequest, writeLiveEvent, Layer } = await import(
+  `data:text/javascript,${encodeURIComponent(liveProtocol())}`
+);
 
 const kGuid = '258EAFA5-E914-47DA-95CA-C5AB0DC85B11';
 const kNativeZoom = 9;
@@ -24,7 +26,9 @@ export class FakeLive {
 
   /** Answers the upgrade, and tells all that there is. */
   static accept(request, socket, session) {
-    const key = createHash('sha1').update(request.headers['sec-websocket-key'] + kGuid).digest('base64');
+    const key = createHash('sha1')
+      .update(request.headers['sec-websocket-key'] + kGuid)
+      .digest('base64');
     socket.write(
       'HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n' +
         `Sec-WebSocket-Accept: ${key}\r\n\r\n`,
@@ -124,7 +128,11 @@ function robotNews(session, robot, index, since) {
     last_seq: robot.last_seq,
     trail: differences(points, 0, 0),
     trail_from: track.length - points.length,
-    scan: session.scan && { kind: 1, origin: robot.pose, points: differences(session.scan, robot.pose.x, robot.pose.y) },
+    scan: session.scan && {
+      kind: 1,
+      origin: robot.pose,
+      points: differences(session.scan, robot.pose.x, robot.pose.y),
+    },
     body_radius: robot.body_radius ?? 0,
   };
 }

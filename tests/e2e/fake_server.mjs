@@ -196,7 +196,8 @@ export class FakeServer {
     if (rest.length === 0) return json(response, session.toJson());
     if (rest[0] === 'changes') return json(response, session.changes(url.searchParams.get('layer'), since));
     if (rest[0] === 'trajectory.geojson') return json(response, session.trajectory(since));
-    if (rest[0] === 'frontiers.geojson') return json(response, { type: 'FeatureCollection', features: session.frontiers });
+    if (rest[0] === 'frontiers.geojson')
+      return json(response, { type: 'FeatureCollection', features: session.frontiers });
     if (rest[0] === 'goals.geojson') {
       const { goals: features, explored } = session;
       return json(response, { type: 'FeatureCollection', explored, features });

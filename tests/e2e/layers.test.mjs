@@ -75,14 +75,20 @@ describe('layers', { timeout: 180_000 }, () => {
     session.paint(256, 255, 4);
     await open();
     await showsColour(page, '--cell-free');
-    assert.ok(server.tileRequests.every((path) => path.includes('/occupancy/')), server.tileRequests.join('\n'));
+    assert.ok(
+      server.tileRequests.every((path) => path.includes('/occupancy/')),
+      server.tileRequests.join('\n'),
+    );
     await page.keyboard.press('b');
     await showsColour(page, '--class-danger');
     const before = server.tileRequests.length;
     session.paint(256, 255, 3);
     await showsColour(page, '--class-frontier');
     const changed = server.tileRequests.slice(before);
-    assert.ok(changed.every((path) => path.includes('/classification/')), changed.join('\n'));
+    assert.ok(
+      changed.every((path) => path.includes('/classification/')),
+      changed.join('\n'),
+    );
   });
 
   it('show HIMM counters in their cells when zoomed in and asked', async () => {

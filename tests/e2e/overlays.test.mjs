@@ -94,7 +94,10 @@ describe('on the map', { timeout: 180_000 }, () => {
     session.see(0, [3, 3], 2);
     await open();
     await showsColour(page, '--cell-free');
-    assert.deepEqual(session.wishes.filter(({ landmarks }) => landmarks), []);
+    assert.deepEqual(
+      session.wishes.filter(({ landmarks }) => landmarks),
+      [],
+    );
     const colour = await colourOf(page, '--landmark');
     await page.check('[data-switch=landmarks]');
     await showsAt(...pixelOf(3, 3), colour);
@@ -135,7 +138,8 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsAt(...pixelOf(3, 3), colour);
     session.landmarks = [];
     session.see(1, [9, 9], 2);
-    for (const viewer of session.viewers) viewer.close(1001, 'the server is shutting down; connect again when it is back');
+    for (const viewer of session.viewers)
+      viewer.close(1001, 'the server is shutting down; connect again when it is back');
     await showsNotAt(...pixelOf(3, 3), colour);
     await showsAt(...pixelOf(9, 9), colour);
   });
@@ -148,7 +152,17 @@ describe('on the map', { timeout: 180_000 }, () => {
     const path = '/api/v1/sessions/map/goals.geojson';
     const colour = await colourOf(page, '--robot-0');
     session.tellGoals([
-      feature({ role: 'way', robot: 'r1' }, { type: 'LineString', coordinates: [[1, 1], [1, 9], [9, 9]] }),
+      feature(
+        { role: 'way', robot: 'r1' },
+        {
+          type: 'LineString',
+          coordinates: [
+            [1, 1],
+            [1, 9],
+            [9, 9],
+          ],
+        },
+      ),
       feature({ role: 'goal', robot: 'r1', target: [11, 9] }, { type: 'Point', coordinates: [9, 9] }),
     ]);
     const ring = pixelOf(9, 9);
@@ -157,7 +171,11 @@ describe('on the map', { timeout: 180_000 }, () => {
     const asked = server.requests.filter((each) => each === path).length;
     session.move('r1', 1, 2, 0);
     await until(page, async () => (await colourAt(page, ...pixelOf(1, 2))) !== null);
-    assert.equal(server.requests.filter((each) => each === path).length, asked, 'what has not changed is not asked for');
+    assert.equal(
+      server.requests.filter((each) => each === path).length,
+      asked,
+      'what has not changed is not asked for',
+    );
     session.tellGoals([]);
     await showsNotAt(ring[0], ring[1] - 7, colour);
     session.tellGoals([feature({ role: '<b>', robot: 'r1' }, { type: 'Point', coordinates: 'x' })]);
@@ -195,7 +213,13 @@ describe('on the map', { timeout: 180_000 }, () => {
 
   /** A square of 1 m around a place. */
   function frontier([x, y], goal) {
-    const ring = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]].map(([dx, dy]) => [x + dx, y + dy]);
+    const ring = [
+      [-0.5, -0.5],
+      [0.5, -0.5],
+      [0.5, 0.5],
+      [-0.5, 0.5],
+      [-0.5, -0.5],
+    ].map(([dx, dy]) => [x + dx, y + dy]);
     return {
       type: 'Feature',
       properties: { cells: 400, area: 1, centroid: [x, y], reachable: true, robot: 'r1', goal, length: 1, cost: 1 },

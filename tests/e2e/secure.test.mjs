@@ -30,7 +30,15 @@ describe('a server with TLS', { timeout: 240_000 }, () => {
     const { page, complaints } = await openPage(browser, address, { hash: '#session=office', trusts: 'anybody' });
     const sockets = [];
     page.on('websocket', (socket) => sockets.push(socket.url()));
-    const robot = startRobot(server, 'office', 'r1', ['simulate', '--world', 'office', '--speed', '0', '--scans', '100']);
+    const robot = startRobot(server, 'office', 'r1', [
+      'simulate',
+      '--world',
+      'office',
+      '--speed',
+      '0',
+      '--scans',
+      '100',
+    ]);
     assert.equal(await ended(robot), 0);
     await says(page, '#sessions', /100 scans/);
     await page.reload();
@@ -53,7 +61,10 @@ describe('a server with TLS', { timeout: 240_000 }, () => {
       await page.fill('#token', made.slice(0, made.indexOf('\n')));
       await page.keyboard.press('Enter');
       await says(page, '#sign-in', /kiosk \(viewer\)/);
-      assert.deepEqual((await page.context().cookies()).map((cookie) => cookie.secure), [true]);
+      assert.deepEqual(
+        (await page.context().cookies()).map((cookie) => cookie.secure),
+        [true],
+      );
       await page.context().close();
     } finally {
       await guarded.stop();
@@ -62,10 +73,14 @@ describe('a server with TLS', { timeout: 240_000 }, () => {
 
   function certificateOptions() {
     const [certificate, key] = ['chain.pem', 'key.pem'].map((name) => join(place, name));
-    execFileSync('openssl', [
-      ...['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2'],
-      ...['-subj', '/CN=test', '-addext', 'subjectAltName=IP:127.0.0.1', '-keyout', key, '-out', certificate],
-    ], { stdio: 'ignore' });
+    execFileSync(
+      'openssl',
+      [
+        ...['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2'],
+        ...['-subj', '/CN=test', '-addext', 'subjectAltName=IP:127.0.0.1', '-keyout', key, '-out', certificate],
+      ],
+      { stdio: 'ignore' },
+    );
     return ['--http-tls-cert', certificate, '--http-tls-key', key];
   }
 });

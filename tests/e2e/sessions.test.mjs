@@ -1,7 +1,7 @@
 /** The list of all sessions: found, sorted, pictured, made and deleted. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourOf, colourScheme, keepPicture, kWebDirectory, launchBrowser, openPage, says } from './browser.mjs';
+import { colourOf, colourScheme, keepPicture, says } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
@@ -93,7 +93,10 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await pictured('shown', '--cell-free');
     assert.ok(countOf('/api/v1/sessions') - heard >= 3, 'not more often than each ten seconds');
     assert.deepEqual([tilesOf('shown').length, tilesOf('other').length], [2, 1]);
-    assert.ok(asked.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'), 'it has not changed');
+    assert.ok(
+      asked.every(([, , , , name, part]) => name !== 'other' || part !== 'tiles'),
+      'it has not changed',
+    );
     assert.match(tilesOf('shown')[1], /\?v=2&id=id-shown$/);
     await colourScheme(page, 'dark');
     await pictured('shown', '--cell-free');
@@ -192,7 +195,10 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await page.waitForSelector('#notice', { state: 'hidden' });
     assert.deepEqual(await rows(), ['second']);
     assert.equal(new URL(page.url()).hash, '#session=second');
-    assert.ok((await page.evaluate(() => window.told)).every((text) => !/deleted/.test(text)), 'no notice');
+    assert.ok(
+      (await page.evaluate(() => window.told)).every((text) => !/deleted/.test(text)),
+      'no notice',
+    );
   });
 
   it('keeps a session that the server does not delete, and says why', async () => {

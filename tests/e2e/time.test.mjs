@@ -97,7 +97,10 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await seek(page, 20);
     await showsFree(page, 100, 0.8 * present);
     assert.notEqual(await textOf(page, kPose), pose);
-    assert.match(await textOf(page, '#time-note'), /as they were then.*newest scans, goals, frontiers and landmarks are hidden/);
+    assert.match(
+      await textOf(page, '#time-note'),
+      /as they were then.*newest scans, goals, frontiers and landmarks are hidden/,
+    );
     await keepPicture(page, 'time-past-light');
     await page.click('#time-live');
     await says(page, '#time-mode', /^Live$/);

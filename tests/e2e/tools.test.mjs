@@ -18,7 +18,8 @@ import { Server, startRobot } from './programs.mjs';
 
 const kSource = ['simulate', '--world', 'office', '--drive', 'wall_follower', '--seed', '1', '--speed', '0'];
 const kPng = Buffer.from([0x89, 0x50, 0x4e, 0x47]);
-const kYaml = 'image: lab.pgm\nresolution: 0.1\norigin: [-2.0, -1.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n';
+const kYaml =
+  'image: lab.pgm\nresolution: 0.1\norigin: [-2.0, -1.5, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n';
 
 /** What the server's picture of a difference has where only the second map sees an obstacle. */
 const kOnlyInWeave = [213, 94, 0];
@@ -47,7 +48,10 @@ describe('tools on the map', { timeout: 280_000 }, () => {
   const alerted = (pattern) => says(page, '#tool-body [role=alert]', pattern);
   const told = (pattern) => says(page, '#tool-body', pattern);
   const figure = async (name) =>
-    page.locator('.tool-figures div', { has: page.locator('dt', { hasText: name }) }).locator('dd').textContent();
+    page
+      .locator('.tool-figures div', { has: page.locator('dt', { hasText: name }) })
+      .locator('dd')
+      .textContent();
   const clickOn = async (place) => page.mouse.click(...pixel(place));
 
   const open = async (key) => {
@@ -88,7 +92,11 @@ describe('tools on the map', { timeout: 280_000 }, () => {
     await keepPicture(page, 'tool-import');
     assert.deepEqual(await violations(page), []);
     await page.setInputFiles('[name=yaml]', { name: 'lab 3.yaml', mimeType: 'text/yaml', buffer: Buffer.from(kYaml) });
-    await page.setInputFiles('[name=image]', { name: 'lab.pgm', mimeType: 'image/x-portable-graymap', buffer: roomPgm() });
+    await page.setInputFiles('[name=image]', {
+      name: 'lab.pgm',
+      mimeType: 'image/x-portable-graymap',
+      buffer: roomPgm(),
+    });
     assert.equal(await page.inputValue('#tool-body [name=name]'), 'lab-3');
     await page.click('#tool-body :text-is("Import")');
     await page.waitForSelector('#notice', { state: 'hidden' });
@@ -118,7 +126,8 @@ describe('tools on the map', { timeout: 280_000 }, () => {
   async function drop(...files) {
     const data = await page.evaluateHandle((all) => {
       const transfer = new DataTransfer();
-      for (const [name, content] of all) transfer.items.add(new File([Array.isArray(content) ? new Uint8Array(content) : content], name));
+      for (const [name, content] of all)
+        transfer.items.add(new File([Array.isArray(content) ? new Uint8Array(content) : content], name));
       return transfer;
     }, files);
     await page.dispatchEvent('#tool', 'drop', { dataTransfer: data });

@@ -2,14 +2,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';
-import {
-  colourOf,
-  countsPixels,
-  keepPicture,
-  says,
-  showsColour,
-  showsColourAt,
-} from './browser.mjs';
+import { colourOf, countsPixels, keepPicture, says, showsColour, showsColourAt } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 import { encodeGreyPng } from './png.mjs';
@@ -30,13 +23,12 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
   let server;
   let page;
   let session;
-  let complaints = [];
   const openPage = withFakeServer(async (fresh) => {
     server = fresh;
     session = server.add(new FakeSession('map', 'id-map'));
     session.paint(256, 255, 10);
     session.move('r1', 1, 1, 0);
-    ({ page, complaints } = await openPage());
+    ({ page } = await openPage());
     await showsColour(page, '--cell-free');
   });
 
@@ -46,7 +38,11 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     );
 
   const refuse = (path, status, detail) =>
-    answer(path, { type: 'about:blank', title: 'Refused', status, detail }, { status, type: 'application/problem+json' });
+    answer(
+      path,
+      { type: 'about:blank', title: 'Refused', status, detail },
+      { status, type: 'application/problem+json' },
+    );
 
   const alerted = (pattern) => says(page, '#tool-body [role=alert]', pattern);
 
@@ -69,7 +65,19 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
   });
 
   it('draw nothing of a way that is none', async () => {
-    for (const coordinates of [[[1, 'x'], [2, 2]], [[1, 1]], kHostile, null, [[1, 1], [1e400, 0]]]) {
+    for (const coordinates of [
+      [
+        [1, 'x'],
+        [2, 2],
+      ],
+      [[1, 1]],
+      kHostile,
+      null,
+      [
+        [1, 1],
+        [Infinity, 0],
+      ],
+    ]) {
       await page.unrouteAll();
       await answer('**/plan', way(coordinates));
       await page.keyboard.press('p');
@@ -90,7 +98,13 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
       asked += 1;
       const length = asked;
       if (length === 1) await held;
-      const found = { ...way([[1, 1], [2, 2]]), properties: { length, cost: 1 } };
+      const found = {
+        ...way([
+          [1, 1],
+          [2, 2],
+        ]),
+        properties: { length, cost: 1 },
+      };
       await route.fulfill({ contentType: 'application/json', body: JSON.stringify(found) }).catch(() => {});
       if (length === 1) late();
     });
@@ -110,7 +124,13 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     let asked = 0;
     await page.route('**/plan', async (route) => {
       asked += 1;
-      const body = JSON.stringify({ ...way([[1, 1], [2, 2]]), revision: session.revision });
+      const body = JSON.stringify({
+        ...way([
+          [1, 1],
+          [2, 2],
+        ]),
+        revision: session.revision,
+      });
       await route.fulfill({ contentType: 'application/json', body });
     });
     await page.keyboard.press('p');
@@ -175,7 +195,15 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
 
   it('follow a weave on its way, and cancel it', async () => {
     const config = { cell_size: 0.05 };
-    const weave = { id: kWeaveId, state: 'weaving', revision: null, woven: 3, until: { revision: 9 }, follows: true, config };
+    const weave = {
+      id: kWeaveId,
+      state: 'weaving',
+      revision: null,
+      woven: 3,
+      until: { revision: 9 },
+      follows: true,
+      config,
+    };
     const deleted = [];
     let there = [];
     await page.route('**/weave', (route) => {
@@ -199,7 +227,13 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
   });
 
   it('leave nothing on the map and nothing under way when they are closed', async () => {
-    await answer('**/plan', way([[1, 1], [9, 9]]));
+    await answer(
+      '**/plan',
+      way([
+        [1, 1],
+        [9, 9],
+      ]),
+    );
     await page.keyboard.press('p');
     await clickBoth();
     await says(page, '#tool-body', /There is a way/);

@@ -1,15 +1,7 @@
 /** The viewer against a server that does what each test wants. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import {
-  colourOf,
-  colourScheme,
-  countPixels,
-  keepPicture,
-  says,
-  showsColour,
-  textOf,
-} from './browser.mjs';
+import { colourOf, colourScheme, countPixels, keepPicture, says, showsColour, textOf } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
@@ -114,7 +106,10 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await tilesShown();
     const first = tilePaths();
     assert.equal(first.length, new Set(first).size, 'no tile is fetched twice');
-    assert.ok(first.every((path) => session.tiles.has(path)), 'no request for empty space');
+    assert.ok(
+      first.every((path) => session.tiles.has(path)),
+      'no request for empty space',
+    );
     server.tileRequests.length = 0;
     session.paint(257, 255, 90);
     await occupiedShown();

@@ -1,7 +1,16 @@
 // What ./scanloom package makes, of the build in SCANLOOM_BUILD_DIR: looked into, and run from.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import {
+  existsSync,
+  mkdirSync,
+  mkdtempSync,
+  readdirSync,
+  readFileSync,
+  rmSync,
+  statSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -31,13 +40,28 @@ before(() => {
 after(() => rmSync(place, { recursive: true, force: true }));
 
 test('the package has the programs, the viewer, the service, its configuration and the documents', { skip }, () => {
-  for (const file of ['usr/bin/scanloom-server', 'usr/bin/scanloom-robot', 'usr/bin/scanloom-lab', 'usr/bin/scanloom-load',
-    'usr/share/scanloom/web/index.html', 'lib/systemd/system/scanloom-server.service', 'usr/lib/sysusers.d/scanloom.conf',
-    'etc/scanloom/scanloom-server.toml', 'usr/share/doc/scanloom/docs/security.md', 'usr/share/doc/scanloom/scanloom.spdx.json']) {
+  for (const file of [
+    'usr/bin/scanloom-server',
+    'usr/bin/scanloom-robot',
+    'usr/bin/scanloom-lab',
+    'usr/bin/scanloom-load',
+    'usr/share/scanloom/web/index.html',
+    'lib/systemd/system/scanloom-server.service',
+    'usr/lib/sysusers.d/scanloom.conf',
+    'etc/scanloom/scanloom-server.toml',
+    'usr/share/doc/scanloom/docs/security.md',
+    'usr/share/doc/scanloom/scanloom.spdx.json',
+  ]) {
     assert.ok(existsSync(join(root, file)), file);
   }
   const control = run('dpkg-deb', '--field', deb);
-  for (const line of [/^Package: scanloom$/m, /^Version: \d/m, /^Depends: .*libssl3 \(>= 3/m, /^Depends: .*librocksdb7\.8/m]) assert.match(control, line);
+  for (const line of [
+    /^Package: scanloom$/m,
+    /^Version: \d/m,
+    /^Depends: .*libssl3 \(>= 3/m,
+    /^Depends: .*librocksdb7\.8/m,
+  ])
+    assert.match(control, line);
   assert.doesNotMatch(control, /@[A-Z]+@/);
   assert.match(run('dpkg-deb', '--contents', deb), /^-rwxr-xr-x root\/root .*usr\/bin\/scanloom-server$/m);
 });
@@ -52,18 +76,37 @@ test('a link that leads nowhere is found out', () => {
   const folder = join(place, 'documents');
   mkdirSync(join(folder, 'more'), { recursive: true });
   const write = (name, text) => writeFileSync(join(folder, name), text);
-  write('a.md', '# The first: `one`, and more\n\n```sh\n# none [x](gone)\n```\n## Twice\n## Twice\n[b](more/b.md), [elsewhere](https://example.org/x), `[code](gone)`');
+  write(
+    'a.md',
+    '# The first: `one`, and more\n\n```sh\n# none [x](gone)\n```\n## Twice\n## Twice\n[b](more/b.md), [elsewhere](https://example.org/x), `[code](gone)`',
+  );
   write('more/b.md', '[up](../a.md), ![it](../a.md#the-first-one-and-more) [2](../a.md#twice-1)');
   assert.deepEqual(deadLinks(folder), []);
-  write('more/b.md', '[here](#none), [there](../a.md#none), [gone](c.md), [out](../../package.json), [3](../a.md#twice-2)');
+  write(
+    'more/b.md',
+    '[here](#none), [there](../a.md#none), [gone](c.md), [out](../../package.json), [3](../a.md#twice-2)',
+  );
   writeFileSync(join(place, 'package.json'), '');
-  assert.deepEqual(deadLinks(folder), ['#none', '../a.md#none', 'c.md', '../../package.json', '../a.md#twice-2'].map((link) => `more/b.md: ${link}`));
+  assert.deepEqual(
+    deadLinks(folder),
+    ['#none', '../a.md#none', 'c.md', '../../package.json', '../a.md#twice-2'].map((link) => `more/b.md: ${link}`),
+  );
 });
 
 test('the archive has the same files', { skip }, () => {
-  const archive = run('tar', '--list', '--gzip', '--file', deb.replace(/\.deb$/, '.tar.gz')).split('\n').filter((name) => !name.endsWith('/'));
-  const files = readdirSync(root, { recursive: true }).map((name) => join(root, name)).filter((name) => statSync(name).isFile());
-  assert.deepEqual(archive.filter(Boolean).map((name) => join(root, name)).sort(), files.sort());
+  const archive = run('tar', '--list', '--gzip', '--file', deb.replace(/\.deb$/, '.tar.gz'))
+    .split('\n')
+    .filter((name) => !name.endsWith('/'));
+  const files = readdirSync(root, { recursive: true })
+    .map((name) => join(root, name))
+    .filter((name) => statSync(name).isFile());
+  assert.deepEqual(
+    archive
+      .filter(Boolean)
+      .map((name) => join(root, name))
+      .sort(),
+    files.sort(),
+  );
 });
 
 test('the same build and commit give the same bytes', { skip }, () => {
@@ -73,7 +116,9 @@ test('the same build and commit give the same bytes', { skip }, () => {
 
 test('the list of what it consists of is SPDX 2.3, and lacks no library that ldd names', { skip }, () => {
   assert.deepEqual(faultsOf(listed), []);
-  const linked = new Set(listed.relationships.filter((one) => one.relationshipType === 'DYNAMIC_LINK').map((one) => one.relatedSpdxElement));
+  const linked = new Set(
+    listed.relationships.filter((one) => one.relationshipType === 'DYNAMIC_LINK').map((one) => one.relatedSpdxElement),
+  );
   const names = new Set(listed.packages.filter((one) => linked.has(one.SPDXID)).map((one) => one.name));
   const programs = readdirSync(join(root, 'usr/bin')).map((name) => join(root, 'usr/bin', name));
   const needed = ownersOf([...new Set(programs.flatMap(librariesOf))]);
@@ -83,27 +128,52 @@ test('the list of what it consists of is SPDX 2.3, and lacks no library that ldd
 
 test('it names the packages that the viewer bundles, and no tools that made it', { skip }, () => {
   const bundled = listed.packages.filter((one) => one.SPDXID.startsWith('SPDXRef-npm-')).map((one) => one.name);
-  for (const name of Object.keys(JSON.parse(readFileSync(join(source, 'web/package.json'), 'utf8')).dependencies)) assert.ok(bundled.includes(name), name);
+  for (const name of Object.keys(JSON.parse(readFileSync(join(source, 'web/package.json'), 'utf8')).dependencies))
+    assert.ok(bundled.includes(name), name);
   for (const tool of ['vite', 'typescript', 'esbuild']) assert.ok(!bundled.includes(tool), tool);
 });
 
 test('a document that lacks what SPDX demands is found out', () => {
   const whole = {
-    spdxVersion: 'SPDX-2.3', dataLicense: 'CC0-1.0', SPDXID: 'SPDXRef-DOCUMENT', name: 'a', documentNamespace: 'https://a/b',
+    spdxVersion: 'SPDX-2.3',
+    dataLicense: 'CC0-1.0',
+    SPDXID: 'SPDXRef-DOCUMENT',
+    name: 'a',
+    documentNamespace: 'https://a/b',
     creationInfo: { created: '2026-01-01T00:00:00Z', creators: ['Tool: a'] },
-    packages: [{ SPDXID: 'SPDXRef-a', name: 'a', versionInfo: '1', downloadLocation: 'NOASSERTION', filesAnalyzed: false, licenseConcluded: 'NOASSERTION', licenseDeclared: 'MIT AND Zlib' }],
-    relationships: [{ spdxElementId: 'SPDXRef-DOCUMENT', relationshipType: 'DESCRIBES', relatedSpdxElement: 'SPDXRef-a' }],
+    packages: [
+      {
+        SPDXID: 'SPDXRef-a',
+        name: 'a',
+        versionInfo: '1',
+        downloadLocation: 'NOASSERTION',
+        filesAnalyzed: false,
+        licenseConcluded: 'NOASSERTION',
+        licenseDeclared: 'MIT AND Zlib',
+      },
+    ],
+    relationships: [
+      { spdxElementId: 'SPDXRef-DOCUMENT', relationshipType: 'DESCRIBES', relatedSpdxElement: 'SPDXRef-a' },
+    ],
   };
   assert.deepEqual(faultsOf(whole), []);
   for (const field of Object.keys(whole)) assert.notDeepEqual(faultsOf({ ...whole, [field]: undefined }), [], field);
-  for (const [field, bad] of Object.entries({ SPDXID: 'a b', name: '', versionInfo: '', downloadLocation: 'here', filesAnalyzed: true, licenseDeclared: 'do what you want' })) {
+  for (const [field, bad] of Object.entries({
+    SPDXID: 'a b',
+    name: '',
+    versionInfo: '',
+    downloadLocation: 'here',
+    filesAnalyzed: true,
+    licenseDeclared: 'do what you want',
+  })) {
     assert.notDeepEqual(faultsOf({ ...whole, packages: [{ ...whole.packages[0], [field]: bad }] }), [], field);
   }
   assert.notDeepEqual(faultsOf({ ...whole, packages: [whole.packages[0], whole.packages[0]] }), [], 'twice');
 });
 
 test('licences are told where Debian tells them of all files, and guessed nowhere', () => {
-  const of = (licence) => licenceOf(`Format: x\n\nFiles: debian/*\nLicense: GPL-2+\n\nFiles: *\nCopyright: a\nLicense: ${licence}\n text\n`);
+  const of = (licence) =>
+    licenceOf(`Format: x\n\nFiles: debian/*\nLicense: GPL-2+\n\nFiles: *\nCopyright: a\nLicense: ${licence}\n text\n`);
   assert.equal(of('Expat'), 'MIT');
   assert.equal(of('GPL-2+ or Apache-2.0'), 'GPL-2.0-or-later OR Apache-2.0');
   for (const unclear of ['my-own', 'MIT and GPL-2 or Zlib', '']) assert.equal(of(unclear), 'NOASSERTION', unclear);
@@ -111,13 +181,30 @@ test('licences are told where Debian tells them of all files, and guessed nowher
 });
 
 test('what npm needs to make the page only is left out', () => {
-  const lock = { packages: { '': {}, 'node_modules/a': { version: '1', license: '(MIT AND Zlib)' }, 'node_modules/a/node_modules/@b/c': { version: '2', license: 'see LICENSE' }, 'node_modules/d': { version: '3', dev: true } } };
-  assert.deepEqual(npmPackages(lock).map((one) => [one.name, one.versionInfo, one.licenseDeclared]), [['a', '1', 'MIT AND Zlib'], ['@b/c', '2', 'NOASSERTION']]);
+  const lock = {
+    packages: {
+      '': {},
+      'node_modules/a': { version: '1', license: '(MIT AND Zlib)' },
+      'node_modules/a/node_modules/@b/c': { version: '2', license: 'see LICENSE' },
+      'node_modules/d': { version: '3', dev: true },
+    },
+  };
+  assert.deepEqual(
+    npmPackages(lock).map((one) => [one.name, one.versionInfo, one.licenseDeclared]),
+    [
+      ['a', '1', 'MIT AND Zlib'],
+      ['@b/c', '2', 'NOASSERTION'],
+    ],
+  );
 });
 
 test('the configuration and the compose file with everything guarded know no option that the server does not', () => {
-  const known = new Set([...run(join(build, 'bin/scanloom-server'), '--help').matchAll(/--[a-z-]+/g)].map((match) => match[0]));
-  const secure = readFileSync(join(source, 'docker/compose.secure.yaml'), 'utf8').match(/ {4}entrypoint:[^]*?ports:/)[0];
+  const known = new Set(
+    [...run(join(build, 'bin/scanloom-server'), '--help').matchAll(/--[a-z-]+/g)].map((match) => match[0]),
+  );
+  const secure = readFileSync(join(source, 'docker/compose.secure.yaml'), 'utf8').match(
+    / {4}entrypoint:[^]*?ports:/,
+  )[0];
   const told = [...secure.matchAll(/--[a-z-]+/g)].map((match) => match[0]);
   const file = readFileSync(join(source, 'packaging/scanloom-server.toml'), 'utf8');
   const written = [...file.matchAll(/^(?:# )?([a-z-]+) = /gm)].map((match) => `--${match[1]}`);
@@ -131,18 +218,43 @@ const noSystemd = skip || (has('systemd-analyze') ? false : 'systemd-analyze is 
 test('the service is one that systemd takes, and hardened', { skip: noSystemd }, () => {
   // With the program where it is now, as systemd looks for it.
   const unit = join(place, 'scanloom-server.service');
-  writeFileSync(unit, readFileSync(join(root, 'lib/systemd/system/scanloom-server.service'), 'utf8').replace('/usr/bin/scanloom-server', join(root, 'usr/bin/scanloom-server')));
+  writeFileSync(
+    unit,
+    readFileSync(join(root, 'lib/systemd/system/scanloom-server.service'), 'utf8').replace(
+      '/usr/bin/scanloom-server',
+      join(root, 'usr/bin/scanloom-server'),
+    ),
+  );
   const verified = spawnSync('systemd-analyze', ['verify', '--recursive-errors=no', unit], { encoding: 'utf8' });
-  assert.equal(verified.stderr.split('\n').filter((line) => line.includes('scanloom-server.service')).join('\n'), '');
-  const told = spawnSync('systemd-analyze', ['security', '--offline=true', '--no-pager', unit], { encoding: 'utf8' }).stdout;
+  assert.equal(
+    verified.stderr
+      .split('\n')
+      .filter((line) => line.includes('scanloom-server.service'))
+      .join('\n'),
+    '',
+  );
+  const told = spawnSync('systemd-analyze', ['security', '--offline=true', '--no-pager', unit], {
+    encoding: 'utf8',
+  }).stdout;
   const exposure = Number(told.match(/Overall exposure level for scanloom-server\.service: ([\d.]+)/)?.[1]);
   assert.ok(exposure < 2.0, `its exposure is ${exposure}`);
 });
 
 test('the server runs from where it was put, with the configuration that comes with it', { skip }, async () => {
-  const server = spawn(join(root, 'usr/bin/scanloom-server'),
-    ['--config', join(root, 'etc/scanloom/scanloom-server.toml'), '--store', join(place, 'store'), '--listen', '127.0.0.1:0', '--http', '127.0.0.1:0'],
-    { stdio: ['ignore', 'pipe', 'ignore'] });
+  const server = spawn(
+    join(root, 'usr/bin/scanloom-server'),
+    [
+      '--config',
+      join(root, 'etc/scanloom/scanloom-server.toml'),
+      '--store',
+      join(place, 'store'),
+      '--listen',
+      '127.0.0.1:0',
+      '--http',
+      '127.0.0.1:0',
+    ],
+    { stdio: ['ignore', 'pipe', 'ignore'] },
+  );
   const ended = new Promise((resolveEnd) => server.once('exit', resolveEnd));
   try {
     const lines = createInterface({ input: server.stdout })[Symbol.asyncIterator]();

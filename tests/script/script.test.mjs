@@ -16,7 +16,8 @@ before(() => {
 });
 after(() => rmSync(place, { recursive: true, force: true }));
 
-const scanloom = (...words) => spawnSync(join(place, 'scanloom'), words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+const scanloom = (...words) =>
+  spawnSync(join(place, 'scanloom'), words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
 const commandsIn = (text) => [...text.matchAll(/^ {2}([a-z]+) /gm)].map((match) => match[1]);
 
 test('every command of the usage tells its part of it, and nothing of the others', () => {
@@ -35,7 +36,9 @@ test('every command of the usage tells its part of it, and nothing of the others
 });
 
 test('the usage has every command that the script knows', () => {
-  const known = readFileSync(join(source, 'scanloom'), 'utf8').match(/^ {8}(build \|.*)\) ;;$/m)[1].split(' | ');
+  const known = readFileSync(join(source, 'scanloom'), 'utf8')
+    .match(/^ {8}(build \|.*)\) ;;$/m)[1]
+    .split(' | ');
   assert.deepEqual(commandsIn(scanloom('help').stdout).sort(), [...known, 'help'].sort());
 });
 

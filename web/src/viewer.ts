@@ -183,8 +183,16 @@ export class Viewer {
       source,
       trails,
       robots: new Map(),
-      frontiers: new RevisionWatch((stop) => fetchFrontiers(name, stop), (all) => map.showFrontiers(all), signal),
-      goals: new RevisionWatch((stop) => fetchGoals(name, stop), (all) => this.showGoals(all), signal),
+      frontiers: new RevisionWatch(
+        (stop) => fetchFrontiers(name, stop),
+        (all) => map.showFrontiers(all),
+        signal,
+      ),
+      goals: new RevisionWatch(
+        (stop) => fetchGoals(name, stop),
+        (all) => this.showGoals(all),
+        signal,
+      ),
       landmarksAreOld: false,
       readers,
       isNew: true,
@@ -297,8 +305,7 @@ export class Viewer {
   private showCounters(): void {
     const { map, picture, settings } = this.parts;
     const readers = settings.get().counters ? this.open?.readers : undefined;
-    const of = (shown: Shown | null): CellReader | null =>
-      shown && readers ? readers.of(shown.source, 'himm') : null;
+    const of = (shown: Shown | null): CellReader | null => (shown && readers ? readers.of(shown.source, 'himm') : null);
     // On each other, two numbers in a cell would be no numbers.
     map.showCounters(of(picture.main), picture.isSwiping ? of(picture.beside) : null);
   }

@@ -14,7 +14,10 @@ const kFoot = 18; // of the drawing: what holds for all charts
  */
 export function drawCharts(charts, columns = 3) {
   const rows = Math.ceil(charts.length / columns);
-  const parts = charts.map((chart, n) => `<g transform="translate(${(n % columns) * kWidth} ${Math.floor(n / columns) * kHeight})">${draw(chart)}</g>`);
+  const parts = charts.map(
+    (chart, n) =>
+      `<g transform="translate(${(n % columns) * kWidth} ${Math.floor(n / columns) * kHeight})">${draw(chart)}</g>`,
+  );
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${columns * kWidth} ${rows * kHeight + kFoot}" font-family="sans-serif" font-size="10">
 <clipPath id="frame"><rect x="${kLeft}" y="${kTop}" width="${kWidth - kLeft - kRight}" height="${kHeight - kTop - kBottom}"/></clipPath>
 <rect width="100%" height="100%" fill="#ffffff"/>
@@ -25,20 +28,37 @@ ${parts.join('\n')}
 }
 
 function draw({ title, x, y, points, expected }) {
-  const across = axis(points.map((point) => point[0]), kLeft, kWidth - kRight);
-  const up = axis(points.map((point) => point[1]), kHeight - kBottom, kTop, 4);
+  const across = axis(
+    points.map((point) => point[0]),
+    kLeft,
+    kWidth - kRight,
+  );
+  const up = axis(
+    points.map((point) => point[1]),
+    kHeight - kBottom,
+    kTop,
+    4,
+  );
   const at = ([px, py]) => `${across.at(px).toFixed(1)},${up.at(py).toFixed(1)}`;
   const lines = [
     `<text x="${kLeft}" y="16" font-size="12" font-weight="bold">${title}</text>`,
     `<text x="${(kLeft + kWidth - kRight) / 2}" y="${kHeight - 8}" text-anchor="middle">${x}</text>`,
     `<text transform="translate(12 ${(kTop + kHeight - kBottom) / 2}) rotate(-90)" text-anchor="middle">${y}</text>`,
-    ...across.ticks.map((tick) => `<path d="M${across.at(tick)} ${kTop}V${kHeight - kBottom}" stroke="#dddddd"/><text x="${across.at(tick)}" y="${kHeight - kBottom + 13}" text-anchor="middle">${label(tick)}</text>`),
-    ...up.ticks.map((tick) => `<path d="M${kLeft} ${up.at(tick)}H${kWidth - kRight}" stroke="#dddddd"/><text x="${kLeft - 4}" y="${up.at(tick) + 3}" text-anchor="end">${label(tick)}</text>`),
+    ...across.ticks.map(
+      (tick) =>
+        `<path d="M${across.at(tick)} ${kTop}V${kHeight - kBottom}" stroke="#dddddd"/><text x="${across.at(tick)}" y="${kHeight - kBottom + 13}" text-anchor="middle">${label(tick)}</text>`,
+    ),
+    ...up.ticks.map(
+      (tick) =>
+        `<path d="M${kLeft} ${up.at(tick)}H${kWidth - kRight}" stroke="#dddddd"/><text x="${kLeft - 4}" y="${up.at(tick) + 3}" text-anchor="end">${label(tick)}</text>`,
+    ),
   ];
   if (expected !== undefined) {
     const [firstX, firstY] = points[0];
     const guide = [points[0], [across.max, firstY * (across.max / firstX) ** expected]];
-    lines.push(`<polyline points="${guide.map(at).join(' ')}" clip-path="url(#frame)" fill="none" stroke="#888888" stroke-dasharray="4 3"/>`);
+    lines.push(
+      `<polyline points="${guide.map(at).join(' ')}" clip-path="url(#frame)" fill="none" stroke="#888888" stroke-dasharray="4 3"/>`,
+    );
   }
   lines.push(`<polyline points="${points.map(at).join(' ')}" fill="none" stroke="#1f5fa8" stroke-width="1.5"/>`);
   lines.push(...points.map((point) => `<circle cx="${at(point).replace(',', '" cy="')}" r="2.5" fill="#1f5fa8"/>`));

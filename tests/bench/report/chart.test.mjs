@@ -13,22 +13,52 @@ function drawn(points, expected) {
 const slope = ([[x0, y0], [x1, y1]]) => (y1 - y0) / (x1 - x0);
 
 test('the dashed line begins at the first point', () => {
-  const { guide, circles } = drawn([[1, 5], [10, 7], [100, 60]], 1);
+  const { guide, circles } = drawn(
+    [
+      [1, 5],
+      [10, 7],
+      [100, 60],
+    ],
+    1,
+  );
   assert.deepEqual(guide[0], circles[0]);
 });
 
 test('it runs through points that grow as they may', () => {
-  const { guide, circles } = drawn([[1, 3], [10, 300], [100, 30000]], 2);
+  const { guide, circles } = drawn(
+    [
+      [1, 3],
+      [10, 300],
+      [100, 30000],
+    ],
+    2,
+  );
   assert.ok(Math.abs(slope(guide) - slope([circles[0], circles[2]])) < 0.02);
 });
 
 test('it stays straight where it leaves the frame, and is cut off there', () => {
-  const { svg, guide } = drawn([[1, 3], [10, 4], [100, 5]], 2);
+  const { svg, guide } = drawn(
+    [
+      [1, 3],
+      [10, 4],
+      [100, 5],
+    ],
+    2,
+  );
   const frame = /<clipPath id="frame"><rect x="[^"]*" y="([^"]*)"/.exec(svg);
   assert.equal(guide.length, 2);
   assert.ok(guide[1][1] < Number(frame[1]));
 });
 
 test('the drawing says that its axes are logarithmic', () => {
-  assert.match(drawn([[1, 1], [2, 2]], 1).svg, /logarithmic/);
+  assert.match(
+    drawn(
+      [
+        [1, 1],
+        [2, 2],
+      ],
+      1,
+    ).svg,
+    /logarithmic/,
+  );
 });

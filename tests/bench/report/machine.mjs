@@ -24,12 +24,19 @@ export function machineWithStore() {
 }
 
 export function inWords(of) {
-  const store = of.store ? `, stores in ${of.store.directory} on ${of.store.kind} of ${of.store.gib} GiB (${of.store.device})` : '';
+  const store = of.store
+    ? `, stores in ${of.store.directory} on ${of.store.kind} of ${of.store.gib} GiB (${of.store.device})`
+    : '';
   return `${of.cores} cores of ${of.processor}, ${of.memory_gib} GiB${store}, ${of.system}, Linux ${of.kernel}, ${of.compiler}, load average ${of.load_average.toFixed(1)} at the start${of.quick ? '; a quick run' : ''}`;
 }
 
 function fileSystemOf(directory) {
-  const [device, kind, bytes] = execFileSync('df', ['--block-size=1', '--output=source,fstype,size', directory], { encoding: 'utf8' }).split('\n')[1].trim().split(/\s+/);
+  const [device, kind, bytes] = execFileSync('df', ['--block-size=1', '--output=source,fstype,size', directory], {
+    encoding: 'utf8',
+  })
+    .split('\n')[1]
+    .trim()
+    .split(/\s+/);
   return { directory, device, kind, gib: Math.round(Number(bytes) / 2 ** 30) };
 }
 

@@ -4,7 +4,18 @@ import type { Session } from '../../../web/src/api/types';
 import { NewestSessions } from '../../../web/src/newest_sessions';
 
 function session(id: string, revision: number): Session {
-  return { name: 'a', id, created: '', revision, scans: revision, cellSize: 0.05, config: {}, bounds: null, robots: [], failure: null };
+  return {
+    name: 'a',
+    id,
+    created: '',
+    revision,
+    scans: revision,
+    cellSize: 0.05,
+    config: {},
+    bounds: null,
+    robots: [],
+    failure: null,
+  };
 }
 
 describe('the newest sessions', () => {

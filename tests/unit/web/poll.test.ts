@@ -8,7 +8,10 @@ describe('polling', () => {
   });
 
   it('slows down with every failure, but stays ready to come back', () => {
-    assert.deepEqual([1, 2, 3, 10].map((failures) => backoff(300, failures)), [600, 1200, 2400, 5000]);
+    assert.deepEqual(
+      [1, 2, 3, 10].map((failures) => backoff(300, failures)),
+      [600, 1200, 2400, 5000],
+    );
   });
 
   it('is not hurried by failures when it is slow anyway', () => {

@@ -5,6 +5,9 @@ import { RobotColours } from '../../../web/src/robot_colours';
 describe('colours of robots', () => {
   it('stay with a robot when others come', () => {
     const colours = new RobotColours(2);
-    assert.deepEqual(['b', 'a', 'b', 'c'].map((name) => colours.indexOf(name)), [0, 1, 0, 0]);
+    assert.deepEqual(
+      ['b', 'a', 'b', 'c'].map((name) => colours.indexOf(name)),
+      [0, 1, 0, 0],
+    );
   });
 });

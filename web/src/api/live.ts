@@ -148,7 +148,12 @@ function decodeRobot(robot: RobotUpdate): LiveRobot {
 
 function decodeLandmarks({ landmarks, refused }: LandmarkChanges): LandmarkNews {
   return {
-    landmarks: landmarks.map(({ id, x, y, seen, size_x, size_y }) => ({ id, at: [x, y], seen, size: [size_x, size_y] })),
+    landmarks: landmarks.map(({ id, x, y, seen, size_x, size_y }) => ({
+      id,
+      at: [x, y],
+      seen,
+      size: [size_x, size_y],
+    })),
     refused: refused === '' ? null : refused,
   };
 }

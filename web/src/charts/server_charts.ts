@@ -92,7 +92,12 @@ export class ServerCharts {
     this.leave = new AbortController();
     setText(this.state, 'Loading\u2026');
     this.takeColours();
-    void poll((signal) => this.ask(signal), kPace, this.leave.signal, (error) => this.settle(error));
+    void poll(
+      (signal) => this.ask(signal),
+      kPace,
+      this.leave.signal,
+      (error) => this.settle(error),
+    );
   }
 
   private close(): void {

@@ -57,7 +57,12 @@ export class Feed {
   ) {}
 
   run(): void {
-    void poll((signal) => this.connect(signal), kPace, this.signal, (error) => error && this.events.settled(error));
+    void poll(
+      (signal) => this.connect(signal),
+      kPace,
+      this.signal,
+      (error) => error && this.events.settled(error),
+    );
   }
 
   /** What is to be told from now on. */

@@ -95,7 +95,8 @@ export class MapView {
       robots: new RobotsLayer(colours, this.theme),
     };
     const { labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) this.map.addLayer(layer);
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
+      this.map.addLayer(layer);
     this.choose(settings);
   }
 
@@ -103,7 +104,8 @@ export class MapView {
     if (!this.scene) return;
     const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.clear();
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) this.map.removeLayer(layer);
+    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
+      this.map.removeLayer(layer);
     this.scene = null;
   }
 
@@ -196,7 +198,8 @@ export class MapView {
     if (!this.scene) return;
     const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
     for (const pane of [main, beside]) pane.setPalette(theme.cells);
-    for (const overlay of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots]) overlay.setTheme(theme);
+    for (const overlay of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
+      overlay.setTheme(theme);
   }
 }
 

@@ -10,11 +10,7 @@ interface Entry {
 
 const kUnknown: Entry = { label: 'unknown', sample: 'unknown' };
 
-const kProbability: Entry[] = [
-  { label: 'free', sample: 'free' },
-  kUnknown,
-  { label: 'occupied', sample: 'occupied' },
-];
+const kProbability: Entry[] = [{ label: 'free', sample: 'free' }, kUnknown, { label: 'occupied', sample: 'occupied' }];
 
 const kEntries: Record<LayerName, Entry[]> = {
   occupancy: kProbability,

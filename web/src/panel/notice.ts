@@ -36,7 +36,11 @@ function contentOf(state: NoticeState): Node[] {
       return [
         el('h2', {}, 'No sessions yet'),
         el('p', {}, 'A session begins when a robot connects. Start a simulated one:'),
-        el('pre', { tabindex: '0', 'aria-label': 'Command' }, el('code', {}, robotCommand(state.robots, state.pageHost))),
+        el(
+          'pre',
+          { tabindex: '0', 'aria-label': 'Command' },
+          el('code', {}, robotCommand(state.robots, state.pageHost)),
+        ),
         el('p', {}, 'It appears here by itself.'),
       ];
     case 'missing':

@@ -122,7 +122,10 @@ export class TimeBar {
     setText(this.place, count > 0 ? `${words.scanOf(timeline, at)}${this.gapBefore(timeline, at)}` : '');
     const date = count > 0 ? words.dateOf(timeline, at) : '';
     this.place.title = date;
-    setText(this.note, isKnown && count === 0 ? 'No scans yet.' : shown === null && index !== null ? '' : noteOf(shown !== null, date));
+    setText(
+      this.note,
+      isKnown && count === 0 ? 'No scans yet.' : shown === null && index !== null ? '' : noteOf(shown !== null, date),
+    );
     setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : words.loading(share)));
     this.message.classList.toggle('trouble', trouble !== '');
     this.progress.hidden = progress === null;

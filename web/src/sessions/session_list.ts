@@ -3,13 +3,7 @@ import type { DamagedSession, Session } from '../api/types';
 import { KeyedList, setText } from '../dom';
 import type { Palette } from '../layers/palette';
 import { Roving } from './roving';
-import {
-  createDamagedRow,
-  createSessionRow,
-  updateSessionRow,
-  type DamagedRow,
-  type SessionRow,
-} from './session_row';
+import { createDamagedRow, createSessionRow, updateSessionRow, type DamagedRow, type SessionRow } from './session_row';
 import { Thumbnails } from './thumbnails';
 
 export interface SessionListEvents {

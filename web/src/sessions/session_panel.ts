@@ -168,4 +168,3 @@ function stateOf(heard: boolean, all: number, trouble: unknown): string {
   if (!heard) return 'Loading\u2026';
   return all === 0 ? 'None yet.' : '';
 }
-

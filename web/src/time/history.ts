@@ -198,7 +198,9 @@ export class SessionHistory {
       const bodyRadius = bodies.get(robot) ?? null;
       return { name: robot, pose, bodyRadius, scans: trail.length, connected: age <= kGapMin };
     });
-    const trails = new Map(there.map(({ robot, trail, length }): [string, Trail] => [robot, { points: trail, length }]));
+    const trails = new Map(
+      there.map(({ robot, trail, length }): [string, Trail] => [robot, { points: trail, length }]),
+    );
     this.viewer.showMoment({ source, robots, trails });
     this.change({ shown, progress: null, trouble: '' });
   }

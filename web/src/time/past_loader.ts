@@ -29,7 +29,11 @@ export class PastLoader {
     const wanted = this.newest();
     if (this.isWhole && wanted <= this.known) return;
     const { source, timeline } = this;
-    for await (const page of pagesOf(this.known, () => wanted, (revision) => source.fetchAfter(revision, signal))) {
+    for await (const page of pagesOf(
+      this.known,
+      () => wanted,
+      (revision) => source.fetchAfter(revision, signal),
+    )) {
       if (signal.aborted) return;
       timeline.add(page.tracks);
       this.known = page.revision;

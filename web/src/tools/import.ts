@@ -163,5 +163,8 @@ function put(field: HTMLInputElement, file: File): void {
 /** "Lab 3.yaml" -> "Lab-3": what the server takes as a name. */
 export function nameFrom(file: string): string {
   const base = file.replace(/\.[^.]*$/, '').normalize('NFKD');
-  return base.replace(/[^A-Za-z0-9_-]+/g, '-').replace(/^-+|-+$/g, '').slice(0, kNameLengthMax);
+  return base
+    .replace(/[^A-Za-z0-9_-]+/g, '-')
+    .replace(/^-+|-+$/g, '')
+    .slice(0, kNameLengthMax);
 }

@@ -23,13 +23,7 @@ export function measureTool(map: OlMap, target: HTMLElement, theme: () => Theme)
   };
 }
 
-function open(
-  map: OlMap,
-  target: HTMLElement,
-  theme: () => Theme,
-  card: HTMLElement,
-  signal: AbortSignal,
-): void {
+function open(map: OlMap, target: HTMLElement, theme: () => Theme, card: HTMLElement, signal: AbortSignal): void {
   const line = new LineString([]);
   const layer = new VectorLayer({
     source: new VectorSource({ features: [new Feature(line)] }),

@@ -19,7 +19,10 @@ export function pickPlaces(map: OlMap, target: HTMLElement, signal: AbortSignal,
     picked([centre[0] ?? 0, centre[1] ?? 0]);
   };
   // Two places picked one right after the other are not a wish to zoom in.
-  const zooms = map.getInteractions().getArray().filter((each) => each instanceof DoubleClickZoom);
+  const zooms = map
+    .getInteractions()
+    .getArray()
+    .filter((each) => each instanceof DoubleClickZoom);
   for (const zoom of zooms) zoom.setActive(false);
   map.on('click', click);
   target.addEventListener('keydown', press, { signal, capture: true });

@@ -49,7 +49,10 @@ describe('decoding', () => {
 
   it('tells damaged sessions from those that are served', () => {
     const page = decodeSessionPage({
-      sessions: [{ name: '#000000000000002a', state: 'damaged', reason: 'no record' }, { ...session(), state: 'ok' }],
+      sessions: [
+        { name: '#000000000000002a', state: 'damaged', reason: 'no record' },
+        { ...session(), state: 'ok' },
+      ],
       next: null,
     });
     assert.deepEqual(page.damaged, [{ name: '#000000000000002a', reason: 'no record' }]);
@@ -93,7 +96,16 @@ describe('decoding', () => {
       properties: { robot: 'r1', points: coordinates.length },
       geometry: { type, coordinates },
     });
-    for (const [type, coordinates] of [['MultiPoint', [[1, 2]]], ['LineString', [[1, 2], [3, 4]]]] as const) {
+    for (const [type, coordinates] of [
+      ['MultiPoint', [[1, 2]]],
+      [
+        'LineString',
+        [
+          [1, 2],
+          [3, 4],
+        ],
+      ],
+    ] as const) {
       const json = { revision: 3, features: [feature(type, coordinates as unknown as number[][])] };
       assert.deepEqual(decodeTrajectory(json), { revision: 3, tracks: [{ robot: 'r1', points: coordinates }] });
     }

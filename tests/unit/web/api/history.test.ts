@@ -7,7 +7,13 @@ import { decodeWeave } from '../../../../web/src/api/weaves';
 
 function trajectory(properties: Record<string, unknown> = {}): unknown {
   const times = { revisions: [3, 5], stamps: [10.5, 11], yaws: [0, 0.1] };
-  const geometry = { type: 'LineString', coordinates: [[1, 2], [3, 4]] };
+  const geometry = {
+    type: 'LineString',
+    coordinates: [
+      [1, 2],
+      [3, 4],
+    ],
+  };
   const feature = { type: 'Feature', properties: { robot: 'r1', points: 2, ...times, ...properties }, geometry };
   return { type: 'FeatureCollection', revision: 7, features: [feature] };
 }
@@ -16,7 +22,18 @@ describe('decoding the past', () => {
   it('reads where robots were when', () => {
     assert.deepEqual(decodeHistory(trajectory()), {
       revision: 7,
-      tracks: [{ robot: 'r1', points: [[1, 2], [3, 4]], revisions: [3, 5], stamps: [10.5, 11], yaws: [0, 0.1] }],
+      tracks: [
+        {
+          robot: 'r1',
+          points: [
+            [1, 2],
+            [3, 4],
+          ],
+          revisions: [3, 5],
+          stamps: [10.5, 11],
+          yaws: [0, 0.1],
+        },
+      ],
     });
   });
 
@@ -50,6 +67,9 @@ describe('fetching the past', () => {
     mock.restoreAll();
     const path = '/api/v1/sessions/s/trajectory.geojson';
     assert.deepEqual(asked, [`${path}?since=4`, `${path}?times=true&since=4`]);
-    assert.deepEqual(deadlines.calls.map((call) => call.arguments), [[120_000], [120_000]]);
+    assert.deepEqual(
+      deadlines.calls.map((call) => call.arguments),
+      [[120_000], [120_000]],
+    );
   });
 });

@@ -54,8 +54,14 @@ describe('a live event', () => {
     assert.ok(robot);
     assert.deepEqual([robot.index, robot.name, robot.connected, robot.scans, robot.trailFrom], [3, 'r1', true, 55, 53]);
     assert.deepEqual(robot.pose, { x: 2.5, y: 1.25, yaw: 0.5 });
-    assert.deepEqual(rounded(robot.trail), [[2.4, 1.25], [2.5, 1.25]]);
-    assert.deepEqual(rounded(robot.scan?.points ?? []), [[4, 1], [3.995, 0.965]]);
+    assert.deepEqual(rounded(robot.trail), [
+      [2.4, 1.25],
+      [2.5, 1.25],
+    ]);
+    assert.deepEqual(rounded(robot.scan?.points ?? []), [
+      [4, 1],
+      [3.995, 0.965],
+    ]);
   });
 
   it('may know a failure, a shutdown and a robot without a place', () => {
@@ -86,7 +92,10 @@ describe('a live event', () => {
     const cut = bytesOf({ robots: [{ name: 'r1', pose: { x: 1, y: 2, yaw: 3 } }] });
     assert.throws(() => decodeLiveEvent(cut.slice(0, cut.byteLength - 3)), MalformedAnswer);
     assert.throws(() => decodeLiveEvent(new Uint8Array([0xff, 0xff, 0xff]).buffer), MalformedAnswer);
-    assert.throws(() => decodeLiveEvent(bytesOf({ tiles: [{ layer: 1, tiles: [1, 2], revisions: [1] }] })), MalformedAnswer);
+    assert.throws(
+      () => decodeLiveEvent(bytesOf({ tiles: [{ layer: 1, tiles: [1, 2], revisions: [1] }] })),
+      MalformedAnswer,
+    );
     assert.throws(() => decodeLiveEvent(bytesOf({ robots: [{ trail: [1, 2, 3] }] })), MalformedAnswer);
   });
 });

@@ -8,7 +8,12 @@ import { decodePathPage, fetchPathFile, PathFile } from '../../../../web/src/api
 type Course = Record<string, [revision: number, x: number, y: number][]>;
 
 const kCourse: Course = {
-  a: [[1, 0.5, -1.25], [3, 2, 0], [4, 1e-3, 7], [9, 3, 3]],
+  a: [
+    [1, 0.5, -1.25],
+    [3, 2, 0],
+    [4, 1e-3, 7],
+    [9, 3, 3],
+  ],
   late: [[8, -4, 0.125]],
   still: [],
 };
@@ -48,7 +53,11 @@ describe('a file of paths', () => {
     const { features } = JSON.parse(await file.blob().text());
     type Feature = { id: string; properties: { points: number } };
     const told = features.map(({ id, properties }: Feature) => [id, properties.points]);
-    assert.deepEqual(told, [['a', 4], ['still', 0], ['late', 1]]);
+    assert.deepEqual(told, [
+      ['a', 4],
+      ['still', 0],
+      ['late', 1],
+    ]);
     const empty = new PathFile();
     empty.add(decodePathPage(answer({}, 0, 0)));
     assert.equal(await empty.blob().text(), answer({}, 0, 0));
@@ -98,18 +107,33 @@ describe('fetching a file of paths', () => {
     const session = '/api/v1/sessions/s';
     assert.deepEqual(asked, [session, path, `${path}?since=4`, `${path}?since=8`, session]);
     assert.equal(await file.text(), answer(kCourse, 0, 9));
-    assert.deepEqual(told, [...told].sort((a, b) => a - b));
-    const bytes = [[0, 4], [4, 8], [8, 9]].map(([since = 0, until = 0]) => answer(kCourse, since, until).length);
-    assert.equal(told.at(-1), bytes.reduce((sum, each) => sum + each, 0));
+    assert.deepEqual(
+      told,
+      [...told].sort((a, b) => a - b),
+    );
+    const bytes = [
+      [0, 4],
+      [4, 8],
+      [8, 9],
+    ].map(([since = 0, until = 0]) => answer(kCourse, since, until).length);
+    assert.equal(
+      told.at(-1),
+      bytes.reduce((sum, each) => sum + each, 0),
+    );
   });
 
   it('tries a page again that is refused for the moment', async () => {
     refuse = '?since=4';
     const rests: number[] = [];
-    const file = await fetchPathFile('s', new AbortController().signal, () => {}, (failures) => {
-      if (rests.push(failures) === 3) refuse = null;
-      return Promise.resolve();
-    });
+    const file = await fetchPathFile(
+      's',
+      new AbortController().signal,
+      () => {},
+      (failures) => {
+        if (rests.push(failures) === 3) refuse = null;
+        return Promise.resolve();
+      },
+    );
     assert.equal(await file.text(), answer(kCourse, 0, 9));
     assert.deepEqual(rests, [1, 2, 3]);
   });
@@ -118,15 +142,24 @@ describe('fetching a file of paths', () => {
     refuse = '?since=4';
     const rests: number[] = [];
     const pause = (failures: number): Promise<void> => Promise.resolve(void rests.push(failures));
-    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}, pause), Refused);
+    await assert.rejects(
+      fetchPathFile('s', new AbortController().signal, () => {}, pause),
+      Refused,
+    );
     assert.deepEqual(rests, [1, 2, 3, 4, 5, 6, 7, 8]);
     refusal = 500;
-    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}, pause), Refused);
+    await assert.rejects(
+      fetchPathFile('s', new AbortController().signal, () => {}, pause),
+      Refused,
+    );
     assert.equal(rests.length, 8, 'waiting mends nothing');
   });
 
   it('is of one session', async () => {
     ids.push('1', '2');
-    await assert.rejects(fetchPathFile('s', new AbortController().signal, () => {}), /replaced meanwhile/);
+    await assert.rejects(
+      fetchPathFile('s', new AbortController().signal, () => {}),
+      /replaced meanwhile/,
+    );
   });
 });

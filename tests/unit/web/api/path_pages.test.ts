@@ -39,6 +39,9 @@ describe('pages of paths', () => {
   });
 
   it('are not those of a session that is shorter than it was', async () => {
-    await assert.rejects(asked(7, () => 9, 5, 3), MalformedAnswer);
+    await assert.rejects(
+      asked(7, () => 9, 5, 3),
+      MalformedAnswer,
+    );
   });
 });

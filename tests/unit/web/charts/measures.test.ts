@@ -64,7 +64,10 @@ describe('observations', () => {
 
   it('are those between two answers', () => {
     const between = measures.observedBetween(ack(0, 4, 6, 6), ack(2, 5, 9, 10));
-    assert.deepEqual(between?.map(({ count }) => count), [1, 3, 4]);
+    assert.deepEqual(
+      between?.map(({ count }) => count),
+      [1, 3, 4],
+    );
   });
 
   it('are unknown after a restart or with other buckets', () => {

@@ -18,7 +18,14 @@ describe('the text of metrics', () => {
 
   it('has labels with anything in their values', () => {
     const [sample] = parseMetrics('m{ a="x, {\\"}\\\\\\n" , b="", le="+Inf",} 7').get('m') ?? [];
-    assert.deepEqual([...(sample?.labels ?? [])], [['a', 'x, {"}\\\n'], ['b', ''], ['le', '+Inf']]);
+    assert.deepEqual(
+      [...(sample?.labels ?? [])],
+      [
+        ['a', 'x, {"}\\\n'],
+        ['b', ''],
+        ['le', '+Inf'],
+      ],
+    );
     assert.equal(sample?.value, 7);
   });
 

@@ -5,17 +5,41 @@ import { Trails } from '../../../../web/src/live/trails';
 describe('trails', () => {
   it('grow by what joins on, and know their length', () => {
     const trails = new Trails();
-    assert.ok(trails.merge('r1', 0, [[0, 0], [3, 4]]));
+    assert.ok(
+      trails.merge('r1', 0, [
+        [0, 0],
+        [3, 4],
+      ]),
+    );
     assert.ok(trails.merge('r1', 2, [[3, 5]]));
-    assert.deepEqual(trails.get('r1'), { points: [[0, 0], [3, 4], [3, 5]], length: 6 });
+    assert.deepEqual(trails.get('r1'), {
+      points: [
+        [0, 0],
+        [3, 4],
+        [3, 5],
+      ],
+      length: 6,
+    });
   });
 
   it('take no point twice, whatever pieces overlap', () => {
     const trails = new Trails();
-    trails.merge('r1', 0, [[0, 0], [1, 0]]);
-    assert.ok(trails.merge('r1', 1, [[1, 0], [2, 0]]));
+    trails.merge('r1', 0, [
+      [0, 0],
+      [1, 0],
+    ]);
+    assert.ok(
+      trails.merge('r1', 1, [
+        [1, 0],
+        [2, 0],
+      ]),
+    );
     assert.ok(trails.merge('r1', 0, [[0, 0]]));
-    assert.deepEqual(trails.get('r1').points, [[0, 0], [1, 0], [2, 0]]);
+    assert.deepEqual(trails.get('r1').points, [
+      [0, 0],
+      [1, 0],
+      [2, 0],
+    ]);
   });
 
   it('leave out what does not join on, and say so', () => {
@@ -23,7 +47,11 @@ describe('trails', () => {
     trails.merge('r1', 0, [[0, 0]]);
     assert.equal(trails.merge('r1', 3, [[3, 0]]), false);
     assert.equal(trails.get('r1').points.length, 1);
-    trails.merge('r1', 0, [[0, 0], [1, 0], [2, 0]]);
+    trails.merge('r1', 0, [
+      [0, 0],
+      [1, 0],
+      [2, 0],
+    ]);
     assert.ok(trails.merge('r1', 3, [[3, 0]]));
     assert.equal(trails.get('r1').length, 3);
   });

@@ -128,7 +128,13 @@ describe('whole paths', () => {
     await world.next();
     world.troubles.push(new Refused(503, 'busy'), new Unreachable('x'));
     for (let n = 0; n < 4; ++n) await world.next();
-    assert.deepEqual([world.asked, world.rests], [[0, 4, 4, 4], [1, 2]]);
+    assert.deepEqual(
+      [world.asked, world.rests],
+      [
+        [0, 4, 4, 4],
+        [1, 2],
+      ],
+    );
     for (let n = 0; n < 2; ++n) await world.next();
     assert.deepEqual(world.asked, [0, 4, 4, 4, 8]);
     world.assertWhole();

@@ -25,7 +25,12 @@ describe('the grid', () => {
   });
 
   it('inverts i = 256 x + px - 65536 and j = 65535 - (256 y + py) everywhere', () => {
-    for (const cell of [{ i: -65536, j: 65535 }, { i: 65535, j: -65536 }, { i: 1234, j: -4321 }, { i: 255, j: 256 }]) {
+    for (const cell of [
+      { i: -65536, j: 65535 },
+      { i: 65535, j: -65536 },
+      { i: 1234, j: -4321 },
+      { i: 255, j: 256 },
+    ]) {
       const place = placeOfCell(cell);
       assert.ok(place);
       assert.equal(256 * place.x + place.column - 65536, cell.i);
@@ -34,7 +39,12 @@ describe('the grid', () => {
   });
 
   it('knows no place outside the square', () => {
-    for (const [i, j] of [[65536, 0], [-65537, 0], [0, 65536], [0, -65537]] as const) {
+    for (const [i, j] of [
+      [65536, 0],
+      [-65537, 0],
+      [0, 65536],
+      [0, -65537],
+    ] as const) {
       assert.equal(placeOfCell({ i, j }), null);
     }
   });

@@ -10,7 +10,10 @@ describe('tile versions', () => {
   it('keep the newest revision of each tile, whatever the order of arrival', () => {
     const versions = new TileVersions();
     versions.apply([{ z: 9, x: 1, y: 2, revision: 7 }]);
-    versions.apply([{ z: 9, x: 1, y: 2, revision: 5 }, { z: 8, x: 1, y: 2, revision: 6 }]);
+    versions.apply([
+      { z: 9, x: 1, y: 2, revision: 5 },
+      { z: 8, x: 1, y: 2, revision: 6 },
+    ]);
     assert.equal(versions.get(9, 1, 2), 7);
     assert.equal(versions.get(8, 1, 2), 6);
     assert.equal(versions.get(9, 2, 1), undefined);

@@ -4,7 +4,18 @@ import type { Session } from '../../../../web/src/api/types';
 import { arrange, keepOrder, matches } from '../../../../web/src/sessions/order';
 
 function session(name: string, created: string): Session {
-  return { name, id: name, created, revision: 0, scans: 0, cellSize: 0.05, config: {}, bounds: null, robots: [], failure: null };
+  return {
+    name,
+    id: name,
+    created,
+    revision: 0,
+    scans: 0,
+    cellSize: 0.05,
+    config: {},
+    bounds: null,
+    robots: [],
+    failure: null,
+  };
 }
 
 const kSessions = [session('lab-10', '2026-03-01'), session('lab-9', '2026-01-01'), session('Attic', '2026-02-01')];

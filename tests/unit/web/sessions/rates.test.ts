@@ -4,7 +4,18 @@ import type { Session } from '../../../../web/src/api/types';
 import { SessionRates } from '../../../../web/src/sessions/rates';
 
 function session(scans: number, id = '1', name = 'a'): Session {
-  return { name, id, created: '', revision: scans, scans, cellSize: 0.05, config: {}, bounds: null, robots: [], failure: null };
+  return {
+    name,
+    id,
+    created: '',
+    revision: scans,
+    scans,
+    cellSize: 0.05,
+    config: {},
+    bounds: null,
+    robots: [],
+    failure: null,
+  };
 }
 
 describe('the rate of a session', () => {

@@ -7,8 +7,22 @@ import * as words from '../../../../web/src/time/words';
 
 function timelineFrom(start: number): Timeline {
   const line = new Timeline();
-  const [revisions, stamps] = [[3, 4], [start, start + 95]];
-  line.add([{ robot: 'a', points: [[0, 0], [1, 0]], revisions, stamps, yaws: [0, 0] }]);
+  const [revisions, stamps] = [
+    [3, 4],
+    [start, start + 95],
+  ];
+  line.add([
+    {
+      robot: 'a',
+      points: [
+        [0, 0],
+        [1, 0],
+      ],
+      revisions,
+      stamps,
+      yaws: [0, 0],
+    },
+  ]);
   return line;
 }
 
@@ -20,10 +34,13 @@ describe('words for times', () => {
   });
 
   it('are short for long times', () => {
-    assert.deepEqual(
-      [45, 600, 3_600, 3_720, 90_000].map(words.duration),
-      ['45 s', '10 min', '1 h', '1 h 2 min', '1 d 1 h'],
-    );
+    assert.deepEqual([45, 600, 3_600, 3_720, 90_000].map(words.duration), [
+      '45 s',
+      '10 min',
+      '1 h',
+      '1 h 2 min',
+      '1 d 1 h',
+    ]);
   });
 
   it('tell the time of day only when a clock knows it', () => {

@@ -41,7 +41,12 @@ export class DifferenceView {
     choice('Difference on the map', this.onMap),
     this.numbers,
     this.warning,
-    el('div', { class: 'tool-buttons' }, button('Compare again', () => this.compare(this.weave)), this.save),
+    el(
+      'div',
+      { class: 'tool-buttons' },
+      button('Compare again', () => this.compare(this.weave)),
+      this.save,
+    ),
   );
   private readonly layer = new ImageLayer<ImageStatic>({ zIndex: kOrder.difference });
   private readonly asking: NewestOnly;

@@ -30,7 +30,12 @@ export class WeaveRows {
     private readonly actions: WeaveActions,
   ) {
     const create = (weave: ListedWeave): WeaveRow => this.create(weave);
-    this.rows = new KeyedList(this.element, ({ id }) => id, create, (row, weave) => this.update(row, weave));
+    this.rows = new KeyedList(
+      this.element,
+      ({ id }) => id,
+      create,
+      (row, weave) => this.update(row, weave),
+    );
   }
 
   show(weaves: ListedWeave[]): void {
