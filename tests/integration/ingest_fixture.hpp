@@ -65,6 +65,9 @@ inline void expect_refused(RobotSocket& robot, Errc code, bool retryable, const 
 
 class IngestTest : public testing::Test {
 protected:
+    /// The server would wait for completions that a failed test left held.
+    void TearDown() override { log_.release_completions(); }
+
     RunningIngest& start(const IngestConfig& config = {}) {
         running_ = std::make_unique<RunningIngest>(log_, config);
         return *running_;
