@@ -212,13 +212,5 @@ TEST_F(LimitsTest, ALinkThatIsHeldBackEndsWithItsToken) {
     EXPECT_EQ(farewell_to(*robot).error.code, Errc::kUnauthorized);
 }
 
-TEST_F(AccessTest, WithoutTokensWhatIsSentAsOneIsIgnored) {
-    running_.reset();
-    start();
-    const auto robot = welcomed(port(), hello_of("anybody", "lab"));
-    robot->send(wire::Goodbye{""});
-    EXPECT_EQ(robot->receive(), std::nullopt);
-}
-
 } // namespace
 } // namespace scanloom::ingest

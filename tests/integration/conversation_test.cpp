@@ -229,17 +229,6 @@ TEST_F(IngestTest, TenSessionsAtOnceHoldTheMapsTheyWouldHoldAlone) {
     }
 }
 
-TEST_F(IngestTest, ManyRobotsMayAskForTheSameNewSession) {
-    auto& ingest = start();
-    std::vector<std::thread> robots;
-    for (int n = 0; n < 8; ++n) {
-        robots.emplace_back([&, n] { welcomed(port(), hello("r" + std::to_string(n))); });
-    }
-    for (auto& robot : robots) robot.join();
-    EXPECT_EQ(ingest.sessions().list().size(), 1U);
-    EXPECT_EQ(log_.sessions()->size(), 1U);
-}
-
 TEST(IngestWithRocksDb, ARestartForgetsNothingAndTheRobotContinues) {
     const TemporaryDirectory directory;
     std::string digest;

@@ -197,26 +197,6 @@ TEST_F(LocateRequestsTest, InAnImportedMapNobodyIsToldToBeginOne) {
     EXPECT_THAT(refused.message, HasSubstr("send the first scans from a pose that is known"));
 }
 
-TEST_F(LocateRequestsTest, AQuestionOfALinkThatIsClosedIsNotMet) {
-    auto& ingest = start();
-    const auto mapper = mapping();
-    const auto session = ingest.sessions().find("lab");
-    const auto is_gone = std::make_shared<std::atomic<bool>>(false);
-    const auto is_met = [&](bool gone) {
-        std::promise<std::string> told;
-        *is_gone = gone;
-        RequestDesk desk(ingest.planning(), ingest.locating(), {ingest.goals(), ingest.locator(), ingest.sessions()});
-        EXPECT_FALSE(
-            desk.ask({session, 0, is_gone}, question_from(kTruth),
-                     [&](std::string frame, const std::shared_ptr<const void>&) { told.set_value(std::move(frame)); }));
-        const auto frame = told.get_future().get();
-        const auto reply = wire::decode(std::string_view(frame).substr(wire::kLengthPrefixBytes)).value();
-        return std::get<wire::LocateReply>(reply).correction.has_value();
-    };
-    EXPECT_TRUE(is_met(false));
-    EXPECT_FALSE(is_met(true));
-}
-
 /// Where nothing is mapped the first that is told so begins the map: who hangs up before is told nothing.
 TEST_F(LocateRequestsTest, WhoHangsUpIsNotWaitedFor) {
     auto& ingest = start();

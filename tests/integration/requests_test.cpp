@@ -357,27 +357,6 @@ TEST_F(RequestsTest, RefusalsThatNobodyReadsEndTheLink) {
     EXPECT_TRUE(ended);
 }
 
-TEST_F(RequestsTest, ARequestInThePlaceOfTheHelloIsRefused) {
-    start();
-    RobotSocket robot(port());
-    robot.send(plan_to({1.0, 1.0}));
-    expect_refused(robot, Errc::kMalformed, false, "the first frame is a plan_request; a hello is expected");
-}
-
-TEST_F(RequestsTest, AMalformedRequestEndsTheLinkByTheNameOfItsField) {
-    start();
-    const auto robot = welcomed(port(), hello("r"));
-    robot->send(plan_to({std::nan(""), 1.0}));
-    expect_refused(*robot, Errc::kInvalidField, false, "plan_request.goal.x is nan;");
-}
-
-TEST_F(RequestsTest, AReplyIsNotForTheServer) {
-    start();
-    const auto robot = welcomed(port(), hello("r"));
-    robot->send(wire::PlanReply{1, 2, Error{Errc::kNoPath, "why"}});
-    expect_refused(*robot, Errc::kMalformed, false, "a plan_reply frame is not for the server");
-}
-
 TEST_F(RequestsTest, NoSearchIsBegunWhileTheServerShutsDown) {
     auto& ingest = start();
     const auto robot = looking_around("r");

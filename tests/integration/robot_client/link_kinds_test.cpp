@@ -226,14 +226,6 @@ TEST_F(LinkKinds, CompressedItSendsLessAndTheServerGetsTheSame) {
     EXPECT_LT(3 * status_.bytes, plain_bytes);
 }
 
-TEST_F(LinkKinds, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
-    serve("", {.credit_bytes = 5000, .zstd = true}); // the server finds fault with more
-    auto made = options();
-    made.conversation.compress = true;
-    EXPECT_TRUE(run(made));
-    expect_all_stored();
-}
-
 TEST_F(LinkKinds, AServerThatDoesNotUnderstandCompressionGetsNone) {
     serve("", {.zstd = false});
     auto made = options();

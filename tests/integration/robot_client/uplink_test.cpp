@@ -212,13 +212,6 @@ TEST_F(UplinkTest, ARunThatEndsBeforeWhatIsStoredSaysSo) {
     EXPECT_THAT(troubles_, IsEmpty()) << "hanging up for this is no trouble";
 }
 
-TEST_F(UplinkTest, AServerThatLostAcknowledgedScansIsAClearError) {
-    serve({{.hang_up_after_scans = 100}, {.durable_seq = 3}});
-    const auto outcome = run(options());
-    ASSERT_FALSE(outcome);
-    EXPECT_THAT(outcome.error().message, HasSubstr("no longer in memory"));
-}
-
 TEST_F(UplinkTest, AProgramThatSpeaksSomethingElseIsAClearError) {
     serve({{.answer_hello_with = "HTTP/1.1 400 Bad Request\r\n\r\n"}});
     const auto outcome = run(options());

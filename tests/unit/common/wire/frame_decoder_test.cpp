@@ -62,15 +62,6 @@ TEST(FrameDecoder, AnyRandomSplitYieldsTheSameBodies) {
     }
 }
 
-TEST(FrameDecoder, ATruncatedFrameIsNoFrameUntilItsLastByte) {
-    const std::string stream = stream_of({"abcdef"});
-    FrameDecoder decoder(1000);
-    feed(decoder, std::string_view(stream).substr(0, stream.size() - 1));
-    EXPECT_TRUE(drain(decoder).empty());
-    feed(decoder, std::string_view(stream).substr(stream.size() - 1));
-    EXPECT_EQ(drain(decoder), std::vector<std::string>{"abcdef"});
-}
-
 TEST(FrameDecoder, AnOversizedFrameIsRefusedFromItsLengthAlone) {
     FrameDecoder decoder(1000);
     feed(decoder, std::string_view("\x00\x00\x03\xe9", 4));
@@ -88,13 +79,6 @@ TEST(FrameDecoder, AFrameOfTheLargestSizePasses) {
     EXPECT_EQ(drain(decoder).size(), 1U);
 }
 
-TEST(FrameDecoder, AnEmptyFrameIsRefused) {
-    FrameDecoder decoder(1000);
-    feed(decoder, std::string_view("\0\0\0\0", 4));
-    ASSERT_FALSE(decoder.next());
-    EXPECT_EQ(decoder.next().error().code, Errc::kMalformed);
-}
-
 TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
     for (const auto* text : {"GET / HTTP/1.1\r\n", "HTTP/1.1 400 Bad Request\r\n"}) {
         FrameDecoder decoder(1000);
@@ -105,15 +89,6 @@ TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
         EXPECT_THAT(body.error().message, testing::HasSubstr("robots connect to the robot port"));
         EXPECT_TRUE(decoder.holds_http());
     }
-}
-
-TEST(FrameDecoder, TheLimitMayGrowAfterTheHello) {
-    FrameDecoder decoder(10);
-    feed(decoder, stream_of({"hello"}));
-    EXPECT_EQ(drain(decoder).size(), 1U);
-    decoder.set_frame_bytes_max(1000);
-    feed(decoder, stream_of({std::string(500, 'x')}));
-    EXPECT_EQ(drain(decoder).size(), 1U);
 }
 
 } // namespace

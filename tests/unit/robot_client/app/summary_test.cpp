@@ -57,10 +57,5 @@ TEST(SummaryJson, OfASensorThatNeverReachedItsServerCountsWhatItTook) {
               R"("waiting":170,"dropped":0,"session":"lab","robot":"r1","source":"carmen:9f3a"})");
 }
 
-TEST(SummaryJson, CountsAsTheProgressDoes) {
-    EXPECT_THAT(progress_text(kSummary.status, 30, 25.0), testing::StartsWith("25 of 30 scans stored"));
-    EXPECT_THAT(summary_json(kSummary), testing::StartsWith(R"({"scans":38,"acknowledged":25,)"));
-}
-
 } // namespace
 } // namespace scanloom::robot

@@ -41,15 +41,6 @@ TEST(Sweep, WithoutNoiseIsExactToTheMillimetre) {
     }
 }
 
-TEST(Sweep, WhatIsBeyondTheRangeIsNoReturn) {
-    Sensor laser = *find_laser("lidar360");
-    laser.range_max = 0.5;
-    Random random(1);
-    for (const RangeMm range : sweep(make_room(), laser, {3.2, -3.2, 0.0}, std::nullopt, random)) {
-        EXPECT_EQ(range, kNoReturn);
-    }
-}
-
 TEST(Sweep, NoiseHasItsSizeAndMakesNoReturns) {
     const World room = make_room();
     const Sensor laser = *find_laser("reference");

@@ -21,11 +21,6 @@ TEST(RayCasting, MeetsAWallWhereGeometrySays) {
     EXPECT_EQ(cast_ray(wall, {0, 0}, std::atan2(1.1, 2.0)), std::numeric_limits<double>::infinity()) << "beside";
 }
 
-TEST(RayCasting, TheNearestWallCounts) {
-    const std::vector<Segment> walls = {{3, -1, 3, 1}, {1, -1, 1, 1}, {2, -1, 2, 1}};
-    EXPECT_NEAR(cast_ray(walls, {0, 0}, 0.0), 1.0, 1e-12);
-}
-
 TEST(RayCasting, MeetsADiscWhereGeometrySays) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const Disc disc{{3.0, 4.0}, 0.5};
@@ -108,14 +103,6 @@ TEST_P(Worlds, NoRayLeavesTheWorldNotEvenThroughItsCorners) {
             const double to_corner = std::atan2(segment.ay - origin.y, segment.ax - origin.x);
             ASSERT_LT(cast_ray(world_.outlines, origin, to_corner), 73.0);
         }
-    }
-}
-
-TEST_P(Worlds, TheirObstaclesStopRaysWhereTheirOutlinesDo) {
-    for (int i = 0; i < 3000; ++i) {
-        const Point2 origin = free_place();
-        const double yaw = random_.uniform(-kPi, kPi);
-        EXPECT_EQ(world_.obstacles->cast_ray(origin, yaw, 100.0), cast_ray(world_.outlines, origin, yaw));
     }
 }
 

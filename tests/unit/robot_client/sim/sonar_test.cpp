@@ -82,15 +82,6 @@ TEST(Listen, HearsTheNearestThingThatAnyRayWithinTheConeMeets) {
     }
 }
 
-TEST(Listen, NothingWithinTheRangeIsNoReturn) {
-    Sensor sonar = ring();
-    sonar.range_max = 0.5;
-    Random random(1);
-    for (const RangeMm range : listen(make_room(), sonar, {3.2, -3.2, 0.0}, std::nullopt, random)) {
-        EXPECT_EQ(range, kNoReturn);
-    }
-}
-
 TEST(Listen, NoiseHasItsSizeAndMakesNoReturns) {
     const World room = make_room();
     const Sensor sonar = ring();

@@ -32,19 +32,6 @@ World closet() {
                       {{0.0, 0.0, 1.0, 1.0}});
 }
 
-TEST(TruthGrid, ACellIsOccupiedWhereAPartOfItIs) {
-    const auto grid = truth_of(closet(), 0.2);
-    EXPECT_EQ(grid.i_begin, -1);
-    EXPECT_EQ(grid.j_begin, -1);
-    EXPECT_EQ(drawn(grid), "#######\n"
-                           "#.....#\n"
-                           "#.....#\n"
-                           "#.....#\n"
-                           "#.##..#\n"
-                           "#.##..#\n"
-                           "#######\n");
-}
-
 TEST(TruthGrid, RoundingPutsNoSolidIntoTheNextCell) {
     const auto tenths = truth_of(make_world("", {{0.0, 0.0, 1.1, 0.3}}, {}), 0.1); // 1.1 * 10 > 11
     EXPECT_EQ(tenths.width, 11);

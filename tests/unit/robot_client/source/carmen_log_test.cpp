@@ -197,10 +197,6 @@ TEST_F(CarmenLogFile, RobotLaserFreesBeamsWithoutReturnUnlessAskedToDrop) {
     EXPECT_EQ(read(text, drop)->observations[0].scan.ranges[1], kInvalidRange);
 }
 
-TEST_F(CarmenLogFile, AStatedRangeBeyond50MetresIsNotBelieved) {
-    EXPECT_EQ(read(robot_laser("0 0 0", "0 0 0", 81.9))->observations[0].sensor->range_max, kCarmenRangeMax);
-}
-
 TEST_F(CarmenLogFile, TheUsersMaximumRangeBeatsTheLogs) {
     CarmenOptions options;
     options.range_max = 1.5;

@@ -89,12 +89,6 @@ TEST(Ld06Packet, OfTheKnownVectorsIsReadAsWritten) {
     }
 }
 
-TEST(Ld06Crc, IsThatOfThePolynomial4D) {
-    constexpr std::string_view kDigits = "123456789";
-    EXPECT_EQ(ld06_crc({reinterpret_cast<const std::uint8_t*>(kDigits.data()), kDigits.size()}), 0xC3);
-    EXPECT_EQ(ld06_crc({}), 0);
-}
-
 TEST(Ld06Packet, SpansTheWayFromItsStartToItsEndClockwise) {
     EXPECT_EQ(steps_spanned({.start_angle = 100, .end_angle = 980}), 880 * 11);
     EXPECT_EQ(steps_spanned({.start_angle = 35'900, .end_angle = 100}), 200 * 11);

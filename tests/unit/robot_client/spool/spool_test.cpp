@@ -174,18 +174,6 @@ TEST_F(SpoolTest, WhereTheServerHasMoreThanWasSentItGoesOnBehindThat) {
     EXPECT_THAT(told_, ElementsAre(HasSubstr("7 more than were sent from")));
 }
 
-TEST_F(SpoolTest, TheSessionMayChangeWhileNothingIsAcknowledged) {
-    open();
-    ASSERT_TRUE(spool_->begin("a1", 0));
-    take(1, 18);
-    handed_out();
-    ASSERT_TRUE(spool_->follow("b2"));
-    open();
-    ASSERT_TRUE(spool_->begin("b2", 10));
-    EXPECT_EQ(handed_out(), from_to(11, 18));
-    EXPECT_THAT(told_, IsEmpty());
-}
-
 TEST_F(SpoolTest, ScansOfOthersInBetweenDoNotTakeThePlaceOfThoseThatWereNeverSent) {
     open();
     ASSERT_TRUE(spool_->begin("a1", 0));

@@ -119,20 +119,6 @@ TEST_F(Batching, WhereThereIsNoCreditADelayThatIsOverWakesNobody) {
     EXPECT_GT(conversation_->deadline(now_), now_) << "only an ack can help";
 }
 
-TEST_F(Batching, BatchesAreCompressedWhereBothSidesWantIt) {
-    begin(0ms, true);
-    add(3);
-    EXPECT_THAT(said(), ElementsAre(3));
-    EXPECT_EQ(compressed_, 1);
-    begin(0ms, true, false);
-    add(3);
-    EXPECT_THAT(said(), ElementsAre(3));
-    begin(0ms, false, true);
-    add(3);
-    EXPECT_THAT(said(), ElementsAre(3));
-    EXPECT_EQ(compressed_, 1);
-}
-
 TEST_F(Batching, ScansThatCameBeforeTheServerGoBehindThoseItHolds) {
     ConversationOptions options;
     options.hello.robot = "r1";

@@ -156,14 +156,6 @@ TEST_F(ConversationTest, ScansWaitingTogetherShareFramesOfAboutTheWantedSize) {
     for (const std::size_t bytes : frame_bytes_) EXPECT_LE(bytes, options().batch_bytes_max);
 }
 
-TEST_F(ConversationTest, ALoneScanGoesAtOnce) {
-    welcome();
-    add(1);
-    EXPECT_EQ(said_seqs(), from_to(1, 1));
-    add(1);
-    EXPECT_EQ(said_seqs(), from_to(2, 2));
-}
-
 TEST_F(ConversationTest, NeverHasMoreThanItsCreditUnderWay) {
     std::mt19937 random(5);
     welcome(0, 5000);
@@ -191,6 +183,29 @@ TEST_F(ConversationTest, NeverHasMoreThanItsCreditUnderWay) {
         while (!under_way.empty() && under_way.front().first <= durable) under_way.pop_front();
     }
     EXPECT_EQ(durable, 300U);
+}
+
+TEST_F(ConversationTest, CreditIsOfWhatTheBatchesHoldNotOfWhatTravels) {
+    ConversationOptions compressing = options();
+    compressing.compress = true;
+    Conversation conversation{compressing, kStart};
+    conversation.open(now_);
+    ASSERT_TRUE(conversation.next_frame(now_));
+    wire::Welcome welcome{"a1", 0, {}, 2000};
+    welcome.zstd = true;
+    ASSERT_FALSE(conversation.receive(welcome, now_));
+    for (int i = 0; i < 10; ++i) conversation.add(observation(laser_), now_);
+    std::size_t held = 0;
+    std::size_t travelled = 0;
+    while (const auto frame = conversation.next_frame(now_)) {
+        const auto message = *wire::decode(std::string_view(*frame).substr(wire::kLengthPrefixBytes));
+        if (std::holds_alternative<Sensor>(message)) continue;
+        held += std::get<wire::CompressedScanBatch>(message).size + wire::kLengthPrefixBytes;
+        travelled += frame->size();
+    }
+    EXPECT_LT(travelled, 200U);
+    EXPECT_GT(held, 1000U);
+    EXPECT_LE(held, 2000U);
 }
 
 TEST_F(ConversationTest, WithoutCreditItWaits) {
@@ -447,22 +462,6 @@ TEST_F(ConversationTest, AsksBeforeItSendsScansAndHandsOverTheReply) {
     ASSERT_EQ(replies.size(), 1U);
     EXPECT_EQ(std::get<wire::PlanReply>(replies[0]), reply);
     EXPECT_EQ(said_seqs(), from_to(1, 0)) << "all is said";
-}
-
-TEST_F(ConversationTest, AsksAgainOnTheNextLinkWhatWasNotAnswered) {
-    welcome();
-    int answers = 0;
-    EXPECT_TRUE(conversation_.ask(wire::GoalRequest{}, [&](const Reply&) { ++answers; }));
-    const auto first = said();
-    conversation_.close();
-    welcome();
-    EXPECT_EQ(said(), first);
-    EXPECT_FALSE(
-        conversation_.receive(wire::GoalReply{std::get<wire::GoalRequest>(first[0]).id, 5, wire::Goal{}}, now_));
-    EXPECT_EQ(answers, 1);
-    conversation_.close();
-    welcome();
-    EXPECT_TRUE(said().empty()) << "an answer is an answer";
 }
 
 TEST_F(ConversationTest, AReplyThatNobodyAskedForIsAFaultOfTheServer) {

@@ -22,14 +22,6 @@ SendBuffer with_scans(int count) {
     return buffer;
 }
 
-TEST(SendBuffer, NumbersScansFromWhereTheServerStands) {
-    SendBuffer buffer(1 << 20);
-    buffer.start_after(41);
-    buffer.push(observation());
-    EXPECT_EQ(buffer.unsent(0).scan.seq, 42U);
-    EXPECT_EQ(buffer.last(), 42U);
-}
-
 TEST(SendBuffer, HasNoRoomBeyondItsBytesUntilSomeAreAcknowledged) {
     SendBuffer buffer(3 * wire_bytes_max(observation().scan));
     int pushed = 0;
@@ -41,16 +33,6 @@ TEST(SendBuffer, HasNoRoomBeyondItsBytesUntilSomeAreAcknowledged) {
     EXPECT_TRUE(buffer.has_room());
 }
 
-TEST(SendBuffer, RewindMakesWhatTheServerLacksUnsentAgain) {
-    SendBuffer buffer = with_scans(10);
-    buffer.mark_sent(8);
-    buffer.acknowledge(3);
-    ASSERT_TRUE(buffer.rewind(5));
-    EXPECT_EQ(buffer.acknowledged(), 5U);
-    EXPECT_EQ(buffer.unsent(0).scan.seq, 6U);
-    EXPECT_EQ(buffer.unsent_count(), 5U);
-}
-
 TEST(SendBuffer, RewindMayGoBeyondWhatWasSentSinceTheLastRewind) {
     SendBuffer buffer = with_scans(10);
     buffer.mark_sent(8);
@@ -59,27 +41,10 @@ TEST(SendBuffer, RewindMayGoBeyondWhatWasSentSinceTheLastRewind) {
     EXPECT_EQ(buffer.unsent(0).scan.seq, 8U);
 }
 
-TEST(SendBuffer, ScansTheServerLostAreAClearError) {
-    SendBuffer buffer = with_scans(10);
-    buffer.mark_sent(8);
-    buffer.acknowledge(6);
-    const auto lost = buffer.rewind(4);
-    ASSERT_FALSE(lost);
-    EXPECT_THAT(lost.error().message, testing::HasSubstr("scans 5 to 6 are no longer in memory"));
-}
-
 TEST(SendBuffer, ScansThatWereNeverSentFromHereAreAnothersWithTheSameName) {
     SendBuffer buffer = with_scans(10);
     buffer.mark_sent(8);
     EXPECT_THAT(buffer.rewind(9).error().message, testing::HasSubstr("another program"));
-}
-
-TEST(SendBuffer, WhatWasPushedBeforeTheServerWasReachedIsNumberedBehindWhatItHolds) {
-    SendBuffer buffer = with_scans(3);
-    buffer.start_after(10);
-    EXPECT_EQ(buffer.unsent(0).scan.seq, 11U);
-    EXPECT_EQ(buffer.last(), 13U);
-    EXPECT_EQ(buffer.unsent_count(), 3U);
 }
 
 TEST(SendBuffer, TheOldestThatWasNeverSentCanBeDroppedAndTheOthersMoveUp) {

@@ -89,10 +89,6 @@ TEST_F(ServerOptionsTest, WhatIsGivenIsNotEmpty) {
     unsetenv("SCANLOOM_TOKENS");
 }
 
-TEST_F(ServerOptionsTest, WithoutAWordTheViewerMayBeMissing) {
-    EXPECT_TRUE(std::holds_alternative<ServerOptions>(read({})));
-}
-
 TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
     const auto bytes = [](std::vector<std::string> arguments) {
         return std::get<ServerOptions>(read(std::move(arguments))).tile_cache_bytes;

@@ -224,31 +224,6 @@ TEST(ClassLayer, AChunksRevisionIsThatOfItsLastChangeOfClass) {
     }
 }
 
-TEST(ClassLayer, WhatKeepsItsClassesIsNotWrittenAgain) {
-    ClassLayer layer(3);
-    Types types;
-    types.set({10, 10}, OccType::kFree);
-    types.show(layer, 1);
-    const auto before = layer.snapshot();
-    types.set({10, 10}, OccType::kFree);
-    types.set({40, 40}, OccType::kUnexplored);
-    types.show(layer, 2);
-    EXPECT_EQ(layer.snapshot().find({0, 0}), before.find({0, 0})) << "the chunk is shared with the older snapshot";
-}
-
-TEST(ClassLayer, AnObstacleOverTheBorderPutsOnlyTheNeighbourInDangerThatItReaches) {
-    ClassLayer layer(3);
-    Types types;
-    for (const int i : {-70, -2, -1, 0, 1, 2, 3}) types.set({i, 10}, OccType::kFree);
-    types.show(layer, 1);
-    types.set({0, 10}, OccType::kOccupied);
-    types.show(layer, 2);
-    const auto view = layer.snapshot();
-    EXPECT_EQ(class_at(view, {-2, 10}), CellClass::kDanger);
-    EXPECT_EQ(view.find({0, -1})->revision, 2U);
-    EXPECT_EQ(view.find({0, -2})->revision, 1U);
-}
-
 TEST(ClassLayer, OnlyTheNamedChunksAreAskedFor) {
     ClassLayer layer(64);
     Types types;

@@ -97,24 +97,6 @@ TEST(Frontiers, HaveTheMeanAndTheBoundsOfTheirCells) {
     EXPECT_DOUBLE_EQ(frontiers[0].centroid_y, (-0.5 + 0.5 + 0.5 + 1.5 + 2.5) / 5.0);
 }
 
-TEST(Frontiers, TheLargestComesFirstAndEqualOnesByPosition) {
-    const auto frontiers = find_frontiers(view_of({{50, 0}, {-50, 0}, {9, 9}, {9, 10}, {-70, -70}}));
-    ASSERT_EQ(frontiers.size(), 4U);
-    EXPECT_EQ(frontiers[0].cells.front(), (Cell{9, 9}));
-    EXPECT_EQ(frontiers[1].cells.front(), (Cell{-70, -70}));
-    EXPECT_EQ(frontiers[2].cells.front(), (Cell{-50, 0}));
-    EXPECT_EQ(frontiers[3].cells.front(), (Cell{50, 0}));
-}
-
-TEST(Frontiers, ALineOverManyChunksIsOne) {
-    Cells cells;
-    for (int i = -300; i < 300; ++i) cells.insert({i, i});
-    for (int i = -300; i < 300; ++i) cells.insert({i, 64});
-    const auto frontiers = find_frontiers(view_of(cells));
-    ASSERT_EQ(frontiers.size(), 1U);
-    EXPECT_EQ(frontiers[0].cells.size(), cells.size());
-}
-
 TEST(Frontiers, SmallOnesAreLeftOut) {
     const Cells cells = {{0, 0}, {1, 0}, {2, 0}, {10, 0}, {11, 0}, {20, 0}};
     EXPECT_EQ(find_frontiers(view_of(cells), 2).size(), 2U);

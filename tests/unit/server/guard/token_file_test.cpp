@@ -46,11 +46,6 @@ TEST_F(TokenFileTest, IsReadWhereItsOwnerAloneMayWrite) {
     }
 }
 
-TEST_F(TokenFileTest, AFaultNamesFileAndLine) {
-    const auto path = write(good_ + "role = 3\n");
-    EXPECT_THAT(fault(path), StartsWith(path.string() + ":6: "));
-}
-
 TEST_F(TokenFileTest, WhatIsNoSuchFileIsSaidSo) {
     EXPECT_THAT(fault(directory_.path() / "none"), HasSubstr("cannot be read"));
     EXPECT_THAT(fault(directory_.path()), HasSubstr("this is no file"));

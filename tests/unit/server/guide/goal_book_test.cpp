@@ -66,15 +66,6 @@ protected:
     GoalBook::Clock::time_point now_{};
 };
 
-TEST_F(GoalBookTest, NoTwoRobotsGetTheSameFrontier) {
-    for (const char* robot : {"a", "b", "c"}) join(robot);
-    EXPECT_EQ(next(0), 'l');
-    EXPECT_EQ(next(1), 'r');
-    EXPECT_EQ(next(2), '-');
-    EXPECT_EQ(next(1), 'r') << "asking again";
-    EXPECT_EQ(next(0), 'l');
-}
-
 TEST_F(GoalBookTest, WhoAsksAgainGivesBackWhatItHad) {
     for (const char* robot : {"a", "b"}) join(robot);
     EXPECT_EQ(next(0), 'l');
@@ -93,13 +84,6 @@ TEST_F(GoalBookTest, AGoalCountsNoLongerWhenItsRobotHasLeft) {
     EXPECT_EQ(next(0), 'r') << "it comes back and asks again";
 }
 
-TEST_F(GoalBookTest, AGoalOfAConnectedRobotCountsHoweverLongItTakes) {
-    for (const char* robot : {"a", "b"}) join(robot);
-    EXPECT_EQ(next(0), 'l');
-    now_ += std::chrono::hours(10);
-    EXPECT_EQ(next(1), 'r');
-}
-
 TEST_F(GoalBookTest, AGoalOnBehalfOfAnAbsentRobotCountsForAWhile) {
     for (const char* robot : {"a", "b", "c"}) leave(join(robot));
     EXPECT_EQ(next(0), 'l');
@@ -107,18 +91,6 @@ TEST_F(GoalBookTest, AGoalOnBehalfOfAnAbsentRobotCountsForAWhile) {
     EXPECT_EQ(next(1), 'r');
     now_ += std::chrono::seconds(1);
     EXPECT_EQ(next(2), 'l');
-}
-
-TEST_F(GoalBookTest, ARobotThatConnectsKeepsTheGoalUntilItLeaves) {
-    leave(join("a"));
-    join("b");
-    EXPECT_EQ(next(0), 'l');
-    const auto link = join("a");
-    EXPECT_EQ(next(1), 'r');
-    now_ += 2 * WayBook::kKeptForAbsent;
-    EXPECT_EQ(next(1), 'r');
-    leave(link);
-    EXPECT_EQ(next(1), 'l');
 }
 
 TEST_F(GoalBookTest, GoalsAreTakenFromMapsOfOtherCellsToo) {

@@ -35,12 +35,6 @@ TEST(Visit, IsALookWhenTheRobotHeadsTowardsTheTarget) {
     EXPECT_FALSE(looks({1.3, 1.0, 0.0})) << "it is elsewhere";
 }
 
-TEST(Visit, NeedsAScanThatIsNewerThanTheGoal) {
-    auto robot = robot_at({1.0, 1.0, 0.0});
-    robot.scan_count = 4;
-    EXPECT_FALSE(has_looked(to_the_right(), robot, kCell));
-}
-
 TEST(Visit, OfATargetAtHandIsALookFromWhereTheRobotStands) {
     Visit visit = to_the_right();
     visit.target = {1.1, 1.0};

@@ -58,21 +58,6 @@ protected:
     };
 };
 
-std::string target_of(const Route& route, std::string_view session) {
-    std::string target(route.pattern);
-    const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
-                                                       {"{layer}", "occupancy"},
-                                                       {"{z}", "9"},
-                                                       {"{x}", "256"},
-                                                       {"{y}", "255"},
-                                                       {"{weave}", "none"},
-                                                       {"{file}", "none.js"}};
-    for (const auto& [name, value] : values) {
-        if (const auto at = target.find(name); at != std::string::npos) target.replace(at, name.size(), value);
-    }
-    return target;
-}
-
 bool is_let_in(const Response& response) {
     return response.status != Status::unauthorized && response.status != Status::forbidden;
 }
@@ -109,14 +94,6 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
     }
     EXPECT_EQ(ask_as("operator", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
     EXPECT_EQ(ask_as("operator-all", "DELETE", "/api/v1/sessions/lab").status, Status::no_content);
-}
-
-TEST_F(ApiAccessTest, EveryOperationHasALineInTheTable) {
-    for (const auto& route : routes()) {
-        const bool is_open = need_of(route.operation) == Need::kNothing;
-        EXPECT_EQ(is_open, is_let_in(ask_as("", std::string(route.method), target_of(route, "lab"), "[]")))
-            << route.pattern;
-    }
 }
 
 TEST_F(ApiAccessTest, HeadIsAnsweredAsGet) {
@@ -343,12 +320,6 @@ TEST_F(ApiLoginTest, AWebSocketTakesCookieOrHeader) {
     EXPECT_EQ(watch(request("GET", live, ""), kOwnPage), Status::unauthorized);
 }
 
-TEST_F(ApiLoginTest, ItEndsWithItsToken) {
-    const auto cookie = sign_in("viewer");
-    gate_.replace(access::TokenSet({all_[0]}));
-    EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::unauthorized);
-}
-
 TEST_F(ApiLoginTest, AWrongTokenSignsNobodyIn) {
     const auto response = ask_as("", "POST", "/api/v1/login", R"({"token":"guess"})");
     EXPECT_EQ(response.status, Status::unauthorized);
@@ -365,6 +336,7 @@ TEST_F(ApiLoginTest, AllThatAnybodyMay) {
     EXPECT_TRUE(who.at("token").is_null());
     for (const auto* open : {"/livez", "/readyz", "/openapi.json"})
         EXPECT_EQ(ask_as("", "GET", open).status, Status::ok);
+    EXPECT_EQ(ask_as("", "DELETE", "/api/v1/login").status, Status::no_content);
     EXPECT_EQ(refusals(access::Reason::kNoToken), 0.0);
 }
 

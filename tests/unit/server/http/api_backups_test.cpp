@@ -30,11 +30,5 @@ TEST_F(ApiBackupsTest, TheyAreMadeAndListedAlsoBeforeTheSessionsAreRecovered) {
     EXPECT_EQ(ask_disk("GET", "/api/v1/backups?odd=1").status, Status::bad_request);
 }
 
-TEST_F(ApiBackupsTest, WithoutADirectoryThereAreNone) {
-    for (const auto* method : {"GET", "POST"}) {
-        EXPECT_THAT(detail(ask_disk(method), Status::not_found), HasSubstr("--backups DIR"));
-    }
-}
-
 } // namespace
 } // namespace scanloom::http

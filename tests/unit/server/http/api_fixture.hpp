@@ -2,6 +2,7 @@
 
 #include "server/http/api.hpp"
 
+#include "server/http/router.hpp"
 #include "server/session/session_registry.hpp"
 #include "tests/support/memory_scan_log.hpp"
 #include "tests/unit/server/http/described_answer.hpp"
@@ -16,6 +17,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <map>
 #include <numbers>
 
 namespace scanloom::http {
@@ -59,6 +61,22 @@ inline Scan scan(std::uint64_t seq) {
     taken.pose = {0.5 * static_cast<double>(seq), 1.25, 0.0};
     taken.ranges.assign(181, 2'000);
     return taken;
+}
+
+/// The address of a route in which every variable has a value.
+inline std::string target_of(const Route& route, std::string_view session) {
+    std::string target(route.pattern);
+    const std::map<std::string, std::string> values = {{"{session}", std::string(session)},
+                                                       {"{layer}", "occupancy"},
+                                                       {"{z}", "9"},
+                                                       {"{x}", "256"},
+                                                       {"{y}", "255"},
+                                                       {"{weave}", "none"},
+                                                       {"{file}", "none.js"}};
+    for (const auto& [name, value] : values) {
+        if (const auto at = target.find(name); at != std::string::npos) target.replace(at, name.size(), value);
+    }
+    return target;
 }
 
 /// An API over sessions in memory.

@@ -126,15 +126,6 @@ TEST_F(ApiGoalsTest, AGoalThatIsNoMoreIsNotShown) {
     EXPECT_GT(goals().at("revision").to_number<int>(), revision);
 }
 
-TEST_F(ApiGoalsTest, ASessionMadeAnewHasNothingOfTheOneBefore) {
-    ask_for_goal("r1");
-    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
-    EXPECT_EQ(get(kTarget).status, Status::not_found);
-    create("a");
-    EXPECT_EQ(goals().at("revision"), 0);
-    EXPECT_THAT(features(), IsEmpty());
-}
-
 TEST_F(ApiGoalsTest, UnknownParametersAreRefused) {
     EXPECT_THAT(detail(get(std::string(kTarget) + "?weave=x"), Status::bad_request), HasSubstr("weave"));
 }

@@ -137,13 +137,5 @@ TEST_F(ApiLandmarksTest, NonsenseIsRefusedAndTheSentenceSaysWhat) {
     EXPECT_EQ(get("/api/v1/sessions/none/landmarks.geojson").status, Status::not_found);
 }
 
-TEST_F(ApiLandmarksTest, OfAnotherSessionOfTheSameNameNothingIsLeft) {
-    drive(1, 240);
-    EXPECT_GT(ids_of(landmarks()).size(), 0U);
-    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::no_content);
-    create("a");
-    EXPECT_EQ(ids_of(landmarks()).size(), 0U);
-}
-
 } // namespace
 } // namespace scanloom::http

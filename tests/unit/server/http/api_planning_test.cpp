@@ -427,11 +427,6 @@ TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
     EXPECT_GE(given.size(), 2U);
 }
 
-TEST_F(ApiPlanningTest, WhoCanReachNoFrontierIsToldThatTheMapIsComplete) {
-    const auto answer = get_json("/api/v1/sessions/a/goal?robot=r1&size_min=100000");
-    EXPECT_EQ(answer.at("outcome"), "complete");
-}
-
 TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
     const std::string target = "/api/v1/sessions/a/goal?robot=r1";
     const auto answer = get_json(target);

@@ -81,11 +81,6 @@ TEST_F(ApiTest, EverySettingIsShownAsItWasGiven) {
     for (const auto& [name, value] : wanted) EXPECT_EQ(shown.at(name), value) << name;
 }
 
-TEST_F(ApiTest, ASessionIsMadeOnce) {
-    create("a");
-    EXPECT_THAT(detail(ask("POST", "/api/v1/sessions", R"({"name":"a"})"), Status::conflict), HasSubstr("exists"));
-}
-
 TEST_F(ApiTest, OnlyJsonIsTaken) {
     Request request{
         .method = "POST", .target = "/api/v1/sessions", .content_type = "text/plain", .body = R"({"name":"a"})"};
@@ -121,18 +116,6 @@ TEST_F(ApiTest, BadPagesAreRefusedByParameter) {
     }
     EXPECT_THAT(detail(get("/api/v1/sessions?after=a%20b"), Status::bad_request), StartsWith("after is"));
     EXPECT_THAT(detail(get("/api/v1/sessions?page=2"), Status::bad_request), HasSubstr("\"page\""));
-}
-
-TEST_F(ApiTest, DeletedSessionsAreGoneAndTheirNameIsFree) {
-    create("a");
-    const auto id = get_json("/api/v1/sessions/a").at("id");
-    const auto response = ask("DELETE", "/api/v1/sessions/a");
-    EXPECT_EQ(response.status, Status::no_content);
-    EXPECT_EQ(response.body.bytes(), "");
-    EXPECT_EQ(get("/api/v1/sessions/a").status, Status::not_found);
-    EXPECT_EQ(ask("DELETE", "/api/v1/sessions/a").status, Status::not_found);
-    create("a");
-    EXPECT_NE(get_json("/api/v1/sessions/a").at("id"), id);
 }
 
 TEST_F(ApiTest, AStreamingRobotIsShown) {

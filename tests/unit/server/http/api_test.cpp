@@ -1,7 +1,5 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
-#include "server/http/router.hpp"
-
 /// Health, metrics, and what holds for every route.
 namespace scanloom::http {
 namespace {
@@ -51,20 +49,6 @@ TEST_F(ApiTest, MetricsNameNoSession) {
     EXPECT_THAT(text, Not(HasSubstr("private-name")));
 }
 
-/// The address of a route in which every variable has a value.
-std::string address_of(const Route& route, std::string_view session) {
-    std::string address(route.pattern);
-    for (const auto& [name, value] : {std::pair<std::string, std::string_view>{"{session}", session},
-                                      {"{layer}", "occupancy"},
-                                      {"{file}", "x.js"},
-                                      {"{z}", "0"},
-                                      {"{x}", "0"},
-                                      {"{y}", "0"}}) {
-        if (const auto at = address.find(name); at != std::string::npos) address.replace(at, name.size(), value);
-    }
-    return address;
-}
-
 TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     create("a");
     stream("a", 2);
@@ -72,7 +56,7 @@ TEST_F(ApiTest, EveryOperationAnswersAsItIsDescribed) {
     for (const auto& route : routes()) {
         if (route.operation == Operation::kDeleteSession) continue; // at the end
         for (const std::string session : {"a", "nobody"}) {
-            const auto address = address_of(route, session);
+            const auto address = target_of(route, session);
             for (const auto* query : {"", "?odd=1", "?since=x", "?v=x", "?bbox=x", "?layer=height"}) {
                 ask(std::string(route.method), address + query, R"({"name":"b"})"); // asks openapi.json, too
             }

@@ -47,11 +47,6 @@ TEST(Problem, EveryErrorHasAStatusOfItsOwnMaking) {
     }
 }
 
-TEST(Problem, WhoShouldTryAgainIsTold) {
-    EXPECT_EQ(problem(Error{Errc::kShuttingDown, ""}, "/").get("Retry-After"), "1");
-    EXPECT_EQ(problem(Error{Errc::kNotFound, ""}, "/").get("Retry-After"), "");
-}
-
 TEST(Problem, ExtensionsAreMembersToo) {
     const auto response = problem(Status::service_unavailable, "not ready", "/readyz", {{"reasons", {"a", "b"}}});
     const auto body = body_of(response);
@@ -74,13 +69,6 @@ TEST(ResponseHead, SaysWhatEveryAnswerSays) {
                     "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n"
                     "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n\r\n");
     EXPECT_THAT(head_text(ok("text/plain", Body("")), false, ""), HasSubstr("Connection: close\r\n"));
-}
-
-TEST(ResponseHead, OverTlsAloneItAsksForTls) {
-    const auto answer = ok("text/plain", Body(""));
-    EXPECT_THAT(head_text(answer, true, "", Framing::kLength, true),
-                HasSubstr("Strict-Transport-Security: max-age=31536000\r\n"));
-    EXPECT_THAT(head_text(answer, true, ""), Not(HasSubstr("Strict-Transport-Security")));
 }
 
 TEST(ResponseHead, NoOriginIsLetIn) {

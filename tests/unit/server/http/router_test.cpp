@@ -35,29 +35,6 @@ TEST(Router, EveryOperationHasOneRoute) {
     EXPECT_EQ(seen.size(), static_cast<std::size_t>(Operation::kMakeBackup) + 1);
 }
 
-TEST(Router, SegmentsBecomeArguments) {
-    const auto routing = route("GET", "/api/v1/sessions/in%74el/tiles/occupancy/9/-1/255.png");
-    const auto& match = std::get<Match>(routing);
-    EXPECT_EQ(match.operation, Operation::kTilePng);
-    EXPECT_EQ(match.arguments["session"], "intel");
-    EXPECT_EQ(match.arguments["layer"], "occupancy");
-    EXPECT_EQ(match.arguments["z"], "9");
-    EXPECT_EQ(match.arguments["x"], "-1");
-    EXPECT_EQ(match.arguments["y"], "255");
-}
-
-TEST(Router, TheEndingTellsTilesApart) {
-    EXPECT_EQ(std::get<Match>(route("GET", "/api/v1/sessions/a/tiles/l/0/0/0.bin")).operation, Operation::kTileBin);
-    EXPECT_EQ(std::get<Match>(route("GET", "/api/v1/sessions/a/tiles/l.json")).operation, Operation::kTileJson);
-    EXPECT_TRUE(std::holds_alternative<NoSuchPath>(route("GET", "/api/v1/sessions/a/tiles/l/0/0/0.jpg")));
-    EXPECT_TRUE(std::holds_alternative<NoSuchPath>(route("GET", "/api/v1/sessions/a/tiles/l/0/0/.png")));
-}
-
-TEST(Router, HeadIsAnsweredWhereGetIs) {
-    EXPECT_EQ(std::get<Match>(route("HEAD", "/livez")).operation, Operation::kLivez);
-    EXPECT_EQ(std::get<Match>(route("HEAD", "/api/v1/sessions")).operation, Operation::kListSessions);
-}
-
 TEST(Router, UnknownPathsAreNotFoundWhateverTheMethod) {
     for (const auto* path : {"/api", "/api/v1/sessions/", "/api/v1/sessions/a/b", "/livez/", "//livez", "/LIVEZ", "/a",
                              "/assets/", "/assets/a/b"}) {

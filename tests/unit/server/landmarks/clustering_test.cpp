@@ -85,31 +85,11 @@ TEST(Clustering, ABorderPointFollowsTheNearestCorePointAndOfEquallyNearOnesTheFi
     EXPECT_THAT(dbscan(points, 1.25, 5)->cluster_of, ElementsAre(1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1));
 }
 
-TEST(Clustering, ClustersAreNumberedByTheirFirstCorePoint) {
-    // The first point is at the border of the later cluster.
-    const std::vector<Point2> points = {{9.9, 0.0}, {0.0, 0.0}, {0.1, 0.0}, {0.2, 0.0}, {10.0, 0.0}, {10.1, 0.0}};
-    EXPECT_THAT(dbscan(points, 0.11, 3)->cluster_of, ElementsAre(1, 0, 0, 0, 1, 1));
-}
-
-TEST(Clustering, EqualPointsCountEach) {
-    const std::vector<Point2> points(5, Point2{3.0, 4.0});
-    EXPECT_THAT(dbscan(points, 0.1, 5)->cluster_of, Each(0));
-    EXPECT_THAT(dbscan(points, 0.1, 6)->cluster_of, Each(kNoise));
-}
-
 TEST(Clustering, StepsOfExactlyEpsJoin) {
     std::vector<Point2> points;
     for (int n = 0; n < 20; ++n) points.push_back({0.25 * n, 0.0});
     EXPECT_EQ(dbscan(points, 0.25, 3)->clusters, 1U);
     EXPECT_EQ(dbscan(points, std::nextafter(0.25, 0.0), 3)->clusters, 0U);
-}
-
-TEST(Clustering, FewPointsHaveDefinedResults) {
-    EXPECT_THAT(dbscan(std::vector<Point2>{}, 0.1, 5)->cluster_of, IsEmpty());
-    const std::vector<Point2> one{{1.0, 1.0}};
-    EXPECT_THAT(dbscan(one, 0.1, 1)->cluster_of, ElementsAre(0));
-    EXPECT_THAT(dbscan(one, 0.1, 2)->cluster_of, ElementsAre(kNoise));
-    EXPECT_EQ(dbscan(one, 0.1, 2)->clusters, 0U);
 }
 
 TEST(Clustering, SettingsOutOfTheirRangeAreRefused) {

@@ -42,11 +42,5 @@ TEST(DistinctPoints, ZeroHasNoSign) {
     EXPECT_THAT(distinct.of, ElementsAre(0, 0, 1, 0));
 }
 
-TEST(DistinctPoints, OfNoPointsAreNone) {
-    const auto distinct = distinct_points({});
-    EXPECT_THAT(distinct.points, IsEmpty());
-    EXPECT_THAT(distinct.of, IsEmpty());
-}
-
 } // namespace
 } // namespace scanloom::landmarks

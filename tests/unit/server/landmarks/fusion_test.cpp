@@ -79,35 +79,12 @@ TEST(Fusion, IsWhatALookAtAllPairsMakes) {
     EXPECT_GT(joined, 1000U);
 }
 
-TEST(Fusion, PointsWithoutCorrespondenceKeepTheirCoordinatesBitForBit) {
-    const std::vector<Cloud> clouds = {{{0.1, 0.7}, {1.0 / 3.0, 5.0}}, {{0.1, 0.9}, {-7.0, 1e-17}}};
-    const auto fused = fuse(clouds, 0.1).value();
-    ASSERT_EQ(fused.size(), 4U);
-    EXPECT_EQ(fused[0].position, clouds[0][0]);
-    EXPECT_EQ(fused[1].position, clouds[0][1]);
-    EXPECT_EQ(fused[2].position, clouds[1][0]);
-    EXPECT_EQ(fused[3].position, clouds[1][1]);
-}
-
 TEST(Fusion, CorrespondingPointsBecomeTheirMedianPerAxis) {
     const std::vector<Cloud> clouds = {{{0.0, 0.0}}, {{0.2, 0.1}}, {{0.1, 0.3}}};
     const auto fused = fuse(clouds, 0.5).value();
     ASSERT_EQ(fused.size(), 1U);
     EXPECT_EQ(fused[0].position, (Point2{0.1, 0.1}));
     EXPECT_EQ(fused[0].clouds, 3U);
-}
-
-TEST(Fusion, OfOneCloudAllPointsStayAlsoEqualOnes) {
-    const std::vector<Cloud> clouds = {{{1.0, 1.0}, {1.0, 1.0}, {1.0, 1.1}}};
-    const auto fused = fuse(clouds, 10.0).value();
-    ASSERT_EQ(fused.size(), 3U);
-    for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(fused[n].position, clouds[0][n]);
-}
-
-TEST(Fusion, OfNothingIsNothing) {
-    EXPECT_THAT(fuse({}, 0.1).value(), IsEmpty());
-    EXPECT_THAT(fuse(std::vector<Cloud>(3), 0.1).value(), IsEmpty());
-    EXPECT_EQ(fuse(std::vector<Cloud>{{}, {{1.0, 2.0}}, {}}, 0.1)->size(), 1U);
 }
 
 TEST(Fusion, WhatCannotBeIsRefused) {

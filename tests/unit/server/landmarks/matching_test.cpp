@@ -51,25 +51,12 @@ TEST(Matching, FindsThePairsThatALookAtAllOfThemFinds) {
     EXPECT_GT(found, 10'000U);
 }
 
-TEST(Matching, IsMutualAndTiesGoToTheLowestIndex) {
-    const std::vector<Point2> first = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}};
-    const std::vector<Point2> second = {{0.5, 0.0}, {1.25, 0.0}, {1.25, 0.0}};
-    EXPECT_THAT(match(first, second, 1.0).value(), ElementsAre(Match{0, 0, 0.5}, Match{1, 1, 0.25}));
-}
-
 TEST(Matching, ThoseExactlyTheToleranceApartAreMatched) {
     const std::vector<Point2> first = {{0.0, 0.0}};
     const std::vector<Point2> second = {{kTolerance, 0.0}};
     EXPECT_THAT(match(first, second).value(), ElementsAre(Match{0, 0, kTolerance}));
     EXPECT_THAT(match(first, second, std::nextafter(kTolerance, 0.0)).value(), IsEmpty());
     EXPECT_THAT(match(first, first, 0.0).value(), ElementsAre(Match{0, 0, 0.0}));
-}
-
-TEST(Matching, AnEmptySetMatchesNothing) {
-    const std::vector<Point2> some = {{0.0, 0.0}};
-    EXPECT_THAT(match({}, some).value(), IsEmpty());
-    EXPECT_THAT(match(some, {}).value(), IsEmpty());
-    EXPECT_THAT(match({}, {}).value(), IsEmpty());
 }
 
 TEST(Matching, WhatCannotBeIsRefused) {

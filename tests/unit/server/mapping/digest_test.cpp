@@ -72,19 +72,5 @@ TEST(Digest, DependsNeitherOnTheOrderNorOnTheRevisionsNorOnBlankChunks) {
     EXPECT_EQ(digest_of_occupancy(first), digest_of_occupancy(second));
 }
 
-TEST(Digest, ChangesWithAnyCellAndWithThePlaceOfAChunk) {
-    std::mt19937 random(8);
-    auto cells = random_cells(random);
-    const auto digest_at = [&](grid::ChunkKey key) {
-        LaserLayers layers{MapConfig{}};
-        layers.restore(key, 1).occupancy = cells;
-        return digest_of_occupancy(layers);
-    };
-    const auto before = digest_at({2, 3});
-    EXPECT_NE(before, digest_at({3, 2}));
-    cells[1234] = static_cast<LogOdds>(cells[1234] + 1);
-    EXPECT_NE(before, digest_at({2, 3}));
-}
-
 } // namespace
 } // namespace scanloom::mapping

@@ -176,18 +176,6 @@ TEST(Himm, ItsBandIsTwiceThatOfOccupancy) {
     EXPECT_EQ(testing_support::occupancy_at(snapshot, {11, 0}), kUnknownLogOdds) << "|r - z| is 0.07 m";
 }
 
-TEST(Bresenham, TheHitRadiusIsThatAroundThePointNotTheCell) {
-    // The point is (1.09, 0.05), near the right end of cell (10, 0) whose centre is at 1.05.
-    const auto snapshot = after_one_beam({.ray_model = RayModel::kBresenham, .hit_radius = 0.17}, {1040});
-    const auto is_occupied = [&](int i, int j) { return testing_support::occupancy_at(snapshot, {i, j}) > 0; };
-    EXPECT_TRUE(is_occupied(10, 0));
-    EXPECT_TRUE(is_occupied(12, 0)) << "0.16 m";
-    EXPECT_FALSE(is_occupied(13, 0)) << "0.26 m";
-    EXPECT_TRUE(is_occupied(9, 0)) << "0.14 m, and before the hit: a hit beats a miss";
-    EXPECT_FALSE(is_occupied(8, 0)) << "0.24 m";
-    EXPECT_TRUE(is_occupied(10, -1)) << "0.11 m";
-}
-
 TEST(RayModels, ABeamWithoutAReturnFreesTheCellAtItsEndAndMarksNothing) {
     for (const auto model : {RayModel::kBresenham, RayModel::kTraversal}) {
         for (const RangeMm reading : {kNoReturn, RangeMm{2000}, RangeMm{9000}}) {
@@ -198,14 +186,6 @@ TEST(RayModels, ABeamWithoutAReturnFreesTheCellAtItsEndAndMarksNothing) {
                           after_one_beam({.ray_model = model, .drop_no_return = true}, {reading}, 2.0), {5, 0}),
                       kUnknownLogOdds);
         }
-    }
-}
-
-TEST(RayModels, AnEchoWithinTheSensorsOwnCellIsAHitThere) {
-    for (const auto model : {RayModel::kBresenham, RayModel::kTraversal}) {
-        const auto snapshot = after_one_beam({.ray_model = model}, {20});
-        EXPECT_GT(testing_support::occupancy_at(snapshot, {0, 0}), 0);
-        EXPECT_EQ(testing_support::occupancy_at(snapshot, {1, 0}), kUnknownLogOdds);
     }
 }
 

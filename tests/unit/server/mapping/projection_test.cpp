@@ -210,25 +210,6 @@ TEST_P(WeavingBy, ContinuesFromACheckpointToTheSameMap) {
     EXPECT_EQ(b.robots.front().trajectory.first_after(b.revision), 300U);
 }
 
-TEST(Projection, EntriesThatCannotFollowAreRefusedAndLeaveItUnchanged) {
-    Projection projection{MapConfig{}};
-    const auto refuse = [&](const LogEntry& entry, const char* why) {
-        const auto before = projection.revision();
-        const auto folded = projection.fold(entry);
-        ASSERT_FALSE(folded) << why;
-        EXPECT_EQ(folded.error().code, Errc::kMalformed);
-        EXPECT_THAT(folded.error().message, testing::HasSubstr(why));
-        EXPECT_EQ(projection.revision(), before);
-    };
-    refuse(RobotJoined{1, "r"}, "robot 1 joins after 0 others");
-    refuse(SensorDescribed{0, laser()}, "a sensor of robot 0");
-    refuse(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}, "a scan of robot 0");
-    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
-    refuse(ScanTaken{0, {.seq = 1, .sensor = 2, .ranges = {1}}}, "a scan of sensor 2");
-    ASSERT_TRUE(projection.fold(SensorDescribed{0, laser()}));
-    refuse(ScanTaken{0, {.seq = 2, .sensor = 2, .ranges = {1}}}, "scan 2 of robot 'r' follows scan 0");
-}
-
 TEST(Projection, ARobotMayComeAgainWithAnotherBodyButItsScansComeFromOneSource) {
     Projection projection{MapConfig{}};
     const auto radius = [&] { return projection.snapshot().robots.at(0).body_radius; };

@@ -276,13 +276,6 @@ TEST(NextGoal, AMapWithoutReachableFrontiersIsComplete) {
               Exploration::kTakenByOthers);
 }
 
-TEST(NextGoal, SmallFrontiersDoNotCountWhenAskedNotTo) {
-    auto options = for_a_point();
-    const auto view = drawn({"...f", "...."});
-    options.frontier_size_min = 2;
-    EXPECT_EQ(next_goal(view, 1.0, {0.5, 0.5}, {}, options)->outcome, Exploration::kComplete);
-}
-
 TEST(NextGoal, FrontiersNarrowerThanTheBodyDoNotCountByDefault) {
     ExplorationOptions options;
     EXPECT_EQ(frontier_size_min(options, 0.05), 4U); // 0.3 m are 4.2 cells, corner to corner
@@ -355,14 +348,6 @@ TEST(NextGoal, NobodyElseGoesWhereWallsMayBeHidden) {
               Exploration::kComplete);
 }
 
-TEST(NextGoal, TheBodyKeepsToKnownGround) {
-    const auto next = next_goal(clearing(), kGoalCellSize, {0.6, 0.6}).value();
-    ASSERT_TRUE(next.goal);
-    for (const Point2& point : next.path.points) {
-        EXPECT_GE(std::min({point.x, point.y, 1.2 - point.x, 1.2 - point.y}), 0.15);
-    }
-}
-
 TEST(NextGoal, WhoIsHemmedInByTheUnknownMayLeaveOverIt) {
     const auto lane = classified({0, 0, 60, 3}, 3, [](Cell) { return OccType::kFree; }); // too narrow for the body
     const auto at_hand = next_goal(lane, kGoalCellSize, {0.1, 0.075}).value();
@@ -414,25 +399,6 @@ TEST(AssignFrontiers, WhoCanReachNothingThatIsLeftGetsNothing) {
               (Assigned{0, std::nullopt}));
     EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{costs({1.0, 3.0})}, {true, false}), (Assigned{1}));
     EXPECT_EQ(assign_frontiers(std::vector<FrontierGoals>{}), Assigned{});
-}
-
-TEST(AssignFrontiers, NoTwoRobotsGetTheSame) {
-    std::mt19937 random(64);
-    for (int round = 0; round < 200; ++round) {
-        std::vector<FrontierGoals> goals;
-        for (int robot = 0; robot < 1 + round % 6; ++robot) {
-            std::vector<double> of_robot;
-            for (int frontier = 0; frontier < round % 8; ++frontier) of_robot.push_back(random_below(random, 8) - 1);
-            goals.push_back(costs(of_robot));
-        }
-        std::set<std::size_t> given;
-        const auto assigned = assign_frontiers(goals);
-        for (std::size_t robot = 0; robot < goals.size(); ++robot) {
-            if (!assigned[robot]) continue;
-            EXPECT_TRUE(given.insert(*assigned[robot]).second);
-            EXPECT_TRUE(goals[robot][*assigned[robot]]);
-        }
-    }
 }
 
 } // namespace

@@ -281,29 +281,6 @@ TEST(GridPath, AlongALaneNarrowerThanTheBodyTheUnknownBesideItMayHideWalls) {
     EXPECT_THAT(refused.error().message, HasSubstr("nearer to an obstacle or to unknown ground than the body radius"));
 }
 
-TEST(GridPath, CutsNoCorner) {
-    const auto view = drawn({"..#", "...", "#.."});
-    const auto path = plan_path(view, 1.0, {0.5, 2.5}, {2.5, 0.5}, {.body_radius_m = 0.0}, Shape::kSteps).value();
-    EXPECT_NEAR(path.length_m, 2.0 * std::numbers::sqrt2, 1e-12) << "free cells on both sides of each corner";
-    const auto blocked = drawn({".#", ".."});
-    const auto around = plan_path(blocked, 1.0, {0.5, 1.5}, {1.5, 0.5}, {.body_radius_m = 0.0}).value();
-    EXPECT_NEAR(around.length_m, 2.0, 1e-12);
-    const auto between = drawn({".#", "#."});
-    EXPECT_EQ(plan_path(between, 1.0, {0.5, 1.5}, {1.5, 0.5}, {.body_radius_m = 0.0}).error().code, Errc::kNoPath);
-}
-
-TEST(GridPath, GoesAroundDangerWhenThatIsCheaper) {
-    const auto view = drawn({".......", ".!!!!!.", ".......", "......."});
-    const PassabilityOptions cheap{.body_radius_m = 0.0, .danger_cost = 0.0};
-    const PassabilityOptions dear{.body_radius_m = 0.0, .danger_cost = 5.0};
-    const auto through = plan_path(view, 1.0, {0.5, 2.5}, {6.5, 2.5}, cheap).value();
-    EXPECT_NEAR(through.length_m, 6.0, 1e-12);
-    EXPECT_NEAR(through.cost, 6.0, 1e-12);
-    const auto around = plan_path(view, 1.0, {0.5, 2.5}, {6.5, 2.5}, dear).value();
-    EXPECT_GT(around.length_m, 6.0);
-    EXPECT_LT(around.cost, 6.0 + 5.0);
-}
-
 TEST(GridPath, EntersUnknownGroundOnlyWhenAsked) {
     const auto view = drawn({".f?f.", "#####"});
     const PassabilityOptions asked{.body_radius_m = 0.0, .allow_unknown = true};

@@ -33,20 +33,6 @@ protected:
     }
 };
 
-TEST_F(BegunMapTest, TheFirstToSendBeginsIt) {
-    const auto first = join("first");
-    const auto late = join("late");
-    session_->submit(first, {beginning(1), random_scan(1, 2)}, 0);
-    run();
-    session_->submit(late, {beginning(2), random_scan(2, 2)}, 0);
-    run();
-    EXPECT_THAT(first->failures, IsEmpty());
-    EXPECT_EQ(first->durable_seq(), 2U);
-    expect_refused(*late);
-    EXPECT_EQ(scans_logged(), 2U);
-    EXPECT_EQ(counters_->scans_dropped, 2U);
-}
-
 TEST_F(BegunMapTest, WhatIsNotYetInTheMapsCountsToo) {
     const auto first = join("first");
     const auto late = join("late");

@@ -55,13 +55,6 @@ protected:
     std::vector<std::string> told_;
 };
 
-TEST_F(RosterTest, WhoWantsAnAwakeSessionHasItAtOnce) {
-    add("a", 0);
-    EXPECT_FALSE(roster_.want("a", at(1), note("first")));
-    EXPECT_FALSE(roster_.want("b", at(1), note("second")));
-    EXPECT_THAT(told_, ElementsAre("first: a", "second: none"));
-}
-
 TEST_F(RosterTest, OneOfThoseWhoWantASleepingSessionReadsItForAll) {
     add_asleep("a");
     const auto resting = roster_.want("a", at(1), note("first"));
@@ -77,14 +70,6 @@ TEST_F(RosterTest, OneOfThoseWhoWantASleepingSessionReadsItForAll) {
     expect_awake("a", true);
 }
 
-TEST_F(RosterTest, WhatCannotBeReadStaysAsleepAndIsTriedAgain) {
-    add_asleep("a");
-    ASSERT_TRUE(roster_.want("a", at(1), note("first")));
-    roster_.failed("a", {Errc::kOverloaded, "no room"});
-    EXPECT_THAT(told_, ElementsAre("first: no room"));
-    EXPECT_TRUE(roster_.want("a", at(2), note("second")));
-}
-
 TEST_F(RosterTest, ThoseThatWereNotUsedLongestGoFirstAndNoMoreThanAreNeeded) {
     add("older", 10);
     add("newer", 20);
@@ -95,14 +80,6 @@ TEST_F(RosterTest, ThoseThatWereNotUsedLongestGoFirstAndNoMoreThanAreNeeded) {
     EXPECT_THAT(send_to_sleep(25), ElementsAre("older", "newer")) << "neither has a page";
     expect_awake("older", false);
     expect_awake("used", true);
-}
-
-TEST_F(RosterTest, WhoHoldsASessionKeepsItAwake) {
-    add("a", 0);
-    auto held = roster_.find("a", at(0));
-    EXPECT_THAT(send_to_sleep(100), IsEmpty());
-    held.reset();
-    EXPECT_THAT(send_to_sleep(100), ElementsAre("a"));
 }
 
 TEST_F(RosterTest, WhoWantsASessionThatIsFallingAsleepGetsItWhenItHasBeenReadAgain) {

@@ -37,23 +37,6 @@ TEST_F(ScanCounters, WhatComesFromALinkThatWasReplacedIsDroppedAndWovenWhenItCom
     expect(15, 0, 5);
 }
 
-TEST_F(ScanCounters, WhatIsSentAgainThoughItIsDurableIsADuplicate) {
-    const auto link = join("r");
-    submit(link, random_scans(1, 1, 10));
-    run();
-    submit(link, random_scans(1, 8, 5));
-    run();
-    expect(12, 3, 0);
-}
-
-TEST_F(ScanCounters, BehindAFaultyScanAllOfItsBatchIsDropped) {
-    auto scans = random_scans(1, 1, 6);
-    scans[2].sensor = 77;
-    submit(join("r"), std::move(scans));
-    run();
-    expect(2, 0, 4);
-}
-
 TEST_F(ScanCounters, WhatASessionThatEndsDoesNotTakeIsDropped) {
     const auto link = join("r");
     submit(link, random_scans(1, 1, 3));

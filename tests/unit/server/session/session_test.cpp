@@ -10,16 +10,6 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-TEST_F(SessionTest, ARobotsFirstJoinBeginsAtNothing) {
-    const auto join = begin_join("r");
-    ASSERT_TRUE(join.answer->has_value());
-    EXPECT_EQ(join.answer->value().value().robot, 0U);
-    EXPECT_EQ(join.answer->value().value().last_durable_seq, 0U);
-    EXPECT_TRUE(session_->is_connected(0));
-    EXPECT_THAT(logged(), ElementsAre(LogEntry(RobotJoined{0, "r"})));
-    EXPECT_THAT(join.link->failures, IsEmpty());
-}
-
 TEST_F(SessionTest, EveryScanIsLoggedThenWovenThenAcknowledged) {
     const auto link = join("r");
     session_->submit(link, random_scans(1, 1, 3), 100);
@@ -32,21 +22,6 @@ TEST_F(SessionTest, EveryScanIsLoggedThenWovenThenAcknowledged) {
     EXPECT_EQ(digest(), digest_of_log());
     EXPECT_EQ(link->durable_seq(), 3U);
     EXPECT_EQ(link->bytes_released, 100U);
-}
-
-TEST_F(SessionTest, ARobotThatComesBackContinuesAfterItsLastDurableScan) {
-    const auto first = join("r");
-    session_->submit(first, random_scans(1, 1, 3), 10);
-    session_->leave(first);
-    run();
-    EXPECT_FALSE(session_->is_connected(0));
-    const auto again = begin_join("r");
-    EXPECT_EQ(again.answer->value().value().last_durable_seq, 3U);
-    EXPECT_EQ(again.answer->value().value().robot, 0U);
-    session_->submit(again.link, random_scans(1, 4, 2), 10);
-    run();
-    EXPECT_EQ(again.link->durable_seq(), 5U) << "its sensor is known from before";
-    EXPECT_EQ(digest(), digest_of_log());
 }
 
 TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
@@ -65,21 +40,6 @@ TEST_F(SessionTest, ScansSentAgainAreDroppedAndTheirCreditGivenBack) {
     EXPECT_THAT(link->failures, IsEmpty());
 }
 
-TEST_F(SessionTest, AMissingScanFailsThatLinkOnly) {
-    const auto faulty = join("faulty");
-    const auto healthy = join("healthy");
-    session_->submit(faulty, random_scans(1, 2, 1), 10);
-    session_->submit(healthy, random_scans(2, 1, 2), 10);
-    run();
-    ASSERT_THAT(faulty->failures, SizeIs(1));
-    EXPECT_EQ(faulty->failures[0].code, Errc::kOutOfOrder);
-    EXPECT_THAT(faulty->failures[0].message, StartsWith("scan_batch.scans[0].seq is 2, 1 is the next"));
-    EXPECT_FALSE(session_->is_connected(0));
-    EXPECT_TRUE(session_->is_connected(1));
-    EXPECT_EQ(healthy->durable_seq(), 2U);
-    EXPECT_THAT(healthy->failures, IsEmpty());
-}
-
 TEST_F(SessionTest, ScansBeforeAMissingOneAreKeptAndTheRobotContinuesAfterThem) {
     const auto link = join("r");
     auto scans = random_scans(1, 1, 5);
@@ -95,25 +55,6 @@ TEST_F(SessionTest, ScansBeforeAMissingOneAreKeptAndTheRobotContinuesAfterThem) 
     EXPECT_EQ(again.link->durable_seq(), 5U);
     EXPECT_EQ(session_->snapshot()->robots[0].scan_count, 5U);
     EXPECT_EQ(digest(), digest_of_log());
-}
-
-TEST_F(SessionTest, AScanOfASensorThatWasNotDescribedFailsTheLink) {
-    const auto link = join("r", false);
-    session_->submit(link, random_scans(1, 1, 1), 10);
-    run();
-    ASSERT_THAT(link->failures, SizeIs(1));
-    EXPECT_EQ(link->failures[0].code, Errc::kInvalidField);
-    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[0].sensor is 2, which was not described"));
-}
-
-TEST_F(SessionTest, AScanThatDoesNotFitItsSensorFailsTheLink) {
-    const auto link = join("r");
-    auto scans = random_scans(1, 1, 2);
-    scans[1].ranges.assign(38, 1000);
-    session_->submit(link, scans, 10);
-    run();
-    ASSERT_THAT(link->failures, SizeIs(1));
-    EXPECT_THAT(link->failures[0].message, StartsWith("scan_batch.scans[1].ranges has 38 beams, which span 6.458 rad"));
 }
 
 TEST_F(SessionTest, ASensorThatReachesTooFarForTheCellsFailsTheLink) {
@@ -212,19 +153,6 @@ TEST_F(SessionTest, ALinkThatNeverJoinedIsIgnored) {
     run();
     EXPECT_THAT(logged(), IsEmpty());
     EXPECT_THAT(stranger->failures, IsEmpty());
-}
-
-TEST_F(SessionTest, TheNumberOfRobotsIsBounded) {
-    std::vector<Join> joins;
-    for (int n = 0; n < 1025; ++n) {
-        joins.emplace_back();
-        session_->join({"r" + std::to_string(n)}, joins.back().link,
-                       [answer = joins.back().answer](Result<Joined> joined) { answer->emplace(std::move(joined)); });
-    }
-    run();
-    EXPECT_TRUE(joins[1023].answer->value());
-    EXPECT_EQ(joins[1024].answer->value().error().code, Errc::kFull);
-    EXPECT_THAT(joins[1024].answer->value().error().message, HasSubstr("1024 robots already"));
 }
 
 /// Counts how often it is told.

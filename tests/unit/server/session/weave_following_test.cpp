@@ -30,15 +30,6 @@ TEST_F(FollowingWeaveTest, AskedAgainItGoesOnFromWhereItIs) {
     EXPECT_THAT(weaves_.list(session_.id), testing::ElementsAre(first));
 }
 
-TEST_F(FollowingWeaveTest, MapsShownBeforeStayAsTheyAre) {
-    append_up_to(20);
-    const auto before = woven(request({}))->maps();
-    append_all();
-    const auto after = woven(request({}))->maps();
-    EXPECT_EQ(digests_of(*before), created_so({}, 20));
-    EXPECT_EQ(digests_of(*after), created_so({}, 42));
-}
-
 TEST_F(FollowingWeaveTest, AskedAgainUnderWayItIsJoinedAndEverybodyIsServedInTurn) {
     append_up_to(20);
     const auto first_round = log_.pause_at(10);
@@ -275,16 +266,6 @@ TEST_F(FollowingWeaveTest, WhoAsksWhileOthersHaveAllRoomIsToldToTryAgain) {
     finish(*other);
     EXPECT_EQ(start(0.1).value(), done);
     pool_.join();
-}
-
-TEST(PageBudget, WhatDoesNotFitIsNotTaken) {
-    PageBudget budget(3);
-    EXPECT_FALSE(budget.take(4));
-    EXPECT_TRUE(budget.take(3));
-    EXPECT_TRUE(budget.take(0));
-    EXPECT_FALSE(budget.take(1));
-    budget.give_back(1);
-    EXPECT_TRUE(budget.take(1));
 }
 
 } // namespace

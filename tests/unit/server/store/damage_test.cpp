@@ -67,11 +67,6 @@ protected:
     std::vector<std::size_t> ends_; // of the write-ahead log, after the session and each append
 };
 
-TEST_F(KilledStore, OpensWithEverything) {
-    copy_store(killed(), copy());
-    expect_prefix(ends_.back());
-}
-
 /// All that it held was in there.
 TEST_F(KilledStore, AMissingWriteAheadLogIsReported) {
     copy_store(killed(), copy());
@@ -102,12 +97,6 @@ TEST_F(KilledStore, AMissingWriteAheadLogIsReportedAlsoBesideAnOlderOneThatIsEmp
     const auto without = open_rocksdb(copy());
     ASSERT_FALSE(without);
     EXPECT_THAT(without.error().message, HasSubstr("the newest write-ahead log"));
-}
-
-TEST_F(KilledStore, ItsWriteAheadLogIsAsTheFormatSays) {
-    const auto check = check_log_file(bytes_of(only_file_like(killed(), ".log")));
-    EXPECT_FALSE(check.damage);
-    EXPECT_EQ(check.whole_bytes, ends_.back());
 }
 
 TEST_F(KilledStore, AWriteAheadLogCutOffAnywhereOpensWithItsWholeAppends) {
@@ -303,11 +292,6 @@ TEST_F(TableStore, ATableIsReadWholeToCheckIt) {
     }
 }
 
-TEST_F(TableStore, AMissingWriteAheadLogIsReported) {
-    fs::remove(only_file_like(copy(), ".log"));
-    EXPECT_THAT(read_all().error().message, HasSubstr("write-ahead log"));
-}
-
 // RocksDB alone takes a length that reaches beyond the end for the end, and forgets the last tables.
 TEST_F(TableStore, ARecordOfTheManifestThatClaimsToBeLongerIsReported) {
     const auto size = fs::file_size(only_file_like(copy(), "MANIFEST-"));
@@ -330,12 +314,6 @@ TEST_F(TableStore, AnEmptyManifestIsReportedAndNoTableRemoved) {
         EXPECT_THAT(read_all().error().message, AllOf(HasSubstr(file.native()), HasSubstr("from a backup")));
         EXPECT_TRUE(fs::exists(table));
     }
-}
-
-TEST_F(TableStore, AMissingManifestIsReported) {
-    const auto manifest = only_file_like(copy(), "MANIFEST-");
-    fs::remove(manifest);
-    EXPECT_THAT(read_all().error().message, HasSubstr(manifest.filename().native()));
 }
 
 } // namespace

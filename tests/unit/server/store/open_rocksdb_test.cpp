@@ -128,36 +128,6 @@ TEST_F(OpenRocksdb, AStoreInUseIsRefused) {
                 HasSubstr("the store " + directory_.native() + " is in use by another scanloom-server"));
 }
 
-TEST_F(OpenRocksdb, ANewerFormatIsRefused) {
-    { auto log = open_rocksdb(directory_).value(); }
-    const std::string key(kFormatKey);
-    write_raw(directory_, [&](rocksdb::DB& database) {
-        return database.Put({}, key, sealed(key, number_bytes(kFormatVersion + 1)));
-    });
-    const auto log = open_rocksdb(directory_);
-    ASSERT_FALSE(log);
-    EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(log.error().message, HasSubstr(fmt::format("newer scanloom-server (format {}", kFormatVersion + 1)));
-}
-
-TEST_F(OpenRocksdb, AStoreOfTheFirstFormatBecomesOneThatOlderServersRefuse) {
-    SessionId session = 0;
-    {
-        auto log = open_rocksdb(directory_).value();
-        session = log->create_session("lab").value();
-        append_and_wait(*log, session, 1, {"entry"}).value();
-    }
-    const std::string key(kFormatKey);
-    write_raw(directory_, [&](rocksdb::DB& database) { return database.Put({}, key, sealed(key, number_bytes(1))); });
-    {
-        const auto log = open_rocksdb(directory_).value();
-        EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("entry"));
-    }
-    std::string format;
-    write_raw(directory_, [&](rocksdb::DB& database) { return database.Get({}, key, &format); });
-    EXPECT_EQ(unsealed(key, format).value(), number_bytes(2));
-}
-
 TEST_F(OpenRocksdb, AnotherProgramsDatabaseIsRefused) {
     fs::create_directories(directory_);
     write_raw(directory_, [](rocksdb::DB& database) { return database.Put({}, "key", "value"); });

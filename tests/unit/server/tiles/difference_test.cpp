@@ -139,21 +139,6 @@ TEST_P(DifferenceOf, EveryPlaceIsWhatItsCellsSay) {
     EXPECT_GT(sums.cells[static_cast<std::size_t>(Difference::kBothFree)], 1000U);
 }
 
-TEST(Difference, AMapAgreesWithItself) {
-    const auto map = woven({}, 40);
-    for (const Layer layer : mapping::kLayers) {
-        const ComparedMaps maps{map, map, layer};
-        const auto sums = compare(maps, difference_frame(maps, std::nullopt).value());
-        EXPECT_GT(sums.known, 1000U);
-        EXPECT_EQ(sums.agreeing, sums.known);
-        EXPECT_EQ(sums.difference, 0.0);
-        for (const auto unlike :
-             {Difference::kOnlyA, Difference::kOnlyB, Difference::kFreeOccupied, Difference::kOccupiedFree}) {
-            EXPECT_EQ(sums.cells[static_cast<std::size_t>(unlike)], 0U) << named(unlike);
-        }
-    }
-}
-
 TEST(Difference, IsOfAllThatEitherMapShows) {
     const auto few = woven({.cell_size = 0.1}, 3);
     const auto many = woven({.cell_size = 0.05}, 30);

@@ -47,17 +47,6 @@ void expect_equals_brute_force(const mapping::Snapshot& snapshot, const MapImage
     }
 }
 
-TEST(MapImage, OfTheWholeMapIsEveryCellOfItsBounds) {
-    const auto snapshot = small_random_map().snapshot(1, {.cell_size = 0.1});
-    const auto frame = map_frame(snapshot, Layer::kOccupancy, {}).value();
-    EXPECT_EQ(frame.cells, (CellBox{-70, -150, 201, 90}));
-    EXPECT_EQ(frame.width(), 271);
-    EXPECT_EQ(frame.height(), 240);
-    EXPECT_DOUBLE_EQ(frame.origin().x, -7.0);
-    EXPECT_DOUBLE_EQ(frame.origin().y, -15.0);
-    expect_equals_brute_force(snapshot, render_map(snapshot, Layer::kOccupancy, frame));
-}
-
 TEST(MapImage, OfAnyLayerHoldsEveryCellThatTheLayerShows) {
     for (const auto source : {ClassSource::kOccupancy, ClassSource::kHimm}) {
         mapping::Projection projection(mapping::resolve({.cell_size = 0.1, .class_source = source}).value());

@@ -22,11 +22,6 @@ TEST(TileKey, ANativePixelIsTheCellThatTheContractNames) {
     EXPECT_EQ(cells_of({9, 256, 255}), (CellBox{0, 0, 256, 256})) << "right of and above the origin";
 }
 
-TEST(TileKey, ZoomZeroIsTheWholeSquareAroundTheOrigin) {
-    EXPECT_EQ(cells_of({0, 0, 0}), (CellBox{-65536, -65536, 65536, 65536}));
-    EXPECT_EQ(cells_of({0, 0, 0}), kTiledCells);
-}
-
 TEST(TileKey, ATileIsItsFourChildren) {
     for (std::uint32_t zoom = 0; zoom < kZoomNative; ++zoom) {
         const std::uint32_t last = (1U << zoom) - 1;

@@ -45,34 +45,6 @@ TEST_P(TileOf, EqualsBruteForceAtEveryZoom) {
     EXPECT_GE(seen.size(), layer == Layer::kHimm ? 17U : layer == Layer::kClassification ? 5U : 90U);
 }
 
-Bytes composed_of_children(const mapping::Snapshot& snapshot, Layer layer, TileKey key) {
-    Bytes composed(65536);
-    for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-        const std::uint32_t right = quarter % 2;
-        const std::uint32_t below = quarter / 2;
-        const auto child = tile_codes(snapshot, layer, {key.zoom + 1, 2 * key.x + right, 2 * key.y + below});
-        for (std::uint32_t n = 0; n < 128 * 128; ++n) {
-            const std::uint32_t column = n % 128;
-            const std::uint32_t row = n / 128;
-            oracle::PixelOracle oracle(layer);
-            for (const std::uint32_t at : {0U, 1U, 256U, 257U}) oracle.add((*child)[512 * row + 2 * column + at]);
-            composed[256 * (128 * below + row) + 128 * right + column] = oracle.code();
-        }
-    }
-    return composed;
-}
-
-TEST_P(TileOf, IsTheSameMadeFromItsFourChildren) {
-    const auto snapshot = random_layers(12);
-    for (std::uint32_t zoom = 0; zoom < 9; ++zoom) {
-        for (const auto cell : {grid::Cell{0, 0}, {-1, -1}, {-1, 0}, {65535, 65535}, {-65536, -65536}}) {
-            const auto key = tile_of(cell, zoom);
-            ASSERT_TRUE(*tile_codes(snapshot, GetParam(), key) == composed_of_children(snapshot, GetParam(), key))
-                << zoom << "/" << key.x << "/" << key.y;
-        }
-    }
-}
-
 /// Free ground with one column of cells occupied, in every layer.
 mapping::Snapshot ground_with_a_wall(std::int32_t wall) {
     mapping::LaserLayers lasers{mapping::MapConfig{}};
@@ -137,17 +109,6 @@ TEST_P(TileOf, ThePngHasTheColoursOfItsCodes) {
     }
 }
 
-TEST(Tile, RowZeroIsTheTop) {
-    HandMadeMap map;
-    map.set({0, 255}, 14000);
-    map.set({255, 0}, -14000);
-    const auto tile = tile_codes(map.snapshot(), Layer::kOccupancy, {9, 256, 255});
-    EXPECT_EQ(tile->at(0), 100);
-    EXPECT_EQ(tile->at(65535), 0);
-    EXPECT_EQ(tile->at(255), 255);
-    EXPECT_EQ(tile->at(65280), 255);
-}
-
 TEST(Tile, NeverTouchedTilesAreOneSharedUniformTile) {
     HandMadeMap map;
     map.set({65536, 0}, 14000); // just outside
@@ -169,11 +130,6 @@ TEST(Tile, ThePngHasAsFewBitsAPixelAsItsCodesNeed) {
         const int colours = n + 2;                      // and unknown
         ASSERT_EQ(bits(), colours <= 2 ? 1 : colours <= 4 ? 2 : colours <= 16 ? 4 : 8) << colours;
     }
-}
-
-TEST(Tile, TheSameCodesAreTheSameBytes) {
-    const auto codes = tile_codes(random_layers(13), Layer::kOccupancy, {8, 128, 127});
-    EXPECT_EQ(*tile_png(codes, Layer::kOccupancy), *tile_png(std::make_shared<Bytes>(*codes), Layer::kOccupancy));
 }
 
 TEST(TileVersion, ChangesWithTheTileAndNotWithOtherPlaces) {
