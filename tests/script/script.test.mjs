@@ -12,12 +12,29 @@ let place;
 
 before(() => {
   place = mkdtempSync(join(tmpdir(), 'scanloom-script-test.'));
-  copyFileSync(join(source, 'scanloom'), join(place, 'scanloom'));
+  for (const name of ['scanloom', 'packages.txt']) copyFileSync(join(source, name), join(place, name));
 });
 after(() => rmSync(place, { recursive: true, force: true }));
 
-const scanloom = (...words) =>
-  spawnSync(join(place, 'scanloom'), words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+const scanloom = (...words) => scanloomBeside({}, ...words);
+
+/** All packages are there. */
+const debian = { 'dpkg-query': 'for package; do echo "installed $package"; done' };
+
+/** The script where these programs, of one line each, are found before the system's. */
+const scanloomBeside = (programs, ...words) => {
+  const bin = join(place, 'bin');
+  rmSync(bin, { recursive: true, force: true });
+  mkdirSync(bin);
+  for (const [name, line] of Object.entries(programs)) {
+    writeFileSync(join(bin, name), `#!/bin/sh\n${line}\n`, { mode: 0o755 });
+  }
+  return spawnSync(join(place, 'scanloom'), words, {
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'pipe'],
+    env: { ...process.env, PATH: `${bin}:${process.env.PATH}` },
+  });
+};
 const commandsIn = (text) => [...text.matchAll(/^ {2}([a-z]+) /gm)].map((match) => match[1]);
 
 test('every command of the usage tells its part of it, and nothing of the others', () => {
@@ -50,6 +67,16 @@ test('a command that there is not is refused, also where help is asked of it', (
   }
 });
 
+test('a build that fails for another reason than the sources tells the reason in a sentence', () => {
+  const disk = scanloomBeside({ ...debian, cmake: 'echo "write: No space left on device"; exit 1' }, 'demo');
+  assert.equal(disk.status, 1);
+  assert.match(disk.stderr, /^scanloom: configure \(release\) failed: the disk of .* is full, \d+ MB are left/m);
+  const network = scanloomBeside({ ...debian, cmake: 'echo "npm error code EAI_AGAIN"; exit 1' }, 'demo');
+  assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
+  const sources = scanloomBeside({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
+  assert.equal(sources.stderr, 'scanloom: configure (release) failed\n');
+});
+
 test('the list of faults is that of the program that is there', () => {
   mkdirSync(join(place, 'build/tests'), { recursive: true });
   const program = join(place, 'build/tests/scanloom-fault');
@@ -58,5 +85,9 @@ test('the list of faults is that of the program that is there', () => {
   const told = scanloom('fault');
   assert.equal(told.status, 0, told.stderr);
   assert.match(told.stdout, /^ {2}kill {5}one row, 0 words\n {2}fuzz /);
-  assert.notEqual(scanloom('fault', 'kill').status, 0, 'a row is that of the sources, which are built first');
+  assert.notEqual(
+    scanloomBeside(debian, 'fault', 'kill').status,
+    0,
+    'a row is that of the sources, which are built first',
+  );
 });
