@@ -61,18 +61,23 @@ run_sanitizers() {
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
     if (($# == 0)); then
-        sanitize asan-ubsan tests '^suite$'
-        sanitize tsan tests '^suite$'
+        sanitize asan-ubsan tests --label-regex '^suite$'
+        sanitize tsan tests --label-regex '^suite$'
     else
-        sanitize asan-core http_test '^http_test$'
-        sanitize tsan server_test '^server_test$' --exclude-regex 'Salvage' # one thread reads a damaged store
+        for_core sanitize
     fi
 }
 
-# sanitize PRESET TARGET LABELS [CTEST_OPTION...]
+# for_core COMMAND: COMMAND PRESET TARGET CTEST_OPTION... for the server's core.
+for_core() {
+    "$1" asan-core http_test --label-regex '^http_test$'
+    "$1" tsan server_test --label-regex '^server_test$' --exclude-regex Salvage # one thread reads a damaged store
+}
+
+# sanitize PRESET TARGET CTEST_OPTION...
 sanitize() {
     make_preset "$1" "$2"
-    ctest --preset "$1" --parallel "$(nproc)" --label-regex "$3" "${@:4}"
+    ctest --preset "$1" --parallel "$(nproc)" "${@:3}"
 }
 
 # run_nightly: all tests, and whatever takes hours or looks at the sources in another way.
@@ -92,18 +97,25 @@ run_nightly() {
     tests/system/docker_images.sh
 }
 
-# run_flakes [--count N]
+# run_flakes [--all] [--count N]
 run_flakes() {
-    local count=10 turn busy=() failures=build/log/flakes.failures
+    local count=10 all='' turn busy=() failures=build/log/flakes.failures
     while (($# > 0)); do
         case $1 in
+            --all) all=yes ;;
             --count) count=${2:-} && shift && whole "$count" --count ;;
             *) misused "flakes takes no '$1'" ;;
         esac
         shift
     done
     need build test
-    make_preset test tests
+    if [[ -n $all ]]; then
+        need fault package
+        make_preset test tests_all "${programs[@]}"
+        for_core make_preset_only
+    else
+        make_preset test tests
+    fi
     : >"$failures"
     # Two busy loops: each test competes for its processor.
     for turn in 1 2; do
@@ -114,16 +126,28 @@ run_flakes() {
     trap "kill ${busy[*]} 2>/dev/null || true" EXIT
     for ((turn = 1; turn <= count; ++turn)); do
         echo "== $turn of $count"
-        ctest --preset test --parallel "$(nproc)" --label-exclude '^(all|nightly)$' --quiet \
-            --output-log build/log/flakes.log ||
-            sed -n 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' build/log/flakes.log | tee -a "$failures"
+        list_failures test - --label-exclude "^($([[ -n $all ]] || echo 'all|')nightly)\$"
+        [[ -z $all ]] || for_core list_failures
     done
     if [[ -s $failures ]]; then
         echo "failed, of $count times:"
         sort "$failures" | uniq --count
-        fail "there are flaky tests; build/log/flakes.log is the output of the last run"
+        fail "there are flaky tests; build/log/flakes-PRESET.log is the output of the last run"
     fi
     echo "no test failed in $count runs with two busy loops beside them"
+}
+
+make_preset_only() { make_preset "$1" "$2"; }
+
+# list_failures PRESET TARGET CTEST_OPTION...: runs tests; prints and keeps the names of those that fail.
+list_failures() {
+    ctest --preset "$1" --parallel "$(nproc)" "${@:3}" --quiet --output-log "build/log/flakes-$1.log" ||
+        failed_tests "build/log/flakes-$1.log" | sed "s/^/$1: /" | tee -a "$failures"
+}
+
+# failed_tests LOG: the names of the tests that ctest lists as failed.
+failed_tests() {
+    sed -n 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' "$1"
 }
 
 # run_mutants [NAME] [--all]: each patch of tests/mutants breaks one place. The tests must fail with it.
@@ -167,7 +191,7 @@ find_mutant() {
     if [[ -n $hint ]] && ! (cd "$1" && ./scanloom test "$hint") >>"$log" 2>&1; then
         echo "found   $name ($hint, $((SECONDS - since)) s)"
     elif ! (cd "$1" && ./scanloom test "${@:3}") >>"$log" 2>&1; then
-        echo "found   $name ($(sed -n 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' "$log" | head -n 1), $((SECONDS - since)) s)"
+        echo "found   $name ($(failed_tests "$log" | head -n 1), $((SECONDS - since)) s)"
     else
         echo "MISSED  $name ($((SECONDS - since)) s)"
         return 1
