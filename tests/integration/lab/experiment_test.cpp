@@ -101,6 +101,16 @@ protected:
     }
 };
 
+TEST_F(BrokenModels, AWholeOneIsGood) { EXPECT_TRUE(is_good(scores_of(map_of(recording())), true)); }
+
+TEST_F(BrokenModels, SwappingFreeAndOccupiedIsNoticed) {
+    StateGrid map = map_of(recording());
+    for (CellState& state : map.values) {
+        if (state != CellState::kUnknown) state = state == CellState::kFree ? CellState::kOccupied : CellState::kFree;
+    }
+    EXPECT_FALSE(is_good(scores_of(map), true));
+}
+
 TEST_F(BrokenModels, WallsTooThickAreNoticed) {
     SessionOptions thick;
     thick.obstacle_thickness = 0.5;

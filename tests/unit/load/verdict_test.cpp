@@ -16,6 +16,31 @@ std::string what_is_wrong_with(const FoundSession& found) {
     return contradiction(kExpected, found).value_or("nothing");
 }
 
+TEST(Contradiction, ThereIsNoneWhereEachScanIsThereOnce) { EXPECT_EQ(what_is_wrong_with(kFound), "nothing"); }
+
+TEST(Contradiction, EveryWayInWhichASessionMayDifferIsFound) {
+    auto found = kFound;
+    found.robots[1].scans = 199;
+    EXPECT_EQ(what_is_wrong_with(found),
+              "session load-1-3 holds 199 scans of robot r1, the newest with seq 200; 200 were "
+              "acknowledged");
+    found = kFound;
+    found.robots[0].last_seq = 299;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("seq 299; 300 were acknowledged"));
+    found = kFound;
+    found.robots[0].name = "r7";
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("knows no robot r0"));
+    found = kFound;
+    found.robots.push_back({"r9", 0, 0});
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("has 3 robots; 2 streamed into it"));
+    found = kFound;
+    found.scans = 501;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("holds 501 scans; 500 were acknowledged"));
+    found = kFound;
+    found.revision = 505;
+    EXPECT_THAT(what_is_wrong_with(found), HasSubstr("at revision 505; its scans and robots make 504 entries"));
+}
+
 Evidence all_well() {
     Evidence evidence;
     evidence.scans_sent = evidence.scans_acknowledged = evidence.scans_in_sessions = 12'000;

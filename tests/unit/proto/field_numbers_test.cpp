@@ -83,6 +83,13 @@ private:
     std::string list_;
 };
 
+TEST_F(FieldNumbersOf, AnUnchangedFileIsFine) { EXPECT_THAT(complaints(), IsEmpty()); }
+
+TEST_F(FieldNumbersOf, ANumberMayNotChange) {
+    field(1).set_number(3);
+    EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y = 3 : uint32 was M.y = 2 : uint32")));
+}
+
 TEST_F(FieldNumbersOf, ATypeMayNotChange) {
     field(1).set_type(pb::FieldDescriptorProto::TYPE_FIXED32);
     EXPECT_THAT(complaints(), ElementsAre(HasSubstr("M.y = 2 : fixed32 was M.y = 2 : uint32")));
