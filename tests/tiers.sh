@@ -1,8 +1,10 @@
 # The commands test, flakes and mutants of ./scanloom, which sources this file.
 
+readonly no_tests=2 failing_tests=3 # exit codes: nothing has that name; tests ran and failed
+
 # run_test [FILTER | --all [FILTER] | --nightly | --sanitizers [--core]]
 run_test() {
-    local targets=(tests) excluded='^(all|nightly)$' filter=''
+    local tier=first filter=''
     case ${1:-} in
         --sanitizers)
             run_sanitizers "${@:2}"
@@ -13,109 +15,176 @@ run_test() {
             run_nightly
             return
             ;;
-        --all)
-            targets=(tests_all "${programs[@]}") excluded='^nightly$'
-            shift
-            ;;
+        --all) tier=all && shift ;;
     esac
     if (($# > 0)); then
         filter=$1
         (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./]+$ ]] ||
             misused "test takes one word that is part of a test's name, not '$*'"
     fi
-    need build test
-    [[ ${targets[0]} == tests ]] || need fault package
-    make_preset test "${targets[@]}"
+    build_tier "$tier"
     if [[ -n $filter ]]; then
-        run_filtered "$filter" "$excluded"
-    else
-        ctest --preset test --parallel "$(nproc)" --label-exclude "$excluded"
+        run_filtered "$filter" "$tier"
+        return
     fi
+    run_ctest test --label-exclude "$(labels_beyond "$tier")"
+    [[ $tier == first ]] || run_images
 }
 
-# run_filtered WORD EXCLUDED_LABELS: the cases of test programs, and the other tests, whose names contain WORD.
+# build_tier first|all
+build_tier() {
+    need build test
+    [[ $1 == first ]] || need fault package tidy
+    local targets=(tests)
+    [[ $1 == first ]] || targets=(tests_all "${programs[@]}")
+    make_preset test "${targets[@]}"
+}
+
+# labels_beyond first|all: which labels the tests of higher tiers have.
+labels_beyond() {
+    if [[ $1 == first ]]; then echo '^(all|nightly)$'; else echo '^nightly$'; fi
+}
+
+# run_ctest PRESET OPTION...: runs tests, then names those that were skipped, with the reason.
+run_ctest() {
+    local status=0 skipped
+    ctest --preset "$1" --parallel "$(nproc)" "${@:2}" || status=$?
+    skipped=$(grep --no-filename --after-context 1 ': Skipped$' build/"${1#test}"/Testing/Temporary/LastTest.log 2>/dev/null |
+        grep --invert-match -e ': Skipped$' -e '^--$' | sort | uniq --count || true)
+    [[ -z $skipped ]] || printf 'Tests that were skipped, by reason:\n%s\n' "$skipped"
+    ((status != 8)) || tests_failed # ctest's code for failing tests
+    ((status == 0)) || fail "ctest ended with code $status"
+}
+
+tests_failed() {
+    echo "scanloom: tests failed; the lines above name them" >&2
+    exit "$failing_tests"
+}
+
+# run_filtered WORD first|all: the cases of test programs, and the other tests, whose names contain WORD.
 run_filtered() {
-    local word=$1 program cases status failed='' found='' of_tier=(core memory server http robot system)
-    [[ $2 == *all* ]] || of_tier+=(tools faults)
+    local word=$1 program cases status others filter failed='' found='' of_tier=(core memory server http robot system)
+    filter="*$word*"
+    if [[ $2 == all ]]; then
+        of_tier+=(tools faults)
+    elif [[ $word != *Trials* ]]; then
+        filter+='-*Trials*' # many random cases
+    fi
     for program in "${of_tier[@]}"; do
-        cases=$("build/tests/${program}_test" --gtest_list_tests --gtest_filter="*$word*" | grep -c '^  ' || true)
+        cases=$("build/tests/${program}_test" --gtest_list_tests --gtest_filter="$filter") ||
+            fail "build/tests/${program}_test does not list its tests"
+        cases=$(grep --count '^  ' <<<"$cases" || true)
         ((cases > 0)) || continue
         found=yes
         echo "${program}_test: $cases tests"
         status=0
-        timeout --foreground 600 "build/tests/${program}_test" --gtest_filter="*$word*" --gtest_brief=1 || status=$?
-        ((status != 124)) || echo "${program}_test was stopped: it had not ended after 600 s"
+        timeout 900 "build/tests/${program}_test" --gtest_filter="$filter" --gtest_brief=1 || status=$?
+        ((status != 124)) || echo "${program}_test was stopped: it had not ended after 900 s"
         ((status == 0)) || failed=yes
     done
-    if ctest --preset test --show-only --label-exclude "$2|^suite$" --tests-regex "$word" | grep --quiet ' Test *#'; then
+    others=(--label-exclude "$(labels_beyond "$2")|^suite\$" --tests-regex "$word")
+    cases=$(ctest --preset test --show-only "${others[@]}")
+    if [[ $cases == *' Test '*'#'* ]]; then
         found=yes
-        ctest --preset test --label-exclude "$2|^suite$" --tests-regex "$word" || failed=yes
+        ctest --preset test "${others[@]}" || failed=yes
     fi
-    [[ -n $found ]] || misused "no test's name contains '$word' (--all has more tests)"
-    [[ -z $failed ]] || fail "tests failed; the lines above say which"
+    if [[ -z $found ]]; then
+        echo "scanloom: no test's name contains '$word'$([[ $2 == all ]] || echo ' (--all has more tests)')" >&2
+        exit "$no_tests"
+    fi
+    [[ -z $failed ]] || tests_failed
 }
 
-# run_sanitizers [--core]: the suites of test under both sanitizers. --core: memory errors where the bytes of strangers
-# arrive, races where the threads of sessions, store and links meet.
+# run_images: builds the images of docker/ and starts them, where that is possible without an engine.
+run_images() {
+    [[ -z ${CI:-} && -e .git ]] || return 0 # it takes longer than CI has, and a checkout
+    if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
+        tests/system/docker_images.sh
+    else
+        echo "The images of docker/ were not built: that needs root, buildah and debootstrap (./scanloom install system)."
+    fi
+}
+
+# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: AddressSanitizer for
+# code that parses untrusted input (HTTP, live events, tiles), ThreadSanitizer for sessions, store and robot connections.
 run_sanitizers() {
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
     if (($# == 0)); then
-        sanitize asan-ubsan tests --label-regex '^suite$'
-        sanitize tsan tests --label-regex '^suite$'
+        sanitize asan-ubsan tests --label-regex '^suite$' --exclude-regex '^(tools|faults|nightly)[.]'
+        sanitize tsan tests --label-regex '^suite$' --label-exclude '^one_thread$' --exclude-regex '^(tools|faults|nightly)[.]'
     else
-        for_core sanitize
+        for_core sanitize_core
     fi
 }
 
-# for_core COMMAND: COMMAND PRESET TARGET CTEST_OPTION... for the server's core.
+# for_core COMMAND: COMMAND PRESET PROGRAM for the server's core.
 for_core() {
-    "$1" asan-core http_test --label-regex '^http_test$'
-    "$1" tsan server_test --label-regex '^server_test$' --exclude-regex Salvage # one thread reads a damaged store
+    "$1" asan-core http_test
+    "$1" tsan server_test
+}
+
+# core_tests PROGRAM: the options of ctest for its suites, one a line; without Salvage, where one thread reads a damaged store.
+core_tests() {
+    printf '%s\n' --label-regex "^$1\$" --label-exclude '^(all|nightly)$' --exclude-regex Salvage
+}
+
+sanitize_core() {
+    local options
+    mapfile -t options < <(core_tests "$2")
+    sanitize "$1" "$2" "${options[@]}"
 }
 
 # sanitize PRESET TARGET CTEST_OPTION...
 sanitize() {
     make_preset "$1" "$2"
-    ctest --preset "$1" --parallel "$(nproc)" "${@:3}"
+    run_ctest "$1" "${@:3}"
 }
 
-# run_nightly: all tests, and whatever takes hours or looks at the sources in another way.
+# run_nightly: all tests, and whatever takes hours or looks at the sources in another way. A part that fails does not end it.
 run_nightly() {
-    need build test fault package
+    local failed=()
+    need build test fault package fmt tidy fuzz bench system
     make_preset test tests_nightly "${programs[@]}"
-    ctest --preset test --parallel "$(nproc)" --label-exclude '^nightly$'
-    ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
-    fmt --check
-    tidy
-    run_sanitizers
-    fuzz
-    make_preset dev   # every source by itself: each includes what it needs
-    make_preset clang # and with another compiler
-    run_mutants --all
-    tests/system/bare_system.sh
-    tests/system/docker_images.sh
+    nightly_part run_ctest test --label-exclude '^nightly$'
+    nightly_part ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
+    nightly_part ./scanloom fmt --check
+    nightly_part ./scanloom tidy
+    nightly_part ./scanloom test --sanitizers
+    nightly_part ./scanloom fuzz
+    nightly_part make_preset dev   # every source by itself: each includes what it needs
+    nightly_part make_preset clang # and with another compiler
+    nightly_part make_preset bench benches
+    nightly_part make_preset robot
+    nightly_part ./scanloom mutants --all
+    nightly_part tests/system/bare_system.sh
+    nightly_part tests/system/docker_images.sh
+    nightly_part tests/system/robot_build.sh
+    nightly_part tests/system/other_processors.sh
+    ((${#failed[@]} == 0)) || fail "failed: $(printf '%s; ' "${failed[@]}")"
+}
+
+# nightly_part COMMAND...
+nightly_part() {
+    echo "== $*"
+    ("$@") || failed+=("$*")
 }
 
 # run_flakes [--all] [--count N]
 run_flakes() {
-    local count=10 all='' turn busy=() failures=build/log/flakes.failures
+    local count=10 tier=first turn busy=() failures=build/log/flakes.failures
     while (($# > 0)); do
         case $1 in
-            --all) all=yes ;;
+            --all) tier=all ;;
             --count) count=${2:-} && shift && whole "$count" --count ;;
             *) misused "flakes takes no '$1'" ;;
         esac
         shift
     done
-    need build test
-    if [[ -n $all ]]; then
-        need fault package
-        make_preset test tests_all "${programs[@]}"
-        for_core make_preset_only
-    else
-        make_preset test tests
-    fi
+    ((count > 0)) || misused "--count is 0; at least 1 is needed"
+    build_tier "$tier"
+    [[ $tier == first ]] || for_core make_preset
+    mkdir -p "$logs"
     : >"$failures"
     # Two busy loops: each test competes for its processor.
     for turn in 1 2; do
@@ -126,23 +195,29 @@ run_flakes() {
     trap "kill ${busy[*]} 2>/dev/null || true" EXIT
     for ((turn = 1; turn <= count; ++turn)); do
         echo "== $turn of $count"
-        list_failures test - --label-exclude "^($([[ -n $all ]] || echo 'all|')nightly)\$"
-        [[ -z $all ]] || for_core list_failures
+        list_failures test --label-exclude "$(labels_beyond "$tier")"
+        [[ $tier == first ]] || for_core list_core_failures
     done
     if [[ -s $failures ]]; then
         echo "failed, of $count times:"
         sort "$failures" | uniq --count
-        fail "there are flaky tests; build/log/flakes-PRESET.log is the output of the last run"
+        fail "there are flaky tests; $logs/flakes-PRESET.log is the output of the last run"
     fi
-    echo "no test failed in $count runs with two busy loops beside them"
+    echo "no test failed in $count runs while two busy loops used the processors"
 }
 
-make_preset_only() { make_preset "$1" "$2"; }
+list_core_failures() {
+    local options
+    mapfile -t options < <(core_tests "$2")
+    list_failures "$1" "${options[@]}"
+}
 
-# list_failures PRESET TARGET CTEST_OPTION...: runs tests; prints and keeps the names of those that fail.
+# list_failures PRESET CTEST_OPTION...: runs tests; prints and keeps the names of those that fail.
 list_failures() {
-    ctest --preset "$1" --parallel "$(nproc)" "${@:3}" --quiet --output-log "build/log/flakes-$1.log" ||
-        failed_tests "build/log/flakes-$1.log" | sed "s/^/$1: /" | tee -a "$failures"
+    local log=$logs/flakes-$1.log status=0
+    ctest --preset "$1" --parallel "$(nproc)" "${@:2}" --quiet --output-log "$log" || status=$?
+    ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output"
+    ((status == 0)) || failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
 }
 
 # failed_tests LOG: the names of the tests that ctest lists as failed.
@@ -150,9 +225,9 @@ failed_tests() {
     sed -n 's/^[\t ]*[0-9]* - \(.*\) (.*)$/\1/p' "$1"
 }
 
-# run_mutants [NAME] [--all]: each patch of tests/mutants breaks one place. The tests must fail with it.
+# run_mutants [NAME] [--all]: each patch of tests/mutants breaks one place. The tests must fail with it, and pass without.
 run_mutants() {
-    local tier=() only='' patches patch missed=()
+    local tier=() only='' patches patch missed=() copy=$PWD/build/mutants
     while (($# > 0)); do
         case $1 in
             --all) tier=(--all) ;;
@@ -163,13 +238,11 @@ run_mutants() {
     done
     patches=(tests/mutants/${only:-*}.patch)
     [[ -f ${patches[0]} ]] || misused "there is no mutant '$only', only $(cd tests/mutants && echo *.patch)"
-    local copy=$PWD/build/mutants file
-    # Only files that differ, and with a new time: so what an interrupted run left broken is compiled again.
-    git ls-files | while read -r file; do
-        cmp --silent "$file" "$copy/$file" && continue
-        mkdir -p "$(dirname "$copy/$file")"
-        cp "$file" "$copy/$file"
-    done
+    mkdir -p "$logs" "$copy"
+    copy_sources "$copy"
+    echo "the tests without a mutant"
+    mutant_fails "$copy" sources "${only:+$(hint_of "${patches[0]}")}" "${tier[@]}" &&
+        fail "tests fail without a mutant; $logs/mutant-sources.log is their output"
     for patch in "${patches[@]}"; do
         patch --directory "$copy" --strip 1 --quiet --forward <"$patch" || fail "$patch does not apply any more; make it again"
         find_mutant "$copy" "$patch" "${tier[@]}" || missed+=("$(basename "$patch" .patch)")
@@ -179,21 +252,43 @@ run_mutants() {
     ((${#missed[@]} == 0)) || fail "not found: ${missed[*]}"
 }
 
-# find_mutant COPY PATCH [--all]: whether the tests that the patch names, or else all of the tier, fail. A mutant that does not
-# compile is no mutant.
+# copy_sources FOLDER: makes its sources those of this checkout. Only files that differ are written, with a new time, so that
+# what an interrupted run left broken is compiled again.
+copy_sources() {
+    local file sources=$PWD
+    git ls-files --cached --others --exclude-standard | while read -r file; do
+        [[ -f $file ]] || continue
+        cmp --silent "$file" "$1/$file" && continue
+        mkdir -p "$(dirname "$1/$file")"
+        cp "$file" "$1/$file"
+    done
+    (cd "$1" && find . \( -path ./build -o -name node_modules \) -prune -o -type f -print) | while read -r file; do
+        [[ -f $sources/$file ]] || rm "$1/$file"
+    done
+}
+
+# hint_of PATCH: the test that its author expects to fail.
+hint_of() { sed -n 's/^Test: //p' "$1"; }
+
+# find_mutant COPY PATCH [--all]: whether the test that the patch names, or else one of the tier, fails.
 find_mutant() {
-    local log name since=$SECONDS hint
-    name=$(basename "$2" .patch) log=$PWD/$logs/mutant-$(basename "$2" .patch).log
-    hint=$(sed -n 's/^Test: //p' "$2")
-    mkdir -p "$logs"
-    (cd "$1" && ./scanloom test NoTestHasThisName) >"$log" 2>&1 || grep --quiet "no test's name contains" "$log" ||
-        fail "$name does not compile; the end of $log: $(tail -n 3 "$log")"
-    if [[ -n $hint ]] && ! (cd "$1" && ./scanloom test "$hint") >>"$log" 2>&1; then
+    local name since=$SECONDS hint
+    name=$(basename "$2" .patch) hint=$(hint_of "$2")
+    if mutant_fails "$1" "$name" "$hint"; then
         echo "found   $name ($hint, $((SECONDS - since)) s)"
-    elif ! (cd "$1" && ./scanloom test "${@:3}") >>"$log" 2>&1; then
-        echo "found   $name ($(failed_tests "$log" | head -n 1), $((SECONDS - since)) s)"
+    elif mutant_fails "$1" "$name" '' "${@:3}"; then
+        echo "found   $name ($(failed_tests "$logs/mutant-$name.log" | head -n 1), $((SECONDS - since)) s)"
     else
         echo "MISSED  $name ($((SECONDS - since)) s)"
         return 1
     fi
+}
+
+# mutant_fails COPY NAME WORD [--all]: whether tests fail. A mutant that does not compile is no mutant.
+mutant_fails() {
+    local log=$PWD/$logs/mutant-$2.log status=0
+    (cd "$1" && ./scanloom test "${@:4}" ${3:+"$3"}) >"$log" 2>&1 || status=$?
+    ((status == 0 || status == failing_tests)) ||
+        fail "the tests of $2 could not be run; the end of $log: $(tail -n 3 "$log")"
+    ((status == failing_tests))
 }

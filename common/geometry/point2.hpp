@@ -57,7 +57,7 @@ struct Point2 {
 }
 
 /// The larger absolute coordinate.
-/// Pre  is_finite(a).
+/// @param a  finite
 [[nodiscard]] inline double max_abs(const Point2& a) noexcept { return std::max(std::abs(a.x), std::abs(a.y)); }
 
 /// The corner with the smallest coordinates of the box around two points.

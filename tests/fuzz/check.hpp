@@ -19,8 +19,8 @@ inline void check(bool holds, std::string_view claim) {
 
 /// Begins the function of the fuzzer NAME, which takes `const std::uint8_t* data, std::size_t size` and returns 0.
 ///
-/// With libFuzzer each fuzzer is a program. Otherwise all are functions of one program, `replay`, which feeds each its
-/// corpus.
+/// With libFuzzer each fuzzer is a program. Otherwise all are functions of `http_test`, which feeds each its corpus
+/// (replay_test.cpp).
 #ifdef SCANLOOM_LIBFUZZER
 #define SCANLOOM_FUZZER(NAME) extern "C" int LLVMFuzzerTestOneInput
 #else

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 
 using Fuzzer = int(const std::uint8_t* data, std::size_t size);
@@ -67,6 +68,14 @@ TEST_P(FuzzCorpus, EveryFilePasses) {
         ++files;
     }
     EXPECT_GT(files, 0U);
+}
+
+TEST(FuzzCorpora, EachHasItsFuzzer) {
+    std::set<std::string> folders;
+    for (const auto& entry : std::filesystem::directory_iterator(CORPUS)) folders.insert(entry.path().filename());
+    std::set<std::string> fuzzers;
+    for (const auto& named : kFuzzers) fuzzers.insert(named.name);
+    EXPECT_EQ(folders, fuzzers);
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, FuzzCorpus, testing::ValuesIn(kFuzzers),

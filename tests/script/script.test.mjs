@@ -1,7 +1,16 @@
 // What ./scanloom says by itself: of a copy that has nothing to build beside it, so that building fails.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import {
+  chmodSync,
+  copyFileSync,
+  mkdirSync,
+  mkdtempSync,
+  readFileSync,
+  rmSync,
+  symlinkSync,
+  writeFileSync,
+} from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -12,7 +21,9 @@ let place;
 
 before(() => {
   place = mkdtempSync(join(tmpdir(), 'scanloom-script-test.'));
-  for (const name of ['scanloom', 'packages.txt']) copyFileSync(join(source, name), join(place, name));
+  mkdirSync(join(place, 'tests'));
+  for (const name of ['scanloom', 'packages.txt', 'tests/tiers.sh'])
+    copyFileSync(join(source, name), join(place, name));
 });
 after(() => rmSync(place, { recursive: true, force: true }));
 
@@ -59,7 +70,7 @@ test('the usage has every command that the script knows', () => {
   assert.deepEqual(commandsIn(scanloom('help').stdout).sort(), [...known, 'help'].sort());
 });
 
-test('a command that there is not is refused, also where help is asked of it', () => {
+test('an unknown command is refused, with and without --help', () => {
   for (const words of [['paint'], ['paint', '--help']]) {
     const told = scanloom(...words);
     assert.equal(told.status, 2);
@@ -75,6 +86,36 @@ test('a build that fails for another reason than the sources tells the reason in
   assert.match(network.stderr, /failed: packages were not downloaded; the network must reach/);
   const sources = scanloomBeside({ ...debian, cmake: 'echo "a.cpp:3: error"; exit 1' }, 'demo');
   assert.equal(sources.stderr, 'scanloom: configure (release) failed\n');
+});
+
+test('words that a command does not know are refused before anything is built', () => {
+  for (const [words, sentence] of [
+    [['test', 'two words'], /test takes one word .*, not 'two words'/],
+    [['test', 'a', 'b'], /test takes one word .*, not 'a b'/],
+    [['test', '--nightly', 'a'], /test --nightly takes no 'a'/],
+    [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
+    [['flakes', '--count', 'x'], /--count is 'x'; a whole number is needed/],
+    [['flakes', '--count', '0'], /at least 1 is needed/],
+    [['mutants', 'nonsense'], /there is no mutant 'nonsense'/],
+    [['fmt', '--chekc'], /fmt takes no '--chekc'/],
+    [['tidy', 'no_such.cpp'], /the file 'no_such.cpp' cannot be read/],
+    [['install', 'nonsense'], /packages.txt has no section 'nonsense'/],
+    [['build', '--robot', 'x'], /build --robot takes no 'x'/],
+    [['demo', '--for', 'ever'], /--for is 'ever'; a whole number is needed/],
+  ]) {
+    const told = scanloomBeside(debian, ...words);
+    assert.equal(told.status, 2, words.join(' '));
+    assert.match(told.stderr, sentence);
+  }
+});
+
+test('where there is no Debian a sentence says so', () => {
+  const bin = join(place, 'no_debian');
+  mkdirSync(bin);
+  for (const name of ['bash', 'env', 'dirname']) symlinkSync(`/usr/bin/${name}`, join(bin, name));
+  const told = spawnSync(join(place, 'scanloom'), ['demo'], { encoding: 'utf8', env: { ...process.env, PATH: bin } });
+  assert.equal(told.status, 1);
+  assert.equal(told.stderr, 'scanloom: this is not Debian; packages.txt lists what Scanloom needs of Debian 12\n');
 });
 
 test('the list of faults is that of the program that is there', () => {

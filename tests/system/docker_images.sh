@@ -93,7 +93,7 @@ trap remove EXIT
 
 echo "== a minimal Debian 12 as the base image"
 build_base
-for target in server robot; do
+for target in server robot load; do
     echo "== the image of the $target"
     build_image "$target"
 done
