@@ -31,7 +31,7 @@ std::string error_of(std::string_view line) {
     return parsed ? "no error" : parsed.error().message;
 }
 
-std::string flaser(std::size_t beams) {
+std::string flaser_with(std::size_t beams) {
     std::string line = fmt::format("FLASER {}", beams);
     for (std::size_t i = 0; i < beams; ++i) line += " 1.5";
     return line + " 1 2 0.3 4 5 0.6 13.5 host 13.6";
@@ -53,7 +53,7 @@ TEST(CarmenLine, FlaserTrailerMayLackTheFirstStampOrBeAbsent) {
 }
 
 TEST(CarmenLine, FlaserAnglesFollowFromTheNumberOfBeams) {
-    const auto angles = [](std::size_t beams) { return scan_of(flaser(beams)).angles; };
+    const auto angles = [](std::size_t beams) { return scan_of(flaser_with(beams)).angles; };
     EXPECT_EQ(angles(180), (UniformAngles{-90.0 * kDegree, kDegree, 180}));
     EXPECT_EQ(angles(181), (UniformAngles{-90.0 * kDegree, kDegree, 181}));
     EXPECT_EQ(angles(360).increment, std::numbers::pi / 360.0);

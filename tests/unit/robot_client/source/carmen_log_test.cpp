@@ -1,10 +1,8 @@
 #include "robot_client/source/carmen_log.hpp"
 
+#include "tests/support/packed_text.hpp"
 #include "tests/support/whole_log.hpp"
 
-#include <boost/iostreams/filter/bzip2.hpp>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filtering_stream.hpp>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +18,8 @@ namespace scanloom::robot {
 namespace {
 
 using testing::HasSubstr;
-namespace io = boost::iostreams;
+using testing_support::bzip2;
+using testing_support::gzip;
 
 class CarmenLogFile : public testing::Test {
 protected:
@@ -45,21 +44,6 @@ protected:
 private:
     std::vector<std::filesystem::path> paths_;
 };
-
-template <class Filter>
-std::string packed(std::string_view text, Filter filter) {
-    std::ostringstream out;
-    {
-        io::filtering_ostream stream;
-        stream.push(filter);
-        stream.push(out);
-        stream << text;
-    }
-    return out.str();
-}
-
-std::string gzip(std::string_view text) { return packed(text, io::gzip_compressor()); }
-std::string bzip2(std::string_view text) { return packed(text, io::bzip2_compressor()); }
 
 std::string flaser(double stamp, std::string_view ranges = "2 1.0 2.0") {
     return fmt::format("FLASER {} {} 0 0 {} 0 0 {} host 1\n", ranges, stamp, stamp, stamp);

@@ -1,8 +1,7 @@
 #include "robot_client/source/line_reader.hpp"
 
-#include <boost/iostreams/filter/bzip2.hpp>
-#include <boost/iostreams/filter/gzip.hpp>
-#include <boost/iostreams/filtering_stream.hpp>
+#include "tests/support/packed_text.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +16,8 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-namespace io = boost::iostreams;
+using testing_support::bzip2;
+using testing_support::gzip;
 
 class LineReaderTest : public testing::Test {
 protected:
@@ -40,18 +40,6 @@ protected:
         fmt::format("scanloom_{}.log", testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-template <class Filter>
-std::string packed(std::string_view text, Filter filter) {
-    std::ostringstream out;
-    {
-        io::filtering_ostream stream;
-        stream.push(filter);
-        stream.push(out);
-        stream << text;
-    }
-    return out.str();
-}
-
 /// Lines that do not pack well, so that half of the packed bytes is about half of the lines.
 std::string noise(int lines) {
     std::mt19937 random(3);
@@ -61,7 +49,7 @@ std::string noise(int lines) {
 }
 
 TEST_F(LineReaderTest, ACutGzipFileTellsHowMuchOfItCanBeRead) {
-    const std::string whole = packed(noise(1000), io::gzip_compressor());
+    const std::string whole = gzip(noise(1000));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_GT(lines, 300U) << "what stands before the cut is read";
     EXPECT_THAT(error, HasSubstr(path_.string() + ": the gzip data is damaged or cut short"));
@@ -70,7 +58,7 @@ TEST_F(LineReaderTest, ACutGzipFileTellsHowMuchOfItCanBeRead) {
 }
 
 TEST_F(LineReaderTest, ACutBzip2FileTellsSoToo) {
-    const std::string whole = packed(noise(60'000), io::bzip2_compressor()); // more than one of bzip2's blocks
+    const std::string whole = bzip2(noise(60'000)); // more than one of bzip2's blocks
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() - 10));
     EXPECT_GT(lines, 10'000U);
     EXPECT_THAT(error, HasSubstr(fmt::format("only its first {} lines (", lines)));
@@ -78,7 +66,7 @@ TEST_F(LineReaderTest, ACutBzip2FileTellsSoToo) {
 }
 
 TEST_F(LineReaderTest, WhereNothingCanBeReadItDoesNotSpeakOfLineZero) {
-    const std::string whole = packed(noise(100), io::bzip2_compressor());
+    const std::string whole = bzip2(noise(100));
     const auto [lines, error] = read(std::string_view(whole).substr(0, whole.size() / 2));
     EXPECT_EQ(lines, 0U);
     EXPECT_THAT(error, HasSubstr("the bzip2 data is damaged or cut short: nothing of it could be read"));
@@ -87,7 +75,7 @@ TEST_F(LineReaderTest, WhereNothingCanBeReadItDoesNotSpeakOfLineZero) {
 
 TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
     const std::string text = noise(20'000);
-    for (const std::string& bytes : {text, packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+    for (const std::string& bytes : {text, gzip(text), bzip2(text)}) {
         const auto [lines, error] = read(bytes);
         EXPECT_EQ(lines, 20'000U);
         EXPECT_EQ(error, "");
@@ -96,7 +84,7 @@ TEST_F(LineReaderTest, AWholeFileIsReadWholeWhateverItsPacking) {
 
 TEST_F(LineReaderTest, TellsHowMuchOfTheFileItHasRead) {
     const std::string text = noise(60'000); // more than one of bzip2's blocks
-    for (const std::string& bytes : {text, packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+    for (const std::string& bytes : {text, gzip(text), bzip2(text)}) {
         std::ofstream(path_, std::ios::binary) << bytes;
         std::vector<std::uint64_t> told;
         auto reader = LineReader::open(path_, {}, [&](const ReadProgress& progress) {
@@ -115,13 +103,13 @@ TEST_F(LineReaderTest, TellsHowMuchOfTheFileItHasRead) {
 
 TEST_F(LineReaderTest, SeveralPackedFilesInARowAreOneText) {
     const std::string text = noise(100);
-    EXPECT_EQ(read(packed(text, io::gzip_compressor()) + packed(text, io::gzip_compressor())).first, 200U);
-    EXPECT_EQ(read(packed(text, io::bzip2_compressor()) + packed(text, io::bzip2_compressor())).first, 200U);
+    EXPECT_EQ(read(gzip(text) + gzip(text)).first, 200U);
+    EXPECT_EQ(read(bzip2(text) + bzip2(text)).first, 200U);
 }
 
 TEST_F(LineReaderTest, ZeroBytesBehindPackedDataArePadding) {
     const std::string text = noise(100);
-    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+    for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::size_t zeros : {1U, 10U, 512U, 100'000U}) {
             const auto [lines, error] = read(whole + std::string(zeros, '\0'));
             EXPECT_EQ(lines, 100U) << zeros;
@@ -132,7 +120,7 @@ TEST_F(LineReaderTest, ZeroBytesBehindPackedDataArePadding) {
 
 TEST_F(LineReaderTest, AnythingElseBehindPackedDataIsDamage) {
     const std::string text = noise(100);
-    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+    for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::string& rest : {std::string("x"), std::string(20'000, '\0') + "x", std::string(1, '\0') + whole,
                                         whole.substr(0, 2), whole.substr(0, 12)}) {
             const auto [lines, error] = read(whole + rest);
@@ -144,7 +132,7 @@ TEST_F(LineReaderTest, AnythingElseBehindPackedDataIsDamage) {
 
 TEST_F(LineReaderTest, ZerosInThePlaceOfPackedDataAreDamage) {
     const std::string text = noise(1000);
-    for (const std::string& whole : {packed(text, io::gzip_compressor()), packed(text, io::bzip2_compressor())}) {
+    for (const std::string& whole : {gzip(text), bzip2(text)}) {
         for (const std::size_t kept : {3U, 12U, 5000U, static_cast<unsigned>(whole.size() - 10)}) {
             std::string zeroed = whole.substr(0, kept);
             zeroed.resize(whole.size() + 512, '\0'); // as after a power failure
