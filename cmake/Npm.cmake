@@ -1,4 +1,4 @@
-# The parts written for the browser. Node and npm are looked for once; without them the viewer is left out.
+# The parts written for the browser. Node and npm are looked for once; where they are missing, web/ says what to do.
 
 set(SCANLOOM_NODE_MAJOR 18)
 # Where the viewer's files are built to, and where the server looks for them.
