@@ -92,7 +92,7 @@ test('words that a command does not know are refused before anything is built', 
   for (const [words, sentence] of [
     [['test', 'two words'], /test takes one word .*, not 'two words'/],
     [['test', 'a', 'b'], /test takes one word .*, not 'a b'/],
-    [['test', '--nightly', 'a'], /test --nightly takes no 'a'/],
+    [['test', '--nightly', 'a', 'b'], /test takes one word .*, not 'a b'/],
     [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
     [['flakes', '--count', 'x'], /--count is 'x'; a whole number is needed/],
     [['flakes', '--count', '0'], /at least 1 is needed/],
@@ -101,6 +101,7 @@ test('words that a command does not know are refused before anything is built', 
     [['tidy', 'no_such.cpp'], /the file 'no_such.cpp' cannot be read/],
     [['install', 'nonsense'], /packages.txt has no section 'nonsense'/],
     [['build', '--robot', 'x'], /build --robot takes no 'x'/],
+    [['bench', 'projection', 'x'], /bench projection takes no 'x'/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number is needed/],
   ]) {
     const told = scanloomBeside(debian, ...words);
