@@ -2,7 +2,7 @@
 
 readonly no_tests=2 failing_tests=3 # exit codes: nothing has that name; tests ran and failed
 
-# run_test [FILTER | --all [FILTER] | --nightly | --sanitizers [--core]]
+# run_test [[--all | --nightly] [FILTER] | --sanitizers [--core]]
 run_test() {
     local tier=first filter=''
     case ${1:-} in
@@ -10,46 +10,52 @@ run_test() {
             run_sanitizers "${@:2}"
             return
             ;;
-        --nightly)
-            (($# == 1)) || misused "test --nightly takes no '$2'"
-            run_nightly
-            return
-            ;;
         --all) tier=all && shift ;;
+        --nightly) tier=nightly && shift ;;
     esac
     if (($# > 0)); then
         filter=$1
         (($# == 1)) && [[ $filter =~ ^[A-Za-z0-9_./]+$ ]] ||
             misused "test takes one word that is part of a test's name, not '$*'"
     fi
-    build_tier "$tier"
     if [[ -n $filter ]]; then
+        build_tier "$tier"
         run_filtered "$filter" "$tier"
-        return
+    elif [[ $tier == nightly ]]; then
+        run_nightly
+    else
+        build_tier "$tier"
+        run_ctest test --label-exclude "$(labels_beyond "$tier")"
+        [[ $tier == first ]] || run_images
     fi
-    run_ctest test --label-exclude "$(labels_beyond "$tier")"
-    [[ $tier == first ]] || run_images
 }
 
-# build_tier first|all
+# build_tier first|all|nightly
 build_tier() {
     need build test
-    [[ $1 == first ]] || need fault package tidy
-    local targets=(tests)
-    [[ $1 == first ]] || targets=(tests_all "${programs[@]}")
-    make_preset test "${targets[@]}"
+    case $1 in
+        first) make_preset test tests ;;
+        *)
+            need fault package tidy
+            make_preset test "tests_$1" "${programs[@]}"
+            ;;
+    esac
 }
 
-# labels_beyond first|all: which labels the tests of higher tiers have.
+# labels_beyond first|all|nightly: which labels the tests of higher tiers have.
 labels_beyond() {
-    if [[ $1 == first ]]; then echo '^(all|nightly)$'; else echo '^nightly$'; fi
+    case $1 in
+        first) echo '^(all|nightly)$' ;;
+        all) echo '^nightly$' ;;
+        nightly) echo '^$' ;;
+    esac
 }
 
 # run_ctest PRESET OPTION...: runs tests, then names those that were skipped, with the reason.
 run_ctest() {
     local status=0 skipped
     ctest --preset "$1" --parallel "$(nproc)" "${@:2}" || status=$?
-    skipped=$(grep --no-filename --after-context 1 ': Skipped$' build/"${1#test}"/Testing/Temporary/LastTest.log 2>/dev/null |
+    skipped=$(grep --no-filename --after-context 1 ': Skipped$' "$(folder_of "$1")"/Testing/Temporary/LastTest.log 2>/dev/null |
         grep --invert-match -e ': Skipped$' -e '^--$' | sort | uniq --count || true)
     [[ -z $skipped ]] || printf 'Tests that were skipped, by reason:\n%s\n' "$skipped"
     ((status != 8)) || tests_failed # ctest's code for failing tests
@@ -61,12 +67,13 @@ tests_failed() {
     exit "$failing_tests"
 }
 
-# run_filtered WORD first|all: the cases of test programs, and the other tests, whose names contain WORD.
+# run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD.
 run_filtered() {
     local word=$1 program cases status others filter failed='' found='' of_tier=(core memory server http robot system)
     filter="*$word*"
-    if [[ $2 == all ]]; then
+    if [[ $2 != first ]]; then
         of_tier+=(tools faults)
+        [[ $2 == all ]] || of_tier+=(nightly)
     elif [[ $word != *Trials* ]]; then
         filter+='-*Trials*' # many random cases
     fi
@@ -78,8 +85,8 @@ run_filtered() {
         found=yes
         echo "${program}_test: $cases tests"
         status=0
-        timeout 900 "build/tests/${program}_test" --gtest_filter="$filter" --gtest_brief=1 || status=$?
-        ((status != 124)) || echo "${program}_test was stopped: it had not ended after 900 s"
+        timeout 1800 "build/tests/${program}_test" --gtest_filter="$filter" --gtest_brief=1 || status=$?
+        ((status != 124)) || echo "${program}_test was stopped: it had not ended after 1800 s"
         ((status == 0)) || failed=yes
     done
     others=(--label-exclude "$(labels_beyond "$2")|^suite\$" --tests-regex "$word")
@@ -89,7 +96,7 @@ run_filtered() {
         ctest --preset test "${others[@]}" || failed=yes
     fi
     if [[ -z $found ]]; then
-        echo "scanloom: no test's name contains '$word'$([[ $2 == all ]] || echo ' (--all has more tests)')" >&2
+        echo "scanloom: no test's name contains '$word'$([[ $2 != first ]] || echo ' (--all and --nightly have more tests)')" >&2
         exit "$no_tests"
     fi
     [[ -z $failed ]] || tests_failed
@@ -105,8 +112,8 @@ run_images() {
     fi
 }
 
-# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: AddressSanitizer for
-# code that parses untrusted input (HTTP, live events, tiles), ThreadSanitizer for sessions, store and robot connections.
+# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core
+# (sessions, store, maps, robot connections; under AddressSanitizer also HTTP, live events, tiles).
 run_sanitizers() {
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
@@ -118,21 +125,25 @@ run_sanitizers() {
     fi
 }
 
-# for_core COMMAND: COMMAND PRESET PROGRAM for the server's core.
+# for_core COMMAND: COMMAND PRESET PROGRAM... for the server's core.
 for_core() {
-    "$1" asan-core http_test
+    "$1" asan-core http_test server_test
     "$1" tsan server_test
 }
 
-# core_tests PROGRAM: the options of ctest for its suites, one a line; without Salvage, where one thread reads a damaged store.
+# core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
 core_tests() {
-    printf '%s\n' --label-regex "^$1\$" --label-exclude '^(all|nightly)$' --exclude-regex Salvage
+    local of_one_thread='^$' IFS='|'
+    [[ $1 != tsan ]] || of_one_thread=Salvage # reads a damaged store
+    shift
+    printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$of_one_thread"
 }
 
 sanitize_core() {
     local options
-    mapfile -t options < <(core_tests "$2")
-    sanitize "$1" "$2" "${options[@]}"
+    mapfile -t options < <(core_tests "$@")
+    make_preset "$@"
+    run_ctest "$1" "${options[@]}"
 }
 
 # sanitize PRESET TARGET CTEST_OPTION...
@@ -144,8 +155,8 @@ sanitize() {
 # run_nightly: all tests, and whatever takes hours or looks at the sources in another way. A part that fails does not end it.
 run_nightly() {
     local failed=()
-    need build test fault package fmt tidy fuzz bench system
-    make_preset test tests_nightly "${programs[@]}"
+    need fmt fuzz bench system
+    build_tier nightly
     nightly_part run_ctest test --label-exclude '^nightly$'
     nightly_part ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
     nightly_part ./scanloom fmt --check
@@ -208,7 +219,7 @@ run_flakes() {
 
 list_core_failures() {
     local options
-    mapfile -t options < <(core_tests "$2")
+    mapfile -t options < <(core_tests "$@")
     list_failures "$1" "${options[@]}"
 }
 
