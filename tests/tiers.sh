@@ -112,8 +112,8 @@ run_images() {
     fi
 }
 
-# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core
-# (sessions, store, maps, robot connections; under AddressSanitizer also HTTP, live events, tiles).
+# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core:
+# AddressSanitizer for HTTP, live events and tiles, ThreadSanitizer for sessions, store and robot connections.
 run_sanitizers() {
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
@@ -127,7 +127,7 @@ run_sanitizers() {
 
 # for_core COMMAND: COMMAND PRESET PROGRAM... for the server's core.
 for_core() {
-    "$1" asan-core http_test server_test
+    "$1" asan-core http_test
     "$1" tsan server_test
 }
 
