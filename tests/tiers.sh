@@ -69,7 +69,7 @@ tests_failed() {
 
 # run_filtered WORD first|all|nightly: the cases of test programs, and the other tests, whose names contain WORD.
 run_filtered() {
-    local word=$1 program cases status others filter failed='' found='' of_tier=(core memory server http robot system)
+    local word=$1 program cases status others filter failed='' found='' of_tier=(core maps memory server http robot system)
     filter="*$word*"
     if [[ $2 != first ]]; then
         of_tier+=(tools faults)
@@ -112,8 +112,8 @@ run_images() {
     fi
 }
 
-# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core:
-# AddressSanitizer for HTTP, live events and tiles, ThreadSanitizer for sessions, store and robot connections.
+# run_sanitizers [--core]: the suites of test --all that run in process, under both sanitizers. --core: only the server's core
+# (maps, sessions, store, robot connections, HTTP), under ThreadSanitizer without what waits for HTTP and what has one thread.
 run_sanitizers() {
     (($# == 0)) || [[ $* == --core ]] || misused "test --sanitizers takes no '$*'"
     need build test
@@ -127,7 +127,7 @@ run_sanitizers() {
 
 # for_core COMMAND: COMMAND PRESET PROGRAM... for the server's core.
 for_core() {
-    "$1" asan-core http_test
+    "$1" asan-core http_test maps_test server_test
     "$1" tsan server_test
 }
 
