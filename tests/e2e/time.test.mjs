@@ -155,12 +155,13 @@ describe('the history of a session', { timeout: 240_000 }, () => {
   it('asks for one weave at a time, and for the newest of those that are wanted', async () => {
     await seek(page, 10);
     const asked = [];
+    let come;
+    const first = new Promise((resolve) => (come = resolve));
     let release;
-    const held = new Promise((resolve) => {
-      release = resolve;
-    });
+    const held = new Promise((resolve) => (release = resolve));
     await page.route('**/weave', async (route) => {
       asked.push(route.request().postDataJSON().until);
+      come();
       if (asked.length === 1) await held;
       await route.continue();
     });
@@ -172,6 +173,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
     await page.mouse.up();
     const scan = await valueOf(page);
     assert.ok(scan > 250 && scan < 380, `dragged to ${scan}`);
+    await first;
     assert.equal(asked.length, 1);
     release();
     await showsScan(page, scan);

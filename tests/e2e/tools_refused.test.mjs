@@ -90,6 +90,8 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
 
   it('ask only for the newest, whatever order answers come in', async () => {
     let asked = 0;
+    let come;
+    const first = new Promise((resolve) => (come = resolve));
     let release;
     const held = new Promise((resolve) => (release = resolve));
     let late;
@@ -97,6 +99,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     await page.route('**/plan', async (route) => {
       asked += 1;
       const length = asked;
+      come();
       if (length === 1) await held;
       const found = {
         ...way([
@@ -110,6 +113,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     });
     await page.keyboard.press('p');
     await clickBoth();
+    await first; // given up before it was sent, it would never be asked
     await page.mouse.click(650, 450);
     await says(page, '.tool-figures', /2\.00 m/);
     release();
