@@ -26,3 +26,8 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+// libfmt has it. Otherwise each unit that logs or appends formatted text compiles all of fmt: 2 s of processor time.
+extern template void fmt::detail::vformat_to(fmt::detail::buffer<char>&, fmt::string_view,
+                                             fmt::basic_format_args<fmt::buffer_context<char>>,
+                                             fmt::detail::locale_ref);

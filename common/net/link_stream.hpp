@@ -1,11 +1,14 @@
 #pragma once
 
+#include <boost/asio/any_completion_handler.hpp>
+#include <boost/asio/associated_executor.hpp>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
+#include <boost/beast/core/role.hpp>
+#include <boost/container/static_vector.hpp>
 
 #include <string>
 #include <utility>
@@ -50,16 +53,7 @@ public:
     template <class Token>
     auto async_handshake(Role role, Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
-            [this](auto handler, Role as) {
-                if (auto* tls = std::get_if<Tls>(&stream_)) {
-                    tls->async_handshake(as == Role::kServer ? Tls::server : Tls::client, std::move(handler));
-                } else {
-                    boost::asio::post(get_executor(), [handler = std::move(handler)]() mutable {
-                        std::move(handler)(boost::system::error_code());
-                    });
-                }
-            },
-            token, role);
+            [this, role](auto handler) { start_handshake(role, std::move(handler)); }, token);
     }
 
     /// Nothing more is written. Without TLS's own goodbye: the frames of the link say where it ends, so that cutting it
@@ -74,17 +68,7 @@ public:
     template <class Token>
     auto async_farewell(Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
-            [this](auto handler) {
-                if (auto* tls = std::get_if<Tls>(&stream_)) {
-                    tls->async_shutdown(std::move(handler));
-                } else {
-                    shutdown_send();
-                    boost::asio::post(get_executor(), [handler = std::move(handler)]() mutable {
-                        std::move(handler)(boost::system::error_code());
-                    });
-                }
-            },
-            token);
+            [this](auto handler) { start_farewell(std::move(handler)); }, token);
     }
 
     /// What the socket takes at once, without waiting; nothing where it would have to be encrypted first.
@@ -92,37 +76,58 @@ public:
     /// Errors  would_block where it takes nothing now.
     template <class Buffers>
     std::size_t try_write(const Buffers& buffers, boost::system::error_code& failed) {
-        failed = {};
-        auto* plain = std::get_if<Socket>(&stream_);
-        return plain == nullptr ? 0 : plain->write_some(buffers, failed);
+        return try_write_pieces(pieces_of<boost::asio::const_buffer>(buffers), failed);
     }
 
     template <class Buffers, class Token>
     auto async_read_some(const Buffers& buffers, Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-            [this](auto handler, const Buffers& into) {
-                std::visit([&](auto& stream) { stream.async_read_some(into, std::move(handler)); }, stream_);
-            },
-            token, buffers);
+            [this](auto handler, const auto& into) { start_read(into, std::move(handler)); }, token,
+            pieces_of<boost::asio::mutable_buffer>(buffers));
     }
 
     template <class Buffers, class Token>
     auto async_write_some(const Buffers& buffers, Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-            [this](auto handler, const Buffers& from) {
-                std::visit([&](auto& stream) { stream.async_write_some(from, std::move(handler)); }, stream_);
-            },
-            token, buffers);
+            [this](auto handler, const auto& from) { start_write(from, std::move(handler)); }, token,
+            pieces_of<boost::asio::const_buffer>(buffers));
     }
 
-    /// Calls `use` with the socket, or with Asio's ssl::stream over it: for libraries that know both.
-    template <class Use>
-    void with_carrier(Use&& use) {
-        std::visit(std::forward<Use>(use), stream_);
+    /// Closes the connection in good order, as a WebSocket does (async_teardown() of Beast).
+    template <class Handler>
+    void async_teardown(boost::beast::role_type role, Handler handler) {
+        const executor_type executor = boost::asio::get_associated_executor(handler, get_executor());
+        start_teardown(role, executor, std::move(handler));
     }
 
 private:
     using Tls = boost::asio::ssl::stream<Socket>;
+    using Done = boost::asio::any_completion_handler<void(boost::system::error_code)>;
+    using Transferred = boost::asio::any_completion_handler<void(boost::system::error_code, std::size_t)>;
+
+    /// The first buffers of a sequence that are not empty: what is read or written next.
+    template <class Buffer>
+    using Pieces = boost::container::static_vector<Buffer, 16>;
+
+    template <class Buffer, class Buffers>
+    static Pieces<Buffer> pieces_of(const Buffers& buffers) {
+        Pieces<Buffer> pieces;
+        const auto end = boost::asio::buffer_sequence_end(buffers);
+        for (auto at = boost::asio::buffer_sequence_begin(buffers); at != end && pieces.size() < pieces.capacity();
+             ++at) {
+            if (const Buffer piece(*at); piece.size() > 0) pieces.push_back(piece);
+        }
+        return pieces;
+    }
+
+    // Compiled once, in link_stream.cpp: Asio's operations over TLS are many lines, and each handler would have its
+    // own.
+    void start_handshake(Role role, Done done);
+    void start_farewell(Done done);
+    void start_teardown(boost::beast::role_type role, const executor_type& executor, Done done);
+    void start_read(const Pieces<boost::asio::mutable_buffer>& into, Transferred done);
+    void start_write(const Pieces<boost::asio::const_buffer>& from, Transferred done);
+    std::size_t try_write_pieces(const Pieces<boost::asio::const_buffer>& from, boost::system::error_code& failed);
 
     std::variant<Socket, Tls> stream_;
 };

@@ -3,8 +3,6 @@
 #include "common/net/link_stream.hpp"
 
 #include <boost/beast/core/role.hpp>
-#include <boost/beast/websocket/ssl.hpp>
-#include <boost/beast/websocket/teardown.hpp>
 
 #include <utility>
 
@@ -14,10 +12,7 @@ namespace scanloom::net {
 /// Closes the connection in good order.
 template <class Handler>
 void async_teardown(boost::beast::role_type role, LinkStream& stream, Handler&& handler) {
-    stream.with_carrier([&](auto& carrier) {
-        using boost::beast::websocket::async_teardown;
-        async_teardown(role, carrier, std::forward<Handler>(handler));
-    });
+    stream.async_teardown(role, std::forward<Handler>(handler));
 }
 
 /// Closes it when the WebSocket's patience is over.

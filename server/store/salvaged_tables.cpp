@@ -18,8 +18,9 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <regex>
 #include <set>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -63,9 +64,16 @@ std::string reason_of(const rocksdb::Status& status, const fs::path& copy) {
 
 /// The first table that RocksDB did not find; it tells another ending.
 std::optional<std::string> missing_table_in(const std::string& reason) {
-    std::smatch number;
-    if (!std::regex_search(reason, number, std::regex("([0-9]{6,})[.](ldb|sst)"))) return std::nullopt;
-    return number[1].str() + std::string(kTable);
+    constexpr std::string_view kDigits = "0123456789";
+    constexpr std::size_t kDigitsMin = 6;
+    for (auto dot = reason.find('.'); dot != std::string::npos; dot = reason.find('.', dot + 1)) {
+        const auto ending = std::string_view(reason).substr(dot, kTable.size());
+        if (ending != kTable && ending != ".ldb") continue;
+        const auto before = std::string_view(reason).substr(0, dot);
+        const auto digits = before.substr(before.find_last_not_of(kDigits) + 1); // npos + 1 is 0
+        if (digits.size() >= kDigitsMin) return std::string(digits) + std::string(kTable);
+    }
+    return std::nullopt;
 }
 
 /// The sessions that a write removes.
