@@ -32,12 +32,12 @@ if(SCANLOOM_SANITIZE)
   endif()
 endif()
 
-# Optimization by kind of code, in release builds: kernels -O3, what waits for sockets and disks -O2, tests -Og.
+# Optimization by kind of code, in release builds: kernels -O3, what waits for sockets and disks -O1, tests -Og.
 # Each kind has one precompiled header, which all targets of the kind share.
 # scanloom_kind(TARGET KIND), KIND one of compute, io, test
 function(scanloom_kind target kind)
   set(levels_compute -O3)
-  set(levels_io -O2)
+  set(levels_io -O1)
   set(levels_test -Og)
   set(packages_compute fmt::fmt)
   set(packages_io fmt::fmt Boost::json scanloom_asio)
