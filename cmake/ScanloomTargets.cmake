@@ -82,6 +82,7 @@ function(scanloom_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE scanloom_options ${ARG_LINKS})
+  scanloom_kind(${name} io)
 endfunction()
 
 # scanloom_test_program(NAME [LABELS label ...] [TIMEOUT seconds]): an executable of GoogleTest suites, one CTest test a suite.
