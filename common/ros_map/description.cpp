@@ -60,8 +60,12 @@ Result<> read_origin(const YAML::Node& yaml, RosMapDescription& map) {
 Result<> read_mode(const YAML::Node& yaml, RosMapDescription& map) {
     if (const auto negate = yaml["negate"]) {
         const auto value = negate.IsScalar() ? negate.Scalar() : "";
-        map.negate = value == "1" || value == "true"; // nav2 takes the words, too
-        if (!map.negate && value != "0" && value != "false") return bad_key("negate", "is neither 0 nor 1");
+        map.negate = value == "1";
+        const bool is_number = value == "0" || value == "1";
+        // nav2 takes YAML's words for truth values, too: true, no, Off and so on.
+        if (!is_number && !YAML::convert<bool>::decode(negate, map.negate)) {
+            return bad_key("negate", "is neither 0 nor 1, true nor false");
+        }
     }
     const auto mode = yaml["mode"];
     if (!mode) return {};

@@ -17,6 +17,9 @@ namespace {
 /// What HTTP begins with, requests and answers. As lengths of frames all of these are a gigabyte or more.
 constexpr std::string_view kHttp[] = {"GET ", "HEAD", "POST", "PUT ", "DELE", "OPTI", "PATC", "CONN", "TRAC", "HTTP"};
 
+/// The type and the major version of TLS's first record (RFC 8446, section 5.1). As a length it is 369 MB.
+constexpr std::string_view kTlsHandshake = "\x16\x03";
+
 void append_length(std::string& out, std::size_t bytes) {
     unsigned char prefix[kLengthPrefixBytes];
     boost::endian::store_big_u32(prefix, static_cast<std::uint32_t>(bytes));
@@ -55,6 +58,12 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
                         fmt::format("what came begins with \"{}\": that is HTTP, no frame; robots connect to the robot "
                                     "port (--listen), browsers to the HTTP port (--http)",
                                     begin)};
+        return *failed_;
+    }
+    if (begin.starts_with(kTlsHandshake)) {
+        failed_ = Error{Errc::kMalformed,
+                        "what came is a handshake of TLS, no frame, and this port is not encrypted; connect without "
+                        "TLS, or give the server a certificate (--robot-tls-cert)"};
         return *failed_;
     }
     if (length > frame_bytes_max_) {

@@ -23,7 +23,7 @@ inline constexpr std::size_t kFrameBytesMaxBeforeHello = std::size_t{16} << 10;
 /// Checksums are optional, see frame_checksum.hpp; but a stream that has had one has them in every frame that follows.
 ///
 /// Errors  kDamaged: a checksum is wrong, or was there before and is missing. kTooLarge as soon as a length prefix exceeds the limit, before anything is allocated for
-///         it; kMalformed for an empty frame, or for HTTP in its place. After an error the stream has no
+///         it; kMalformed for an empty frame, or for HTTP or TLS in its place. After an error the stream has no
 ///         frame borders any more: every further next() repeats the error.
 /// Thread  one at a time.
 class FrameDecoder {

@@ -13,8 +13,7 @@ namespace scanloom::wire {
 Result<> check_coordinate(std::string_view field, double metres) {
     if (!std::isfinite(metres)) return invalid_field(fmt::format("{} is {}; a finite number is needed", field, metres));
     if (std::abs(metres) > kCoordinateMax) {
-        return invalid_field(
-            fmt::format("{} is {:g}; at most {:g} either way is allowed", field, metres, kCoordinateMax));
+        return invalid_field(fmt::format("{} is {}; at most {} either way is allowed", field, metres, kCoordinateMax));
     }
     return {};
 }

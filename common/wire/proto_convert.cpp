@@ -152,7 +152,7 @@ Result<Pose2> from_proto(const v1::Pose2& proto) {
             return invalid_field(fmt::format("{} is {}; a finite number is needed", name, value));
         if (std::abs(value) > kCoordinateMax) {
             return invalid_field(
-                fmt::format("{} is {:g}; at most {:g} either way is allowed", name, value, kCoordinateMax));
+                fmt::format("{} is {}; at most {} either way is allowed", name, value, kCoordinateMax));
         }
         return {};
     };

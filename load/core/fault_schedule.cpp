@@ -30,7 +30,7 @@ Result<> read_fault(std::string_view item, FaultMeans& means) {
     if (failed != std::errc{} || stopped != number.data() + number.size()) return unknown_fault(item);
     if (!(mean >= kMeanMin && mean <= kMeanMax)) {
         return Error{Errc::kInvalidField,
-                     fmt::format("'{}': the mean is not within {:g} to {:g} s", item, kMeanMin, kMeanMax)};
+                     fmt::format("'{}': the mean is not within {} to {} s", item, kMeanMin, kMeanMax)};
     }
     means[static_cast<std::size_t>(kind - kFaultNames.begin())] = mean;
     return {};

@@ -31,7 +31,7 @@ std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
 std::string complaint_about_place(double x, double y) {
     const double farthest = std::abs(x) > std::abs(y) ? x : y;
     if (std::abs(farthest) <= kCoordinateMax) return {};
-    return fmt::format("{:g} m is beyond the map, which reaches {:g} m either way", farthest, kCoordinateMax);
+    return fmt::format("{} m is beyond the map, which reaches {} m either way", farthest, kCoordinateMax);
 }
 
 /// X,Y,YAW, the yaw as it was written.

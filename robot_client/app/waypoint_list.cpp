@@ -45,10 +45,9 @@ std::optional<Point2> as_waypoint(std::string_view text) {
 }
 
 Error no_waypoint(std::string_view where, std::size_t number, std::string_view text) {
-    return {Errc::kInvalidField,
-            fmt::format("--waypoints: {} {}: '{}' is no waypoint; write x,y in metres, at most {:g} "
-                        "from the origin",
-                        where, number, text, kCoordinateMax)};
+    return {Errc::kInvalidField, fmt::format("--waypoints: {} {}: '{}' is no waypoint; write x,y in metres, at most {} "
+                                             "from the origin",
+                                             where, number, text, kCoordinateMax)};
 }
 
 Result<std::vector<Point2>> read_list(std::string_view list) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <utility>
 
 namespace scanloom::robot {
@@ -32,9 +33,11 @@ private:
     void take(const CarmenRecord& record, const StampedScan& line);
     void take(const CarmenRecord& record, const CarmenOdometry& odometry);
     void take(const CarmenRecord& record, const CarmenLaserOffset& offset);
+    void take(const CarmenRecord& record, const CarmenUnreadLaser& line);
     void take(const CarmenRecord& record, const Error& error) { skip(record.line_number, error.message); }
     void hash(std::string_view line);
     void skip(std::size_t line_number, std::string reason);
+    void report_unread_kinds();
     void keep_one_view_of_each_scan();
     void drop_lines_without_pose(const PosePath& path);
     void order_scans(CarmenIndex& index);
@@ -50,6 +53,12 @@ private:
     bool has_robot_laser_ = false;
     bool has_raw_ = false;
     std::size_t skipped_ = 0;
+
+    struct UnreadKind {
+        std::size_t first_line = 0;
+        std::size_t count = 0;
+    };
+    std::map<std::string_view, UnreadKind> unread_;
 };
 
 Result<> Indexer::read(CarmenRecords& records) {
@@ -86,6 +95,11 @@ void Indexer::take(const CarmenRecord& record, const CarmenLaserOffset& offset) 
     laser_offset_forward_ = offset.forward;
 }
 
+void Indexer::take(const CarmenRecord& record, const CarmenUnreadLaser& line) {
+    auto& kind = unread_[line.kind];
+    if (++kind.count == 1) kind.first_line = record.line_number;
+}
+
 void Indexer::hash(std::string_view line) {
     hash_.update(line);
     hash_.update("\n");
@@ -94,6 +108,16 @@ void Indexer::hash(std::string_view line) {
 void Indexer::skip(std::size_t line_number, std::string reason) {
     ++skipped_;
     report_({line_number, std::move(reason)});
+}
+
+void Indexer::report_unread_kinds() {
+    for (const auto& [kind, lines] : unread_) {
+        skipped_ += lines.count;
+        report_(
+            {lines.first_line, fmt::format("{}: {} lines of this kind are not read; FLASER, ROBOTLASER1, ROBOTLASER2 "
+                                           "and RAWLASER1 are",
+                                           kind, lines.count)});
+    }
 }
 
 /// Logs that hold RAWLASER and other laser lines hold every scan twice.
@@ -145,6 +169,7 @@ std::string Indexer::fingerprint() {
 
 CarmenIndex Indexer::build() {
     CarmenIndex index;
+    report_unread_kinds();
     keep_one_view_of_each_scan();
     index.path = PosePath(std::move(odometry_));
     drop_lines_without_pose(index.path);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -32,7 +33,7 @@ Result<double> finite(std::string_view field, std::string_view token, double mag
     const auto value = to_number(token);
     if (!value) return malformed(fmt::format("{} is '{}', not a number", field, shown_token(token)));
     if (!std::isfinite(*value) || std::abs(*value) > magnitude_max) {
-        return Error{Errc::kInvalidField, fmt::format("{} is {}; at most {:g} either way is allowed", field,
+        return Error{Errc::kInvalidField, fmt::format("{} is {}; at most {} either way is allowed", field,
                                                       shown_token(token), magnitude_max)};
     }
     return *value;
@@ -211,6 +212,9 @@ CarmenLine read_param(TokenSpan tokens) {
     return CarmenLaserOffset{*forward};
 }
 
+constexpr std::array<std::string_view, 8> kUnreadLasers{"RLASER",    "LASER3",    "LASER4",    "LASER5",
+                                                        "RAWLASER2", "RAWLASER3", "RAWLASER4", "RAWLASER5"};
+
 Result<CarmenLine> parse_by_tag(std::string_view tag, TokenSpan rest) {
     if (tag == "FLASER") return read_flaser(rest);
     if (tag == "ROBOTLASER1") return read_new_laser(rest, CarmenKind::kRobotLaser, 0);
@@ -218,7 +222,8 @@ Result<CarmenLine> parse_by_tag(std::string_view tag, TokenSpan rest) {
     if (tag == "RAWLASER1") return read_new_laser(rest, CarmenKind::kRawLaser, 0);
     if (tag == "ODOM") return read_odometry(rest);
     if (tag == "PARAM") return read_param(rest);
-    return CarmenLine{};
+    const auto unread = std::ranges::find(kUnreadLasers, tag);
+    return unread == kUnreadLasers.end() ? CarmenLine{} : CarmenUnreadLaser{*unread};
 }
 
 } // namespace

@@ -34,8 +34,13 @@ struct CarmenLaserOffset {
     double forward = 0.0;
 };
 
-/// std::monostate: a comment, or a line of a kind that is not read.
-using CarmenLine = std::variant<std::monostate, CarmenScan, CarmenOdometry, CarmenLaserOffset>;
+/// A laser line of a kind that is not read: RLASER, LASER3 to LASER5, RAWLASER2 to RAWLASER5.
+struct CarmenUnreadLaser {
+    std::string_view kind; ///< valid for ever
+};
+
+/// std::monostate: a comment, or a line that tells nothing of a laser.
+using CarmenLine = std::variant<std::monostate, CarmenScan, CarmenOdometry, CarmenLaserOffset, CarmenUnreadLaser>;
 
 /// Reads one line of a CARMEN log.
 ///

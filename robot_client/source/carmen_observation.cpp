@@ -53,7 +53,7 @@ Result<> check_usable(const CarmenScan& line, const CarmenOptions& options) {
     if (const auto range_max = range_max_of(line, options); !range_max) return range_max.error();
     const Pose2 mount = mount_of(line, 0.0);
     if (std::max(std::abs(mount.x), std::abs(mount.y)) <= kCoordinateMax) return {};
-    return Error{Errc::kTooLarge, fmt::format("the laser is more than {:g} m from its robot", kCoordinateMax)};
+    return Error{Errc::kTooLarge, fmt::format("the laser is more than {} m from its robot", kCoordinateMax)};
 }
 
 Result<Observation> CarmenObserver::observe(const CarmenScan& line, double stamp) {

@@ -24,8 +24,10 @@ Result<std::optional<CarmenRecord>> CarmenRecords::next() {
             record.content = *odometry;
         } else if (const auto* offset = std::get_if<CarmenLaserOffset>(&*parsed)) {
             record.content = *offset;
+        } else if (const auto* unread = std::get_if<CarmenUnreadLaser>(&*parsed)) {
+            record.content = *unread;
         } else {
-            continue; // a comment, or a line of a kind that is not read
+            continue; // a comment, or a line that tells nothing of a laser
         }
         return std::optional(std::move(record));
     }

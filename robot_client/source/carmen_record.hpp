@@ -22,7 +22,7 @@ struct StampedScan {
 struct CarmenRecord {
     std::size_t line_number = 0;
     std::string_view text; ///< valid until the next record
-    std::variant<StampedScan, CarmenOdometry, CarmenLaserOffset, Error> content;
+    std::variant<StampedScan, CarmenOdometry, CarmenLaserOffset, CarmenUnreadLaser, Error> content;
 };
 
 /// The records of a CARMEN log in the order of the file, one at a time.

@@ -36,6 +36,14 @@ struct LineReader::State {
 
     [[nodiscard]] Error cannot_unpack() const;
 
+    /// The line that has been read to its end.
+    [[nodiscard]] std::string_view take_line() {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        std::string_view taken = line;
+        if (++line_number == 1 && taken.starts_with(kByteOrderMark)) taken.remove_prefix(kByteOrderMark.size());
+        return taken;
+    }
+
     /// Fills the empty chunk; leaves it empty at the end of the text.
     [[nodiscard]] Result<> refill();
 };
@@ -107,13 +115,11 @@ Result<std::optional<std::string_view>> LineReader::next() {
         }
         if (newline) {
             if (s.line.ends_with('\r')) s.line.pop_back();
-            ++s.line_number;
-            return std::optional<std::string_view>(s.line);
+            return std::optional(s.take_line());
         }
     }
     if (s.line.empty()) return std::optional<std::string_view>{};
-    ++s.line_number; // the last line may lack its ending
-    return std::optional<std::string_view>(s.line);
+    return std::optional(s.take_line()); // the last line may lack its ending
 }
 
 std::size_t LineReader::line_number() const noexcept { return state_->line_number; }

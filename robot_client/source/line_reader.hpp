@@ -42,7 +42,8 @@ public:
     LineReader& operator=(LineReader&&) noexcept;
     ~LineReader();
 
-    /// The next line without its ending (LF or CR LF), valid until the next call; nothing after the last one.
+    /// The next line without its ending (LF or CR LF) and without UTF-8's byte order mark before the first, valid until
+    /// the next call; nothing after the last one.
     [[nodiscard]] Result<std::optional<std::string_view>> next();
 
     /// Number of the line that next() gave last, from 1.

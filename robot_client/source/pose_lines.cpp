@@ -61,7 +61,7 @@ Result<std::optional<StampedPose>> read_pose_line(std::string_view line) {
     }
     const auto& [t, x, y, yaw] = numbers;
     if (std::max(std::abs(x), std::abs(y)) > kCoordinateMax) {
-        return Error{Errc::kInvalidField, fmt::format("the pose is more than {:g} m from the origin", kCoordinateMax)};
+        return Error{Errc::kInvalidField, fmt::format("the pose is more than {} m from the origin", kCoordinateMax)};
     }
     return std::optional(StampedPose{{x, y, normalize_angle(yaw)}, t});
 }

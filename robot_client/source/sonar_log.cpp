@@ -50,7 +50,7 @@ Result<StampedPose> read_pose(std::string_view line) {
     const auto& n = *numbers;
     const Pose2 pose{n[1] * kMetresPerMm, n[2] * kMetresPerMm, normalize_angle(n[3] * kRadiansPerUnit)};
     if (std::max(std::abs(pose.x), std::abs(pose.y)) > kCoordinateMax) {
-        return Error{Errc::kInvalidField, fmt::format("the pose is more than {:g} m from the origin", kCoordinateMax)};
+        return Error{Errc::kInvalidField, fmt::format("the pose is more than {} m from the origin", kCoordinateMax)};
     }
     return StampedPose{pose, n[0] * kSecondsPerMs};
 }

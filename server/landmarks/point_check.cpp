@@ -15,8 +15,8 @@ Result<> check_points(std::span<const Point2> points, std::string_view name) {
         }
         if (max_abs(points[n]) > kPointCoordinateMax) {
             return Error{Errc::kInvalidField,
-                         fmt::format("{}[{}] is ({:g}, {:g}), further than {:g} m from the origin: leave it out", name,
-                                     n, points[n].x, points[n].y, kPointCoordinateMax)};
+                         fmt::format("{}[{}] is ({}, {}), further than {} m from the origin: leave it out", name, n,
+                                     points[n].x, points[n].y, kPointCoordinateMax)};
         }
     }
     return {};

@@ -83,7 +83,7 @@ TEST_F(ClientLocate, WhatNoServerTakesIsRefusedByNameAndDisturbsNothing) {
     wrong[3].pose.x = std::numeric_limits<double>::quiet_NaN();
     refused(laser(), wrong, "scans[3]: ");
     refused(laser(), scans(), "radius is 0 m", {.near = {{{0.0, 0.0}, 0.0}}});
-    refused(laser(), scans(), "near.x is 2e+06", {.near = {{{2e6, 0.0}, 1.0}}});
+    refused(laser(), scans(), "near.x is 2000000", {.near = {{{2e6, 0.0}, 1.0}}});
     EXPECT_TRUE(client->locate(laser(), scans(), 20s));
     EXPECT_TRUE(client->close(20s));
     EXPECT_EQ(server_in_the_test_.fake().locates().size(), 1U);

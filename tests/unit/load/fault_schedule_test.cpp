@@ -24,7 +24,7 @@ TEST(Faults, MistakesAreToldWithHowToWriteThem) {
         ASSERT_FALSE(means) << text;
         EXPECT_THAT(means.error().message, HasSubstr("cut=20,half-open=60,stall=30")) << text;
     }
-    EXPECT_THAT(parse_faults("cut=0").error().message, HasSubstr("'cut=0': the mean is not within 0.1 to 1e+06 s"));
+    EXPECT_THAT(parse_faults("cut=0").error().message, HasSubstr("'cut=0': the mean is not within 0.1 to 1000000 s"));
     EXPECT_FALSE(parse_faults("cut=nan"));
     EXPECT_FALSE(parse_faults("cut=-1"));
 }

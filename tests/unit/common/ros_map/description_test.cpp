@@ -17,8 +17,12 @@ TEST(RosMapDescription, WhatIsNoneIsRefusedByKey) {
     EXPECT_EQ(parse_ros_yaml(good).value(),
               (RosMapDescription{.image = "map.pgm", .resolution = 0.05, .origin_x = 1.0, .origin_y = -2.5}));
     EXPECT_TRUE(parse_ros_yaml("resolution: 1\norigin: [0, 0]\nnegate: 1\nmode: scale\n"));
-    EXPECT_TRUE(parse_ros_yaml(good + "negate: true\n").value().negate);
-    EXPECT_FALSE(parse_ros_yaml(good + "negate: false\n").value().negate);
+    for (const auto* yes : {"true", "yes", "On", "1"}) {
+        EXPECT_TRUE(parse_ros_yaml(good + "negate: " + yes + "\n").value().negate) << yes;
+    }
+    for (const auto* no : {"false", "no", "NO", "off", "0"}) {
+        EXPECT_FALSE(parse_ros_yaml(good + "negate: " + no + "\n").value().negate) << no;
+    }
     for (const auto& [yaml, why] : std::initializer_list<std::pair<std::string, std::string>>{
              {"", "not a list of keys"},
              {"[1, 2", "cannot be read"},

@@ -186,7 +186,7 @@ TEST(BadScan, IsRefusedByTheNameOfItsFieldAndItsPlace) {
         {[](Scan& s) { s.pose.x = kInfinity; }, "pose.x is inf;"},
         {[](Scan& s) { s.pose.y = -kInfinity; }, "pose.y is -inf;"},
         {[](Scan& s) { s.pose.yaw = kNan; }, "pose.yaw is nan;"},
-        {[](Scan& s) { s.pose.x = 1.1e6; }, "pose.x is 1.1e+06;"},
+        {[](Scan& s) { s.pose.x = 1.1e6; }, "pose.x is 1100000;"},
         {[](Scan& s) { s.pose.y = -1e300; }, "pose.y is -1e+300;"},
         {[](Scan& s) { s.odometry->x = kNan; }, "odometry.x is nan;"},
         {[](Scan& s) { s.odometry->yaw = -kInfinity; }, "odometry.yaw is -inf;"},
@@ -232,7 +232,7 @@ TEST(BadBatch, OfNoScansOrTooManyIsRefused) {
 TEST(BadPlanRequest, IsRefusedByTheNameOfItsField) {
     const Spoilt<PlanRequest> kSpoilt[] = {
         {[](PlanRequest& r) { r.start->x = kNan; }, "plan_request.start.x is nan;"},
-        {[](PlanRequest& r) { r.start->y = 1.1e6; }, "plan_request.start.y is 1.1e+06;"},
+        {[](PlanRequest& r) { r.start->y = 1.1e6; }, "plan_request.start.y is 1100000;"},
         {[](PlanRequest& r) { r.goal.x = kInfinity; }, "plan_request.goal.x is inf;"},
         {[](PlanRequest& r) { r.goal.y = -1e300; }, "plan_request.goal.y is -1e+300;"},
     };
@@ -257,7 +257,7 @@ TEST(BadCoverageRequest, IsRefusedByTheNameOfItsField) {
     const Spoilt<CoverageRequest> kSpoilt[] = {
         {[](CoverageRequest& r) { r.start->x = kNan; }, "coverage_request.start.x is nan;"},
         {[](CoverageRequest& r) { r.region[1].y = kNan; }, "coverage_request.region[3] is nan;"},
-        {[](CoverageRequest& r) { r.region[2].x = -2e6; }, "coverage_request.region[4] is -2e+06;"},
+        {[](CoverageRequest& r) { r.region[2].x = -2e6; }, "coverage_request.region[4] is -2000000;"},
         {[](CoverageRequest& r) {
              r.region.assign(kRegionPointsMax + 1, {1.0, 1.0});
          },
@@ -278,7 +278,7 @@ TEST(BadReply, WithAPathThatIsNoneIsRefusedByTheNameOfItsField) {
     const Spoilt<Path> kSpoilt[] = {
         {[](Path& p) { p.points.clear(); }, "points is empty;"},
         {[](Path& p) { p.points[1].x = kNan; }, "points[2] is nan;"},
-        {[](Path& p) { p.points[2].y = 1.1e6; }, "points[5] is 1.1e+06;"},
+        {[](Path& p) { p.points[2].y = 1.1e6; }, "points[5] is 1100000;"},
         {[](Path& p) {
              p.points.assign(kPathPointsMax + 1, {0.0, 0.0});
          },

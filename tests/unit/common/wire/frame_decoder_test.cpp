@@ -91,5 +91,14 @@ TEST(FrameDecoder, HttpIsNamedAsWhatItIs) {
     }
 }
 
+TEST(FrameDecoder, TlsIsNamedAsWhatItIs) {
+    FrameDecoder decoder(1000);
+    feed(decoder, std::string_view("\x16\x03\x01\x02\x00\x01", 6));
+    const auto body = decoder.next();
+    ASSERT_FALSE(body);
+    EXPECT_EQ(body.error().code, Errc::kMalformed);
+    EXPECT_THAT(body.error().message, testing::HasSubstr("a handshake of TLS"));
+}
+
 } // namespace
 } // namespace scanloom::wire

@@ -81,7 +81,7 @@ TEST(Ld06OptionsOf, ALidarThatAsksAndIsToldAreRefused) {
     for (const auto* near : {"0,0,0", "0,0,-1", "0,0,1001", "0,0,1e9", "0,0,1e-300"}) {
         EXPECT_THAT(refused({"f", "--locate", "--near", near}), HasSubstr("give 0.1 to 1000")) << near;
     }
-    EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2e+06 m is beyond the map"));
+    EXPECT_THAT(refused({"f", "--locate", "--near", "0,-2e6,1"}), HasSubstr("-2000000 m is beyond the map"));
 }
 
 TEST(Ld06OptionsOf, AYawInDegreesAreRefused) {
@@ -107,7 +107,8 @@ TEST(Ld06OptionsOf, AWrongCommandLineAreRefused) {
     for (const auto* confidence : {"-1", "256", "x"}) {
         EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--min-confidence", confidence}), HasSubstr("from 0 to 255"));
     }
-    EXPECT_THAT(refused({"f", "--pose", "1e7,0,0"}), HasSubstr("1e+07 m is beyond the map, which reaches 1e+06 m"));
+    EXPECT_THAT(refused({"f", "--pose", "1e7,0,0"}),
+                HasSubstr("10000000 m is beyond the map, which reaches 1000000 m"));
     EXPECT_THAT(refused({"tcp://lidar", "--pose", "0,0,0"}), HasSubstr("'tcp://lidar' is not tcp://HOST:PORT"));
     EXPECT_THAT(refused({"f", "--pose", "0,0,0", "--reopen-for", "-1"}), HasSubstr("--reopen-for"));
 }

@@ -40,7 +40,7 @@ TEST_F(WaypointList, WhatIsNoneIsNamedWithItsPlace) {
     EXPECT_THAT(read_waypoints("1,2;3;4,5").error().message, HasSubstr("number 2: '3'"));
     EXPECT_THAT(read_waypoints("1,2;;4,5").error().message, HasSubstr("number 2: ''"));
     EXPECT_THAT(read_waypoints("1,2,3").error().message, HasSubstr("number 1"));
-    EXPECT_THAT(read_waypoints("1,2e9").error().message, HasSubstr("1e+06 from the origin"));
+    EXPECT_THAT(read_waypoints("1,2e9").error().message, HasSubstr("1000000 from the origin"));
     EXPECT_THAT(read_waypoints(file("1 2\nhere\n")).error().message, HasSubstr("line 2: 'here'"));
     EXPECT_THAT(read_waypoints(file("nan 1\n")).error().message, HasSubstr("line 1"));
 }

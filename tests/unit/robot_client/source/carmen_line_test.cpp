@@ -113,7 +113,7 @@ TEST(CarmenLine, ReadingsAreMillimetresInfiniteOnesNoReturnsAndOthersInvalid) {
 
 TEST(CarmenLine, OtherLinesAreReadOver) {
     for (const std::string_view line : {"", "   ", "# FLASER 1", "NEFF 15", "SYNC x", "IMU 1 2",
-                                        "PARAM robot_width 1 h 2", "ODOM broken", "RAWLASER3 0", "\xff\xfe\x01"}) {
+                                        "PARAM robot_width 1 h 2", "ODOM broken", "\xff\xfe\x01"}) {
         auto parsed = parse_carmen_line(line);
         ASSERT_TRUE(parsed) << line;
         EXPECT_TRUE(std::holds_alternative<std::monostate>(*parsed)) << line;
@@ -139,7 +139,7 @@ TEST(CarmenLine, EachBrokenLineSaysWhatIsWrong) {
     EXPECT_THAT(error_of("FLASER 2 1 2 3 1 2 0.3 4 5 0.6"), HasSubstr("7 values follow the 2 ranges"));
     EXPECT_THAT(error_of("FLASER 1 1 nan 2 0.3 4 5 0.6"), HasSubstr("laser_x is nan"));
     EXPECT_THAT(error_of("FLASER 1 1 1 2 0.3 4 inf 0.6"), HasSubstr("odom_y is inf"));
-    EXPECT_THAT(error_of("FLASER 1 1 1e7 2 0.3 4 5 0.6"), HasSubstr("at most 1e+06"));
+    EXPECT_THAT(error_of("FLASER 1 1 1e7 2 0.3 4 5 0.6"), HasSubstr("at most 1000000"));
     EXPECT_THAT(error_of("FLASER 1 1 1 2 0.3 4 5 0.6 x host 1"), HasSubstr("timestamp is 'x'"));
     EXPECT_THAT(error_of("ROBOTLASER1 0 1"), HasSubstr("ends within the laser's parameters"));
     EXPECT_THAT(error_of("ROBOTLASER1 0 -1.5 3 0 50 0.01 0 1 1.0 0 1 2 3 1 2 3 0 0 0 0 0"),

@@ -131,6 +131,32 @@ TEST_F(CarmenLogFile, BrokenLinesAreSkippedCountedAndNamed) {
     EXPECT_EQ(skipped_[1].line_number, 4U);
 }
 
+TEST_F(CarmenLogFile, LaserLinesOfUnreadKindsAreCountedAndNamedOnceForEachKind) {
+    const auto log = read(
+        text_of({"RLASER 1 1.0 0 0 0 0 0 0 1 host 1\n", flaser(1), "LASER3 1 1.0 1 host 1\n",
+                 "RLASER 1 1.0 0 0 0 0 0 0 2 host 2\n", "RAWLASER2 0 0 3 0.1 30 0 0 1 1.0 0\n", "POSITION 1 2 3\n"}));
+    ASSERT_TRUE(log);
+    EXPECT_EQ(log->observations.size(), 1U);
+    EXPECT_EQ(log->skipped_lines, 4U);
+    ASSERT_EQ(skipped_.size(), 3U);
+    EXPECT_THAT(skipped_[0].reason, testing::StartsWith("LASER3: 1 lines of this kind are not read"));
+    EXPECT_EQ(skipped_[0].line_number, 3U);
+    EXPECT_THAT(skipped_[1].reason, testing::StartsWith("RAWLASER2: 1 lines"));
+    EXPECT_THAT(skipped_[2].reason, testing::StartsWith("RLASER: 2 lines"));
+    EXPECT_EQ(skipped_[2].line_number, 1U);
+    EXPECT_EQ(log->fingerprint, read(flaser(1))->fingerprint);
+}
+
+TEST_F(CarmenLogFile, AByteOrderMarkCostsNoLine) {
+    const auto text = text_of({flaser(1), flaser(2)});
+    for (const auto& bytes : {"\xEF\xBB\xBF" + text, gzip("\xEF\xBB\xBF" + text)}) {
+        const auto log = read(bytes);
+        ASSERT_TRUE(log);
+        EXPECT_EQ(log->observations.size(), 2U);
+        EXPECT_EQ(log->fingerprint, read(text)->fingerprint);
+    }
+}
+
 TEST_F(CarmenLogFile, FlaserPoseIsTheFirstTripleAndOdometryTheSecond) {
     const auto log = read("FLASER 1 1.0 1 2 0.5 3 4 0.7 9.5 host 1\n");
     const auto& [sensor, scan] = log->observations[0];

@@ -34,7 +34,7 @@ TEST(PoseLine, ThatIsNoneSaysWhy) {
     EXPECT_THAT(read_pose_line("1 2 3 x").error().message, HasSubstr("'x' is not a number"));
     EXPECT_THAT(read_pose_line("1 2 nan 4").error().message, HasSubstr("'nan' is not finite"));
     EXPECT_THAT(read_pose_line("1e999 2 3 4").error().message, HasSubstr("'1e999' is not finite"));
-    EXPECT_THAT(read_pose_line("1 2 1000001 4").error().message, HasSubstr("more than 1e+06 m from the origin"));
+    EXPECT_THAT(read_pose_line("1 2 1000001 4").error().message, HasSubstr("more than 1000000 m from the origin"));
 }
 
 TEST(PoseLines, ThatAreBrokenAreSkippedAndTold) {
