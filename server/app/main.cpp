@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <sys/stat.h>
+
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -48,6 +50,7 @@ int run(const app::ServerOptions& options) {
 } // namespace
 
 int main(int argc, char** argv) {
+    ::umask(077);                                     // what robots saw is for the owner of the store alone
     std::signal(SIGPIPE, SIG_IGN);                    // whoever reads what is printed may go
     const auto hangup = std::signal(SIGHUP, SIG_IGN); // until the server listens for it
     try {

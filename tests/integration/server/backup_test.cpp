@@ -9,7 +9,9 @@
 #include <atomic>
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <thread>
+#include <vector>
 
 /// Backups of a server under a streaming robot, and stores restored from them, as people make them.
 namespace scanloom::test {
@@ -73,6 +75,20 @@ TEST_F(BackupTest, HasAllThatWasAcknowledgedBeforeAndItsMapsAreThoseOfThatPartOf
     EXPECT_GE(kept, acknowledged);
     EXPECT_LE(kept, revision(server));
     EXPECT_EQ(digests(restored, kept), digests(server, kept));
+}
+
+TEST_F(BackupTest, StoreAndBackupsAreReadableByTheirOwnerOnly) {
+    namespace fs = std::filesystem;
+    RunningServer server(store_, place_.path() / "log", 0, 0, {"--backups", backups_.native()});
+    ASSERT_EQ(make(server).status, 201U);
+    for (const auto& top : {store_, backups_}) {
+        std::vector<fs::path> paths{top};
+        for (const auto& entry : fs::recursive_directory_iterator(top)) paths.push_back(entry.path());
+        for (const auto& path : paths) {
+            const auto others = fs::status(path).permissions() & (fs::perms::group_all | fs::perms::others_all);
+            EXPECT_EQ(others, fs::perms::none) << path;
+        }
+    }
 }
 
 TEST_F(BackupTest, TheyAreListedAndOldOnesGo) {
