@@ -6,8 +6,8 @@ const kTileSize = 256;
 
 /** A session as the test shapes it; cells are painted tile by tile at the native zoom. */
 export class FakeSession {
-  constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z' } = {}) {
-    Object.assign(this, { name, id, cellSize, created });
+  constructor(name, id, { cellSize = 0.05, created = '2026-01-02T03:04:05Z', number = 1 } = {}) {
+    Object.assign(this, { name, id, cellSize, created, number });
     this.revision = 0;
     this.bounds = null;
     this.robots = [];
@@ -113,6 +113,7 @@ export class FakeSession {
       ...(this.failure ? { state: 'failed', reason: this.failure } : { state: 'ok' }),
       id: this.id,
       created: this.created,
+      number: this.number,
       revision: this.revision,
       scans: this.scans,
       config: { cell_size: this.cellSize },

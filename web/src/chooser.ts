@@ -6,6 +6,7 @@ import { byId, setText } from './dom';
 import type { NewestSessions } from './newest_sessions';
 import type { Notice } from './panel/notice';
 import { poll, type Pace } from './poll';
+import { newestFirst } from './sessions/order';
 import type { SessionPanel } from './sessions/session_panel';
 import type { Viewer } from './viewer';
 
@@ -72,9 +73,9 @@ export class Chooser {
 
   /** Where something happens, or else the newest. */
   private async chooseFrom(sessions: Session[], signal: AbortSignal): Promise<void> {
-    const newestFirst = [...sessions].sort((a, b) => b.created.localeCompare(a.created));
-    const live = newestFirst.find(({ robots }) => robots.some(({ connected }) => connected));
-    const choice = live ?? newestFirst[0];
+    const ordered = [...sessions].sort(newestFirst);
+    const live = ordered.find(({ robots }) => robots.some(({ connected }) => connected));
+    const choice = live ?? ordered[0];
     if (!choice) {
       this.robotPort ??= await fetchRobotPort(signal);
       const { notice } = this.parts;

@@ -70,6 +70,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                              {"loaded", session != nullptr},
                              {"id", session_tag(info)},
                              {"created", rfc3339(info.created)},
+                             {"number", info.id},
                              {"revision", snapshot.revision},
                              {"scans", scans},
                              {"config", to_json(info.config)},

@@ -8,6 +8,7 @@ function session(id: string, revision: number): Session {
     name: 'a',
     id,
     created: '',
+    number: 1,
     revision,
     scans: revision,
     cellSize: 0.05,

@@ -54,6 +54,7 @@ export function decodeSession(json: unknown): Session {
     name: text(session['name'], 'name'),
     id: text(session['id'], 'id'),
     created: text(session['created'], 'created'),
+    number: number(session['number'], 'number'),
     revision: number(session['revision'], 'revision'),
     scans: number(session['scans'], 'scans'),
     cellSize: cellSizeOf(config),

@@ -30,6 +30,8 @@ export interface Session {
   /** Changes when a session is deleted and another is made under its name, or when the server draws maps otherwise. */
   id: string;
   created: string;
+  /** Greater for those that were created later. */
+  number: number;
   /** Rises with every scan. */
   revision: number;
   scans: number;

@@ -16,15 +16,19 @@ export function matches(name: string, query: string): boolean {
 export function arrange(sessions: Session[], order: Order, rate: (name: string) => number | null): Session[] {
   const rates = new Map(sessions.map(({ name }) => [name, rate(name) ?? 0]));
   const busier = (a: Session, b: Session): number => (rates.get(b.name) ?? 0) - (rates.get(a.name) ?? 0);
-  const newer = (a: Session, b: Session): number => compare(b.created, a.created);
   switch (order) {
     case 'name':
       return [...sessions].sort(byName);
     case 'newest':
-      return [...sessions].sort((a, b) => newer(a, b) || byName(a, b));
+      return [...sessions].sort((a, b) => newestFirst(a, b) || byName(a, b));
     case 'busiest':
-      return [...sessions].sort((a, b) => busier(a, b) || newer(a, b) || byName(a, b));
+      return [...sessions].sort((a, b) => busier(a, b) || newestFirst(a, b) || byName(a, b));
   }
+}
+
+/** Compares by creation; sessions of one second by their numbers. */
+export function newestFirst(a: Session, b: Session): number {
+  return compare(b.created, a.created) || b.number - a.number;
 }
 
 /** The old order, with what is new at its end: nothing moves away under the finger that points at it. */

@@ -86,7 +86,17 @@ describe('fetching a file of paths', () => {
     }
     const config = { cell_size: 0.05 };
     const id = ids.shift() ?? '1';
-    return Response.json({ name: 's', id, created: '', revision: 9, scans: 5, config, bounds: null, robots: [] });
+    return Response.json({
+      name: 's',
+      id,
+      created: '',
+      number: 1,
+      revision: 9,
+      scans: 5,
+      config,
+      bounds: null,
+      robots: [],
+    });
   }
 
   beforeEach(() => {

@@ -71,7 +71,7 @@ class World {
     if (!pathname.endsWith('trajectory.geojson')) {
       const config = { cell_size: 0.05 };
       const counters = { revision: 9, scans: 9, bounds: null, robots: [] };
-      return Promise.resolve(Response.json({ name: 'map', id: this.id, created: '', config, ...counters }));
+      return Promise.resolve(Response.json({ name: 'map', id: this.id, created: '', number: 1, config, ...counters }));
     }
     this.asked.push(searchParams.get('since') ?? '');
     return new Promise((resolve) => this.answers.push((places) => resolve(Response.json(pathOf(places)))));

@@ -3,11 +3,12 @@ import { describe, it } from 'node:test';
 import type { Session } from '../../../../web/src/api/types';
 import { arrange, keepOrder, matches } from '../../../../web/src/sessions/order';
 
-function session(name: string, created: string): Session {
+function session(name: string, created: string, number = 1): Session {
   return {
     name,
     id: name,
     created,
+    number,
     revision: 0,
     scans: 0,
     cellSize: 0.05,
@@ -44,6 +45,11 @@ describe('the order of sessions', () => {
 
   it('by age begins with the newest', () => {
     assert.deepEqual(names(arrange(kSessions, 'newest', () => 5)), ['lab-10', 'Attic', 'lab-9']);
+  });
+
+  it('by age tells sessions of one second apart by their numbers', () => {
+    const sessions = [session('a', '2026-03-01', 2), session('b', '2026-03-01', 10), session('c', '2026-03-01', 9)];
+    assert.deepEqual(names(arrange(sessions, 'newest', () => null)), ['b', 'c', 'a']);
   });
 
   it('by rate begins with the busiest, then the newest', () => {

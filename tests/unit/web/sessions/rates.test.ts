@@ -8,6 +8,7 @@ function session(scans: number, id = '1', name = 'a'): Session {
     name,
     id,
     created: '',
+    number: 1,
     revision: scans,
     scans,
     cellSize: 0.05,
