@@ -8,7 +8,7 @@ namespace scanloom::access {
 
 /// What a token is for.
 enum class Role {
-    kRobot,    ///< robot links: sends scans, makes its sessions
+    kRobot,    ///< robot links: sends scans, creates its sessions; over HTTP: has goals assigned
     kViewer,   ///< reads over HTTP; has ways planned, which changes nothing
     kOperator, ///< everything: as robots and viewers do, and creates, imports and deletes
 };
@@ -36,6 +36,9 @@ inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperat
 
 /// Over HTTP, without changing anything.
 [[nodiscard]] constexpr bool may_look(Role role) noexcept { return role != Role::kRobot; }
+
+/// Over HTTP: to assign goals to robots.
+[[nodiscard]] constexpr bool may_guide(Role role) noexcept { return role != Role::kViewer; }
 
 /// Over HTTP.
 [[nodiscard]] constexpr bool may_change(Role role) noexcept { return role == Role::kOperator; }

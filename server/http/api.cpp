@@ -206,7 +206,8 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kPointsPly: return get_points(sessions_, log_, slots_, PointFile::kPly, call);
     case Operation::kPlan: return post_plan(maps_, slots_, call);
     case Operation::kCoverage: return post_coverage(maps_, slots_, call);
-    case Operation::kGoal: return get_goal(maps_, goals_, slots_, call);
+    case Operation::kGoal: return get_goal(sessions_, goals_.ways(), slots_, call);
+    case Operation::kAssignGoal: return assign_goal(maps_, goals_, slots_, call);
     case Operation::kGoals: return get_goals(sessions_, goals_.ways(), slots_, call);
     case Operation::kLog: return get_log(sessions_, log_, call);
     case Operation::kLive: return get_live(sessions_, goals_.ways(), watched_landmarks_, doorman_, call);

@@ -40,8 +40,11 @@ Denied foreign_page(const Request& request, std::string token) {
 
 bool has_role(const Token& token, Need need) {
     if (need == Need::kCreate || need == Need::kChange || need == Need::kKeep) return may_change(token.role);
+    if (need == Need::kGuide) return may_guide(token.role);
     return need == Need::kAll || may_look(token.role);
 }
+
+bool is_about_one_session(Need need) { return need == Need::kLook || need == Need::kGuide || need == Need::kChange; }
 
 std::optional<Denied> objection_to(const Token& token, const Match& match) {
     const Need need = need_of(match.operation);
@@ -57,14 +60,12 @@ std::optional<Denied> objection_to(const Token& token, const Match& match) {
                         "are *",
                         token.name));
     }
-    const bool is_about_one = need == Need::kLook || need == Need::kChange;
-    return is_about_one ? Doorman::objection(token, match.arguments["session"]) : std::nullopt;
+    return is_about_one_session(need) ? Doorman::objection(token, match.arguments["session"]) : std::nullopt;
 }
 
 std::string_view session_in(const Match& match) {
-    const Need need = need_of(match.operation);
-    return need == Need::kLook || need == Need::kChange ? std::string_view(match.arguments["session"])
-                                                        : std::string_view();
+    return is_about_one_session(need_of(match.operation)) ? std::string_view(match.arguments["session"])
+                                                          : std::string_view();
 }
 
 } // namespace

@@ -21,10 +21,10 @@ bool is_known_host(std::string_view host_field, const std::vector<std::string>& 
 
 namespace {
 
-bool is_loopback(const boost::urls::authority_view& authority) {
-    if (authority.host_type() == boost::urls::host_type::ipv4) return authority.host_ipv4_address().is_loopback();
-    if (authority.host_type() == boost::urls::host_type::ipv6) return authority.host_ipv6_address().is_loopback();
-    return boost::urls::grammar::ci_is_equal(authority.host(), "localhost");
+/// The port that an authority names, or else that of the scheme.
+std::string_view port_of(const boost::urls::authority_view& authority, std::string_view scheme) {
+    if (authority.has_port() && !authority.port().empty()) return authority.port();
+    return scheme == "https" ? "443" : "80";
 }
 
 } // namespace
@@ -37,8 +37,8 @@ bool is_own_page(std::string_view origin, std::string_view host_field, bool is_s
     const auto page = boost::urls::parse_authority(origin.substr(colon + 3));
     const auto host = boost::urls::parse_authority(host_field);
     if (!page || !host || page->has_userinfo() || page->host_type() == boost::urls::host_type::none) return false;
-    if (is_loopback(*page)) return true;
-    return (scheme == "https" || !is_secure) && boost::urls::grammar::ci_is_equal(page->host(), host->host());
+    return (scheme == "https" || !is_secure) && boost::urls::grammar::ci_is_equal(page->host(), host->host()) &&
+           port_of(*page, scheme) == port_of(*host, scheme);
 }
 
 bool is_websocket_key(std::string_view key) noexcept {

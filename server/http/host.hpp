@@ -13,9 +13,10 @@ namespace scanloom::http {
 /// as the same origin (DNS rebinding). Its name gives it away.
 [[nodiscard]] bool is_known_host(std::string_view host_field, const std::vector<std::string>& names);
 
-/// Whether a page of that origin ("http://localhost:8080") may use what only pages of this server should: it is of the
-/// host that was asked (RFC 6454; behind a proxy the ports differ), or of this very machine. Where it is asked over TLS
-/// (`is_secure`), pages of this host that came without may be anybody's.
+/// Whether a page of that origin ("http://localhost:8080") may use what only pages of this server may: host and port
+/// are those of the Host field (RFC 6454), where the port of the origin's scheme (80, 443) stands for one that is not
+/// given. Another port of the same host is another program. Where the request came over TLS (`is_secure`), the page
+/// must have, too: others on the network can forge a page without it. A proxy must pass the Host field on unchanged.
 /// Pre  the Host field is one of a known host.
 [[nodiscard]] bool is_own_page(std::string_view origin, std::string_view host_field, bool is_secure);
 

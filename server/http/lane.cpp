@@ -36,7 +36,7 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kFrontiers:
     case Operation::kPlan:
     case Operation::kCoverage:
-    case Operation::kGoal: return Lane::kPlanning;
+    case Operation::kAssignGoal: return Lane::kPlanning;
     case Operation::kMakeBackup:
     case Operation::kCreateSession:
     case Operation::kDeleteSession: return Lane::kChanging;

@@ -47,6 +47,7 @@ Need need_of(Operation operation) noexcept {
     case Operation::kListWeaves:
     case Operation::kStartWeave:
     case Operation::kGetWeave: return Need::kLook;
+    case Operation::kAssignGoal: return Need::kGuide;
     }
     return Need::kChange; // a new operation is nobody's until it has a line above
 }

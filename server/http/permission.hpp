@@ -11,6 +11,7 @@ enum class Need {
     kKeep,    ///< to keep the whole store: it is for all sessions, and may change them
     kList,    ///< to look at sessions; only those that it is for are shown
     kLook,    ///< to look at this session
+    kGuide,   ///< to assign goals to robots of this session
     kCreate,  ///< to change sessions; the handler knows which
     kChange,  ///< to change this session
 };

@@ -45,6 +45,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/sessions/{session}/plan", Operation::kPlan},
     Route{"POST", "/api/v1/sessions/{session}/coverage", Operation::kCoverage},
     Route{"GET", "/api/v1/sessions/{session}/goal", Operation::kGoal},
+    Route{"POST", "/api/v1/sessions/{session}/goal", Operation::kAssignGoal},
     Route{"GET", "/api/v1/sessions/{session}/goals.geojson", Operation::kGoals},
     Route{"GET", "/api/v1/sessions/{session}/log", Operation::kLog},
     Route{"GET", "/api/v1/sessions/{session}/live", Operation::kLive},

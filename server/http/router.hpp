@@ -45,6 +45,7 @@ enum class Operation {
     kPlan,
     kCoverage,
     kGoal,
+    kAssignGoal,
     kGoals,
     kLog,
     kLive,

@@ -54,6 +54,11 @@ public:
     [[nodiscard]] const SessionInfo& session() const noexcept { return session_; }
     [[nodiscard]] const WeaveRequest& request() const noexcept { return request_; }
 
+    /// Clients see it among the weaves of the session. What GET asks for is not listed: GET changes nothing that
+    /// others see. The number orders the list, the newest has the greatest; 0: not listed.
+    void set_listed(std::uint64_t number) noexcept { listed_ = number; }
+    [[nodiscard]] std::uint64_t listed() const noexcept { return listed_; }
+
     [[nodiscard]] Progress progress() const;
 
     /// The newest that are finished; null: none yet.
@@ -116,6 +121,7 @@ private:
 
     std::atomic<Revision> woven_ = 0;
     std::atomic<bool> cancelled_ = false;
+    std::atomic<std::uint64_t> listed_ = 0;
 
     // Whoever runs it, or resumes it, alone; while nobody does, whoever has the mutex.
     std::optional<mapping::Projection> projection_; // kept, so that it can go on, and others from it

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <new>
 #include <utility>
 
@@ -27,9 +28,18 @@ Error was_removed(const Weave& weave) {
 Weaves::Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits)
     : log_(log), executor_(std::move(executor)), limits_(limits), budget_(limits.chunks_max) {}
 
-Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const WeaveRequest& request, Revision newest) {
+Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const WeaveRequest& request, Revision newest,
+                                             Listing listing) {
     const std::lock_guard lock(mutex_);
-    const Revision target = target_of(request, newest);
+    auto weave = started(session, request, target_of(request, newest));
+    if (weave && listing == Listing::kListed) (*weave)->set_listed(++listed_);
+    evict();
+    return weave;
+}
+
+/// Pre: mutex_ is held.
+Result<std::shared_ptr<Weave>> Weaves::started(const SessionInfo& session, const WeaveRequest& request,
+                                               Revision target) {
     auto weave = touch(session.id, weave_id_of(session, request));
     if (weave && weave->join(target)) return weave;
     if (auto room = check_room(); !room) return room.error();
@@ -39,21 +49,31 @@ Result<std::shared_ptr<Weave>> Weaves::start(const SessionInfo& session, const W
                                             "them; try again soon"};
         }
     } else {
+        const std::uint64_t listed = weave ? weave->listed() : 0;
         if (weave) weaves_.pop_front();
         weave = std::make_shared<Weave>(session, request, target);
+        weave->set_listed(listed);
         weaves_.push_front(weave);
     }
     launch(weave);
-    evict();
     return weave;
+}
+
+std::size_t Weaves::under_way() const {
+    const std::lock_guard lock(mutex_);
+    return count_under_way();
+}
+
+/// Pre: mutex_ is held.
+std::size_t Weaves::count_under_way() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(weaves_, [](const auto& weave) { return !has_ended(weave->progress().state); }));
 }
 
 /// Pre: mutex_ is held.
 Result<> Weaves::check_room() const {
     if (stopped_) return shutting_down();
-    const auto under_way =
-        std::ranges::count_if(weaves_, [](const auto& other) { return !has_ended(other->progress().state); });
-    if (static_cast<std::size_t>(under_way) < limits_.waiting_max) return {};
+    if (count_under_way() < limits_.waiting_max) return {};
     return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
 }
 
@@ -134,7 +154,8 @@ std::vector<std::shared_ptr<Weave>> Weaves::list(store::SessionId session) const
     const std::lock_guard lock(mutex_);
     std::vector<std::shared_ptr<Weave>> of_session;
     std::ranges::copy_if(weaves_, std::back_inserter(of_session),
-                         [&](const auto& weave) { return weave->session().id == session; });
+                         [&](const auto& weave) { return weave->session().id == session && weave->listed() > 0; });
+    std::ranges::sort(of_session, std::greater{}, &Weave::listed);
     return of_session;
 }
 
@@ -175,12 +196,14 @@ void Weaves::stop() {
 void Weaves::evict() {
     std::size_t kept = 0;
     std::size_t chunks = 0;
-    std::erase_if(weaves_, [&](const auto& weave) {
-        if (!has_ended(weave->progress().state)) return false;
-        ++kept;
-        chunks += chunks_of(*weave);
-        return kept > limits_.kept_max || chunks > limits_.chunks_kept_max;
-    });
+    for (const bool listed : {true, false}) {
+        std::erase_if(weaves_, [&](const auto& weave) {
+            if ((weave->listed() > 0) != listed || !has_ended(weave->progress().state)) return false;
+            ++kept;
+            chunks += chunks_of(*weave);
+            return kept > limits_.kept_max || chunks > limits_.chunks_kept_max;
+        });
+    }
 }
 
 } // namespace scanloom::session

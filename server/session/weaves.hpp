@@ -31,7 +31,7 @@ struct WeavesLimits {
 /// session has each entry folded once, and going back costs no more than from the furthest that is kept before.
 ///
 /// Queue   "weaves": at most waiting_max that have not ended; one more is refused with kOverloaded. The least recently
-///         used of those that are done go when others need their place.
+///         used of those that are done go when others need their place, those that are not listed first.
 /// Memory  each counts with all of its chunks, though those that began from each other share what neither has changed
 ///         since: the bounds hold whichever of them go first.
 /// Thread  any; nothing here waits.
@@ -41,16 +41,18 @@ public:
     /// is over takes another turn. The log and this must outlive what runs there.
     Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits = {});
 
+    enum class Listing { kListed, kUnlisted };
+
     /// Starts the weave, or finds the one that is asked for again and has it go on to where the session is by now,
-    /// `newest`; one that failed or was cancelled is tried again from the start.
+    /// `newest`; one that failed or was cancelled is tried again from the start. Once listed, it stays so.
     /// Errors  kOverloaded, kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Weave>> start(const SessionInfo& session, const WeaveRequest& request,
-                                                       Revision newest);
+                                                       Revision newest, Listing listing = Listing::kListed);
 
     /// Null when there is none, or no longer.
     [[nodiscard]] std::shared_ptr<Weave> find(store::SessionId session, std::string_view id);
 
-    /// The last used first.
+    /// Those that are listed, the last started first.
     [[nodiscard]] std::vector<std::shared_ptr<Weave>> list(store::SessionId session) const;
 
     /// Cancels and forgets it. @return whether there was such a weave.
@@ -58,6 +60,9 @@ public:
 
     /// The session is deleted: cancels and forgets all of its weaves.
     void remove_all(store::SessionId session);
+
+    /// How many have not ended.
+    [[nodiscard]] std::size_t under_way() const;
 
     /// Of all that are under way or kept, whatever they share.
     [[nodiscard]] std::int64_t chunks() const;
@@ -73,7 +78,10 @@ private:
         bool is_on_its_way = false; // it goes on from there, but no further than to where the other may begin
     };
 
+    [[nodiscard]] Result<std::shared_ptr<Weave>> started(const SessionInfo& session, const WeaveRequest& request,
+                                                         Revision target);
     [[nodiscard]] std::shared_ptr<Weave> touch(store::SessionId session, std::string_view id);
+    [[nodiscard]] std::size_t count_under_way() const;
     [[nodiscard]] Result<> check_room() const;
     void launch(const std::shared_ptr<Weave>& weave);
     void post(std::shared_ptr<Weave> weave);
@@ -90,6 +98,7 @@ private:
 
     mutable std::mutex mutex_;
     bool stopped_ = false;
+    std::uint64_t listed_ = 0;                 // how often one was
     std::list<std::shared_ptr<Weave>> weaves_; // the last used first
 
     struct Behind {

@@ -3,11 +3,15 @@
 #include "server/guide/robots.hpp"
 #include "server/http/geojson.hpp"
 #include "server/http/handlers/planning_request.hpp"
+#include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
 #include "server/http/number.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,11 +32,18 @@ std::string point_text(const Point2& point) {
     return fmt::format(R"({{"x":{},"y":{}}})", rounded_metres(point.x), rounded_metres(point.y));
 }
 
+std::string head_text(std::string_view robot, Revision revision, std::string_view outcome) {
+    return fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}",)", robot, revision,
+                       outcome); // names are [A-Za-z0-9_-]
+}
+
+constexpr std::string_view kNoGoal = R"("goal":null,"target":null,"in_danger":null,"path":null,"length":null)";
+
+/// What was assigned just now.
 std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
-    const auto head = fmt::format(R"({{"robot":"{}","revision":{},"outcome":"{}","given_up":{},)", robot, maps.revision,
-                                  name_of(next.outcome), next.given_up); // names are [A-Za-z0-9_-]
-    if (!next.goal)
-        return head + R"("goal":null,"target":null,"in_danger":null,"path":null,"length":null,"cost":null})";
+    const auto head =
+        head_text(robot, maps.revision, name_of(next.outcome)) + fmt::format(R"("given_up":{},)", next.given_up);
+    if (!next.goal) return fmt::format(R"({}{},"cost":null}})", head, kNoGoal);
     const grid::Cell target = next.goal->target;
     return head + fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{},"cost":{}}})",
                               point_text(next.path.points.back()),
@@ -41,17 +52,61 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
                               rounded_metres(next.path.cost));
 }
 
+/// What was assigned earlier. A robot that planned another way since then has its goal, and no way there.
+std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::Way* way) {
+    const bool leads_there = way != nullptr && way->kind == guide::WayKind::kGoal;
+    return head_text(robot, goal.revision, "goal") +
+           fmt::format(R"("goal":{},"target":{},"in_danger":{},"path":{},"length":{}}})", point_text(goal.place),
+                       point_text(goal.target), goal.in_danger, leads_there ? line_string(way->points) : "null",
+                       leads_there ? fmt::to_string(rounded_metres(way->length_m)) : "null");
+}
+
+Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name) {
+    const auto robot = guide::find_robot(maps, name);
+    if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(name)), robot.error());
+    return *robot;
+}
+
+constexpr std::array<std::string_view, 3> kGoalMembers = {"robot", "size_min", "body_radius"};
+
 } // namespace
 
-Result<Response> get_goal(const MapsLookup& maps, guide::GoalBook& goals, const AnswerSlots& slots, const Call& call) {
-    const auto found = find_for_search(maps, call, {"robot", "size_min", "body_radius"});
+Result<Response> get_goal(session::SessionRegistry& sessions, guide::WayBook& ways, const AnswerSlots& slots,
+                          const Call& call) {
+    if (auto known = call.query.check_only({"robot"}); !known) return known.error();
+    const auto session = find_session(sessions, call);
+    if (!session) return session.error();
+    const auto name = call.query.find("robot");
+    if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot whose goal is asked for"};
+    const auto maps = (*session)->snapshot();
+    const auto robot = find_robot(*maps, *name);
+    if (!robot) return robot.error();
+
+    const auto page = ways.page(*session, guide::WayBook::Clock::now());
+    const auto held = std::ranges::find(page.robots, *robot, &guide::WayBook::Held::robot);
+    if (held == page.robots.end() || !held->goal) {
+        const bool explored = std::ranges::binary_search(page.explored, *robot);
+        const auto head = head_text(*name, maps->revision, explored ? "complete" : "none");
+        return ok_text(kJson, nullptr, fmt::format("{}{}}}", head, kNoGoal));
+    }
+    auto slot = slots.take((held->way ? held->way->points.size() : 0) * kPointTextBytes);
+    if (!slot) return slot.error();
+    return ok_text(kJson, std::move(*slot), goal_text(*name, *held->goal, held->way.get()));
+}
+
+Result<Response> assign_goal(const MapsLookup& maps, guide::GoalBook& goals, const AnswerSlots& slots,
+                             const Call& call) {
+    const auto found = find_for_search(maps, call, {});
     if (!found) return found.error();
     const auto& snapshot = *found->snapshot;
-    const auto name = call.query.find("robot");
-    if (!name) return Error{Errc::kInvalidField, "robot is missing; name the robot that is to explore"};
-    const auto robot = guide::find_robot(snapshot, *name);
-    if (!robot) return prefixed(fmt::format("robot is {}: ", in_quotes(*name)), robot.error());
-    const auto options = exploration_options(call.query, snapshot.robots[*robot].body_radius);
+    const auto body = parse_json_object(call.request.body);
+    if (!body) return body.error();
+    if (auto known = check_members(*body, kGoalMembers); !known) return known.error();
+    const auto name = read_text(*body, "robot");
+    if (!name) return name.error();
+    const auto robot = find_robot(snapshot, *name);
+    if (!robot) return robot.error();
+    const auto options = exploration_options(*body, snapshot.robots[*robot].body_radius);
     if (!options) return options.error();
     const auto pose = guide::pose_of(snapshot, *robot);
     if (!pose) return pose.error();

@@ -111,7 +111,7 @@ Result<Maps> MapsLookup::woven(const Call& call) const {
     const auto request = weave_request(**session, call.query);
     if (!request) return request.error();
     const Revision newest = (*session)->snapshot()->revision;
-    const auto weave = weaves_.start((*session)->info(), *request, newest);
+    const auto weave = weaves_.start((*session)->info(), *request, newest, session::Weaves::Listing::kUnlisted);
     if (!weave) return weave.error();
     return maps_of(std::move(*session), *weave, (*weave)->wait(session::target_of(*request, newest), patience_));
 }

@@ -86,6 +86,20 @@ Result<planning::ExplorationOptions> exploration_options(const Query& query, con
     return options;
 }
 
+Result<planning::ExplorationOptions> exploration_options(const boost::json::object& body,
+                                                         const std::optional<double>& own) {
+    planning::ExplorationOptions options;
+    options.passability.body_radius_m = own.value_or(options.passability.body_radius_m);
+    if (const auto* size = body.if_contains("size_min")) {
+        if (!size->is_int64() || size->get_int64() < 1) {
+            return invalid("size_min is no whole number of cells from 1 on");
+        }
+        options.frontier_size_min = static_cast<std::size_t>(size->get_int64());
+    }
+    if (auto ok = set(body, "body_radius", options.passability.body_radius_m); !ok) return ok.error();
+    return options;
+}
+
 Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
                                                          const std::optional<double>& own) {
     planning::PassabilityOptions options;

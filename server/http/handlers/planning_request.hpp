@@ -29,9 +29,12 @@ struct Place {
 [[nodiscard]] Result<Maps> find_for_search(const MapsLookup& maps, const Call& call,
                                            std::initializer_list<std::string_view> known);
 
-/// The parameters size_min and body_radius; without the latter the body is `own`, if that is known.
+/// The parameters or members size_min and body_radius; without the latter the body is `own`, if that is known.
 /// Errors  kInvalidField.
 [[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query,
+                                                                       const std::optional<double>& own = {});
+
+[[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const boost::json::object& body,
                                                                        const std::optional<double>& own = {});
 
 /// The members allow_unknown, body_radius and danger_cost, each if it is there; `own` as above. Ranges are for the

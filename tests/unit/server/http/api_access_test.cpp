@@ -84,7 +84,8 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
             const bool is_store = route.pattern == "/api/v1/backups";
             EXPECT_FALSE(allowed("")) << method << " " << target;
             EXPECT_FALSE(allowed("stranger")) << method << " " << target;
-            EXPECT_EQ(allowed("robot"), is_metrics) << method << " " << target;
+            const bool guides = method == "POST" && route.pattern.ends_with("/goal");
+            EXPECT_EQ(allowed("robot"), is_metrics || guides) << method << " " << target;
             EXPECT_EQ(allowed("viewer"), looks && matches && !is_metrics && !is_store) << method << " " << target;
             EXPECT_EQ(allowed("viewer-all"), looks && !is_store) << method << " " << target;
             if (method == "DELETE" && name != "none" && name != "depot-none") continue; // they are needed on
@@ -94,6 +95,57 @@ TEST_F(ApiAccessTest, EachRoleMayDoItsOwnAndNothingElse) {
     }
     EXPECT_EQ(ask_as("operator", "DELETE", "/api/v1/sessions/depot-1").status, Status::no_content);
     EXPECT_EQ(ask_as("operator-all", "DELETE", "/api/v1/sessions/lab").status, Status::no_content);
+}
+
+/// Who may not change anything, and what a foreign page has a browser send, leaves what others see as it was.
+TEST_F(ApiAccessTest, OnlyWhoMayChangeThingsChangesThem) {
+    stream("depot-1", 3);
+    const std::map<std::string_view, std::string> bodies = {
+        {"/api/v1/login", R"({"token":"secret of operator-all"})"},
+        {"/api/v1/sessions", R"({"name":"depot-new"})"},
+        {"/api/v1/sessions/{session}/plan", R"({"from":{"robot":"r1"},"to":[0.5,0.1]})"},
+        {"/api/v1/sessions/{session}/goal", R"({"robot":"r1","size_min":1,"body_radius":0})"},
+        {"/api/v1/sessions/{session}/weave", R"({"cell_size":0.1})"},
+    };
+    const auto state = [&] {
+        std::string seen;
+        for (const auto* path : {"", "/depot-1", "/depot-1/goals.geojson", "/depot-1/goal?robot=r1", "/depot-1/weave",
+                                 "/depot-1/digest"}) {
+            const auto answer = ask_as("operator-all", "GET", std::string("/api/v1/sessions") + path);
+            EXPECT_EQ(answer.status, Status::ok) << path;
+            seen.append(answer.body.bytes());
+        }
+        return seen.append(ask_as("operator-all", "GET", "/api/v1/backups").body.bytes());
+    };
+    const auto before = state();
+    for (const auto& route : routes()) {
+        const bool only_reads = route.method == "GET";
+        const bool is_weave =
+            route.method == "POST" && route.pattern.ends_with("/weave"); // viewers may, and it is listed
+        const auto body = bodies.contains(route.pattern) ? bodies.at(route.pattern) : "{}";
+        for (const auto* who : {"", "stranger", "robot", "viewer", "viewer-all", "operator-all"}) {
+            for (const auto* origin : {"", "http://elsewhere", "http://maps.lab:9090", "http://localhost:8080"}) {
+                const std::string name(who);
+                const bool guides = name == "robot" && route.pattern.ends_with("/goal");
+                if (!only_reads && (name == "operator-all" || guides || (is_weave && name.starts_with("viewer"))))
+                    continue;
+                for (const std::string query : {"", "?robot=r1", "?cell_size=0.2"}) {
+                    auto asked = request(std::string(route.method), target_of(route, "depot-1") + query, name, body);
+                    asked.origin = origin;
+                    answer(api_, asked);
+                    if (only_reads) {
+                        asked.method = "HEAD";
+                        answer(api_, asked);
+                    }
+                }
+            }
+        }
+        ASSERT_EQ(state(), before) << route.method << " " << route.pattern;
+    }
+    EXPECT_EQ(
+        ask_as("robot", "POST", "/api/v1/sessions/depot-1/goal", bodies.at("/api/v1/sessions/{session}/goal")).status,
+        Status::ok);
+    EXPECT_NE(state(), before) << "what must not happen can be seen";
 }
 
 TEST_F(ApiAccessTest, HeadIsAnsweredAsGet) {
@@ -288,6 +340,10 @@ TEST_F(ApiTest, WithoutTokensToo) {
     EXPECT_EQ(metrics_.refusals().of(access::Port::kHttp, access::Reason::kForeignPage).Value(), 6.0);
     EXPECT_EQ(registry_.find("new"), nullptr);
     EXPECT_EQ(create(kOwnPage, "application/json", "/api/v1/sessions").status, Status::created);
+    for (const auto* foreign : {"http://maps.lab:9090", "http://maps.lab", "http://localhost:8080"}) {
+        EXPECT_EQ(create(foreign, "application/json", "/api/v1/sessions/new/goal").status, Status::forbidden)
+            << foreign;
+    }
     EXPECT_EQ(create("", "application/json", "/api/v1/sessions").status, Status::conflict) << "a program";
     Request look;
     look.method = "GET";

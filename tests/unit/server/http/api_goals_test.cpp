@@ -1,7 +1,9 @@
 #include "tests/unit/server/http/api_fixture.hpp"
 
 #include <boost/json/array.hpp>
+#include <boost/json/parse.hpp>
 #include <boost/json/serialize.hpp>
+#include <fmt/format.h>
 
 #include <string>
 
@@ -28,9 +30,13 @@ protected:
 
     [[nodiscard]] std::string text() { return std::string(get(kTarget).body.bytes()); }
     boost::json::value goals() { return get_json(kTarget); }
-    boost::json::value ask_for_goal(const std::string& robot) {
-        return get_json("/api/v1/sessions/a/goal?robot=" + robot);
+    boost::json::value ask_for_goal(const std::string& robot, int size_min = 3) {
+        const auto answer =
+            ask("POST", "/api/v1/sessions/a/goal", fmt::format(R"({{"robot":"{}","size_min":{}}})", robot, size_min));
+        EXPECT_EQ(answer.status, Status::ok);
+        return boost::json::parse(answer.body.bytes());
     }
+    boost::json::value goal_of(const std::string& robot) { return get_json("/api/v1/sessions/a/goal?robot=" + robot); }
     boost::json::array features() { return goals().at("features").as_array(); }
 
     /// The robot of a link leaves; returns when the session knows.
@@ -100,10 +106,26 @@ TEST_F(ApiGoalsTest, GoalsOfTwoRobotsAreThoseThatTheyWereAnswered) {
     }
 }
 
+TEST_F(ApiGoalsTest, TheGoalOfARobotIsTheOneThatWasAssigned) {
+    const auto none = goal_of("r1");
+    EXPECT_EQ(none.at("outcome"), "none");
+    EXPECT_TRUE(none.at("goal").is_null() && none.at("path").is_null() && none.at("length").is_null());
+    const auto assigned = ask_for_goal("r1");
+    const auto shown = goal_of("r1");
+    for (const auto& member : shown.as_object()) EXPECT_EQ(member.value(), assigned.at(member.key())) << member.key();
+    goals_.ways().give_way(registry_.find("a"), 0, guide::Way{guide::WayKind::kPlan, {{0.5, 1.25}}, 0.0, 3},
+                           guide::WayBook::Clock::now());
+    EXPECT_EQ(goal_of("r1").at("goal"), assigned.at("goal"));
+    EXPECT_TRUE(goal_of("r1").at("path").is_null()) << "its way leads elsewhere";
+}
+
 TEST_F(ApiGoalsTest, AskingChangesNothing) {
+    stream("a", "r2", {scan_with_a_gap(2.0)});
     ask_for_goal("r1");
     const auto before = text();
     EXPECT_EQ(text(), before);
+    goal_of("r1");
+    goal_of("r2");
     EXPECT_EQ(get_json("/api/v1/sessions/a/frontiers.geojson").at("any_reachable"), true);
     EXPECT_EQ(ask("POST", "/api/v1/sessions/a/plan", R"({"from":{"robot":"r1"},"to":[2.5,0.2]})").status, Status::ok);
     EXPECT_EQ(ask("POST", "/api/v1/sessions/a/coverage", R"({"start":{"robot":"r1"}})").status, Status::ok);
@@ -115,7 +137,8 @@ TEST_F(ApiGoalsTest, AskingChangesNothing) {
 TEST_F(ApiGoalsTest, AGoalThatIsNoMoreIsNotShown) {
     ask_for_goal("r1");
     EXPECT_EQ(features().size(), 2U);
-    EXPECT_EQ(get_json("/api/v1/sessions/a/goal?robot=r1&size_min=100000").at("outcome"), "complete");
+    EXPECT_EQ(ask_for_goal("r1", 100'000).at("outcome"), "complete");
+    EXPECT_EQ(goal_of("r1").at("outcome"), "complete");
     EXPECT_THAT(features(), IsEmpty());
     EXPECT_EQ(goals().at("explored"), (boost::json::array{"r1"}));
     ask_for_goal("r1");

@@ -46,7 +46,7 @@ protected:
     boost::json::value post_json(const std::string& what, const std::string& body) {
         const auto response = post(what, body);
         EXPECT_EQ(response.status, Status::ok) << response.body.bytes();
-        EXPECT_EQ(response.get("Content-Type"), kGeoJson);
+        EXPECT_EQ(response.get("Content-Type"), what.starts_with("goal") ? kJson : kGeoJson);
         return boost::json::parse(response.body.bytes());
     }
     void expect_bad(const std::string& what, const std::string& body, const std::string& beginning) {
@@ -167,10 +167,10 @@ TEST_F(ApiPlanningTest, SmallFrontiersMayBeLeftOut) {
 }
 
 TEST_F(ApiPlanningTest, SettingsAreWovenFirst) {
-    for (const char* what : {"frontiers.geojson?cell_size=0.1", "goal?robot=r1&until=3"}) {
-        EXPECT_THAT(detail(get(std::string("/api/v1/sessions/a/") + what), Status::bad_request),
-                    HasSubstr("POST them to .../weave"));
-    }
+    EXPECT_THAT(detail(get("/api/v1/sessions/a/frontiers.geojson?cell_size=0.1"), Status::bad_request),
+                HasSubstr("POST them to .../weave"));
+    EXPECT_THAT(detail(post("goal?until=3", R"({"robot":"r1"})"), Status::bad_request),
+                HasSubstr("POST them to .../weave"));
 }
 
 TEST_F(ApiPlanningTest, WithoutARobotThatIsSomewhereNothingIsReachable) {
@@ -195,7 +195,6 @@ TEST_F(ApiPlanningTest, BadParametersAreNamed) {
              std::pair{"frontiers.geojson?size_min=many", "size_min is \"many\""},
              std::pair{"frontiers.geojson?body_radius=nan", "body_radius is \"nan\""},
              std::pair{"frontiers.geojson?body_radius=-1", "body_radius is -1 m"},
-             std::pair{"goal?robot=r1&body_radius=6", "body_radius is 6 m"},
              std::pair{"frontiers.geojson?colour=red", "the parameter \"colour\" is unknown"},
              std::pair{"goal?robot=r1&colour=red", "the parameter \"colour\" is unknown"},
              std::pair{"goal", "robot is missing"},
@@ -206,7 +205,7 @@ TEST_F(ApiPlanningTest, BadParametersAreNamed) {
         EXPECT_THAT(detail(get(session + target), Status::not_found), StartsWith("robot is \"r9\": there is no robot"));
     }
     EXPECT_EQ(get("/api/v1/sessions/none/frontiers.geojson").status, Status::not_found);
-    EXPECT_EQ(get(session + "goal?robot=r1&weave=0123456789abcdef").status, Status::not_found);
+    EXPECT_EQ(post("goal?weave=0123456789abcdef", R"({"robot":"r1"})").status, Status::not_found);
 }
 
 // Plans
@@ -246,10 +245,10 @@ TEST_F(ApiPlanningTest, WaysForARobotAreForItsBodyUnlessAnotherIsAskedFor) {
     EXPECT_EQ(covered(R"({"start":{"robot":"r1"}})"), covered(R"({"body_radius":0.5})"));
     EXPECT_NE(covered(R"({"start":[0.5,1.25]})"), covered("{}"));
 
-    const auto goal = [&](const std::string& query) { return get_json("/api/v1/sessions/a/goal?robot=r1" + query); };
+    const auto goal = [&](const std::string& more) { return post_json("goal", R"({"robot":"r1")" + more + "}"); };
     const auto own = goal("");
-    EXPECT_EQ(own, goal("&body_radius=0.5"));
-    EXPECT_NE(own, goal("&body_radius=0.15"));
+    EXPECT_EQ(own, goal(R"(,"body_radius":0.5)"));
+    EXPECT_NE(own, goal(R"(,"body_radius":0.15)"));
 }
 
 TEST_F(ApiPlanningTest, OptionsOfAPlanAreHeeded) {
@@ -385,7 +384,7 @@ TEST_F(ApiPlanningTest, BadCoveragesAreRefusedByTheNameOfTheirField) {
 // Goals
 
 TEST_F(ApiPlanningTest, AGoalIsTheFrontierWithTheCheapestWay) {
-    const auto answer = get_json("/api/v1/sessions/a/goal?robot=r1");
+    const auto answer = post_json("goal", R"({"robot":"r1"})");
     const auto expected = planning::next_goal(maps()->classes, cell_size(), {kX, kY}).value();
     ASSERT_EQ(answer.at("outcome"), "goal");
     const auto points = points_of(answer.at("path"));
@@ -395,7 +394,7 @@ TEST_F(ApiPlanningTest, AGoalIsTheFrontierWithTheCheapestWay) {
     EXPECT_NEAR(number(answer.at("target").at("x")), (expected.goal->target.i + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("target").at("y")), (expected.goal->target.j + 0.5) * 0.05, 1e-6);
     EXPECT_NEAR(number(answer.at("length")), expected.path.length_m, 1e-6);
-    EXPECT_EQ(get_json("/api/v1/sessions/a/goal?robot=r1"), answer) << "asking again gives back the one before";
+    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})"), answer) << "asking again gives back the one before";
 }
 
 /// Which of the frontiers an answer's target is a cell of.
@@ -415,7 +414,7 @@ TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
     for (int n = 0; outcome == "goal"; ++n) {
         const auto robot = "robot-" + std::to_string(n);
         stream("a", robot, {scan_with_a_gap()});
-        const auto answer = get_json("/api/v1/sessions/a/goal?size_min=10&robot=" + robot);
+        const auto answer = post_json("goal", fmt::format(R"({{"robot":"{}","size_min":10}})", robot));
         outcome = answer.at("outcome").as_string();
         if (outcome != "goal") break;
         const auto frontiers = classify::find_frontiers(maps()->classes, 10);
@@ -428,8 +427,7 @@ TEST_F(ApiPlanningTest, TwoRobotsNeverGetTheSameFrontierUntilNoneIsLeft) {
 }
 
 TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
-    const std::string target = "/api/v1/sessions/a/goal?robot=r1";
-    const auto answer = get_json(target);
+    const auto answer = post_json("goal", R"({"robot":"r1"})");
     EXPECT_EQ(answer.at("given_up"), 0);
     Scan blind = scan_with_a_gap();
     blind.pose.x = number(answer.at("goal").at("x"));
@@ -439,14 +437,28 @@ TEST_F(ApiPlanningTest, WhatARobotHasLookedAtInVainIsGivenUp) {
     std::ranges::fill(blind.ranges, kInvalidRange);
     blind.seq = 2;
     stream("a", "r1", {blind});
-    const auto next = get_json(target);
+    const auto next = post_json("goal", R"({"robot":"r1"})");
     EXPECT_GT(next.at("given_up").to_number<int>(), 0);
     EXPECT_NE(next.at("target"), answer.at("target"));
 }
 
 TEST_F(ApiPlanningTest, ARobotWithoutAPoseHasNoGoal) {
     join("a", "mute", 1);
-    EXPECT_THAT(detail(get("/api/v1/sessions/a/goal?robot=mute"), Status::conflict), HasSubstr("has sent no scan yet"));
+    EXPECT_THAT(detail(post("goal", R"({"robot":"mute"})"), Status::conflict), HasSubstr("has sent no scan yet"));
+}
+
+TEST_F(ApiPlanningTest, GoalsOfFaultyRequestsAreRefused) {
+    for (const auto& [body, beginning] : {
+             std::pair{"{}", "robot is missing"},
+             std::pair{R"({"robot":1})", "robot is "},
+             std::pair{R"({"robot":"r1","size_min":0})", "size_min is no whole number of cells"},
+             std::pair{R"({"robot":"r1","size_min":1.5})", "size_min is no whole number of cells"},
+             std::pair{R"({"robot":"r1","body_radius":7})", "body_radius is 7 m"},
+             std::pair{R"({"robot":"r1","until":3})", "the field \"until\" is unknown"},
+         }) {
+        expect_bad("goal", body, beginning);
+    }
+    EXPECT_THAT(detail(post("goal", R"({"robot":"none"})"), Status::not_found), HasSubstr(R"(robot is "none")"));
 }
 
 // All
@@ -462,7 +474,7 @@ TEST_F(ApiPlanningTest, AWeaveIsPlannedOnAsTheSessionIs) {
     const auto plan = post_json("plan?" + weave, R"({"from":[1.0,1.0],"to":[2.5,0.2]})");
     EXPECT_EQ(points_of(plan.at("geometry")).back(), (Point2{2.5, 0.2}));
     post_json("coverage?" + weave, "{}");
-    EXPECT_EQ(get_json("/api/v1/sessions/a/goal?robot=r1&" + weave).at("outcome"), "goal");
+    EXPECT_EQ(post_json("goal?" + weave, R"({"robot":"r1"})").at("outcome"), "goal");
 }
 
 TEST_F(ApiPlanningTest, NoSearchIsBegunWhileTheServerShutsDown) {

@@ -52,7 +52,8 @@ TEST(Lane, FollowsFromTheRequest) {
         {"GET", session + "/map.csv?class_source=himm", Lane::kWeaving},
         {"POST", session + "/weave", Lane::kServing}, // which only begins
         {"GET", session + "/frontiers.geojson?robot=r", Lane::kPlanning},
-        {"GET", session + "/goal?robot=r", Lane::kPlanning},
+        {"GET", session + "/goal?robot=r", Lane::kServing},
+        {"POST", session + "/goal", Lane::kPlanning},
         {"POST", session + "/plan", Lane::kPlanning},
         {"POST", session + "/coverage?weave=0123456789abcdef", Lane::kPlanning},
         // What waits for the disk.

@@ -402,7 +402,7 @@ TEST(HttpServer, OneTooManyOfAKindIsToldToComeBackAndHoldsUpNothingElse) {
          get(session + "/map.png?until=8"),
          get(session + "/digest")},
         {{.paths_max = 1}, get(session + "/trajectory.geojson"), get(session + "/points.csv"), get(session + "/log")},
-        {{.plans_max = 1}, post(session + "/plan"), get(session + "/goal?robot=r"), get(session + "/map.png")},
+        {{.plans_max = 1}, post(session + "/plan"), post(session + "/goal"), get(session + "/map.png")},
         {{.imports_max = 1}, post(session + "/import"), post("/api/v1/sessions/t/import"), get("/api/v1/sessions")},
     };
     for (const auto& kind : kinds) {

@@ -149,7 +149,10 @@ TEST(LiveViewer, AGoalThatIsGivenIsToldAlthoughNoScanCame) {
     EXPECT_EQ(viewer.last.goals_revision(), 0U);
     const auto revision = viewer.last.revision();
     HttpClient person(server.port());
-    person.send("GET /api/v1/sessions/lab/goal?robot=r1&size_min=1&body_radius=0 HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    const std::string wanted = R"({"robot":"r1","size_min":1,"body_radius":0})";
+    person.send(fmt::format("POST /api/v1/sessions/lab/goal HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: "
+                            "application/json\r\nContent-Length: {}\r\n\r\n{}",
+                            wanted.size(), wanted));
     EXPECT_THAT(person.read().body, HasSubstr(R"("outcome":"goal")"));
     read_until(client, viewer, [&] { return viewer.last.goals_revision() == 1; });
     EXPECT_EQ(viewer.last.revision(), revision);
@@ -210,7 +213,7 @@ TEST(LiveViewer, WhoIsNotLetInIsToldWhy) {
     stranger.send("GET /api/v1/sessions/lab/live HTTP/1.1\r\nHost: evil.example\r\n\r\n");
     EXPECT_EQ(stranger.read().status, 421);
     HttpClient own(server.port());
-    own.send(upgrade("lab", "Origin: http://127.0.0.1:8080\r\n"));
+    own.send(upgrade("lab", "Origin: http://127.0.0.1\r\n"));
     const auto answer = own.read();
     EXPECT_EQ(answer.status, 101);
     EXPECT_EQ(answer.fields.at("sec-websocket-accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo="); // RFC 6455, section 1.3
