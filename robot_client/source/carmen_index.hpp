@@ -42,9 +42,10 @@ struct CarmenIndex {
     std::string fingerprint; ///< of the lines and options that determine the scans, and of their order
 };
 
-/// Reads a log once. `report` hears of every line that cannot be used: broken ones in the order of the file, then of
-/// laser lines of kinds that are not read, once for each kind, then RAWLASER lines without a pose. `on_read` hears how
-/// far the file has been read.
+/// Reads a log once.
+/// @param report   is called for each malformed line in the order of the file, then once for each kind of laser line that
+///                 is not read, then for each RAWLASER line without a pose
+/// @param on_read  is called after each piece of the file
 /// Errors  those of LineReader; kNotFound when no line is usable; kTooLarge: more than 2^32 - 2 laser lines.
 [[nodiscard]] Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
                                                    const std::function<void(const SkippedLine&)>& report,
