@@ -43,8 +43,8 @@ struct CarmenIndex {
 };
 
 /// Reads a log once.
-/// @param report   is called for each malformed line in the order of the file, then once for each kind of laser line that
-///                 is not read, then for each RAWLASER line without a pose
+/// @param report   is called for each malformed line in the order of the file, then once for each unread kind of laser
+///                 line, then for each RAWLASER line without a pose
 /// @param on_read  is called after each piece of the file
 /// Errors  those of LineReader; kNotFound when no line is usable; kTooLarge: more than 2^32 - 2 laser lines.
 [[nodiscard]] Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,
