@@ -14,7 +14,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     add_compile_options(-Wno-subobject-linkage) # g++ takes the sources of a unity file for headers
   endif()
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    add_compile_options(-fpch-preprocess) # for ccache
+    # For ccache; and a precompiled header that does not fit its target is an error, not only a slow build.
+    add_compile_options(-fpch-preprocess -Werror=invalid-pch)
   endif()
   # False alarms of g++ 12: it takes the operators new and delete of Asio's coroutine frames for a mismatched pair, sees
   # std::string_view::find() read beyond the end, and the other alternative of a moved variant used without a value.
@@ -23,7 +24,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # built the same way, because a precompiled header serves only targets with equal -f options.
   add_compile_options(-fno-semantic-interposition -fno-gnu-unique)
 endif()
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+add_compile_options(-fPIC) # programs too, where CMAKE_POSITION_INDEPENDENT_CODE means -fPIE: see precompiled headers above
 if(SCANLOOM_SANITIZE)
   add_compile_options(-fsanitize=${SCANLOOM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${SCANLOOM_SANITIZE})
