@@ -17,6 +17,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # For ccache; and a precompiled header that does not fit its target is an error, not only a slow build.
     add_compile_options(-fpch-preprocess -Werror=invalid-pch)
   endif()
+  add_compile_options(--param=ggc-min-heapsize=1048576) # collect garbage only beyond 1 GiB: saves an eighth of the time
   # False alarms of g++ 12: it takes the operators new and delete of Asio's coroutine frames for a mismatched pair, sees
   # std::string_view::find() read beyond the end, and the other alternative of a moved variant used without a value.
   add_compile_options(-Wno-mismatched-new-delete -Wno-stringop-overread -Wno-maybe-uninitialized)
