@@ -106,13 +106,12 @@ void Server::join_pools() {
 }
 
 Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const ConnectionLimits& limits,
-                                             const OpenLog& open_log) {
+                                             const store::OpenStore& open_log) {
     store::StoreOptions store;
     store.on_damage = [](const Error& damage) { spdlog::error("{}", damage.message); };
+    store.on_rocksdb_log = [](std::string_view line) { spdlog::debug("RocksDB: {}", line); };
     store.disk_reserve_bytes = options.disk_reserve_bytes;
-    auto log = store::ReopeningLog::open(
-        [open_log, store, directory = options.store] { return open_log(directory, store); },
-        [store, directory = options.store] { return store::can_be_written(directory, store.disk_reserve_bytes); });
+    auto log = store::open_reopening(options.store, store, open_log);
     if (!log) return log.error();
     if (const auto torn = (*log)->stats().torn_bytes_dropped; torn > 0)
         spdlog::warn(

@@ -21,16 +21,10 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 
 namespace scanloom::app {
-
-/// How the scan log is opened, as store::open_rocksdb() does; tests put another one in its place.
-using OpenLog =
-    std::function<Result<std::unique_ptr<store::ScanLog>>(const std::filesystem::path&, const store::StoreOptions&)>;
 
 /// The parts of scanloom-server, and what connects them.
 ///
@@ -57,7 +51,7 @@ public:
     /// Opens the store and the ports. Errors: one sentence that says what to do.
     [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options,
                                                               const ConnectionLimits& limits = {},
-                                                              const OpenLog& open_log = store::open_rocksdb);
+                                                              const store::OpenStore& open_log = store::open_rocksdb);
 
     ~Server();
 

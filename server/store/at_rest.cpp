@@ -69,7 +69,7 @@ Result<AtRest> open_at_rest(const fs::path& directory, const StoreOptions& optio
     store.unfinished_bytes = *unfinished ? (*unfinished)->bytes : 0;
     store.without_record = owners_without_record(*database, *ends);
     store.log = std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), 0,
-                                                 std::make_shared<CompactionWatch>(), options);
+                                                 std::make_shared<CompactionWatch>(), nullptr, options);
     return store;
 }
 

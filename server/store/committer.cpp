@@ -14,9 +14,10 @@ constexpr std::uint64_t kGroupBytesMax = std::uint64_t{8} << 20;
 
 } // namespace
 
-Committer::Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes)
-    : database_(database), name_(std::move(name)), disk_reserve_bytes_(disk_reserve_bytes), thread_([this] { run(); }) {
-}
+Committer::Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes,
+                     CompactionSwitch& compactions, std::unique_ptr<FilesWatch> files)
+    : database_(database), name_(std::move(name)), disk_reserve_bytes_(disk_reserve_bytes), compactions_(compactions),
+      files_(std::move(files)), thread_([this] { run(); }) {}
 
 Committer::~Committer() {
     {
@@ -25,6 +26,7 @@ Committer::~Committer() {
     }
     waiting_.notify_one();
     thread_.join();
+    check_files(); // a database that is closed deletes files
 }
 
 void Committer::submit(Change change) {
@@ -50,16 +52,20 @@ StoreStats Committer::stats() const {
     std::unique_lock lock(mutex_);
     StoreStats stats = stats_;
     lock.unlock();
-    if (!stats.no_room) return stats;
+    if (!stats.last_error && files_) {
+        if (const auto in_place = files_->check(); !in_place) stats.last_error = in_place.error().message;
+    }
     const auto no_room = want_of_room(); // as it is by now
-    stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
+    if (stats.no_room) stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
     return stats;
 }
 
 /// Cost  a microsecond.
 std::optional<Error> Committer::want_of_room() const {
     std::uint64_t free = 0;
-    if (!database_.GetEnv()->GetFreeSpace(name_, &free).ok() || free >= disk_reserve_bytes_) return std::nullopt;
+    if (!database_.GetEnv()->GetFreeSpace(name_, &free).ok()) return std::nullopt;
+    compactions_.update(free);
+    if (free >= disk_reserve_bytes_) return std::nullopt;
     return Error{Errc::kOverloaded,
                  fmt::format("the disk of the store {} has {} MiB left, and {} are kept free: nothing more is stored "
                              "until there is more; free some, or delete sessions",
@@ -92,6 +98,7 @@ void Committer::commit(Group group) {
     std::vector<Result<>> results;
     results.reserve(group.size());
     const auto no_room = want_of_room();
+    check_files();
     {
         const std::lock_guard lock(mutex_);
         stats_.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
@@ -121,18 +128,28 @@ Result<> Committer::write(rocksdb::WriteBatch& batch) {
     rocksdb::WriteOptions options;
     options.sync = true;
     const auto status = database_.Write(options, &batch);
-    const std::lock_guard lock(mutex_);
-    if (status.ok()) {
-        ++stats_.synced_writes;
-        return {};
-    }
-    failed_ =
-        Error{Errc::kStoreFailed,
+    if (!status.ok()) {
+        fail({Errc::kStoreFailed,
               fmt::format("the store {} could not write ({}); it takes no changes until it has been opened again, "
                           "which the server does as soon as its disk can be written",
-                          name_, status.ToString())};
-    stats_.last_error = failed_->message;
-    return *failed_;
+                          name_, status.ToString())});
+    }
+    check_files(); // so that nothing is acknowledged that went to deleted files
+    if (failed_) return *failed_;
+    const std::lock_guard lock(mutex_);
+    ++stats_.synced_writes;
+    return {};
+}
+
+void Committer::check_files() {
+    if (failed_ || !files_) return;
+    if (auto in_place = files_->check(); !in_place) fail(in_place.error());
+}
+
+void Committer::fail(Error why) {
+    const std::lock_guard lock(mutex_);
+    stats_.last_error = why.message;
+    failed_ = std::move(why);
 }
 
 void Committer::count(const Change& change) {

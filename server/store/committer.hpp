@@ -1,5 +1,7 @@
 #pragma once
 
+#include "server/store/compaction_switch.hpp"
+#include "server/store/files_watch.hpp"
 #include "server/store/scan_log.hpp"
 
 #include <rocksdb/db.h>
@@ -9,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -39,7 +42,10 @@ struct Change {
 class Committer {
 public:
     /// Changes that do not free disk are refused while it has less than `disk_reserve_bytes` free.
-    Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes);
+    /// @param compactions  updated whenever the free space is known
+    /// @param files        checked before each write, after it, and by stats(); null for a database that is only read
+    Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes, CompactionSwitch& compactions,
+              std::unique_ptr<FilesWatch> files);
 
     /// Writes what waits, then stops.
     ~Committer();
@@ -61,13 +67,17 @@ private:
     void run();
     [[nodiscard]] Group next_group();
     void commit(Group group);
+    void check_files();
     [[nodiscard]] Result<> write(rocksdb::WriteBatch& batch);
+    void fail(Error why);
     [[nodiscard]] std::optional<Error> want_of_room() const;
     void count(const Change& change);
 
     rocksdb::DB& database_;
     const std::string name_; // for messages, and where the disk is
     const std::uint64_t disk_reserve_bytes_;
+    CompactionSwitch& compactions_;
+    const std::unique_ptr<FilesWatch> files_;
     std::optional<Error> failed_; // committer's thread only; stats_.last_error is its public copy
     mutable std::mutex mutex_;    // guards what follows
     std::condition_variable waiting_;

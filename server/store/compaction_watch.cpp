@@ -12,9 +12,9 @@ void CompactionWatch::set_tell(Tell tell) {
 
 void CompactionWatch::OnBackgroundError(rocksdb::BackgroundErrorReason reason, rocksdb::Status* error) {
     if (reason != rocksdb::BackgroundErrorReason::kCompaction) return;
-    if (!error->IsCorruption() && (!error->IsIOError() || error->IsNoSpace())) return;
+    if (!error->IsCorruption() && !error->IsIOError()) return;
     const std::lock_guard lock(mutex_);
-    if (!failed_) {
+    if (!failed_ && !error->IsNoSpace()) {
         failed_ = *error;
         if (tell_) tell_(*failed_);
     }

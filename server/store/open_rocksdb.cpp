@@ -44,8 +44,9 @@ Result<std::unique_ptr<ScanLog>> open_locked(Result<LockedDirectory> locked, con
     if (auto told = locked->holds_store(); !told) return told.error();
     auto ends = read_ends(*database, directory);
     if (!ends) return ends.error();
+    auto files = std::make_unique<FilesWatch>(*database, directory);
     return std::make_unique<RocksdbScanLog>(std::move(*locked), std::move(database), std::move(*ends), *dropped, watch,
-                                            options);
+                                            std::move(files), options);
 }
 
 } // namespace

@@ -1,9 +1,14 @@
 #include "server/store/reopening_log.hpp"
 
+#include "server/store/failure.hpp"
+#include "server/store/held_file.hpp"
+#include "server/store/listing.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +23,41 @@ void add(StoreStats& to, const StoreStats& from) {
     to.entries += from.entries;
     to.synced_writes += from.synced_writes;
     to.torn_bytes_dropped += from.torn_bytes_dropped;
+}
+
+/// Whether a file can be written and synced in the directory, with more room than `bytes_free`.
+Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free) {
+    const auto why_not = [&](std::string_view reason) {
+        return Error{Errc::kStoreFailed,
+                     fmt::format("the disk of the store {} cannot be written: {}", directory.native(), reason)};
+    };
+    std::error_code failed;
+    const auto space = std::filesystem::space(directory, failed);
+    if (failed) return why_not(failed.message());
+    if (space.available < bytes_free) return why_not(fmt::format("{} MiB are free", space.available >> 20));
+
+    const auto path = directory / "probe.dbtmp"; // an ending of which the directory knows that it means nothing
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (file < 0) return why_not(std::system_category().message(errno));
+    const std::string page(4096, 'p');
+    const bool written = ::write(file, page.data(), page.size()) == static_cast<ssize_t>(page.size());
+    const bool synced = written && ::fsync(file) == 0;
+    const int problem = errno;
+    ::close(file);
+    ::unlink(path.c_str());
+    if (!synced) return why_not(std::system_category().message(problem));
+    return {};
+}
+
+/// Opening writes the entries of the write-ahead logs to tables, and then deletes the logs.
+std::uint64_t bytes_to_open(const std::filesystem::path& directory) {
+    std::uint64_t bytes = 1 << 20;
+    for (const auto& log : regular_files(directory, ".log")) {
+        std::error_code gone;
+        const auto size = std::filesystem::file_size(log, gone);
+        if (!gone) bytes += size;
+    }
+    return bytes;
 }
 
 } // namespace
@@ -119,27 +159,19 @@ std::uint64_t ReopeningLog::bytes_on_disk() const {
     return log_ ? log_->bytes_on_disk() : 0;
 }
 
-Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free) {
-    const auto why_not = [&](std::string_view reason) {
-        return Error{Errc::kStoreFailed,
-                     fmt::format("the disk of the store {} cannot be written: {}", directory.native(), reason)};
-    };
-    std::error_code failed;
-    const auto space = std::filesystem::space(directory, failed);
-    if (failed) return why_not(failed.message());
-    if (space.available < bytes_free) return why_not(fmt::format("{} MiB are free", space.available >> 20));
-
-    const auto path = directory / "probe.dbtmp"; // an ending of which the directory knows that it means nothing
-    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (file < 0) return why_not(std::system_category().message(errno));
-    const std::string page(4096, 'p');
-    const bool written = ::write(file, page.data(), page.size()) == static_cast<ssize_t>(page.size());
-    const bool synced = written && ::fsync(file) == 0;
-    const int problem = errno;
-    ::close(file);
-    ::unlink(path.c_str());
-    if (!synced) return why_not(std::system_category().message(problem));
-    return {};
+Result<std::unique_ptr<ReopeningLog>> open_reopening(const std::filesystem::path& directory,
+                                                     const StoreOptions& options, const OpenStore& open) {
+    const auto lock = std::make_shared<std::optional<HeldFile>>(); // of the store that was opened first
+    auto log = ReopeningLog::open([=] { return open(directory, options); },
+                                  [=]() -> Result<> {
+                                      if (!(*lock)->is_in_place()) return failure("it was deleted or replaced");
+                                      return can_be_written(directory, bytes_to_open(directory));
+                                  });
+    if (!log) return log;
+    auto held = HeldFile::open(directory / kLockFile);
+    if (!held) return held.error();
+    *lock = std::move(*held);
+    return log;
 }
 
 } // namespace scanloom::store

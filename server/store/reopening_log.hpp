@@ -10,6 +10,9 @@
 
 namespace scanloom::store {
 
+/// As open_rocksdb().
+using OpenStore = std::function<Result<std::unique_ptr<ScanLog>>(const std::filesystem::path&, const StoreOptions&)>;
+
 /// A scan log that is closed and opened again after it has failed.
 ///
 /// What the disk holds after a failed write or sync is unknown, so that nothing is ever tried again on the same files:
@@ -65,8 +68,12 @@ private:
     StoreStats before_;               // of the earlier ones; last_error says why there is none
 };
 
-/// Whether a file can be written and synced in the directory, with more room than `bytes_free`.
-/// Errors  kStoreFailed: why not.
-[[nodiscard]] Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free);
+/// Opens the store in a directory with `open`, and again after it has failed: as soon as its disk can be written and
+/// has room to open it, and only if its lock file is still the one that was there at first. A
+/// store that was deleted or replaced is not opened again; that takes a restart.
+/// Errors  those of `open`.
+[[nodiscard]] Result<std::unique_ptr<ReopeningLog>> open_reopening(const std::filesystem::path& directory,
+                                                                   const StoreOptions& options,
+                                                                   const OpenStore& open = open_rocksdb);
 
 } // namespace scanloom::store

@@ -1,5 +1,7 @@
 #include "server/store/rocksdb_options.hpp"
 
+#include "server/store/rocksdb_log.hpp"
+
 #include <rocksdb/cache.h>
 #include <rocksdb/filter_policy.h>
 #include <rocksdb/table.h>
@@ -59,10 +61,8 @@ void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
     if (options.env != nullptr) rocksdb.env = options.env;
 }
 
-void set_reports(rocksdb::Options& rocksdb) {
-    rocksdb.info_log_level = rocksdb::InfoLogLevel::WARN_LEVEL;
-    rocksdb.max_log_file_size = 4 << 20;
-    rocksdb.keep_log_file_num = 4;
+void set_reports(rocksdb::Options& rocksdb, const StoreOptions& options) {
+    rocksdb.info_log = std::make_shared<RocksdbLog>(options.on_rocksdb_log);
     rocksdb.stats_dump_period_sec = 0;
     rocksdb.stats_persist_period_sec = 0;
 }
@@ -74,7 +74,7 @@ rocksdb::Options rocksdb_options(const StoreOptions& options, std::shared_ptr<Co
     set_durability(rocksdb);
     set_memory(rocksdb, options);
     set_disk(rocksdb, options);
-    set_reports(rocksdb);
+    set_reports(rocksdb, options);
     rocksdb.listeners.push_back(std::move(watch));
     return rocksdb;
 }

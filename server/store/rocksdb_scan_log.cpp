@@ -81,10 +81,11 @@ struct Scan {
 
 RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
                                std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                               const StoreOptions& options)
+                               std::unique_ptr<FilesWatch> files, const StoreOptions& options)
     : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
-      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)), on_damage_(options.on_damage),
-      committer_(*database_, name(), options.disk_reserve_bytes) {
+      torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)),
+      compactions_(*database_, options.disk_reserve_bytes), on_damage_(options.on_damage),
+      committer_(*database_, name(), options.disk_reserve_bytes, compactions_, std::move(files)) {
     watch_->set_tell([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
 }
 
@@ -104,7 +105,7 @@ void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
     Change change;            // in its turn, as it must not meet a write that is held back
     change.frees_disk = true; // or at least needs none
     change.add_to = [this](rocksdb::WriteBatch&) -> Result<> {
-        database_->SetOptions({{"disable_auto_compactions", "true"}}).PermitUncheckedError(); // then it is slower
+        compactions_.stop();
         return {};
     };
     change.done = [](const Result<>&) {};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/store/committer.hpp"
+#include "server/store/compaction_switch.hpp"
 #include "server/store/compaction_watch.hpp"
 #include "server/store/directory.hpp"
 #include "server/store/scan_log.hpp"
@@ -25,9 +26,10 @@ struct LogEnds {
 /// The scan log in RocksDB. Readers go to the database themselves; changes go through the committer.
 class RocksdbScanLog final : public ScanLog {
 public:
+    /// @param files  null for a database that is only read
     RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
                    std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
-                   const StoreOptions& options);
+                   std::unique_ptr<FilesWatch> files, const StoreOptions& options);
     ~RocksdbScanLog() override;
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
@@ -54,6 +56,7 @@ private:
     LogEnds ends_; // committer's thread only
     std::uint64_t torn_bytes_dropped_;
     std::shared_ptr<CompactionWatch> watch_;
+    CompactionSwitch compactions_;
     std::function<void(const Error&)> on_damage_;
     mutable std::mutex damage_mutex_;
     std::optional<Error> damage_; // guarded by damage_mutex_

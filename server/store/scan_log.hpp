@@ -140,6 +140,9 @@ struct StoreOptions {
     /// stored as before; what the file held is told when it is read.
     std::function<void(const Error&)> on_damage;
 
+    /// Called with each line that RocksDB logs, from warnings on, from a thread of RocksDB. Null: they are dropped.
+    std::function<void(std::string_view)> on_rocksdb_log;
+
     /// The file layer, for tests that fail it. Null: the system's.
     rocksdb::Env* env = nullptr;
 };

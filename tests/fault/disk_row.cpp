@@ -6,7 +6,10 @@
 #include "tests/fault/readiness.hpp"
 #include "tests/fault/server_process.hpp"
 #include "tests/fault/verification.hpp"
+#include "tests/support/running_server.hpp"
 #include "tests/support/temporary_directory.hpp"
+
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <random>
@@ -20,10 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kReserveMib = 16; // that the server keeps free
+constexpr std::uint64_t kReserveMib = 32; // that the server keeps free
 constexpr std::uint64_t kFillingsPerDisk = 5;
 constexpr std::uint64_t kScansPerFilling = 100; // of each robot
+constexpr std::uint64_t kFilledMib = 8;         // by scans
 constexpr unsigned kDiskRobots = 4;
+constexpr std::uint64_t kEndless = std::uint64_t{1} << 40; // scans: more than any disk holds
 
 /// Somebody else's file, that takes the disk's room for as long as this lives.
 class Ballast {
@@ -66,6 +71,27 @@ void fill_up(const ServerProcess& server, Ballast& ballast, std::uint64_t left, 
     }
 }
 
+/// Scans that never end fill what is left of the disk; then their session is deleted.
+void fill_through_the_server(const ServerProcess& server, const fs::path& store, std::uint64_t seed, Outcome& outcome) {
+    Ballast ballast(store / "ballast");
+    ballast.grow((kReserveMib + kFilledMib) << 20);
+    {
+        Fleet filler({{.session = "filler", .name = "r", .seed = static_cast<unsigned>(seed), .scans = kEndless}},
+                     server.robot_port());
+        filler.release_all();
+        const auto found = wait_for_readiness(server, 503);
+        if (found.status != 503)
+            outcome.amiss.emplace_back("scans do not fill the disk");
+        else if (!tells_of_a_full_disk(found.answer))
+            outcome.amiss.push_back("on a disk that scans filled /readyz gives another reason: " + found.answer);
+        check_that_maps_are_served(server, "on a disk that scans filled", outcome);
+    }
+    const auto deleted = test::http_request(server.http_port(), "DELETE", "/api/v1/sessions/filler").status;
+    if (deleted != 204) outcome.amiss.push_back(fmt::format("on a full disk DELETE answers {}", deleted));
+    if (wait_for_readiness(server, 200).status != 200)
+        outcome.amiss.emplace_back("deleting the session that filled the disk makes nobody ready again");
+}
+
 Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t fillings) {
     const TemporaryDirectory place;
     const auto store = place.path() / "store";
@@ -83,7 +109,7 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
         (void)fleet.wait_for_acknowledged(fleet.acknowledged() + 1 + random() % (kDiskRobots * kScansPerFilling / 2));
         {
             Ballast ballast(store / "ballast");
-            const auto left = random() % (kReserveMib << 18); // the superuser has some more
+            const auto left = random() % (kReserveMib << 17); // the superuser has some more
             ballast.grow(left);
             fleet.release(filling * kScansPerFilling);
             fill_up(server, ballast, left, outcome);
@@ -92,6 +118,7 @@ Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t 
         if (wait_for_readiness(server, 200).status != 200)
             outcome.amiss.emplace_back("room on the disk makes nobody ready again");
     }
+    fill_through_the_server(server, store, seed, outcome);
     fleet.release_all();
     outcome.add(verify_server(server.http_port(), fleet.finish()));
     return outcome;

@@ -27,7 +27,7 @@ Result<Outcome> run_one(const Run& run, std::uint64_t seed, std::uint64_t cuts) 
     auto disk = LoopDisk::make(place.path() / "disk", place.path() / "store", kDiskBytes);
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
-    ServerProcess server(run.server, place.path(), {"--disk-reserve", "0"}); // it is a small disk
+    ServerProcess server(run.server, place.path(), {"--disk-reserve", "32"});
     Fleet fleet(half_sharing(kPowerRobots, seed, cuts * kScansPerCut), server.robot_port());
     server.start_and_wait();
     for (std::uint64_t cut = 1; cut <= cuts && !fleet.has_given_up(); ++cut) {

@@ -39,7 +39,7 @@ Result<Outcome> stall_one_disk(const Run& run, std::uint64_t seed, std::uint64_t
     auto disk = LoopDisk::make(place.path() / "disk", place.path() / "store", kDiskBytes);
     if (!disk) return disk.error();
     std::mt19937_64 random(seed);
-    ServerProcess server(run.server, place.path(), {"--disk-reserve", "16"});
+    ServerProcess server(run.server, place.path(), {"--disk-reserve", "32"});
     Fleet fleet(half_sharing(kStallRobots, seed, stalls * kScansPerStall), server.robot_port(), kStallPatience);
     server.start_and_wait();
     fleet.release(1);

@@ -53,7 +53,8 @@ std::vector<RobotPlan> plans(std::uint64_t seed, std::uint64_t round, std::uint6
 class FailingSyncs {
 public:
     FailingSyncs(const Run& run, std::uint64_t seed, std::uint64_t scans)
-        : seed_(seed), scans_(scans), server_(with_failing_syncs(run.server), place_.path(), {"--disk-reserve", "0"}) {}
+        : seed_(seed), scans_(scans), server_(with_failing_syncs(run.server), place_.path(), {"--disk-reserve", "32"}) {
+    }
 
     Outcome run() {
         start();

@@ -226,7 +226,7 @@ TEST_F(OpenRocksdb, ADamagedRecordIsReported) {
 }
 
 TEST_F(OpenRocksdb, AStoreOfWhichOnlyTracesAreLeftIsNotBegunAnew) {
-    for (const auto* trace : {"LOG", "IDENTITY", "MANIFEST-", "OPTIONS-"}) {
+    for (const auto* trace : {"IDENTITY", "MANIFEST-", "OPTIONS-"}) {
         static_cast<void>(open_rocksdb(directory_).value()->create_session("a").value());
         for (const auto& file : fs::directory_iterator(directory_)) {
             const auto name = file.path().filename().native();

@@ -1,0 +1,126 @@
+#include "server/store/listing.hpp"
+#include "server/store/reopening_log.hpp"
+
+#include "tests/support/log_reading.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+/// Stores whose files are deleted, moved or replaced while they are open.
+namespace scanloom::store {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+void remove_write_ahead_log(const fs::path& directory) { fs::remove(regular_files(directory, ".log").back()); }
+
+void replace_by_a_copy(const fs::path& directory) {
+    fs::rename(directory, directory.native() + ".away");
+    fs::copy(directory.native() + ".away", directory, fs::copy_options::recursive);
+}
+
+std::set<std::string> names_in(const fs::path& directory) {
+    std::set<std::string> names;
+    for (const auto& file : fs::directory_iterator(directory)) names.insert(file.path().filename());
+    return names;
+}
+
+struct Harm {
+    std::string name;
+    std::function<void(const fs::path&)> to;
+};
+
+void PrintTo(const Harm& harm, std::ostream* out) { *out << harm.name; }
+
+class FilesWatchOf : public testing::TestWithParam<Harm> {
+protected:
+    TemporaryDirectory temporary_;
+    fs::path directory_ = temporary_.path() / "store";
+};
+
+TEST_P(FilesWatchOf, StopsAcknowledgingAndReportsTheLoss) {
+    const auto log = open_reopening(directory_, {}).value();
+    const auto session = log->create_session("a").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
+    ASSERT_FALSE(log->stats().last_error);
+    GetParam().to(directory_);
+    const auto left = fs::exists(directory_) ? names_in(directory_) : std::set<std::string>();
+
+    EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("was deleted, moved or replaced"));
+    const auto appended = append_and_wait(*log, session, 2, {"lost"});
+    EXPECT_EQ(appended.error().code, Errc::kStoreFailed);
+    EXPECT_THAT(appended.error().message, HasSubstr("put the store back, or restart the server"));
+    EXPECT_FALSE(log->create_session("b"));
+    EXPECT_FALSE(log->try_again());
+    EXPECT_TRUE(log->stats().last_error);
+    EXPECT_EQ(fs::exists(directory_) ? names_in(directory_) : std::set<std::string>(), left) << "nothing is created";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FilesWatchOf,
+                         testing::Values(Harm{"directory_deleted", [](const auto& store) { fs::remove_all(store); }},
+                                         Harm{"files_deleted",
+                                              [](const auto& store) {
+                                                  fs::remove_all(store);
+                                                  fs::create_directory(store);
+                                              }},
+                                         Harm{"directory_moved",
+                                              [](const auto& store) { fs::rename(store, store.native() + ".away"); }},
+                                         Harm{"directory_replaced", replace_by_a_copy},
+                                         Harm{"lock_deleted", [](const auto& store) { fs::remove(store / kLockFile); }},
+                                         Harm{"write_ahead_log_deleted", remove_write_ahead_log}),
+                         testing::PrintToStringParamName());
+
+TEST(FilesWatch, AStoreThatIsPutBackIsOpenedAgainWithItsEntries) {
+    const TemporaryDirectory temporary;
+    const auto directory = temporary.path() / "store";
+    const auto log = open_reopening(directory, {}).value();
+    const auto session = log->create_session("a").value();
+    ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
+    fs::rename(directory, temporary.path() / "away");
+    ASSERT_FALSE(append_and_wait(*log, session, 2, {"lost"}));
+    EXPECT_FALSE(log->try_again());
+
+    fs::rename(temporary.path() / "away", directory);
+    ASSERT_TRUE(log->try_again());
+    EXPECT_THAT(entries_after(*log, session, 0).value(), ElementsAre("durable"));
+    EXPECT_TRUE(append_and_wait(*log, session, 2, {"goes on"}));
+}
+
+TEST(FilesWatch, ClosingDeletesNoFilesOfAStoreThatTookItsPlace) {
+    const TemporaryDirectory temporary;
+    const auto directory = temporary.path() / "store";
+    const auto other = temporary.path() / "other";
+    static_cast<void>(open_rocksdb(other).value()->create_session("of the other").value());
+    for (int start = 0; start < 3; ++start) { // each numbers its files on from those before
+        auto log = open_rocksdb(directory).value();
+        static_cast<void>(log->create_session("a").value());
+        if (start < 2) continue;
+        fs::rename(directory, temporary.path() / "away");
+        fs::rename(other, directory);
+        const auto before = names_in(directory);
+        log.reset();
+        EXPECT_EQ(names_in(directory), before);
+    }
+    EXPECT_THAT(open_rocksdb(directory).value()->sessions().value().at(0).record.value(), "of the other");
+}
+
+TEST(FilesWatch, SessionsThatAreRemovedWhileOthersAreWrittenAreNoLoss) {
+    const TemporaryDirectory temporary;
+    const auto log = open_rocksdb(temporary.path() / "store").value();
+    const auto session = log->create_session("a").value();
+    for (Revision revision = 1; revision <= 50; ++revision) {
+        const auto other = log->create_session("b").value();
+        ASSERT_TRUE(log->remove_session(other)); // begins another write-ahead log
+        ASSERT_TRUE(append_and_wait(*log, session, revision, {"entry"}));
+    }
+    EXPECT_FALSE(log->stats().last_error);
+}
+
+} // namespace
+} // namespace scanloom::store
