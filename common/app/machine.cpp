@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <unistd.h>
-
-#include <algorithm>
 #include <fstream>
-#include <optional>
 #include <thread>
 
 namespace scanloom {
@@ -20,13 +16,6 @@ std::string processor() {
         if (names_it && value != std::string::npos) return line.substr(value + 2) + ", ";
     }
     return "";
-}
-
-/// Nothing where there is no such limit.
-std::optional<std::uint64_t> number_in(const char* file) {
-    std::ifstream in(file);
-    std::uint64_t number = 0;
-    return in >> number ? std::optional(number) : std::nullopt;
 }
 
 } // namespace
@@ -44,15 +33,6 @@ std::string machine_description() {
 #endif
     return fmt::format("{}{} cores, {} {} {}", processor(), std::thread::hardware_concurrency(), kCompiler, __VERSION__,
                        kOptimisation);
-}
-
-std::uint64_t memory_limit() {
-    auto bytes =
-        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    for (const char* file : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-        if (const auto limit = number_in(file)) bytes = std::min(bytes, *limit);
-    }
-    return bytes;
 }
 
 } // namespace scanloom

@@ -2,6 +2,7 @@
 #include "common/app/standard_streams.hpp"
 #include "server/app/check_command.hpp"
 #include "server/app/descriptors.hpp"
+#include "server/app/memory.hpp"
 #include "server/app/options.hpp"
 #include "server/app/repair_command.hpp"
 #include "server/app/restore_command.hpp"
@@ -22,6 +23,11 @@ namespace {
 
 using namespace scanloom;
 
+int failed(const Error& why) {
+    standard_error().write(fmt::format("scanloom-server: {}\n", why.message));
+    return kExitFailed;
+}
+
 int run(const app::ServerOptions& options) {
     spdlog::set_default_logger(std::make_shared<spdlog::logger>("scanloom-server", app::standard_error_sink()));
     if (options.log_format == "json") {
@@ -30,6 +36,8 @@ int run(const app::ServerOptions& options) {
         spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
     }
     spdlog::set_level(spdlog::level::from_str(options.log_level));
+    const auto memory = memory_limit();
+    app::save_address_space(memory);
     const auto descriptors = app::allow_as_many_descriptors_as_possible();
     switch (options.task) {
     case app::Task::kCheck:
@@ -38,13 +46,12 @@ int run(const app::ServerOptions& options) {
     case app::Task::kRestore: return app::restore_store(options);
     case app::Task::kServe: break;
     }
+    if (auto fits = app::check_address_space(options, memory); !fits) return failed(fits.error());
     if (const auto short_of = app::shortage(descriptors); !short_of.empty()) spdlog::warn("{}", short_of);
     for (const auto& warning : app::guard_warnings(options)) spdlog::warn("{}", warning);
     auto server = app::Server::open(options, app::limits_within(descriptors));
     auto ended = server ? (*server)->run() : Result<>(server.error());
-    if (ended) return kExitDone;
-    standard_error().write(fmt::format("scanloom-server: {}\n", ended.error().message));
-    return kExitFailed;
+    return ended ? kExitDone : failed(ended.error());
 }
 
 } // namespace

@@ -1,9 +1,10 @@
 #include "server/app/options.hpp"
 
 #include "common/app/environment_first.hpp"
-#include "common/app/machine.hpp"
+#include "common/app/memory_limit.hpp"
 #include "common/app/option_checks.hpp"
 #include "common/app/parse_failure.hpp"
+#include "server/app/memory.hpp"
 #include "server/app/places.hpp"
 #include "server/app/token_command.hpp"
 
@@ -15,7 +16,6 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 namespace scanloom::app {
@@ -28,6 +28,8 @@ constexpr const char* kFooter =
     "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.\n"
     "`scanloom-server token --help` says how tokens are made.";
 
+// With 16 MiB, scans that filled a disk of 60 MiB left RocksDB without room for a table, with 32 they did not.
+constexpr double kDiskReserveMibMin = 32.0;
 constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
 
 constexpr double kMapMemoryMibMin = 64.0;
@@ -201,6 +203,12 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     options.store = raw.store;
     if (auto task = settle_task(raw, options); !task) return task;
     if (auto apart = check_places(options); !apart) return apart;
+    if (raw.disk_reserve_mib < kDiskReserveMibMin) {
+        return Error{Errc::kInvalidField,
+                     fmt::format("--disk-reserve {}: when the disk fills up, the store needs {} MiB to finish what it "
+                                 "has begun; reserve at least that much",
+                                 raw.disk_reserve_mib, kDiskReserveMibMin)};
+    }
     options.disk_reserve_bytes = static_cast<std::uint64_t>(raw.disk_reserve_mib * 1024 * 1024);
     options.map_memory_bytes = static_cast<std::size_t>(raw.map_memory_mib * 1024 * 1024);
     options.weave_memory_bytes = static_cast<std::size_t>(raw.weave_memory_mib * 1024 * 1024);
@@ -219,9 +227,9 @@ std::variant<ServerOptions, Leave> read_options(int argc, const char* const* arg
     ServerOptions options;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     Raw raw;
-    const auto memory_mib = static_cast<double>(memory_limit() >> 20);
-    raw.map_memory_mib = std::max(kMapMemoryMibMin, std::floor(memory_mib / 2));
-    raw.weave_memory_mib = std::max(kMapMemoryMibMin, std::floor(memory_mib / 4));
+    const auto memory = default_map_memory(memory_limit());
+    raw.map_memory_mib = static_cast<double>(memory.maps >> 20);
+    raw.weave_memory_mib = static_cast<double>(memory.weaves >> 20);
 
     CLI::App app(kAbout, "scanloom-server");
     app.footer(kFooter);

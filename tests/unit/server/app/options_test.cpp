@@ -101,6 +101,13 @@ TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
     }
 }
 
+TEST_F(ServerOptionsTest, RefusesAReserveThatIsTooSmallForTheStore) {
+    EXPECT_EQ(std::get<ServerOptions>(read({"--disk-reserve", "32"})).disk_reserve_bytes, std::uint64_t{32} << 20);
+    for (const auto* wrong : {"0", "5", "31.9"}) {
+        EXPECT_THAT(refusal({"--disk-reserve", wrong}), HasSubstr("the store needs 32 MiB")) << wrong;
+    }
+}
+
 TEST_F(ServerOptionsTest, TheMemoryOfMapsIsInMebibytes) {
     const auto options = std::get<ServerOptions>(read({"--map-memory", "100", "--weave-memory", "64.5"}));
     EXPECT_EQ(options.map_memory_bytes, std::size_t{100} << 20);
