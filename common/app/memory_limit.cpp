@@ -23,7 +23,8 @@ std::uint64_t number_in(const fs::path& file) {
 }
 
 /// @param hierarchy  where the control groups are mounted
-/// @param group      of this process, in a hierarchy that may be mounted from further below: then there is no such folder
+/// @param group      of this process, in a hierarchy that may be mounted from further below: then there is no such
+/// folder
 std::uint64_t least_limit(const fs::path& hierarchy, const fs::path& group, const char* file) {
     std::uint64_t least = number_in(hierarchy / file);
     fs::path folder = hierarchy;

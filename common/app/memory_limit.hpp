@@ -8,7 +8,7 @@ namespace scanloom {
 
 /// How much memory this process may use, in bytes.
 struct MemoryLimit {
-    std::uint64_t bytes = 0;         ///< the machine's memory, or the limit of its control group or of `ulimit -d`, if less
+    std::uint64_t bytes = 0; ///< the machine's memory, or the limit of its control group or of `ulimit -d`, if less
     std::uint64_t address_space = 0; ///< the limit of `ulimit -v`; the largest number if there is none
 };
 

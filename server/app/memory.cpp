@@ -33,8 +33,8 @@ MapMemory default_map_memory(const MemoryLimit& limit) {
 Result<> check_address_space(const ServerOptions& options, const MemoryLimit& limit) {
     if (!is_limited(limit)) return {};
     const auto stacks = 3 * options.threads * kStackBytes; // what grows with --threads
-    const auto needed = kFixedAddressSpace + stacks + options.tile_cache_bytes + options.map_memory_bytes +
-                        options.weave_memory_bytes;
+    const auto needed =
+        kFixedAddressSpace + stacks + options.tile_cache_bytes + options.map_memory_bytes + options.weave_memory_bytes;
     if (needed <= limit.address_space) return {};
     return Error{Errc::kInvalidField,
                  fmt::format("the address space of this process is limited to {} MiB, and the server needs {}: allow "

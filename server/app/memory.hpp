@@ -25,8 +25,8 @@ struct MapMemory {
 /// Errors  kInvalidField: `ulimit -v` is too low; the message has the limit and what the server needs.
 [[nodiscard]] Result<> check_address_space(const ServerOptions& options, const MemoryLimit& limit);
 
-/// Where the address space is limited, has glibc reserve less of it: with one heap for all threads and stacks of 1 MiB an
-/// idle server takes 260 MiB instead of 950 (VmPeak in /proc/PID/status). Call before the first thread is started.
+/// Where the address space is limited, has glibc reserve less of it: with one heap for all threads and stacks of 1 MiB
+/// an idle server takes 260 MiB instead of 950 (VmPeak in /proc/PID/status). Call before the first thread is started.
 void save_address_space(const MemoryLimit& limit);
 
 } // namespace scanloom::app

@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -37,6 +39,21 @@ auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
         return problem(Error{Errc::kInternal, "the server failed to answer; its log says why"},
                        instance_of(request.target));
     }
+}
+
+std::ptrdiff_t field_count(const Incoming& message) { return std::distance(message.begin(), message.end()); }
+
+/// Whether bytes of a request are there. Skips one empty line before it: clients send one after a body (RFC 9112, 2.2).
+bool has_request(beast::flat_buffer& received, bool& has_skipped) {
+    constexpr std::string_view kEmptyLine = "\r\n";
+    const auto bytes = [&] {
+        return std::string_view(static_cast<const char*>(received.data().data()), received.size());
+    };
+    if (!has_skipped && bytes().starts_with(kEmptyLine)) {
+        received.consume(kEmptyLine.size());
+        has_skipped = true;
+    }
+    return !bytes().empty() && (has_skipped || bytes() != "\r");
 }
 
 } // namespace
@@ -131,18 +148,23 @@ asio::awaitable<void> Connection::tell_plainly(std::string_view sentence) {
     const auto response = problem(Status::bad_request, sentence, "");
     service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
     stream_ = net::LinkStream(std::move(stream_.socket()));
-    must_linger_ = co_await write_all(head_text(response, false, date_now()), response.body.bytes());
+    must_linger_ = co_await write_all(head_text(response, Persistence::kClose, date_now()), response.body.bytes());
 }
 
 asio::awaitable<bool> Connection::wait_for_request() {
-    if (buffer_.size() > 0) co_return true; // pipelined
+    bool has_skipped = false;
+    if (has_request(buffer_, has_skipped)) co_return true; // pipelined
     idle_ = true;
     deadline_.set_after(service_->config.idle);
-    const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+    beast::error_code failed;
+    while (!failed && !has_request(buffer_, has_skipped)) {
+        const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
+        buffer_.commit(size);
+        failed = error;
+    }
     deadline_.clear();
     idle_ = false;
-    buffer_.commit(size);
-    co_return !error;
+    co_return !failed;
 }
 
 /// @return whether the connection can take another request.
@@ -160,6 +182,7 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await write(*refusal, {});
         co_return false;
     }
+    if (parser.chunked()) parser.body_limit(body_bytes_max(head_of(parser.get()), service_->config));
     std::shared_ptr<const void> slot;
     if (!parser.is_done()) {
         const bool is_taken = co_await take_body(parser, slot);
@@ -235,9 +258,9 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
     }
     const auto& config = service_->config;
     const auto begin = std::chrono::steady_clock::now();
-    const std::uint64_t bytes = parser.content_length().value_or(0);
+    const auto fields = field_count(parser.get());
     while (!parser.is_done()) {
-        const auto received = static_cast<double>(bytes - parser.content_length_remaining().value_or(0));
+        const auto received = static_cast<double>(parser.get().body().size());
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
         const auto end = begin + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
         deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
@@ -247,12 +270,16 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
         co_await refuse(error);
         co_return false;
     }
-    co_return true;
+    if (field_count(parser.get()) == fields) co_return true;
+    co_await write(problem(Status::bad_request, "fields behind a chunked body are not read; send them before it",
+                           instance_of(head_of(parser.get()).target)),
+                   {});
+    co_return false;
 }
 
 /// Hands the socket over to a viewer, until that ends.
 asio::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
-    const auto path = instance_of(view(upgrade.target()));
+    const auto path = instance_of(head_of(upgrade).target);
     auto seat = service_->seats.try_take(invitation.session_id);
     std::optional<Response> refusal;
     if (!seat) {

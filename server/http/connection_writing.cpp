@@ -40,7 +40,10 @@ asio::awaitable<bool> Connection::write(const Response& response, Manner manner)
                             : manner.takes_chunks ? Framing::kChunked
                                                   : Framing::kUntilClosed;
     if (framing == Framing::kUntilClosed) manner.keep_alive = false;
-    const std::string head = head_text(response, manner.keep_alive, date_now(), framing, stream_.is_encrypted());
+    const auto persistence = !manner.keep_alive    ? Persistence::kClose
+                             : manner.takes_chunks ? Persistence::kKeepAlive
+                                                   : Persistence::kKeepAliveOfHttp10;
+    const std::string head = head_text(response, persistence, date_now(), framing, stream_.is_encrypted());
     const bool with_body = manner.with_body && !is_streamed;
     bool written = co_await write_all(head, with_body ? response.body.bytes() : std::string_view());
     const bool with_stream = written && manner.with_body && is_streamed;

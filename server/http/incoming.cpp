@@ -3,6 +3,9 @@
 #include <boost/beast/http/field.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 
+#include <boost/url/parse.hpp>
+#include <boost/url/url_view.hpp>
+
 #include <utility>
 
 namespace scanloom::http {
@@ -18,6 +21,19 @@ std::optional<WebSocketUpgrade> upgrade_of(const Incoming& message) {
                             std::string(view(message[field::origin]))};
 }
 
+/// Takes an absolute form, "http://host/path?query", apart: its authority replaces the Host field. Leaves all other
+/// targets as they are, for parse_target() to judge.
+/// Source  RFC 9112, 3.2.2.
+void split_absolute_form(Request& request) {
+    if (request.target.starts_with('/')) return;
+    const auto url = boost::urls::parse_absolute_uri(request.target);
+    if (!url || !url->has_authority() || url->has_userinfo()) return;
+    if (url->scheme_id() != boost::urls::scheme::http && url->scheme_id() != boost::urls::scheme::https) return;
+    request.host = url->encoded_host_and_port();
+    const std::string resource(url->encoded_resource());
+    request.target = resource.starts_with('/') ? resource : '/' + resource;
+}
+
 } // namespace
 
 Request head_of(const Incoming& message) {
@@ -25,6 +41,7 @@ Request head_of(const Incoming& message) {
     request.method = view(message.method_string());
     request.target = view(message.target());
     request.host = view(message[beast::http::field::host]);
+    split_absolute_form(request);
     request.content_type = view(message[beast::http::field::content_type]);
     request.authorization = view(message[beast::http::field::authorization]);
     request.cookie = view(message[beast::http::field::cookie]);

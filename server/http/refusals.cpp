@@ -44,31 +44,57 @@ std::optional<Response> refusal_of(const beast::flat_buffer& unread, beast::erro
     return problem(Status::bad_request, fmt::format("this is not HTTP/1.1: {}", reason.message()), "");
 }
 
-std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer) {
+namespace {
+
+/// What this server does not read, or what is not clear in a header. The reader of a body must know where it ends.
+std::optional<Response> refusal_of_fields(const Incoming& message, const std::string& path) {
     using beast::http::field;
-    const auto& message = parser.get();
-    const auto path = [&] { return instance_of(view(message.target())); };
-    if (message.count(field::transfer_encoding) > 0) {
-        return problem(Status::length_required, "a Transfer-Encoding is not accepted; send a Content-Length", path());
+    if (const auto coding = message[field::transfer_encoding]; message.count(field::transfer_encoding) > 0) {
+        if (message.version() < 11 || message.count(field::content_length) > 0) {
+            return problem(Status::bad_request, "a Transfer-Encoding needs HTTP/1.1, and no Content-Length", path);
+        }
+        if (message.count(field::transfer_encoding) > 1 || !beast::iequals(coding, "chunked")) {
+            return problem(Status::not_implemented, "the only Transfer-Encoding that is read is 'chunked'", path);
+        }
+    }
+    if (const auto coding = message[field::content_encoding]; !coding.empty() && !beast::iequals(coding, "identity")) {
+        return problem(
+                   Status::unsupported_media_type,
+                   fmt::format("the Content-Encoding {} is not read; send the body as it is", in_quotes(view(coding))),
+                   path)
+            .set("Accept-Encoding", "identity");
+    }
+    if (message.count(field::content_type) > 1) {
+        return problem(Status::bad_request, "the Content-Type is given twice; give it once", path);
     }
     if (message.count(field::host) > 1 || (message.count(field::host) == 0 && message.version() >= 11)) {
-        return problem(Status::bad_request, "a request has exactly one Host field", path());
-    }
-    const bool is_large = parser.content_length().value_or(0) > service.config.body_bytes_max;
-    if (is_large && lane_of(head_of(message)) != Lane::kImporting) {
-        return problem(
-            Status::payload_too_large,
-            fmt::format("the body is too large; at most {} bytes are taken here", service.config.body_bytes_max),
-            path());
-    }
-    const auto host = view(message[field::host]);
-    if (service.check_host && !host.empty() && !is_known_host(host, service.config.host_names)) {
-        service.answering.foreign_host(peer);
-        return problem(Status::misdirected_request,
-                       fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(host)),
-                       path());
+        return problem(Status::bad_request, "a request has exactly one Host field", path);
     }
     return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer) {
+    const Request head = head_of(parser.get());
+    const auto path = instance_of(head.target);
+    if (auto refusal = refusal_of_fields(parser.get(), path)) return refusal;
+    if (parser.content_length().value_or(0) > body_bytes_max(head, service.config)) {
+        return problem(
+            Status::payload_too_large,
+            fmt::format("the body is too large; at most {} bytes are taken here", service.config.body_bytes_max), path);
+    }
+    if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
+        service.answering.foreign_host(peer);
+        return problem(
+            Status::misdirected_request,
+            fmt::format("this server does not know itself as {}; ask it by its address", in_quotes(head.host)), path);
+    }
+    return std::nullopt;
+}
+
+std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config) {
+    return lane_of(head) == Lane::kImporting ? config.import_bytes_max : config.body_bytes_max;
 }
 
 } // namespace scanloom::http

@@ -8,6 +8,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -23,6 +24,9 @@ using Parser = boost::beast::http::request_parser<boost::beast::http::string_bod
 /// The answer to bytes that cannot be read as a request for this reason; nothing when there is nobody to answer.
 [[nodiscard]] std::optional<Response> refusal_of(const boost::beast::flat_buffer& unread,
                                                  boost::beast::error_code reason);
+
+/// Returns how many bytes of body a request may have.
+[[nodiscard]] std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config);
 
 /// What is wrong with a request whose header alone has been read. Who asks for a foreign host is told of.
 /// @param peer  the address that it comes from.

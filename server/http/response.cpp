@@ -44,7 +44,7 @@ Response not_modified(std::string_view etag, std::string_view cache_control) {
     return response;
 }
 
-std::string head_text(const Response& response, bool keep_alive, std::string_view date, Framing framing,
+std::string head_text(const Response& response, Persistence persistence, std::string_view date, Framing framing,
                       bool is_secure) {
     constexpr std::size_t kUsualBytes = 512;
     const auto reason = boost::beast::http::obsolete_reason(response.status);
@@ -61,7 +61,8 @@ std::string head_text(const Response& response, bool keep_alive, std::string_vie
         if (framing == Framing::kLength) add("Content-Length", fmt::format_int(response.body.bytes().size()).c_str());
         if (framing == Framing::kChunked) add("Transfer-Encoding", "chunked");
     }
-    if (!keep_alive) add("Connection", "close");
+    if (persistence == Persistence::kClose) add("Connection", "close");
+    if (persistence == Persistence::kKeepAliveOfHttp10) add("Connection", "keep-alive");
     if (is_secure) add("Strict-Transport-Security", kSecureForAYear);
     add("X-Content-Type-Options", "nosniff");
     add("Referrer-Policy", "no-referrer");

@@ -78,11 +78,14 @@ enum class Framing {
     kUntilClosed, ///< the connection's end
 };
 
+/// What becomes of the connection after an answer, and whether the version of HTTP has to be told.
+enum class Persistence { kClose, kKeepAlive, kKeepAliveOfHttp10 };
+
 /// Status line and fields up to the empty line, as they go over the wire; with what every answer
 /// carries: its framing, whether the connection stays, and what browsers may do with it.
 /// `date` is an IMF-fixdate (RFC 9110, section 5.6.7); `is_secure`: it goes over TLS, and browsers are told to come
 /// back so alone (RFC 6797).
-[[nodiscard]] std::string head_text(const Response& response, bool keep_alive, std::string_view date,
+[[nodiscard]] std::string head_text(const Response& response, Persistence persistence, std::string_view date,
                                     Framing framing = Framing::kLength, bool is_secure = false);
 
 } // namespace scanloom::http

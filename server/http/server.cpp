@@ -124,7 +124,7 @@ void Server::refuse(tcp::socket socket) {
     service_->counters.connections_refused.Increment();
     if (service_->config.tls) return; // a handshake would have to be waited for
     const auto response = problem(Error{Errc::kOverloaded, "too many connections are open; try again later"}, "");
-    const auto text = head_text(response, false, "") + std::string(response.body.bytes());
+    const auto text = head_text(response, Persistence::kClose, "") + std::string(response.body.bytes());
     boost::system::error_code ignored;
     socket.non_blocking(true, ignored);
     socket.write_some(net::buffer(text), ignored);

@@ -36,6 +36,7 @@ Result<std::vector<std::string>> parse_segments(std::string_view path) {
 
 Result<Query> parse_query(const boost::urls::url_view& url) {
     std::vector<std::pair<std::string, std::string>> parameters;
+    if (url.encoded_query().empty()) return Query(); // also behind a '?'
     for (const auto& parameter : url.params()) {
         if (std::ranges::any_of(parameters, [&](const auto& seen) { return seen.first == parameter.key; })) {
             return Error{Errc::kInvalidField,

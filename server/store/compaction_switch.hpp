@@ -7,8 +7,8 @@
 
 namespace scanloom::store {
 
-/// Pauses RocksDB's merging of tables while the disk has little room: the merged tables exist next to the old ones for a
-/// while, and would take the room that scans and removals need.
+/// Pauses RocksDB's merging of tables while the disk has little room: the merged tables exist next to the old ones for
+/// a while, and would take the room that scans and removals need.
 /// Thread  any.
 class CompactionSwitch {
 public:

@@ -64,21 +64,22 @@ TEST(Problem, InstanceIsAShortAndPrintablePath) {
 }
 
 TEST(ResponseHead, SaysWhatEveryAnswerSays) {
-    const auto head = head_text(ok("text/plain", Body("12345")), true, "DATE");
+    const auto head = head_text(ok("text/plain", Body("12345")), Persistence::kKeepAlive, "DATE");
     EXPECT_EQ(head, "HTTP/1.1 200 OK\r\nDate: DATE\r\nContent-Type: text/plain\r\nContent-Length: 5\r\n"
                     "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n"
                     "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n\r\n");
-    EXPECT_THAT(head_text(ok("text/plain", Body("")), false, ""), HasSubstr("Connection: close\r\n"));
+    EXPECT_THAT(head_text(ok("text/plain", Body("")), Persistence::kClose, ""), HasSubstr("Connection: close\r\n"));
 }
 
 TEST(ResponseHead, NoOriginIsLetIn) {
-    EXPECT_THAT(head_text(ok(boost::json::value(1)), true, ""), Not(HasSubstr("Access-Control")));
+    EXPECT_THAT(head_text(ok(boost::json::value(1)), Persistence::kKeepAlive, ""), Not(HasSubstr("Access-Control")));
 }
 
 TEST(ResponseHead, AnAnswerWithoutABodyHasNoLength) {
-    EXPECT_THAT(head_text(not_modified("\"1\"", kRevalidate), true, ""), Not(HasSubstr("Content-Length")));
+    EXPECT_THAT(head_text(not_modified("\"1\"", kRevalidate), Persistence::kKeepAlive, ""),
+                Not(HasSubstr("Content-Length")));
     const Response gone{.status = Status::no_content, .fields = {}, .body = {}};
-    EXPECT_THAT(head_text(gone, true, ""), Not(HasSubstr("Content-Length")));
+    EXPECT_THAT(head_text(gone, Persistence::kKeepAlive, ""), Not(HasSubstr("Content-Length")));
 }
 
 } // namespace

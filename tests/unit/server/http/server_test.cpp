@@ -167,13 +167,83 @@ TEST(HttpServer, BodiesUpToTheLimitAreRead) {
     EXPECT_EQ(answer.body, "POST / " + body);
 }
 
-TEST(HttpServer, ChunkedRequestsAreRefusedTrailersAndAll) {
+std::string chunked(std::string_view chunks, std::string_view fields = "") {
+    return fmt::format("POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n{}\r\n{}", fields, chunks);
+}
+
+TEST(HttpServer, ChunkedBodiesAreReadUpToTheLimit) {
     RunningHttp server;
-    const std::string start = "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n";
-    EXPECT_EQ(answer_to(server, start + "5\r\nhello\r\n0\r\n\r\n").status, 411);
-    EXPECT_EQ(answer_to(server, start + "0\r\nX: " + std::string(70'000, 'a') + "\r\n\r\n").status, 411);
-    EXPECT_EQ(answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: gzip\r\n\r\n").status, 411);
+    HttpClient client(server.port());
+    client.send(chunked("5\r\nhello\r\n6;name=value\r\n world\r\n0\r\n\r\n") + get("/next"));
+    EXPECT_EQ(client.read().body, "POST / hello world");
+    EXPECT_EQ(client.read().body, "GET /next ");
+    HttpClient slow(server.port());
+    for (const char c : chunked("5\r\nhello\r\n0\r\n\r\n")) slow.send(std::string(1, c));
+    EXPECT_EQ(slow.read().body, "POST / hello");
+
+    const std::string half(131'072, 'a');
+    const std::string two_chunks = fmt::format("20000\r\n{0}\r\n20000\r\n{0}\r\n", half);
+    EXPECT_EQ(answer_to(server, chunked(two_chunks + "0\r\n\r\n")).body, "POST / " + half + half);
+    EXPECT_EQ(answer_to(server, chunked(two_chunks + "1\r\na\r\n0\r\n\r\n")).status, 413);
+    EXPECT_EQ(answer_to(server, chunked("ffffffffffffffff\r\n")).status, 413);
+}
+
+TEST(HttpServer, OtherTransferEncodingsAndTrailersAreRefused) {
+    RunningHttp server;
+    EXPECT_EQ(answer_to(server, chunked("0\r\nX: a\r\n\r\n")).status, 400);
+    EXPECT_EQ(answer_to(server, chunked("0\r\nX: " + std::string(70'000, 'a') + "\r\n\r\n")).status, 431);
+    EXPECT_EQ(answer_to(server, chunked("5\r\nhello\r\n0\r\n\r\n", "Content-Length: 5\r\n")).status, 400);
+    EXPECT_EQ(answer_to(server, "POST / HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: gzip\r\n\r\n").status, 501);
+    EXPECT_EQ(answer_to(server, "POST / HTTP/1.0\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n").status, 400);
+    EXPECT_EQ(answer_to(server, chunked("nonsense\r\n")).status, 400);
     EXPECT_EQ(answer_to(server, get("/")).status, 200);
+}
+
+TEST(HttpServer, BodiesInAnotherCodingAndContentTypesGivenTwiceAreRefused) {
+    RunningHttp server;
+    const auto with = [&](std::string_view fields) {
+        return answer_to(server,
+                         fmt::format("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2\r\n{}\r\nok", fields));
+    };
+    const auto refused = with("Content-Encoding: gzip\r\n");
+    EXPECT_EQ(refused.status, 415);
+    EXPECT_EQ(refused.fields.at("accept-encoding"), "identity");
+    EXPECT_EQ(with("Content-Encoding: identity\r\n").status, 200);
+    EXPECT_EQ(with("Content-Type: text/plain\r\nContent-Type: application/json\r\n").status, 400);
+}
+
+TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
+    RunningHttp server;
+    const auto ask = [&](std::string_view target, std::string_view host) {
+        return answer_to(server, fmt::format("GET {} HTTP/1.1\r\nHost: {}\r\n\r\n", target, host));
+    };
+    EXPECT_EQ(ask("http://localhost:8080/a/b?c=d", "localhost").body, "GET /a/b?c=d ");
+    EXPECT_EQ(ask("HTTP://localhost", "localhost").body, "GET / ");
+    EXPECT_EQ(ask("http://localhost?c=d", "localhost").body, "GET /?c=d ");
+    EXPECT_EQ(ask("http://localhost/", "evil.example").status, 200) << "the Host field does not count";
+    EXPECT_EQ(ask("http://evil.example/", "localhost").status, 421);
+}
+
+TEST(HttpServer, OneEmptyLineBeforeARequestIsSkipped) {
+    RunningHttp server;
+    HttpClient client(server.port());
+    client.send("\r\n" + get("/a") + "\r\n" + get("/b"));
+    EXPECT_EQ(client.read().body, "GET /a ");
+    EXPECT_EQ(client.read().body, "GET /b ");
+    client.send("\r");
+    client.send("\n" + get("/c"));
+    EXPECT_EQ(client.read().body, "GET /c ");
+    EXPECT_EQ(answer_to(server, "\r\n\r\n" + get("/")).status, 400);
+}
+
+TEST(HttpServer, ClientsOfHttp10KeepTheConnectionWhenTheyAskForIt) {
+    RunningHttp server;
+    HttpClient client(server.port());
+    client.send("GET /a HTTP/1.0\r\nConnection: keep-alive\r\n\r\n");
+    EXPECT_EQ(client.read().fields.at("connection"), "keep-alive");
+    client.send("GET /b HTTP/1.0\r\n\r\n");
+    EXPECT_EQ(client.read().fields.at("connection"), "close");
+    EXPECT_TRUE(client.ends_in_order());
 }
 
 TEST(HttpServer, AWaitingBodyIsAskedFor) {

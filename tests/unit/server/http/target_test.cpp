@@ -25,6 +25,7 @@ TEST(Target, QueryIsDecoded) {
     EXPECT_THAT(target->query.find("after"), Optional(std::string_view("caf\xC3\xA9")));
     EXPECT_THAT(target->query.find("flag"), Optional(std::string_view("")));
     EXPECT_EQ(target->query.find("missing"), std::nullopt);
+    EXPECT_TRUE(parse_target("/x?")->query.check_only({})) << "a bare '?'";
 }
 
 TEST(Target, WhatIsNotAPathIsRefused) {

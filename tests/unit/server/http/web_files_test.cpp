@@ -78,7 +78,7 @@ TEST_F(WebFilesTest, WhatIsNotModifiedKeepsItsPolicyAndItsCaching) {
     write("assets/index-BvC3kD9x.js", "1");
     const auto files = load();
     const auto policies = [](const Response& response) {
-        const auto head = head_text(response, true, "");
+        const auto head = head_text(response, Persistence::kKeepAlive, "");
         const auto begin = head.find("Content-Security-Policy:");
         EXPECT_EQ(head.find("Content-Security-Policy:", begin + 1), std::string::npos);
         return head.substr(begin, head.find("\r\n", begin) - begin);
