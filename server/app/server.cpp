@@ -248,7 +248,7 @@ void Server::wait_for_signal() {
 /// From time to time, as long as the server runs.
 void Server::tidy_up() {
     if (sessions_.is_draining()) return;
-    asio::post(changing_, [this] {
+    asio::post(changing_.get_executor(), [this] {
         if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
         audit_.tell_what_is_due();
@@ -313,7 +313,7 @@ void Server::drain() {
     weaving_patience_.async_wait([this](const boost::system::error_code& error) {
         if (!error) sessions_.hurry();
     });
-    asio::post(changing_, [this, busy = asio::make_work_guard(io_)] {
+    asio::post(changing_.get_executor(), [this, busy = asio::make_work_guard(io_)] {
         sessions_.drain();
         asio::post(io_, [this] { weaving_patience_.cancel(); });
         http_->stop([this] {

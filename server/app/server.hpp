@@ -13,13 +13,13 @@
 #include "server/session/background_check.hpp"
 #include "server/session/session_registry.hpp"
 #include "server/session/weaves.hpp"
+#include "server/sockets/worker_pool.hpp"
 #include "server/store/backups.hpp"
 #include "server/store/reopening_log.hpp"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
 
 #include <memory>
 #include <optional>
@@ -83,21 +83,21 @@ private:
     guard::Audit audit_;
     guard::Logins logins_;
     // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
-    boost::asio::thread_pool weaving_;
-    boost::asio::thread_pool serving_;
-    boost::asio::thread_pool survey_{1};
-    boost::asio::thread_pool paths_{1};
-    boost::asio::thread_pool logs_{1};
-    boost::asio::thread_pool reweaving_{2};
-    boost::asio::thread_pool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
-    boost::asio::thread_pool planning_{1};
-    boost::asio::thread_pool locating_{1};
-    boost::asio::thread_pool changing_{2};
-    boost::asio::thread_pool checkpointing_{1};
-    boost::asio::thread_pool reading_{2};
-    boost::asio::thread_pool checking_{1};
-    boost::asio::thread_pool telling_{1};
-    boost::asio::thread_pool showing_{1};
+    sockets::WorkerPool weaving_;
+    sockets::WorkerPool serving_;
+    sockets::WorkerPool survey_{1};
+    sockets::WorkerPool paths_{1};
+    sockets::WorkerPool logs_{1};
+    sockets::WorkerPool reweaving_{2};
+    sockets::WorkerPool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
+    sockets::WorkerPool planning_{1};
+    sockets::WorkerPool locating_{1};
+    sockets::WorkerPool changing_{2};
+    sockets::WorkerPool checkpointing_{1};
+    sockets::WorkerPool reading_{2};
+    sockets::WorkerPool checking_{1};
+    sockets::WorkerPool telling_{1};
+    sockets::WorkerPool showing_{1};
     boost::asio::io_context io_;
     session::SessionRegistry sessions_;
     session::BackgroundCheck check_;

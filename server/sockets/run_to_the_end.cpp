@@ -12,9 +12,9 @@ void run_to_the_end(boost::asio::io_context& io) noexcept {
             io.run();
             return;
         } catch (const std::exception& failure) {
-            spdlog::error("something that was to be done on an I/O thread failed: {}", failure.what());
+            spdlog::error("a task failed: {}", failure.what());
         } catch (...) {
-            spdlog::error("something that was to be done on an I/O thread failed");
+            spdlog::error("a task failed");
         }
     }
 }
