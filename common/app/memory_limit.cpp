@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
-/// Nothing if there is no such file, or no number in it: "max".
+/// Returns the number in a file, or kNoLimit if there is none ("max").
 std::uint64_t number_in(const fs::path& file) {
     std::ifstream in(file);
     std::uint64_t number = 0;
@@ -23,8 +23,7 @@ std::uint64_t number_in(const fs::path& file) {
 }
 
 /// @param hierarchy  where the control groups are mounted
-/// @param group      of this process, in a hierarchy that may be mounted from further below: then there is no such
-/// folder
+/// @param group      of this process; folders that do not exist have no limit (a container sees its group as the root)
 std::uint64_t least_limit(const fs::path& hierarchy, const fs::path& group, const char* file) {
     std::uint64_t least = number_in(hierarchy / file);
     fs::path folder = hierarchy;

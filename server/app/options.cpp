@@ -45,6 +45,7 @@ struct Raw {
     std::string restore; ///< "newest", or an id
     std::string tokens;  ///< empty: not given, as the next
     std::string web;
+    std::vector<std::string> proxies;
     double tile_cache_mib = 64.0;
     double map_memory_mib = 0.0;
     double weave_memory_mib = 0.0;
@@ -105,6 +106,11 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
            "--http-host", options.http_hosts,
            "Name by which the HTTP port is asked, besides localhost and addresses; several with commas or several "
            "times. Other names are refused on a loopback address, and everywhere as soon as one is given")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    app.add_option("--http-proxy", raw.proxies,
+                   "Address of a reverse proxy; several with commas or several times. It may open any number of "
+                   "connections to the HTTP port, other addresses of other machines 256")
         ->delimiter(',')
         ->allow_extra_args(false);
     add_tls_options(app, options.robot_tls, "--robot", "robots");
@@ -172,6 +178,16 @@ Result<> check_host_names(const std::vector<std::string>& names) {
     return {};
 }
 
+Result<> settle_proxies(const std::vector<std::string>& named, ServerOptions& options) {
+    for (const auto& text : named) {
+        boost::system::error_code failed;
+        options.http_proxies.push_back(boost::asio::ip::make_address(text, failed));
+        if (!failed) continue;
+        return Error{Errc::kInvalidField, fmt::format("--http-proxy '{}' is not an address; write 192.0.2.7", text)};
+    }
+    return {};
+}
+
 Result<> settle_task(const Raw& raw, ServerOptions& options) {
     if (!raw.check.empty()) options.task = raw.check == "deep" ? Task::kCheckMaps : Task::kCheck;
     if (!options.repaired.empty()) options.task = Task::kRepair;
@@ -217,6 +233,7 @@ Result<> settle(const Raw& raw, ServerOptions& options) {
     options.tile_cache_bytes = static_cast<std::size_t>(raw.tile_cache_mib * 1024 * 1024);
     if (auto found = settle_web(raw.web, options); !found) return found.error();
     if (auto valid = check_host_names(options.http_hosts); !valid) return valid.error();
+    if (auto valid = settle_proxies(raw.proxies, options); !valid) return valid.error();
     return check_guarded(options);
 }
 

@@ -40,8 +40,9 @@ struct ServerOptions {
     std::filesystem::path tokens;        ///< who may do what; empty: everybody may do everything
     sockets::TlsFiles robot_tls;
     sockets::TlsFiles http_tls;
-    std::vector<std::string> http_hosts; ///< names by which the HTTP port is asked, besides localhost
-    std::size_t threads = 1;             ///< that weave, and as many that answer requests
+    std::vector<std::string> http_hosts;                ///< names by which the HTTP port is asked, besides localhost
+    std::vector<boost::asio::ip::address> http_proxies; ///< not bounded in connections as other addresses are
+    std::size_t threads = 1;                            ///< that weave, and as many that answer requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
     std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
     std::size_t map_memory_bytes = std::size_t{1} << 30;   ///< of the maps of all sessions that are in memory

@@ -172,6 +172,7 @@ Result<> Server::listen() {
     http::ServerConfig config;
     config.endpoint = options_.http;
     config.host_names = options_.http_hosts;
+    config.proxies = options_.http_proxies;
     config.tls = http_tls_;
     config.connections_max = limits_.http;
     auto http = http::Server::listen(

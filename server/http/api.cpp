@@ -89,12 +89,12 @@ Result<> check_content_type(Operation operation, const Request& request) {
 
 } // namespace
 
-Response Api::answer(const Request& request) {
+std::variant<Api::Admitted, Response> Api::admit(const Request& request) const {
     const auto path = instance_of(request.target);
-    const auto target = parse_target(request.target);
+    auto target = parse_target(request.target);
     if (!target) return problem(target.error(), path);
 
-    const auto routing = find_route(request.method, target->segments);
+    auto routing = find_route(request.method, target->segments);
     if (std::holds_alternative<NoSuchPath>(routing)) {
         return problem(Error{Errc::kNotFound, "there is nothing at this path; /openapi.json lists what there is"},
                        path);
@@ -105,28 +105,27 @@ Response Api::answer(const Request& request) {
                        path)
             .set("Allow", refused->allow);
     }
-    return answer_known(std::get<Match>(routing), *target, request);
-}
-
-Response Api::answer_known(const Match& match, const Target& target, const Request& request) {
+    auto& match = std::get<Match>(routing);
     auto who = doorman_.admit(request, match);
     if (auto* refusal = std::get_if<Response>(&who)) return std::move(*refusal);
     if (auto accepted = check_content_type(match.operation, request); !accepted) {
-        return problem(Status::unsupported_media_type, accepted.error().message, instance_of(request.target));
+        return problem(Status::unsupported_media_type, accepted.error().message, path);
     }
-    auto response = call(match, {request, match.arguments, target.query, std::get<access::TokenRef>(std::move(who))});
+    return Admitted{std::move(match), std::move(target->query), std::get<access::TokenRef>(std::move(who))};
+}
+
+Response Api::answer(const Request& request) {
+    auto admitted = admit(request);
+    if (auto* refusal = std::get_if<Response>(&admitted)) return std::move(*refusal);
+    auto& [match, query, who] = std::get<Admitted>(admitted);
+    auto response = call(match, {request, match.arguments, query, std::move(who)});
     if (!response) return problem(response.error(), instance_of(request.target));
     return for_who_asked(match.operation, std::move(*response));
 }
 
 std::optional<Response> Api::refuse(const Request& request) const {
-    const auto target = parse_target(request.target);
-    if (!target) return std::nullopt;
-    const auto routing = find_route(request.method, target->segments);
-    const auto* match = std::get_if<Match>(&routing);
-    if (match == nullptr) return std::nullopt;
-    auto who = doorman_.admit(request, *match);
-    auto* refusal = std::get_if<Response>(&who);
+    auto admitted = admit(request);
+    auto* refusal = std::get_if<Response>(&admitted);
     return refusal == nullptr ? std::nullopt : std::optional(std::move(*refusal));
 }
 

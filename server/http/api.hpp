@@ -9,6 +9,8 @@
 #include "server/http/lane.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
+#include "server/http/router.hpp"
+#include "server/http/target.hpp"
 #include "server/http/web_files.hpp"
 #include "server/live/landmark_hub.hpp"
 #include "server/metrics/metrics.hpp"
@@ -25,10 +27,9 @@
 #include <functional>
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace scanloom::http {
-
-struct Target;
 
 /// From a request to its answer: target -> route -> handler. Here each handler is given what it uses.
 /// Bounds  large answers, map images of up to 64 MB above all, have slots; tiles that are kept take tile_bytes_max.
@@ -66,11 +67,19 @@ public:
     /// again, and where it says the same, answer() knows why.
     void wake(const Asleep& asleep, std::function<void()> told);
 
-    /// For I/O threads, before the request's body is read: the answer to who is not let in; nothing for all others.
+    /// For I/O threads, before the request's body is read: the answer to a request whose header is enough to refuse it.
     [[nodiscard]] std::optional<Response> refuse(const Request& request) const;
 
 private:
-    [[nodiscard]] Response answer_known(const Match& match, const Target& target, const Request& request);
+    /// A request whose header holds nothing that is refused.
+    struct Admitted {
+        Match match;
+        Query query;
+        access::TokenRef who;
+    };
+
+    /// Checks everything but the body: path, method, permission, Content-Type.
+    [[nodiscard]] std::variant<Admitted, Response> admit(const Request& request) const;
     [[nodiscard]] Response for_who_asked(Operation operation, Response response) const;
     [[nodiscard]] Result<Response> call(const Match& match, const Call& call);
 

@@ -43,17 +43,17 @@ auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
 
 std::ptrdiff_t field_count(const Incoming& message) { return std::distance(message.begin(), message.end()); }
 
-/// Whether bytes of a request are there. Skips one empty line before it: clients send one after a body (RFC 9112, 2.2).
-bool has_request(beast::flat_buffer& received, bool& has_skipped) {
+std::string_view text_of(const beast::flat_buffer& received) {
+    return {static_cast<const char*>(received.data().data()), received.size()};
+}
+
+/// Skips an empty line before a request: some clients send one after a body (RFC 9112, 2.2).
+/// @return whether there was one
+bool skip_empty_line(beast::flat_buffer& received) {
     constexpr std::string_view kEmptyLine = "\r\n";
-    const auto bytes = [&] {
-        return std::string_view(static_cast<const char*>(received.data().data()), received.size());
-    };
-    if (!has_skipped && bytes().starts_with(kEmptyLine)) {
-        received.consume(kEmptyLine.size());
-        has_skipped = true;
-    }
-    return !bytes().empty() && (has_skipped || bytes() != "\r");
+    if (!text_of(received).starts_with(kEmptyLine)) return false;
+    received.consume(kEmptyLine.size());
+    return true;
 }
 
 } // namespace
@@ -86,21 +86,20 @@ asio::awaitable<void> Connection::run() {
 void Connection::begin_to_wait() {
     if (waits_) return;
     waits_ = true;
-    waits_since_ = std::chrono::steady_clock::now();
+    wait_.begin(PeerWait::Clock::now());
 }
 
 void Connection::end_waiting() {
     waits_ = false;
-    waits_since_ = kNever;
+    wait_.end();
 }
 
-std::optional<std::chrono::steady_clock::time_point> Connection::waits_since() const noexcept {
-    const auto since = waits_since_.load();
-    return since == kNever ? std::nullopt : std::optional(since);
+std::optional<std::chrono::duration<double>> Connection::behind() const noexcept {
+    return wait_.behind(PeerWait::Clock::now());
 }
 
 void Connection::make_room() {
-    waits_since_ = kNever;
+    wait_.end();
     asio::dispatch(stream_.get_executor(), [self = shared_from_this()] {
         if (self->waits_) self->close();
     });
@@ -152,14 +151,16 @@ asio::awaitable<void> Connection::tell_plainly(std::string_view sentence) {
 }
 
 asio::awaitable<bool> Connection::wait_for_request() {
-    bool has_skipped = false;
-    if (has_request(buffer_, has_skipped)) co_return true; // pipelined
+    bool has_skipped = skip_empty_line(buffer_);
+    const auto has_request = [&] { return buffer_.size() > 0 && (has_skipped || text_of(buffer_) != "\r"); };
+    if (has_request()) co_return true; // pipelined
     idle_ = true;
     deadline_.set_after(service_->config.idle);
     beast::error_code failed;
-    while (!failed && !has_request(buffer_, has_skipped)) {
+    while (!failed && !has_request()) {
         const auto [error, size] = co_await stream_.async_read_some(buffer_.prepare(kReadBytes), kAwaitTuple);
         buffer_.commit(size);
+        if (!has_skipped) has_skipped = skip_empty_line(buffer_);
         failed = error;
     }
     deadline_.clear();
@@ -259,9 +260,11 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
     const auto& config = service_->config;
     const auto begin = std::chrono::steady_clock::now();
     const auto fields = field_count(parser.get());
+    begin_to_wait();
     while (!parser.is_done()) {
         const auto received = static_cast<double>(parser.get().body().size());
         const std::chrono::duration<double> more(received / static_cast<double>(config.read_rate_min));
+        wait_.allow(more.count());
         const auto end = begin + config.body + std::chrono::duration_cast<std::chrono::milliseconds>(more);
         deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.body_pause));
         const auto [error, size] = co_await beast::http::async_read_some(stream_, buffer_, parser, kAwaitTuple);
@@ -270,6 +273,7 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
         co_await refuse(error);
         co_return false;
     }
+    end_waiting();
     if (field_count(parser.get()) == fields) co_return true;
     co_await write(problem(Status::bad_request, "fields behind a chunked body are not read; send them before it",
                            instance_of(head_of(parser.get()).target)),

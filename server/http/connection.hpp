@@ -4,6 +4,7 @@
 #include "server/http/deadline.hpp"
 #include "server/http/incoming.hpp"
 #include "server/http/lane.hpp"
+#include "server/http/peer_wait.hpp"
 #include "server/http/refusals.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
@@ -14,7 +15,6 @@
 #include <boost/beast/core/error.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -25,8 +25,8 @@ namespace scanloom::http {
 /// One connection: shakes hands where the port has TLS, reads a request, has it answered, writes the answer, and again,
 /// in order. A request that is invited to watch a session is the last: the connection becomes a live::Viewer's.
 ///
-/// No request with Transfer-Encoding is read. Nothing here needs one, and Beast 1.81 throws
-/// std::length_error at long chunked trailers.
+/// Chunked bodies are read, trailers are not: Beast 1.81 throws std::length_error at long ones, which the buffer's
+/// limit prevents here.
 /// Thread  everything runs on the socket's executor, a strand; stop() and abort() may be called from any.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
@@ -41,16 +41,15 @@ public:
     /// Closes at once.
     void abort();
 
-    /// Since when it waits for a whole header of a request; nothing while one is answered or watched, and once it was
-    /// asked to make room.
-    [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> waits_since() const noexcept;
+    /// Returns how far the peer is behind: for how long it is waited for, minus the time that what it has sent or taken
+    /// meanwhile may take (read_rate_min, write_rate_min). nullopt while the peer waits for the server, while it
+    /// watches a session, and after make_room(). Thread: any.
+    [[nodiscard]] std::optional<std::chrono::duration<double>> behind() const noexcept;
 
-    /// Closes if it still waits for a header, as somebody else needs the place.
+    /// Closes if the peer is still waited for, because another connection needs the place.
     void make_room();
 
 private:
-    static constexpr auto kNever = std::chrono::steady_clock::time_point::max();
-
     [[nodiscard]] boost::asio::awaitable<bool> shake_hands();
     [[nodiscard]] boost::asio::awaitable<bool> wait_for_request();
     [[nodiscard]] boost::asio::awaitable<bool> serve_request();
@@ -85,8 +84,8 @@ private:
     std::shared_ptr<const Service> service_;
     std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
     bool idle_ = false;                    // between requests, or before the first
-    bool waits_ = false;                   // until the header of the next request is there
-    std::atomic<std::chrono::steady_clock::time_point> waits_since_ = kNever;
+    bool waits_ = false;                   // for the peer
+    PeerWait wait_;                        // the same, for other threads
     bool stopping_ = false;
     bool must_linger_ = false; // the peer may still have the last answer to read
 };

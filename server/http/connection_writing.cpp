@@ -89,13 +89,18 @@ asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_v
         static_cast<double>(head.size() + body.size()) / static_cast<double>(config.write_rate_min);
     const auto end = std::chrono::steady_clock::now() + config.write +
                      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(size_seconds));
+    begin_to_wait();
+    const auto bytes = static_cast<double>(beast::buffer_bytes(rest));
     while (beast::buffer_bytes(rest) > 0) {
+        const auto taken = bytes - static_cast<double>(beast::buffer_bytes(rest));
+        wait_.allow(taken / static_cast<double>(config.write_rate_min));
         deadline_.set(std::min(end, std::chrono::steady_clock::now() + config.write));
         const auto [error, size] = co_await stream_.async_write_some(rest, kAwaitTuple);
         deadline_.clear();
         if (error) co_return false;
         rest.consume(size);
     }
+    end_waiting();
     co_return true;
 }
 

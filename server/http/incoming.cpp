@@ -27,7 +27,7 @@ std::optional<WebSocketUpgrade> upgrade_of(const Incoming& message) {
 void split_absolute_form(Request& request) {
     if (request.target.starts_with('/')) return;
     const auto url = boost::urls::parse_absolute_uri(request.target);
-    if (!url || !url->has_authority() || url->has_userinfo()) return;
+    if (!url || url->encoded_host().empty() || url->has_userinfo()) return;
     if (url->scheme_id() != boost::urls::scheme::http && url->scheme_id() != boost::urls::scheme::https) return;
     request.host = url->encoded_host_and_port();
     const std::string resource(url->encoded_resource());

@@ -33,8 +33,8 @@ std::optional<Response> refusal_of(const beast::flat_buffer& unread, beast::erro
                        "this is no HTTP but what robots send; they connect to the robot port (--listen)", "");
     }
     if (reason == error::header_limit || reason == error::buffer_overflow) {
-        return problem(Status::request_header_fields_too_large, "the header is too large; send fewer or shorter fields",
-                       "");
+        return problem(Status::request_header_fields_too_large,
+                       "the header, or a line of a chunked body, is too large; send fewer or shorter fields", "");
     }
     if (reason == error::body_limit) {
         return problem(Status::payload_too_large, "the body is too large; send less", "");
@@ -46,7 +46,7 @@ std::optional<Response> refusal_of(const beast::flat_buffer& unread, beast::erro
 
 namespace {
 
-/// What this server does not read, or what is not clear in a header. The reader of a body must know where it ends.
+/// Returns the refusal of a request with unsupported or ambiguous fields.
 std::optional<Response> refusal_of_fields(const Incoming& message, const std::string& path) {
     using beast::http::field;
     if (const auto coding = message[field::transfer_encoding]; message.count(field::transfer_encoding) > 0) {
@@ -57,11 +57,13 @@ std::optional<Response> refusal_of_fields(const Incoming& message, const std::st
             return problem(Status::not_implemented, "the only Transfer-Encoding that is read is 'chunked'", path);
         }
     }
-    if (const auto coding = message[field::content_encoding]; !coding.empty() && !beast::iequals(coding, "identity")) {
-        return problem(
-                   Status::unsupported_media_type,
-                   fmt::format("the Content-Encoding {} is not read; send the body as it is", in_quotes(view(coding))),
-                   path)
+    const auto [first, last] = message.equal_range(field::content_encoding);
+    for (auto coding = first; coding != last; ++coding) {
+        if (coding->value().empty() || beast::iequals(coding->value(), "identity")) continue;
+        return problem(Status::unsupported_media_type,
+                       fmt::format("the Content-Encoding {} is not read; send the body as it is",
+                                   in_quotes(view(coding->value()))),
+                       path)
             .set("Accept-Encoding", "identity");
     }
     if (message.count(field::content_type) > 1) {
@@ -79,10 +81,10 @@ std::optional<Response> refusal_of(const Parser& parser, const Service& service,
     const Request head = head_of(parser.get());
     const auto path = instance_of(head.target);
     if (auto refusal = refusal_of_fields(parser.get(), path)) return refusal;
-    if (parser.content_length().value_or(0) > body_bytes_max(head, service.config)) {
-        return problem(
-            Status::payload_too_large,
-            fmt::format("the body is too large; at most {} bytes are taken here", service.config.body_bytes_max), path);
+    const auto bytes_max = body_bytes_max(head, service.config);
+    if (parser.content_length().value_or(0) > bytes_max) {
+        return problem(Status::payload_too_large,
+                       fmt::format("the body is too large; at most {} bytes are taken here", bytes_max), path);
     }
     if (service.check_host && !head.host.empty() && !is_known_host(head.host, service.config.host_names)) {
         service.answering.foreign_host(peer);

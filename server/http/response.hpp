@@ -78,7 +78,7 @@ enum class Framing {
     kUntilClosed, ///< the connection's end
 };
 
-/// What becomes of the connection after an answer, and whether the version of HTTP has to be told.
+/// Whether the connection stays open. Clients of HTTP/1.0 need the field `Connection: keep-alive`.
 enum class Persistence { kClose, kKeepAlive, kKeepAliveOfHttp10 };
 
 /// Status line and fields up to the empty line, as they go over the wire; with what every answer

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -71,9 +72,9 @@ void Server::stop(std::function<void()> done) {
         self->drained_.expires_after(self->service_->config.drain);
         self->drained_.async_wait([self](boost::system::error_code cancelled) {
             if (cancelled) return;
-            for (const auto& connection : self->connections_) connection->abort();
+            for (const auto& [connection, peer] : self->connections_) connection->abort();
         });
-        for (const auto& connection : self->connections_) connection->stop();
+        for (const auto& [connection, peer] : self->connections_) connection->stop();
         self->call_done_when_empty();
     });
 }
@@ -87,13 +88,17 @@ net::awaitable<void> Server::accept_loop() {
 }
 
 void Server::take(tcp::socket socket) {
-    if (connections_.size() >= service_->config.connections_max && !make_room()) return refuse(std::move(socket));
     boost::system::error_code ignored;
+    const auto peer = socket.remote_endpoint(ignored).address();
+    if (has_too_many(peer)) return refuse(std::move(socket), "too many connections of this address are open");
+    if (connections_.size() >= service_->config.connections_max && !make_room())
+        return refuse(std::move(socket), "too many connections are open");
     socket.set_option(tcp::no_delay(true), ignored);
     const auto executor = socket.get_executor();
     auto connection =
         std::make_shared<Connection>(sockets::stream_over(std::move(socket), service_->config.tls), service_);
-    connections_.insert(connection);
+    connections_.emplace(connection, peer);
+    ++peers_[peer];
     service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
     try {
         net::co_spawn(executor, serve(connection), net::detached);
@@ -103,27 +108,35 @@ void Server::take(tcp::socket socket) {
     }
 }
 
-/// Nobody keeps a place by saying nothing: who came to say something gets that of the longest silent one.
-/// @return false: all have said something, or more are on their way out already than places are lent.
+/// Closes the connection whose peer is furthest behind: it is silent, sends its body slowly or reads slowly.
+/// @return false: every peer waits for this server, or more connections are closing already than places are lent.
 bool Server::make_room() {
     if (connections_.size() >= service_->config.connections_max + kOnTheirWayOutMax) return false;
-    std::shared_ptr<Connection> longest;
-    auto since = std::chrono::steady_clock::time_point::max();
-    for (const auto& connection : connections_) {
-        const auto waits = connection->waits_since();
-        if (!waits || *waits >= since) continue;
-        since = *waits;
-        longest = connection;
+    std::shared_ptr<Connection> slowest;
+    std::chrono::duration<double> furthest{};
+    for (const auto& [connection, peer] : connections_) {
+        const auto behind = connection->behind();
+        if (!behind || (slowest && *behind <= furthest)) continue;
+        furthest = *behind;
+        slowest = connection;
     }
-    if (longest) longest->make_room();
-    return longest != nullptr;
+    if (slowest) slowest->make_room();
+    return slowest != nullptr;
+}
+
+/// Many connections of one address cost the others their places; not those of this machine, nor those of a proxy.
+bool Server::has_too_many(const net::ip::address& peer) const {
+    const auto& config = service_->config;
+    if (peer.is_loopback() || std::ranges::find(config.proxies, peer) != config.proxies.end()) return false;
+    const auto of_peer = peers_.find(peer);
+    return of_peer != peers_.end() && of_peer->second >= config.connections_per_peer_max;
 }
 
 /// Says why, as far as that is possible without waiting: nothing may pile up here.
-void Server::refuse(tcp::socket socket) {
+void Server::refuse(tcp::socket socket, std::string_view why) {
     service_->counters.connections_refused.Increment();
     if (service_->config.tls) return; // a handshake would have to be waited for
-    const auto response = problem(Error{Errc::kOverloaded, "too many connections are open; try again later"}, "");
+    const auto response = problem(Error{Errc::kOverloaded, fmt::format("{}; try again later", why)}, "");
     const auto text = head_text(response, Persistence::kClose, "") + std::string(response.body.bytes());
     boost::system::error_code ignored;
     socket.non_blocking(true, ignored);
@@ -142,7 +155,12 @@ net::awaitable<void> Server::serve(std::shared_ptr<Connection> connection) {
 }
 
 void Server::forget(const std::shared_ptr<Connection>& connection) {
-    connections_.erase(connection);
+    const auto found = connections_.find(connection);
+    if (found != connections_.end()) {
+        const auto of_peer = peers_.find(found->second);
+        if (--of_peer->second == 0) peers_.erase(of_peer);
+        connections_.erase(found);
+    }
     service_->counters.connections_open.Set(static_cast<double>(connections_.size()));
     call_done_when_empty();
 }

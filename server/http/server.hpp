@@ -14,16 +14,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
-#include <set>
 
 namespace scanloom::http {
 
 /// Listens, and runs one coroutine per connection.
 ///
 /// Queue   "connections": at most config.connections_max, each with one request at a time, which
-///         also bounds what waits for the executors. For one more the longest silent one makes room; where each of
-///         them has sent a request, it is answered 503.
+///         also bounds what waits for the executors. For one more the one whose peer is furthest behind is closed
+///         (Connection::behind()); if every peer waits for the server, it is answered 503. At most
+///         config.connections_per_peer_max of one address, except loopback and config.proxies.
 ///         "changes": at most config.changes_max requests create or delete sessions; one more is answered 503.
 ///         "imports": at most config.imports_max maps are read and imported; one more is answered 503.
 ///         "weaves": at most config.weaves_max requests wait for maps to be woven; one more is answered 503.
@@ -58,7 +59,8 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
     void take(boost::asio::ip::tcp::socket socket);
     [[nodiscard]] bool make_room();
-    void refuse(boost::asio::ip::tcp::socket socket);
+    [[nodiscard]] bool has_too_many(const boost::asio::ip::address& peer) const;
+    void refuse(boost::asio::ip::tcp::socket socket, std::string_view why);
     void forget(const std::shared_ptr<Connection>& connection);
     void call_done_when_empty();
 
@@ -69,8 +71,9 @@ private:
 
     // On the strand only.
     boost::asio::ip::tcp::acceptor acceptor_;
-    boost::asio::steady_timer drained_; // runs out at the end of draining
-    std::set<std::shared_ptr<Connection>> connections_;
+    boost::asio::steady_timer drained_;                                           // runs out at the end of draining
+    std::map<std::shared_ptr<Connection>, boost::asio::ip::address> connections_; // with their peers
+    std::map<boost::asio::ip::address, std::size_t> peers_;                       // how many of each
     bool accepting_ = false;
     std::function<void()> done_; // set while stopping
 };

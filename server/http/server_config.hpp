@@ -17,7 +17,9 @@ namespace scanloom::http {
 /// What bounds one peer: sizes, deadlines, numbers.
 struct ServerConfig {
     boost::asio::ip::tcp::endpoint endpoint; ///< port 0 picks a free one
-    std::size_t connections_max = 1024;      ///< for one more the longest silent one goes; see Server
+    std::size_t connections_max = 1024;      ///< for one more the slowest one goes; see Server
+    std::size_t connections_per_peer_max = 256;
+    std::vector<boost::asio::ip::address> proxies; ///< to which connections_per_peer_max does not apply
 
     std::size_t changes_max = 16; ///< requests that create or delete sessions; one more is answered 503
     std::size_t weaves_max = 16;  ///< requests that wait for maps to be woven; one more is answered 503

@@ -15,9 +15,9 @@ constexpr std::uint64_t kGroupBytesMax = std::uint64_t{8} << 20;
 } // namespace
 
 Committer::Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes,
-                     CompactionSwitch& compactions, std::unique_ptr<FilesWatch> files)
+                     CompactionSwitch& compactions, FilesWatch* files)
     : database_(database), name_(std::move(name)), disk_reserve_bytes_(disk_reserve_bytes), compactions_(compactions),
-      files_(std::move(files)), thread_([this] { run(); }) {}
+      files_(files), thread_([this] { run(); }) {}
 
 Committer::~Committer() {
     {
@@ -52,24 +52,28 @@ StoreStats Committer::stats() const {
     std::unique_lock lock(mutex_);
     StoreStats stats = stats_;
     lock.unlock();
-    if (!stats.last_error && files_) {
+    if (files_ != nullptr) {
         if (const auto in_place = files_->check(); !in_place) stats.last_error = in_place.error().message;
     }
-    const auto no_room = want_of_room(); // as it is by now
-    if (stats.no_room) stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
+    if (!stats.no_room) return stats;
+    const auto no_room = want_of_room(free_bytes()); // as it is by now
+    stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
     return stats;
 }
 
-/// Cost  a microsecond.
-std::optional<Error> Committer::want_of_room() const {
+/// Costs a microsecond.
+std::optional<std::uint64_t> Committer::free_bytes() const {
     std::uint64_t free = 0;
     if (!database_.GetEnv()->GetFreeSpace(name_, &free).ok()) return std::nullopt;
-    compactions_.update(free);
-    if (free >= disk_reserve_bytes_) return std::nullopt;
+    return free;
+}
+
+std::optional<Error> Committer::want_of_room(std::optional<std::uint64_t> free) const {
+    if (!free || *free >= disk_reserve_bytes_) return std::nullopt;
     return Error{Errc::kOverloaded,
                  fmt::format("the disk of the store {} has {} MiB left, and {} are kept free: nothing more is stored "
                              "until there is more; free some, or delete sessions",
-                             name_, free >> 20, disk_reserve_bytes_ >> 20)};
+                             name_, *free >> 20, disk_reserve_bytes_ >> 20)};
 }
 
 void Committer::run() {
@@ -97,8 +101,10 @@ void Committer::commit(Group group) {
     rocksdb::WriteBatch batch(static_cast<std::size_t>(bytes)); // so that it need not grow
     std::vector<Result<>> results;
     results.reserve(group.size());
-    const auto no_room = want_of_room();
     check_files();
+    const auto free = free_bytes();
+    if (free && !failed_) compactions_.update(*free);
+    const auto no_room = want_of_room(free);
     {
         const std::lock_guard lock(mutex_);
         stats_.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
@@ -142,7 +148,7 @@ Result<> Committer::write(rocksdb::WriteBatch& batch) {
 }
 
 void Committer::check_files() {
-    if (failed_ || !files_) return;
+    if (files_ == nullptr) return;
     if (auto in_place = files_->check(); !in_place) fail(in_place.error());
 }
 

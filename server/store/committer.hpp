@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -42,10 +41,10 @@ struct Change {
 class Committer {
 public:
     /// Changes that do not free disk are refused while it has less than `disk_reserve_bytes` free.
-    /// @param compactions  updated whenever the free space is known
+    /// @param compactions  updated before each write
     /// @param files        checked before each write, after it, and by stats(); null for a database that is only read
     Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes, CompactionSwitch& compactions,
-              std::unique_ptr<FilesWatch> files);
+              FilesWatch* files);
 
     /// Writes what waits, then stops.
     ~Committer();
@@ -70,14 +69,15 @@ private:
     void check_files();
     [[nodiscard]] Result<> write(rocksdb::WriteBatch& batch);
     void fail(Error why);
-    [[nodiscard]] std::optional<Error> want_of_room() const;
+    [[nodiscard]] std::optional<std::uint64_t> free_bytes() const;
+    [[nodiscard]] std::optional<Error> want_of_room(std::optional<std::uint64_t> free) const;
     void count(const Change& change);
 
     rocksdb::DB& database_;
     const std::string name_; // for messages, and where the disk is
     const std::uint64_t disk_reserve_bytes_;
     CompactionSwitch& compactions_;
-    const std::unique_ptr<FilesWatch> files_;
+    FilesWatch* const files_;     // or null
     std::optional<Error> failed_; // committer's thread only; stats_.last_error is its public copy
     mutable std::mutex mutex_;    // guards what follows
     std::condition_variable waiting_;

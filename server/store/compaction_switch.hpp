@@ -3,13 +3,13 @@
 #include <rocksdb/db.h>
 
 #include <cstdint>
-#include <mutex>
 
 namespace scanloom::store {
 
 /// Pauses RocksDB's merging of tables while the disk has little room: the merged tables exist next to the old ones for
 /// a while, and would take the room that scans and removals need.
-/// Thread  any.
+/// SetOptions() writes to the disk and waits for writes that are under way.
+/// Thread  that of the committer.
 class CompactionSwitch {
 public:
     /// @param reserve_bytes  what the store leaves free: compactions pause below twice of it
@@ -28,7 +28,6 @@ private:
 
     rocksdb::DB& database_;
     const std::uint64_t pause_below_;
-    std::mutex mutex_; // guards what follows
     bool is_paused_ = false;
     bool is_stopped_ = false;
 };

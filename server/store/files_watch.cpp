@@ -14,20 +14,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<HeldFile> held(fs::path path) {
-    auto file = HeldFile::open(std::move(path));
-    if (!file) return std::nullopt;
-    return std::move(*file);
+/// Whether the path does not lead to the file that is held. Holds it if none is held yet.
+bool is_lost(std::optional<HeldFile>& file, const fs::path& path) {
+    if (!file) {
+        auto opened = HeldFile::open(path);
+        if (!opened) return opened.error().code == Errc::kNotFound;
+        file = std::move(*opened);
+    }
+    return !file->is_in_place();
 }
 
 } // namespace
 
 FilesWatch::FilesWatch(rocksdb::DB& database, fs::path directory)
-    : database_(database), directory_(std::move(directory)), lock_(held(directory_ / kLockFile)) {}
+    : database_(database), directory_(std::move(directory)) {
+    static_cast<void>(check()); // holds the files
+}
 
 Result<> FilesWatch::check() {
     const std::lock_guard lock(mutex_);
-    if (!lost_ && !has_its_lock()) give_up(directory_ / kLockFile);
+    if (!lost_ && is_lost(lock_, directory_ / kLockFile)) give_up(directory_ / kLockFile);
     if (!lost_ && !has_its_log()) give_up(directory_ / "*.log");
     if (lost_) return *lost_;
     return {};
@@ -38,11 +44,12 @@ bool FilesWatch::has_its_log() {
     for (;;) {
         std::unique_ptr<rocksdb::LogFile> current;
         const auto status = database_.GetCurrentWalFile(&current);
-        if (status.ok() && current->LogNumber() != log_number_) {
+        if (!status.ok() && !status.IsPathNotFound()) return true; // it cannot be looked at
+        if (status.ok()) {
+            if (current->LogNumber() != log_number_) log_.reset();
             log_number_ = current->LogNumber();
-            log_ = held(directory_ / current->PathName().substr(1)); // it begins with a slash
+            if (!is_lost(log_, directory_ / current->PathName().substr(1))) return true; // it begins with a slash
         }
-        if (status.ok() && log_ && log_->is_in_place()) return true;
         std::unique_ptr<rocksdb::LogFile> next;
         const bool has_begun_another = database_.GetCurrentWalFile(&next).ok() && next->LogNumber() != log_number_;
         if (!has_begun_another) return false;

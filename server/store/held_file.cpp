@@ -1,6 +1,6 @@
 #include "server/store/held_file.hpp"
 
-#include "server/store/failure.hpp"
+#include <fmt/format.h>
 
 #include <cerrno>
 #include <system_error>
@@ -14,7 +14,9 @@ namespace scanloom::store {
 Result<HeldFile> HeldFile::open(std::filesystem::path path) {
     const int descriptor = ::open(path.c_str(), O_PATH | O_CLOEXEC);
     if (descriptor < 0) {
-        return failure("cannot open {}: {}", path.native(), std::system_category().message(errno));
+        const int problem = errno;
+        return Error{problem == ENOENT || problem == ENOTDIR ? Errc::kNotFound : Errc::kStoreFailed,
+                     fmt::format("cannot open {}: {}", path.native(), std::system_category().message(problem))};
     }
     return HeldFile(std::move(path), descriptor);
 }
@@ -32,8 +34,8 @@ HeldFile::~HeldFile() {
 bool HeldFile::is_in_place() const {
     struct stat held = {};
     struct stat found = {};
-    return ::fstat(descriptor_, &held) == 0 && ::stat(path_.c_str(), &found) == 0 && held.st_dev == found.st_dev &&
-           held.st_ino == found.st_ino;
+    if (::stat(path_.c_str(), &found) != 0) return errno != ENOENT && errno != ENOTDIR;
+    return ::fstat(descriptor_, &held) != 0 || (held.st_dev == found.st_dev && held.st_ino == found.st_ino);
 }
 
 } // namespace scanloom::store

@@ -14,7 +14,7 @@ namespace scanloom::store {
 class HeldFile {
 public:
     /// @param path  of a file or a directory; must stay valid relative to the working directory
-    /// Errors  kStoreFailed: it cannot be opened.
+    /// Errors  kNotFound: the path leads to no file; kStoreFailed: it cannot be opened.
     [[nodiscard]] static Result<HeldFile> open(std::filesystem::path path);
 
     HeldFile(HeldFile&& other) noexcept
@@ -22,7 +22,7 @@ public:
     HeldFile& operator=(HeldFile&& other) noexcept;
     ~HeldFile();
 
-    /// @return whether the path leads to the file that is open. Costs two system calls.
+    /// @return false if the path leads to no file or to another one. Costs two system calls.
     [[nodiscard]] bool is_in_place() const;
 
 private:

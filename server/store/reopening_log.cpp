@@ -164,13 +164,14 @@ Result<std::unique_ptr<ReopeningLog>> open_reopening(const std::filesystem::path
     const auto lock = std::make_shared<std::optional<HeldFile>>(); // of the store that was opened first
     auto log = ReopeningLog::open([=] { return open(directory, options); },
                                   [=]() -> Result<> {
-                                      if (!(*lock)->is_in_place()) return failure("it was deleted or replaced");
+                                      if (!(*lock)->is_in_place()) return failure("another store is in its place");
                                       return can_be_written(directory, bytes_to_open(directory));
                                   });
     if (!log) return log;
     auto held = HeldFile::open(directory / kLockFile);
     if (!held) return held.error();
     *lock = std::move(*held);
+    if (const auto lost = (*log)->stats().last_error) return failure("{}", *lost);
     return log;
 }
 

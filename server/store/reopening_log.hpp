@@ -10,7 +10,7 @@
 
 namespace scanloom::store {
 
-/// As open_rocksdb().
+/// Opens the scan log in a directory; open_rocksdb() has the errors.
 using OpenStore = std::function<Result<std::unique_ptr<ScanLog>>(const std::filesystem::path&, const StoreOptions&)>;
 
 /// A scan log that is closed and opened again after it has failed.

@@ -9,7 +9,7 @@
 
 namespace scanloom::store {
 
-/// Hands over what RocksDB logs, from warnings on.
+/// Passes RocksDB's log lines of level WARN and above to a function.
 ///
 /// RocksDB's own logger writes a file next to the tables, and aborts the process at the first line after one that the
 /// disk had no room for.

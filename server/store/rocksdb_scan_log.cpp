@@ -84,8 +84,8 @@ RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksd
                                std::unique_ptr<FilesWatch> files, const StoreOptions& options)
     : directory_(std::move(directory)), database_(std::move(database)), ends_(std::move(ends)),
       torn_bytes_dropped_(torn_bytes_dropped), watch_(std::move(watch)),
-      compactions_(*database_, options.disk_reserve_bytes), on_damage_(options.on_damage),
-      committer_(*database_, name(), options.disk_reserve_bytes, compactions_, std::move(files)) {
+      compactions_(*database_, options.disk_reserve_bytes), files_(std::move(files)), on_damage_(options.on_damage),
+      committer_(*database_, name(), options.disk_reserve_bytes, compactions_, files_.get()) {
     watch_->set_tell([this](const rocksdb::Status& reason) { go_on_without_compaction(reason); });
 }
 
@@ -131,6 +131,7 @@ Result<SessionId> RocksdbScanLog::create_session(std::string_view record) {
 }
 
 Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
+    if (auto in_place = check_files(); !in_place) return in_place.error();
     std::vector<StoredSession> found;
     const KeyRange range{std::string(kSessionsBegin), std::string(kSessionsEnd)};
     const Scan scan(*database_, range);
@@ -301,7 +302,11 @@ StoreStats RocksdbScanLog::stats() const {
 
 std::uint64_t RocksdbScanLog::bytes_on_disk() const { return bytes_in(directory_.path()); }
 
+/// RocksDB opens tables by path, so that a store which took the place of this one would be read.
+Result<> RocksdbScanLog::check_files() { return files_ ? files_->check() : Result<>(); }
+
 Result<> RocksdbScanLog::check_session(SessionId session) {
+    if (auto in_place = check_files(); !in_place) return in_place;
     std::string record;
     const auto status = database_->Get({}, session_key(session), &record);
     if (status.ok()) return {};

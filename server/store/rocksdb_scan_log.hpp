@@ -46,6 +46,7 @@ public:
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
 private:
+    [[nodiscard]] Result<> check_files();
     [[nodiscard]] Result<> check_session(SessionId session);
     [[nodiscard]] std::string name() const { return directory_.path().native(); }
     void free_disk(SessionId session);
@@ -57,6 +58,7 @@ private:
     std::uint64_t torn_bytes_dropped_;
     std::shared_ptr<CompactionWatch> watch_;
     CompactionSwitch compactions_;
+    std::unique_ptr<FilesWatch> files_; // or null
     std::function<void(const Error&)> on_damage_;
     mutable std::mutex damage_mutex_;
     std::optional<Error> damage_; // guarded by damage_mutex_

@@ -81,7 +81,7 @@ void fill_through_the_server(const ServerProcess& server, const fs::path& store,
         filler.release_all();
         const auto found = wait_for_readiness(server, 503);
         if (found.status != 503)
-            outcome.amiss.emplace_back("scans do not fill the disk");
+            outcome.amiss.emplace_back("/readyz stays 200 though scans fill the disk");
         else if (!tells_of_a_full_disk(found.answer))
             outcome.amiss.push_back("on a disk that scans filled /readyz gives another reason: " + found.answer);
         check_that_maps_are_served(server, "on a disk that scans filled", outcome);
@@ -89,7 +89,7 @@ void fill_through_the_server(const ServerProcess& server, const fs::path& store,
     const auto deleted = test::http_request(server.http_port(), "DELETE", "/api/v1/sessions/filler").status;
     if (deleted != 204) outcome.amiss.push_back(fmt::format("on a full disk DELETE answers {}", deleted));
     if (wait_for_readiness(server, 200).status != 200)
-        outcome.amiss.emplace_back("deleting the session that filled the disk makes nobody ready again");
+        outcome.amiss.emplace_back("after the session that filled the disk was deleted, /readyz stays 503");
 }
 
 Result<Outcome> fill_one_disk(const Run& run, std::uint64_t seed, std::uint64_t fillings) {

@@ -33,7 +33,7 @@ TEST(DefaultMapMemory, FitsIntoALimitedAddressSpace) {
     }
 }
 
-TEST(CheckAddressSpace, ExplainsWhatIsTooSmall) {
+TEST(CheckAddressSpace, ReportsLimitAndNeededAddressSpace) {
     const MemoryLimit limit{8192 * kMib, 390 * kMib};
     const auto fits = check_address_space(options_with(default_map_memory(limit)), limit);
     EXPECT_THAT(fits.error().message,

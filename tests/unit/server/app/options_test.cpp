@@ -101,6 +101,13 @@ TEST_F(ServerOptionsTest, TheRoomForTilesIsInMebibytes) {
     }
 }
 
+TEST_F(ServerOptionsTest, ProxiesAreAddresses) {
+    const auto options = std::get<ServerOptions>(read({"--http-proxy", "192.0.2.7,::1"}));
+    EXPECT_THAT(options.http_proxies,
+                ElementsAre(boost::asio::ip::make_address("192.0.2.7"), boost::asio::ip::make_address("::1")));
+    EXPECT_THAT(refusal({"--http-proxy", "proxy.lab"}), HasSubstr("'proxy.lab' is not an address"));
+}
+
 TEST_F(ServerOptionsTest, RefusesAReserveThatIsTooSmallForTheStore) {
     EXPECT_EQ(std::get<ServerOptions>(read({"--disk-reserve", "32"})).disk_reserve_bytes, std::uint64_t{32} << 20);
     for (const auto* wrong : {"0", "5", "31.9"}) {

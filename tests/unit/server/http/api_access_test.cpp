@@ -256,15 +256,22 @@ TEST_F(ApiAccessTest, TilesAreKeptByNobodyInBetween) {
     EXPECT_EQ(std::get<Response>(outlook).get("Cache-Control"), kept);
 }
 
-TEST_F(ApiAccessTest, BodiesOfStrangersAreNotRead) {
-    const auto refused = [&](const std::string& who, const std::string& target) {
-        return api_.refuse(request("POST", target, who)).has_value();
+TEST_F(ApiAccessTest, WhatAHeaderCanRefuseIsRefusedBeforeTheBody) {
+    const auto refused = [&](const std::string& who, const std::string& target, std::string type) {
+        auto asked = request("POST", target, who);
+        asked.content_type = std::move(type);
+        const auto refusal = api_.refuse(asked);
+        return refusal ? refusal->status : Status::unknown;
     };
-    EXPECT_TRUE(refused("", "/api/v1/sessions/depot-1/import"));
-    EXPECT_TRUE(refused("viewer", "/api/v1/sessions/depot-1/import"));
-    EXPECT_TRUE(refused("operator", "/api/v1/sessions/lab/import"));
-    EXPECT_FALSE(refused("operator", "/api/v1/sessions/depot-1/import"));
-    EXPECT_FALSE(refused("", "/nowhere")); // 404, as for all
+    const std::string form = "multipart/form-data; boundary=x";
+    EXPECT_EQ(refused("", "/api/v1/sessions/depot-1/import", form), Status::unauthorized);
+    EXPECT_EQ(refused("viewer", "/api/v1/sessions/depot-1/import", form), Status::forbidden);
+    EXPECT_EQ(refused("operator", "/api/v1/sessions/lab/import", form), Status::forbidden);
+    EXPECT_EQ(refused("operator", "/api/v1/sessions/depot-1/import", "text/csv"), Status::unsupported_media_type);
+    EXPECT_EQ(refused("operator", "/api/v1/sessions/depot-1/import", form), Status::unknown) << "it is not refused";
+    EXPECT_EQ(refused("", "/nowhere", form), Status::not_found);
+    EXPECT_EQ(refused("", "/livez", form), Status::method_not_allowed);
+    EXPECT_EQ(refused("", "/a/../b", form), Status::bad_request);
 }
 
 class ApiLoginTest : public ApiAccessTest {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <future>
 #include <memory>
@@ -209,6 +210,7 @@ TEST(HttpServer, BodiesInAnotherCodingAndContentTypesGivenTwiceAreRefused) {
     EXPECT_EQ(refused.status, 415);
     EXPECT_EQ(refused.fields.at("accept-encoding"), "identity");
     EXPECT_EQ(with("Content-Encoding: identity\r\n").status, 200);
+    EXPECT_EQ(with("Content-Encoding: identity\r\nContent-Encoding: gzip\r\n").status, 415);
     EXPECT_EQ(with("Content-Type: text/plain\r\nContent-Type: application/json\r\n").status, 400);
 }
 
@@ -222,6 +224,8 @@ TEST(HttpServer, AbsoluteTargetsAreReadWithTheirOwnHost) {
     EXPECT_EQ(ask("http://localhost?c=d", "localhost").body, "GET /?c=d ");
     EXPECT_EQ(ask("http://localhost/", "evil.example").status, 200) << "the Host field does not count";
     EXPECT_EQ(ask("http://evil.example/", "localhost").status, 421);
+    EXPECT_EQ(ask("http:///", "localhost").status, 200) << "no host: it stays as it is, for parse_target() to refuse";
+    EXPECT_EQ(ask("http:///", "evil.example").status, 421);
 }
 
 TEST(HttpServer, OneEmptyLineBeforeARequestIsSkipped) {
@@ -388,6 +392,35 @@ TEST(HttpServer, NobodyKeepsAPlaceBySayingNothing) {
         EXPECT_EQ(guest->read().status, 200);
     }
     EXPECT_EQ(server.counters().connections_refused.Value(), 0.0);
+}
+
+TEST(HttpServer, NewConnectionsGetThePlacesOfSlowBodies) {
+    RunningHttp server(ServerConfig{.connections_max = 2});
+    std::array<HttpClient, 2> slow{HttpClient(server.port()), HttpClient(server.port())};
+    for (auto& client : slow) {
+        client.send("POST / HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: 9\r\n\r\n");
+        EXPECT_EQ(client.read().status, 100);
+        client.send("a");
+    }
+    std::array<HttpClient, 2> fresh{HttpClient(server.port()), HttpClient(server.port())};
+    for (auto& client : fresh) {
+        client.send(get("/livez"));
+        EXPECT_EQ(client.read().status, 200);
+    }
+    for (auto& client : slow) EXPECT_TRUE(client.is_closed());
+}
+
+TEST(HttpServer, ANewConnectionGetsThePlaceOfASlowReader) {
+    RunningHttp server(ServerConfig{.connections_max = 1}, [](const Request& request) {
+        return ok("text/plain", Body(std::string(request.target == "/large" ? 64 << 20 : 1, 'a')));
+    });
+    HttpClient reader(server.port());
+    reader.send(get("/large"));
+    HttpClient fresh(server.port());
+    fresh.send(get("/livez"));
+    auto answer = fresh.read();
+    while (answer.status != 200) answer = answer_to(server, get("/livez")); // while the reader's answer is being made
+    EXPECT_EQ(answer.status, 200);
 }
 
 TEST(HttpServer, StoppingFinishesWhatIsUnderWay) {

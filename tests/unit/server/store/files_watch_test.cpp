@@ -1,6 +1,7 @@
 #include "server/store/listing.hpp"
 #include "server/store/reopening_log.hpp"
 
+#include "tests/support/faulty_file_system.hpp"
 #include "tests/support/log_reading.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -31,14 +32,14 @@ std::set<std::string> names_in(const fs::path& directory) {
     return names;
 }
 
-struct Harm {
+struct StoreDamage {
     std::string name;
-    std::function<void(const fs::path&)> to;
+    std::function<void(const fs::path&)> apply;
 };
 
-void PrintTo(const Harm& harm, std::ostream* out) { *out << harm.name; }
+void PrintTo(const StoreDamage& damage, std::ostream* out) { *out << damage.name; }
 
-class FilesWatchOf : public testing::TestWithParam<Harm> {
+class FilesWatchOf : public testing::TestWithParam<StoreDamage> {
 protected:
     TemporaryDirectory temporary_;
     fs::path directory_ = temporary_.path() / "store";
@@ -49,7 +50,7 @@ TEST_P(FilesWatchOf, StopsAcknowledgingAndReportsTheLoss) {
     const auto session = log->create_session("a").value();
     ASSERT_TRUE(append_and_wait(*log, session, 1, {"durable"}));
     ASSERT_FALSE(log->stats().last_error);
-    GetParam().to(directory_);
+    GetParam().apply(directory_);
     const auto left = fs::exists(directory_) ? names_in(directory_) : std::set<std::string>();
 
     EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("was deleted, moved or replaced"));
@@ -62,19 +63,20 @@ TEST_P(FilesWatchOf, StopsAcknowledgingAndReportsTheLoss) {
     EXPECT_EQ(fs::exists(directory_) ? names_in(directory_) : std::set<std::string>(), left) << "nothing is created";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FilesWatchOf,
-                         testing::Values(Harm{"directory_deleted", [](const auto& store) { fs::remove_all(store); }},
-                                         Harm{"files_deleted",
-                                              [](const auto& store) {
-                                                  fs::remove_all(store);
-                                                  fs::create_directory(store);
-                                              }},
-                                         Harm{"directory_moved",
-                                              [](const auto& store) { fs::rename(store, store.native() + ".away"); }},
-                                         Harm{"directory_replaced", replace_by_a_copy},
-                                         Harm{"lock_deleted", [](const auto& store) { fs::remove(store / kLockFile); }},
-                                         Harm{"write_ahead_log_deleted", remove_write_ahead_log}),
-                         testing::PrintToStringParamName());
+INSTANTIATE_TEST_SUITE_P(
+    All, FilesWatchOf,
+    testing::Values(StoreDamage{"directory_deleted", [](const auto& store) { fs::remove_all(store); }},
+                    StoreDamage{"files_deleted",
+                                [](const auto& store) {
+                                    fs::remove_all(store);
+                                    fs::create_directory(store);
+                                }},
+                    StoreDamage{"directory_moved",
+                                [](const auto& store) { fs::rename(store, store.native() + ".away"); }},
+                    StoreDamage{"directory_replaced", replace_by_a_copy},
+                    StoreDamage{"lock_deleted", [](const auto& store) { fs::remove(store / kLockFile); }},
+                    StoreDamage{"write_ahead_log_deleted", remove_write_ahead_log}),
+    testing::PrintToStringParamName());
 
 TEST(FilesWatch, AStoreThatIsPutBackIsOpenedAgainWithItsEntries) {
     const TemporaryDirectory temporary;
@@ -108,6 +110,46 @@ TEST(FilesWatch, ClosingDeletesNoFilesOfAStoreThatTookItsPlace) {
         EXPECT_EQ(names_in(directory), before);
     }
     EXPECT_THAT(open_rocksdb(directory).value()->sessions().value().at(0).record.value(), "of the other");
+}
+
+TEST(FilesWatch, AFailedStoreDeletesNoFilesOfAStoreThatTookItsPlaceEither) {
+    const TemporaryDirectory temporary;
+    const auto directory = temporary.path() / "store";
+    const auto other = temporary.path() / "other";
+    static_cast<void>(open_rocksdb(other).value()->create_session("of the other").value());
+    static_cast<void>(open_rocksdb(directory).value()->create_session("a").value());
+    FaultyEnv disk;
+    StoreOptions options;
+    options.env = disk.env.get();
+    auto log = open_reopening(directory, options).value();
+    disk.files->fail_next_log_sync();
+    ASSERT_FALSE(log->create_session("b"));
+    fs::rename(directory, temporary.path() / "away");
+    fs::rename(other, directory);
+    const auto before = names_in(directory);
+    EXPECT_THAT(log->stats().last_error.value_or(""), HasSubstr("was deleted, moved or replaced"));
+    EXPECT_FALSE(log->try_again());
+    log.reset();
+    EXPECT_EQ(names_in(directory), before);
+}
+
+TEST(FilesWatch, ALostStoreCreatesNothingWhenTheDiskHasRoomAgain) {
+    const TemporaryDirectory temporary;
+    const auto directory = temporary.path() / "store";
+    FaultyEnv disk;
+    StoreOptions options;
+    options.env = disk.env.get();
+    options.disk_reserve_bytes = 1000;
+    disk.files->set_free_bytes(1500); // compactions pause
+    const auto log = open_rocksdb(directory, options).value();
+    const auto session = log->create_session("a").value();
+    fs::remove_all(directory);
+    fs::create_directory(directory);
+    disk.files->set_free_bytes(100'000);
+    EXPECT_TRUE(log->stats().last_error);
+    EXPECT_FALSE(append_and_wait(*log, session, 1, {"lost"}));
+    EXPECT_FALSE(log->end_of(session)) << "nor is anything read there";
+    EXPECT_TRUE(fs::is_empty(directory));
 }
 
 TEST(FilesWatch, SessionsThatAreRemovedWhileOthersAreWrittenAreNoLoss) {
