@@ -26,6 +26,14 @@ constexpr std::size_t kOnTheirWayOutMax = 64; // connections that were asked to 
 
 } // namespace
 
+bool may_connect(const net::ip::address& peer, std::size_t open, const ServerConfig& config) {
+    if (peer.is_v6() && peer.to_v6().is_v4_mapped()) { // on a port that takes both
+        return may_connect(net::ip::make_address_v4(net::ip::v4_mapped, peer.to_v6()), open, config);
+    }
+    return open < config.connections_per_peer_max || peer.is_loopback() ||
+           std::ranges::find(config.proxies, peer) != config.proxies.end();
+}
+
 Result<std::shared_ptr<Server>> Server::listen(net::io_context& io, Executors executors, const ServerConfig& config,
                                                Answering answering, metrics::HttpCounters& counters) {
     const auto endpoint = config.endpoint;
@@ -90,7 +98,9 @@ net::awaitable<void> Server::accept_loop() {
 void Server::take(tcp::socket socket) {
     boost::system::error_code ignored;
     const auto peer = socket.remote_endpoint(ignored).address();
-    if (has_too_many(peer)) return refuse(std::move(socket), "too many connections of this address are open");
+    const auto of_peer = peers_.find(peer);
+    if (!may_connect(peer, of_peer == peers_.end() ? 0 : of_peer->second, service_->config))
+        return refuse(std::move(socket), "too many connections of this address are open");
     if (connections_.size() >= service_->config.connections_max && !make_room())
         return refuse(std::move(socket), "too many connections are open");
     socket.set_option(tcp::no_delay(true), ignored);
@@ -122,14 +132,6 @@ bool Server::make_room() {
     }
     if (slowest) slowest->make_room();
     return slowest != nullptr;
-}
-
-/// Many connections of one address cost the others their places; not those of this machine, nor those of a proxy.
-bool Server::has_too_many(const net::ip::address& peer) const {
-    const auto& config = service_->config;
-    if (peer.is_loopback() || std::ranges::find(config.proxies, peer) != config.proxies.end()) return false;
-    const auto of_peer = peers_.find(peer);
-    return of_peer != peers_.end() && of_peer->second >= config.connections_per_peer_max;
 }
 
 /// Says why, as far as that is possible without waiting: nothing may pile up here.

@@ -19,6 +19,11 @@
 
 namespace scanloom::http {
 
+/// Whether an address may open another connection: many of one address would cost the others their places. Loopback
+/// and config.proxies are not bounded.
+/// @param open  how many the address has
+[[nodiscard]] bool may_connect(const boost::asio::ip::address& peer, std::size_t open, const ServerConfig& config);
+
 /// Listens, and runs one coroutine per connection.
 ///
 /// Queue   "connections": at most config.connections_max, each with one request at a time, which
@@ -59,7 +64,6 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
     void take(boost::asio::ip::tcp::socket socket);
     [[nodiscard]] bool make_room();
-    [[nodiscard]] bool has_too_many(const boost::asio::ip::address& peer) const;
     void refuse(boost::asio::ip::tcp::socket socket, std::string_view why);
     void forget(const std::shared_ptr<Connection>& connection);
     void call_done_when_empty();

@@ -394,6 +394,16 @@ TEST(HttpServer, NobodyKeepsAPlaceBySayingNothing) {
     EXPECT_EQ(server.counters().connections_refused.Value(), 0.0);
 }
 
+TEST(MayConnect, BoundsEachAddressExceptLoopbackAndProxies) {
+    const auto address = [](const char* text) { return boost::asio::ip::make_address(text); };
+    const ServerConfig config{.connections_per_peer_max = 2, .proxies = {address("192.0.2.7")}};
+    EXPECT_TRUE(may_connect(address("192.0.2.1"), 1, config));
+    EXPECT_FALSE(may_connect(address("192.0.2.1"), 2, config));
+    EXPECT_FALSE(may_connect(address("2001:db8::1"), 2, config));
+    for (const auto* free : {"192.0.2.7", "::ffff:192.0.2.7", "127.0.0.1", "::ffff:127.0.0.1", "::1"})
+        EXPECT_TRUE(may_connect(address(free), 2, config)) << free;
+}
+
 TEST(HttpServer, NewConnectionsGetThePlacesOfSlowBodies) {
     RunningHttp server(ServerConfig{.connections_max = 2});
     std::array<HttpClient, 2> slow{HttpClient(server.port()), HttpClient(server.port())};
