@@ -13,9 +13,9 @@ namespace scanloom::store {
 /// Keeps one damaged table from stopping the whole store.
 ///
 /// RocksDB merges its tables in the background, and takes no more writes once that has failed. But new
-/// entries go to new files, which old damage does not touch: so a table that cannot be read is told to
-/// whoever keeps the store, and to nobody else. A disk that is full is no damage: writes go on as far as there is room,
-/// and CompactionSwitch pauses the merging.
+/// entries go to new files, which old damage does not touch: so a table that cannot be read is reported
+/// to the store, and RocksDB goes on writing. A full disk is no damage: writes go on as far as there is room, and
+/// CompactionSwitch pauses the merging.
 ///
 /// Thread  any.
 /// Source  RocksDB 7.8, listener.h, EventListener::OnBackgroundError.
