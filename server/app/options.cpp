@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.\n"
     "`scanloom-server token --help` says how tokens are made.";
 
-// With 16 MiB, scans that filled a disk of 60 MiB left RocksDB without room for a table, with 32 they did not.
+// With 16 MiB, scans that filled a disk of 200 MiB left RocksDB without room for a table, with 32 they did not.
 constexpr double kDiskReserveMibMin = 32.0;
 constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
 
