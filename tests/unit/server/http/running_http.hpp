@@ -2,6 +2,8 @@
 
 #include "server/http/server.hpp"
 
+#include "tests/support/http_client.hpp"
+
 #include <boost/asio/thread_pool.hpp>
 #include <fmt/format.h>
 
@@ -86,6 +88,13 @@ private:
 
 inline std::string get(std::string_view target) {
     return fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\n\r\n", target);
+}
+
+/// Sends bytes on a connection of their own and reads one answer.
+inline testing_support::HttpAnswer answer_to(RunningHttp& server, std::string_view bytes) {
+    testing_support::HttpClient client(server.port());
+    client.send(bytes);
+    return client.read();
 }
 
 } // namespace scanloom::http
