@@ -2,12 +2,16 @@
 
 readonly no_tests=2 failing_tests=3 # exit codes: nothing has that name; tests ran and failed
 
-# run_test [[--all | --nightly] [FILTER] | --sanitizers [--core]]
+# run_test [[--all | --nightly] [FILTER] | --changed COMMIT | --sanitizers [--core]]
 run_test() {
     local tier=first filter=''
     case ${1:-} in
         --sanitizers)
             run_sanitizers "${@:2}"
+            return
+            ;;
+        --changed)
+            run_changed "${@:2}"
             return
             ;;
         --all) tier=all && shift ;;
@@ -102,9 +106,48 @@ run_filtered() {
     [[ -z $failed ]] || tests_failed
 }
 
+# The parts of --all: a pattern of their tests' names; their targets beyond those of tier 1; their files. The tests of
+# FOLDER in tests/unit are files of FOLDER.
+readonly parts_of_all=(
+    '^tools[.];tools_test;lab load tests/integration/lab tests/integration/load'
+    '^faults[.];faults_test;tests/fault robot_client/spool robot_client/uplink server/ingest server/store'
+    '^e2e_([^l]|layers);;tests/e2e web'
+    '^python_client_;;proto robot_client/python'
+    '^observability_;;docs/observability server/metrics tests/integration/observability'
+    '^openapi_;openapi_packages;server/http/openapi.json tests/openapi'
+    '^package$;;CMakeLists.txt cmake robot_client/package scanloom tests/package'
+    '^bench_chart$;;tests/bench/report'
+    '^core[.](Alignment|Localization)Trials;;server/landmarks'
+    '^core[.](Coverage|GridPath)Trials;;server/planning'
+    '^maps[.].*Trials;;server/mapping'
+    '^server[.]SalvageTrials;;server/store'
+    '^http[.]ApiPointsTrials;;server/http'
+    '^robot[.]SpoolTrials;;robot_client/spool'
+    '^robot[.].*WallFollowerTrials;;robot_client/sim'
+)
+
+# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All programs are built.
+run_changed() {
+    (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
+    local part tests targets files left_out=('^$') wanted=("${programs[@]}")
+    for part in "${parts_of_all[@]}"; do
+        IFS=';' read -r tests targets files <<<"$part"
+        mapfile -t files < <(tr ' ' '\n' <<<"$files" | sed 'p; s,^,tests/unit/,')
+        if git diff --quiet "$1" -- "${files[@]}"; then
+            left_out+=("$tests")
+        else
+            # shellcheck disable=SC2206 # several words
+            wanted+=($targets)
+        fi
+    done
+    need build test fault package tidy
+    make_preset test tests "${wanted[@]}"
+    run_ctest test --label-exclude "$(labels_beyond all)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
+}
+
 # run_images: builds the images of docker/ and starts them, where that is possible without an engine.
 run_images() {
-    [[ -z ${CI:-} && -e .git ]] || return 0 # it takes longer than CI has, and a checkout
+    [[ -e .git ]] || return 0
     if ((EUID == 0)) && command -v buildah >/dev/null && command -v debootstrap >/dev/null; then
         tests/system/docker_images.sh
     else
@@ -134,8 +177,8 @@ for_core() {
 # core_tests PRESET PROGRAM...: the options of ctest for their suites, one a line.
 core_tests() {
     local left_out='^$' IFS='|'
-    # One thread reads or writes files; the largest session takes a minute. --nightly runs all of them.
-    [[ $1 != tsan ]] || left_out='Salvage|Table|LogFile|Rescue|HeavySession'
+    # One thread reads or writes files, or is killed; the largest session takes a minute. --nightly runs all of them.
+    [[ $1 != tsan ]] || left_out='Salvage|Table|LogFile|Rescue|HeavySession|Kill|CutCheckpoint'
     shift
     printf '%s\n' --label-regex "^($*)\$" --label-exclude '^(all|nightly)$' --exclude-regex "$left_out"
 }

@@ -4,6 +4,7 @@ import { spawnSync } from 'node:child_process';
 import {
   chmodSync,
   copyFileSync,
+  existsSync,
   mkdirSync,
   mkdtempSync,
   readFileSync,
@@ -93,6 +94,8 @@ test('words that a command does not know are refused before anything is built', 
     [['test', 'two words'], /test takes one word .*, not 'two words'/],
     [['test', 'a', 'b'], /test takes one word .*, not 'a b'/],
     [['test', '--nightly', 'a', 'b'], /test takes one word .*, not 'a b'/],
+    [['test', '--changed'], /test --changed takes a commit, not ''/],
+    [['test', '--changed', 'nonsense'], /test --changed takes a commit, not 'nonsense'/],
     [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
     [['flakes', '--count', 'x'], /--count is 'x'; a whole number is needed/],
     [['flakes', '--count', '0'], /at least 1 is needed/],
@@ -108,6 +111,13 @@ test('words that a command does not know are refused before anything is built', 
     assert.equal(told.status, 2, words.join(' '));
     assert.match(told.stderr, sentence);
   }
+});
+
+test('the files of each part of --all exist', () => {
+  const table = readFileSync(join(source, 'tests/tiers.sh'), 'utf8').match(/parts_of_all=\(\n([^]*?)\n\)/)[1];
+  const files = [...table.matchAll(/^ *'.*;(.*)'$/gm)].flatMap((row) => row[1].split(' '));
+  assert.ok(files.length > 15);
+  for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
 
 test('where there is no Debian a sentence says so', () => {
