@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <numbers>
 
 namespace scanloom::planning {
@@ -86,11 +85,11 @@ struct Towards {
     static constexpr double kTrust = 0.95; // in the estimate: with all of it, steps straight on would stay in a bucket
     static constexpr double kBucketWidth = 1.0 - kTrust;
     Spot goal;
-    const double* goal_cost; // so far
+    const CostSearch& search;
 
     [[nodiscard]] double estimate(Spot spot) const { return kTrust * without_obstacles(spot, goal); }
     [[nodiscard]] bool take(Spot, double) const { return true; }
-    [[nodiscard]] bool done(double bound) const { return *goal_cost <= bound; }
+    [[nodiscard]] bool done(double bound) const { return search.cost(goal) <= bound; }
 };
 
 struct Nearest {
@@ -114,8 +113,8 @@ struct Nearest {
 } // namespace
 
 CostSearch::CostSearch(const Passability& passability)
-    : passability_(&passability), width_(static_cast<std::uint32_t>(passability.enterable.width())),
-      cost_(static_cast<std::size_t>(passability.window.width() * passability.window.height()), kUnreached) {
+    : passability_(&passability), blocks_wide_(static_cast<std::uint32_t>(passability.enterable.width()) / kBlockSide),
+      blocks_(std::size_t{blocks_wide_} * static_cast<std::uint32_t>(passability.enterable.height()) / kBlockSide) {
     for (int direction = 0; direction < 9; ++direction) {
         const auto place = static_cast<std::size_t>(direction);
         for (int dangers = 0; dangers <= 2; ++dangers) {
@@ -127,11 +126,22 @@ CostSearch::CostSearch(const Passability& passability)
     buckets_.resize(std::bit_ceil(static_cast<std::size_t>(farthest / Towards::kBucketWidth) + 3));
 }
 
+/// To be written.
+double& CostSearch::cost_of(std::uint32_t cell) {
+    auto& block = blocks_[cell / kBlockCells];
+    if (!block) {
+        block = std::make_unique_for_overwrite<Block>();
+        block->fill(kUnreached);
+        reached_.push_back(cell / kBlockCells);
+    }
+    return (*block)[cell % kBlockCells];
+}
+
 void CostSearch::begin(Spot start) {
-    if (lowest_ <= highest_) std::fill(cost_.begin() + lowest_, cost_.begin() + highest_ + 1, kUnreached);
+    for (const std::uint32_t block : reached_) blocks_[block].reset();
+    reached_.clear();
     for (auto& bucket : buckets_) bucket.clear();
-    lowest_ = highest_ = index_of(start);
-    cost_[lowest_] = 0.0;
+    cost_of(index_of(start)) = 0.0;
 }
 
 /// Takes the open cells bucket by bucket, by their cost and what `aim` estimates to be left. As no step stays within a
@@ -147,10 +157,9 @@ void CostSearch::search(Spot start, Aim& aim) {
     std::size_t open = 1;
     const auto reach = [&](Spot spot, double cost, std::uint32_t came) {
         const std::uint32_t cell = index_of(spot);
-        if (cost >= cost_[cell]) return;
-        cost_[cell] = cost;
-        lowest_ = std::min(lowest_, cell);
-        highest_ = std::max(highest_, cell);
+        double& least = cost_of(cell);
+        if (cost >= least) return;
+        least = cost;
         const auto place = static_cast<std::size_t>((cost + aim.estimate(spot)) * kBucketsPerCell);
         buckets_[std::max(place, current) & mask].push_back({cost, cell, came}); // max: for rounding
         ++open;
@@ -161,7 +170,7 @@ void CostSearch::search(Spot start, Aim& aim) {
             const Open taken = bucket.back();
             bucket.pop_back();
             --open;
-            if (taken.cost > cost_[taken.cell]) continue; // it was cheaper another way
+            if (taken.cost > cost_of(taken.cell)) continue; // it was cheaper another way
             const Spot at = spot_of(taken.cell);
             if (aim.take(at, taken.cost)) expand(at, taken, reach);
         }
@@ -189,7 +198,7 @@ void CostSearch::from(Spot start) {
 }
 
 void CostSearch::between(Spot start, Spot goal) {
-    Towards towards{goal, &cost_[index_of(goal)]};
+    Towards towards{goal, *this};
     search(start, towards);
     assert(cost(goal) < kUnreached);
 }

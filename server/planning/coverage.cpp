@@ -75,7 +75,7 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
                        const CoverageOptions& options) {
     PassabilityOptions known_ground = options.passability;
     known_ground.allow_unknown = false;
-    auto passability = make_passability(classes, cell_size_m, known_ground);
+    auto passability = make_passability(classes, cell_size_m, known_ground, {&start, 1});
     if (!passability) return passability.error();
     const auto spacing = spacing_cells(options, cell_size_m);
     if (!spacing) return spacing.error();
@@ -88,7 +88,9 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
         free &= *inside;
     }
     if (free.count() == 0) {
-        return Error{Errc::kNoPath, "the region holds the centre of no free cell: give a larger or another region"};
+        return Error{Errc::kNoPath,
+                     "the region holds the centre of no free cell of the explored area around the start: "
+                     "give a larger or another region, or another start"};
     }
     auto reach = disc_half_widths(known_ground.body_radius_m / cell_size_m, false);
     auto [places, reachable] = best_of_rooms(*passability, *spot, reach, free);

@@ -13,13 +13,13 @@ struct CoverageOptions {
     PassabilityOptions passability; ///< its allow_unknown does not matter: only free ground is covered
     std::optional<double>
         spacing_m;              ///< between rows: at most 2 body radii and a cell; default 2 body radii; 0: every row
-    std::vector<Point2> region; ///< corners of a polygon, metres; none: all free ground of the map
+    std::vector<Point2> region; ///< corners of a polygon, metres; none: no bound
 };
 
 /// Asked again and again during a long search, which ends with the error that it returns.
 using MayGoOn = std::function<Result<>()>;
 
-/// A way over all of a region's free ground.
+/// A way over all free ground of a region in the search_window() around the start.
 struct Coverage {
     Path path; ///< from the start
     std::int64_t free_cells = 0;

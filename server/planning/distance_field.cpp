@@ -1,6 +1,6 @@
 #include "server/planning/distance_field.hpp"
 
-#include "server/planning/passability.hpp"
+#include "server/planning/search_window.hpp"
 
 #include <fmt/format.h>
 
@@ -101,9 +101,9 @@ private:
 Result<DistanceField> distance_field(const classify::ClassView& classes, double cell_size_m,
                                      const grid::CellBox& window) {
     if (window.empty()) return DistanceField{window, {}};
-    if (window.width() > kWindowCellsMax / window.height()) {
+    if (window.width() > kSearchCellsMax / window.height()) {
         return Error{Errc::kTooLarge, fmt::format("the window has {} x {} cells, more than {}: ask for a smaller one",
-                                                  window.width(), window.height(), kWindowCellsMax)};
+                                                  window.width(), window.height(), kSearchCellsMax)};
     }
     const auto distances = distances_in_columns(classes, window);
     const auto width = static_cast<std::size_t>(window.width());

@@ -21,7 +21,7 @@ struct DistanceField {
 
 /// The Euclidean distance of each cell's centre to that of the nearest OCCUPIED cell of the window, exact up to the
 /// rounding of a float.
-/// Errors  kTooLarge: a window of more than kWindowCellsMax cells (passability.hpp).
+/// Errors  kTooLarge: a window of more than kSearchCellsMax cells (search_window.hpp).
 /// Source  Felzenszwalb, Huttenlocher, Distance Transforms of Sampled Functions, Theory of Computing 8 (2012).
 [[nodiscard]] Result<DistanceField> distance_field(const classify::ClassView& classes, double cell_size_m,
                                                    const grid::CellBox& window);

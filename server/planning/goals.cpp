@@ -79,7 +79,7 @@ Result<std::unique_ptr<Surroundings>> survey(const ClassView& classes, double ce
                                              PassabilityOptions options, bool on_known) {
     options.allow_unknown = false;
     options.on_known = on_known;
-    auto passability = make_passability(classes, cell_size_m, options);
+    auto passability = make_passability(classes, cell_size_m, options, {&robot, 1});
     if (!passability) return passability.error();
     const auto place = passability->spot_at(robot);
     const bool fits = place && passability->enterable.test(*place);

@@ -126,8 +126,8 @@ Path to_path(const Passability& passability, const std::vector<Spot>& cells, con
 
 Result<Path> plan_path(const classify::ClassView& classes, double cell_size_m, const Point2& start, const Point2& goal,
                        const PassabilityOptions& options, Shape shape) {
-    const std::array held = {start, goal};
-    auto passability = make_passability(classes, cell_size_m, options, held);
+    const std::array ends = {start, goal};
+    auto passability = make_passability(classes, cell_size_m, options, ends);
     if (!passability) return passability.error();
     const auto first = open_start(*passability, start);
     if (!first) return first.error();

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -22,10 +21,6 @@ using classify::ClassView;
 
 constexpr std::int32_t kSide = grid::kChunkSide;
 
-/// Chunks whose cells, and those of a chunk beside them, have int32 numbers.
-constexpr std::int64_t kChunkEnd = std::int64_t{std::numeric_limits<std::int32_t>::max()} / kSide - 1;
-constexpr grid::ChunkBox kNumberedChunks{-kChunkEnd, -kChunkEnd, kChunkEnd, kChunkEnd};
-
 Error invalid(std::string message) { return {Errc::kInvalidField, std::move(message)}; }
 
 Result<> check(const PassabilityOptions& options) {
@@ -36,48 +31,6 @@ Result<> check(const PassabilityOptions& options) {
         return invalid(fmt::format("danger_cost is {}; it must be 0 .. {}", options.danger_cost, kDangerCostMax));
     }
     return {};
-}
-
-/// Errors  kInvalidField: not finite, or beyond where cells are numbered.
-Result<grid::Cell> cell_of(const Point2& point, double cell_size_m) {
-    const double cells_per_metre = 1.0 / cell_size_m;
-    const double i = std::floor(point.x * cells_per_metre);
-    const double j = std::floor(point.y * cells_per_metre);
-    const auto end = static_cast<double>(kChunkEnd * kSide);
-    if (!(std::abs(i) < end && std::abs(j) < end)) { // also when it is NaN
-        return invalid(fmt::format("the point ({}, {}) has no cell in any map", point.x, point.y));
-    }
-    return grid::Cell{static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
-}
-
-void include_chunk(grid::CellBox& box, grid::ChunkKey key) {
-    const std::int32_t i = key.ci * kSide;
-    const std::int32_t j = key.cj * kSide;
-    box.include({i, j, i + kSide, j + kSide});
-}
-
-Result<grid::CellBox> window_of(const ClassView& classes, double cell_size_m, bool allow_unknown,
-                                std::span<const Point2> held) {
-    grid::CellBox window;
-    classes.visit(kNumberedChunks, 0, [&](grid::ChunkKey key, const ClassChunk&) { include_chunk(window, key); });
-    if (allow_unknown) {
-        for (const Point2& point : held) {
-            const auto cell = cell_of(point, cell_size_m);
-            if (!cell) return cell.error();
-            include_chunk(window, grid::chunk_of(*cell));
-        }
-        if (!window.empty()) { // room to walk around the edge of the known
-            window = {window.i_begin - kSide, window.j_begin - kSide, window.i_end + kSide, window.j_end + kSide};
-        }
-    }
-    if (window.empty()) return grid::CellBox{0, 0, 0, 0};
-    if (window.width() > kWindowCellsMax / window.height()) {
-        return Error{
-            Errc::kTooLarge,
-            fmt::format("planning needs a window of {} x {} cells, more than {}: plan on a map of larger cells",
-                        window.width(), window.height(), kWindowCellsMax)};
-    }
-    return window;
 }
 
 void read_chunk(Passability& passability, grid::ChunkKey key, const ClassChunk& chunk) {
@@ -120,14 +73,14 @@ void clear_border(BitGrid& grid, std::int32_t width) {
 
 /// The ground under a point where a path begins or ends.
 Result<Spot> ground_at(const Passability& passability, const Point2& point, std::string_view which) {
-    const auto cell = cell_of(point, passability.cell_size_m);
+    const auto cell = numbered_cell(point, passability.cell_size_m);
     if (!cell) return prefixed(fmt::format("{}: ", which), cell.error());
     const auto refusal = [&](std::string_view why) {
         return Error{Errc::kNoPath, fmt::format("the {} ({:g}, {:g}) is {}", which, point.x, point.y, why)};
     };
-    if (passability.window.empty()) return refusal("outside the map: no laser has explored anything yet");
     const auto spot = passability.spot_of(*cell);
-    if (!spot) return refusal("outside the map; it must be in explored free space");
+    if (!spot && which == "start") return refusal("outside the map; it must be in explored free space");
+    if (!spot) return refusal("outside the explored area around the start; it must be in free space there");
     if (passability.occupied.test(*spot)) return refusal("inside an obstacle; it must be in free space");
     if (!passability.ground.test(*spot)) {
         return refusal("in unknown space; it must be in free space, unless unknown cells are allowed");
@@ -223,14 +176,15 @@ Point2 to_cells(const Passability& passability, const Point2& point, Spot cell) 
 }
 
 Result<Passability> make_passability(const ClassView& classes, double cell_size_m, const PassabilityOptions& options,
-                                     std::span<const Point2> held) {
+                                     std::span<const Point2> ends) {
     assert(cell_size_m > 0.0);
     if (auto valid = check(options); !valid) return valid.error();
-    const auto window = window_of(classes, cell_size_m, options.allow_unknown, held);
+    const auto window = search_window(classes, cell_size_m, {options.body_radius_m, options.allow_unknown}, ends);
     if (!window) return window.error();
-    const BitGrid blank(static_cast<std::int32_t>(window->width()), static_cast<std::int32_t>(window->height()));
-    Passability passability{*window, cell_size_m, options, blank, blank, blank, blank, blank, blank};
-    classes.visit(grid::chunks_of(*window), 0,
+    const grid::CellBox& box = window->box;
+    const BitGrid blank(static_cast<std::int32_t>(box.width()), static_cast<std::int32_t>(box.height()));
+    Passability passability{box, cell_size_m, options, blank, blank, blank, blank, blank, blank};
+    classes.visit(grid::chunks_of(box), 0,
                   [&](grid::ChunkKey key, const ClassChunk& chunk) { read_chunk(passability, key, chunk); });
     if (options.allow_unknown) {
         set_all(passability.ground);

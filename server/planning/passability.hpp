@@ -4,6 +4,7 @@
 #include "common/geometry/pose2.hpp"
 #include "server/classify/cell_class.hpp"
 #include "server/planning/bit_grid.hpp"
+#include "server/planning/search_window.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +12,6 @@
 
 namespace scanloom::planning {
 
-inline constexpr std::int64_t kWindowCellsMax = std::int64_t{1} << 26; ///< a search in it takes 512 MiB
 inline constexpr double kDangerCostMax = 1000.0;
 
 /// A radius of three cells shall reach the third cell, however the quotient of two decimal fractions was rounded.
@@ -30,8 +30,7 @@ struct PassabilityOptions {
 /// allow_unknown unexplored, too) and no occupied cell's square is within the body's radius of its centre; with
 /// on_known no other cell's that is not ground, or beyond the window. (Where a diagonal step between such centres would
 /// come nearer, the radius counts as up to 0.17 cells more.) A metre in a DANGER cell costs 1 + danger_cost, any
-/// other 1. The window is whole chunks around everything known; with allow_unknown, also around the points to be held,
-/// and a chunk more on every side. Spots are cells of the window.
+/// other 1. Spots are cells of the window: see search_window().
 struct Passability {
     grid::CellBox window;
     double cell_size_m = 0.0;
@@ -60,11 +59,12 @@ struct Passability {
 /// the difference was rounded.
 [[nodiscard]] Point2 to_cells(const Passability& passability, const Point2& point, Spot cell);
 
+/// @param ends  metres, map frame: where a way begins, then where it may lead; none: all that is explored
 /// Errors  kInvalidField: an option out of its range, a point that is not finite.
-///         kTooLarge: a window of more than kWindowCellsMax cells.
+///         kTooLarge: see search_window().
 [[nodiscard]] Result<Passability> make_passability(const classify::ClassView& classes, double cell_size_m,
                                                    const PassabilityOptions& options,
-                                                   std::span<const Point2> held = {});
+                                                   std::span<const Point2> ends = {});
 
 /// Where a path may begin: the point's cell. When that is free but nearer to an obstacle than the body radius (a
 /// robot got there somehow, and must be able to leave), the free cells that hang together with it within a body

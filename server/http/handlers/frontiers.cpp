@@ -20,7 +20,7 @@ namespace scanloom::http {
 namespace {
 
 /// A search from each robot, one after the other: in a map as large as can be, from so many cells a few seconds.
-constexpr std::int64_t kCellsSearchedMax = 4 * planning::kWindowCellsMax;
+constexpr std::int64_t kCellsSearchedMax = 4 * planning::kSearchCellsMax;
 
 constexpr std::size_t kTextBytesMax = std::size_t{64} << 20;
 
@@ -34,14 +34,31 @@ Result<std::vector<RobotIndex>> robots_asked_for(const mapping::Snapshot& maps, 
         for (RobotIndex robot = 0; robot < maps.robots.size(); ++robot) robots.push_back(robot);
     }
     std::erase_if(robots, [&](RobotIndex robot) { return !maps.robots[robot].pose; });
-    const auto cells = mapping::bounds_of(maps);
-    const std::int64_t searched = cells.width() * cells.height() * static_cast<std::int64_t>(robots.size());
-    if (robots.size() > 1 && searched > kCellsSearchedMax) {
-        return Error{Errc::kInvalidField, fmt::format("robot is missing: the map is too large to look for the ways of "
-                                                      "all {} robots; name one",
-                                                      robots.size())};
-    }
     return robots;
+}
+
+Point2 place_of(const mapping::Snapshot& maps, RobotIndex robot) {
+    const Pose2& pose = *maps.robots[robot].pose;
+    return {pose.x, pose.y};
+}
+
+/// Pre     all robots have a pose.
+/// Errors  kInvalidField: the search would take too long.
+Result<> check_cells_searched(const mapping::Snapshot& maps, const std::vector<RobotIndex>& robots,
+                              const planning::ExplorationOptions& options) {
+    if (robots.size() < 2) return {};
+    std::int64_t searched = 0;
+    for (const RobotIndex robot : robots) {
+        const Point2 place = place_of(maps, robot);
+        const auto window = planning::search_window(maps.classes, maps.config.cell_size,
+                                                    {.body_radius_m = options.passability.body_radius_m}, {&place, 1});
+        if (!window) return window.error();
+        searched += window->search_cells;
+    }
+    if (searched <= kCellsSearchedMax) return {};
+    return Error{Errc::kInvalidField, fmt::format("robot is missing: the map is too large to look for the ways of "
+                                                  "all {} robots; name one",
+                                                  robots.size())};
 }
 
 /// Where to explore a frontier from, and who.
@@ -60,9 +77,8 @@ Result<Offers> cheapest_offers(const mapping::Snapshot& maps, const std::vector<
                                const std::vector<RobotIndex>& robots, const planning::ExplorationOptions& options) {
     Offers offers{std::vector<std::optional<Offer>>(frontiers.size()), {}};
     for (const RobotIndex robot : robots) {
-        const auto& pose = *maps.robots[robot].pose;
         const auto goals =
-            planning::frontier_goals(maps.classes, maps.config.cell_size, frontiers, Point2{pose.x, pose.y}, options);
+            planning::frontier_goals(maps.classes, maps.config.cell_size, frontiers, place_of(maps, robot), options);
         if (!goals && goals.error().code != Errc::kNoPath) return goals.error();
         if (!goals) continue;
         offers.robots.push_back(robot);
@@ -109,6 +125,7 @@ Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots,
     if (!options) return options.error();
     const auto robots = robots_asked_for(snapshot, call.query);
     if (!robots) return robots.error();
+    if (auto few = check_cells_searched(snapshot, *robots, *options); !few) return few.error();
 
     const auto frontiers = classify::find_frontiers(snapshot.classes, options->frontier_size_min.value_or(1));
     const auto offers = cheapest_offers(snapshot, frontiers, *robots, *options);

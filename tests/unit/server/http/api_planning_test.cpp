@@ -152,6 +152,23 @@ TEST_F(ApiPlanningTest, EachFrontierHasTheRobotThatIsNearest) {
     EXPECT_EQ(robots, (std::set<std::string>{"r1", "r2"}));
 }
 
+TEST_F(ApiPlanningTest, OneScanFarAwayChangesNoPlan) {
+    const std::string to_the_wall = R"({"from":[1.0,1.0],"to":[2.5,0.2]})";
+    const std::string unknown = R"({"from":[1.0,1.0],"to":[2.5,0.2],"allow_unknown":true})";
+    const auto plan = post_json("plan", to_the_wall).at("geometry");
+    const auto plan_over_unknown = post_json("plan", unknown).at("geometry");
+    const auto coverage = post_json("coverage", R"({"start":{"robot":"r1"}})").at("features");
+    Scan stray = scan_with_a_gap();
+    stray.pose = {4500.0, 4500.0, 0.0};
+    stream("a", "r2", {stray});
+    EXPECT_EQ(post_json("plan", to_the_wall).at("geometry"), plan);
+    EXPECT_EQ(post_json("plan", unknown).at("geometry"), plan_over_unknown);
+    EXPECT_EQ(post_json("coverage", R"({"start":{"robot":"r1"}})").at("features"), coverage);
+    EXPECT_EQ(post_json("goal", R"({"robot":"r1"})").at("outcome"), "goal");
+    EXPECT_EQ(post_json("goal", R"({"robot":"r2"})").at("outcome"), "goal");
+    EXPECT_EQ(frontiers().at("robots").as_array().size(), 2U);
+}
+
 TEST_F(ApiPlanningTest, AllFrontiersAreListedHoweverWideTheBody) {
     const auto wide = frontiers("body_radius=5").at("features").as_array().size();
     EXPECT_EQ(wide, classify::find_frontiers(maps()->classes).size());

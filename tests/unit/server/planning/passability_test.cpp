@@ -57,35 +57,6 @@ TEST(Passability, TheWindowIsTheChunksOfTheMap) {
     EXPECT_EQ(passability.centre_of({64, 128}), (Point2{0.025, 0.025}));
 }
 
-TEST(Passability, UnknownGroundReachesAroundThePointsToBeHeld) {
-    const auto view = drawn({"."});
-    const std::vector<Point2> held = {{10.0, 0.0}, {0.0, -10.0}};
-    const PassabilityOptions options{.allow_unknown = true};
-    EXPECT_EQ(make_passability(view, 0.05, options, held)->window, (grid::CellBox{-64, -320, 320, 128}));
-    EXPECT_EQ(make_passability(view, 0.05, {}, held)->window, (grid::CellBox{0, 0, 64, 64}));
-}
-
-TEST(Passability, AWindowThatIsTooLargeIsRefused) {
-    ClassMap map;
-    map.set({0, 0}, CellClass::kFree);
-    map.set({100'000, 100'000}, CellClass::kFree);
-    const auto passability = make_passability(map.view(), 0.05, {});
-    ASSERT_FALSE(passability);
-    EXPECT_EQ(passability.error().code, Errc::kTooLarge);
-    EXPECT_THAT(passability.error().message, HasSubstr("100032 x 100032 cells"));
-    EXPECT_TRUE(make_passability(drawn({"."}), 0.05, {}));
-}
-
-TEST(Passability, ChunksAtTheEndsOfTheNumbersDoNoHarm) {
-    ClassMap map;
-    map.set({0, 0}, CellClass::kFree);
-    map.set({std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}, CellClass::kFree);
-    map.set({std::numeric_limits<std::int32_t>::max() - 127, 0}, CellClass::kFree);
-    EXPECT_EQ(make_passability(map.view(), 1.0, {})->window, (grid::CellBox{0, 0, 64, 64}));
-    const std::vector<Point2> held = {{2147483000.0, 0.0}};
-    EXPECT_EQ(make_passability(map.view(), 1.0, {.allow_unknown = true}, held).error().code, Errc::kTooLarge);
-}
-
 TEST(Passability, OptionsOutOfRangeAreRefusedByName) {
     const auto refusal = [](const PassabilityOptions& options) {
         return make_passability(drawn({"."}), 0.05, options).error();
@@ -119,7 +90,7 @@ TEST(Passability, AGoalThatCannotBeIsRefusedWithTheReason) {
     EXPECT_THAT(message_of(check_goal(passability, {0.5, 0.5})), HasSubstr("goal (0.5, 0.5) is inside an obstacle"));
     EXPECT_THAT(message_of(check_goal(passability, {1.5, 0.5})), HasSubstr("nearer to an obstacle than the body"));
     EXPECT_THAT(message_of(check_goal(passability, {3.5, 0.5})), HasSubstr("unknown space"));
-    EXPECT_THAT(message_of(check_goal(passability, {70.0, 0.5})), HasSubstr("outside the map"));
+    EXPECT_THAT(message_of(check_goal(passability, {70.0, 0.5})), HasSubstr("outside the explored area"));
     EXPECT_EQ(code_of(check_goal(passability, {0.5, kInfinite})), Errc::kInvalidField);
     EXPECT_EQ(check_goal(passability, {2.5, 0.5}).value(), (Spot{2, 0}));
 }
