@@ -17,7 +17,7 @@ using grid::ChunkKey;
 
 constexpr std::int64_t kChunkCells = std::int64_t{grid::kChunkSide} * grid::kChunkSide;
 
-/// Chunks that the largest body (kBodyRadiusMax) touches beside its own on the smallest cells, of 1 cm, and some more.
+/// Chunks that the largest body (kBodyRadiusMax) touches besides its own on the smallest cells (1 cm), and some more.
 constexpr std::int32_t kReachMax = 16;
 
 /// Chunks whose cells, and those of chunks within reach of them, have int32 numbers.

@@ -56,8 +56,8 @@ TEST(SearchWindow, ABodyThatTouchesBothSidesOfAGapMakesThemOneArea) {
 TEST(SearchWindow, OverUnexploredGroundHoldsBothEndsAndWhatTheBoxTouches) {
     ClassMap map;
     map.set({0, 0}, CellClass::kFree);
-    map.set({150, 0}, CellClass::kOccupied);  // beside the box around the first, and makes it wider
-    map.set({310, 0}, CellClass::kOccupied);  // beside that one
+    map.set({150, 0}, CellClass::kOccupied);  // next to the box around the first: makes it wider
+    map.set({310, 0}, CellClass::kOccupied);  // next to that one
     map.set({1500, 0}, CellClass::kOccupied); // far
     const std::vector<Point2> ends = {{0.5, 0.5}, {0.5, -300.0}};
     EXPECT_EQ(search_window(map.view(), 1.0, {.allow_unknown = true}, ends)->box, (CellBox{-64, -384, 384, 128}));
