@@ -43,6 +43,7 @@ struct SessionOptions {
     std::optional<std::int32_t> class_himm_free;
     std::optional<std::int32_t> danger_cells;
     std::optional<double> danger_radius;
+    std::optional<double> max_jump;
 
     friend bool operator==(const SessionOptions&, const SessionOptions&) = default;
 };

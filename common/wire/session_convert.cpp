@@ -63,6 +63,7 @@ Result<SessionOptions> from_proto(const v1::SessionConfig& proto) {
     if (proto.has_class_himm_free()) options.class_himm_free = proto.class_himm_free();
     if (proto.has_danger_cells()) options.danger_cells = proto.danger_cells();
     if (proto.has_danger_radius()) options.danger_radius = proto.danger_radius();
+    if (proto.has_max_jump()) options.max_jump = proto.max_jump();
     return options;
 }
 
@@ -95,6 +96,7 @@ void to_proto(const SessionOptions& options, v1::SessionConfig& out) {
     if (options.class_himm_free) out.set_class_himm_free(*options.class_himm_free);
     if (options.danger_cells) out.set_danger_cells(*options.danger_cells);
     if (options.danger_radius) out.set_danger_radius(*options.danger_radius);
+    if (options.max_jump) out.set_max_jump(*options.max_jump);
 }
 
 } // namespace scanloom::wire

@@ -82,6 +82,7 @@ Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
         return Error{Errc::kMalformed,
                      fmt::format("scan {} is of sensor {}, which was not described", scan.seq, scan.sensor)};
     }
+    if (!jumps_.take(taken.robot, {scan.pose.x, scan.pose.y})) return std::string();
     const Sensor& sensor = known->second;
     const auto& robot = robots_[taken.robot];
     const BeamAngles angles = angles_of(scan, sensor);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/jump_filter.hpp"
 #include "common/scan/log_entry.hpp"
 
 #include <cstdint>
@@ -25,6 +26,9 @@ namespace scanloom::exchange {
 /// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
 class CarmenText {
 public:
+    /// @param jumps  which scans are integrated in the session's maps; no others become lines
+    explicit CarmenText(JumpFilter jumps = JumpFilter()) : jumps_(std::move(jumps)) {}
+
     /// The lines at the head of the file.
     [[nodiscard]] static std::string head(const std::string& session);
 
@@ -40,6 +44,7 @@ private:
     [[nodiscard]] Result<std::string> text_of(const ScanTaken& taken);
     [[nodiscard]] static Result<std::string> text_of(const MapPatch& patch);
 
+    JumpFilter jumps_;
     std::vector<std::string> robots_;
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;
     double latest_ = std::numeric_limits<double>::lowest(); ///< stamp written

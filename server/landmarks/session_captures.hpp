@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/jump_filter.hpp"
 #include "server/landmarks/capture.hpp"
 
 #include <cstdint>
@@ -23,15 +24,22 @@ struct RobotCapture {
 /// Thread  one at a time.
 class SessionCaptures {
 public:
+    /// @param jumps  which scans are integrated in the session's maps; no others are in captures
+    explicit SessionCaptures(JumpFilter jumps = JumpFilter()) : jumps_(std::move(jumps)) {}
+
     /// Of the entries that are in.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
     /// Whether a scan that is the next entry may change anything, told without its readings. One that does not is
     /// passed over.
     [[nodiscard]] bool needs(RobotIndex robot, double stamp, const Pose2& pose) const noexcept {
+        if (!jumps_.integrates(robot, {pose.x, pose.y})) return false;
         return robot >= cutters_.size() || cutters_[robot].needs(stamp, pose);
     }
-    void pass_over() noexcept { ++revision_; }
+    void pass_over(RobotIndex robot, const Pose2& pose) {
+        jumps_.take(robot, {pose.x, pose.y});
+        ++revision_;
+    }
 
     /// Adds the next entry. A scan of a sensor that was never described is passed over: only a damaged log has such.
     /// @return the capture that has ended with it
@@ -43,6 +51,7 @@ public:
 private:
     std::vector<CaptureCutter> cutters_;                             // by RobotIndex
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by robot and id, as described last
+    JumpFilter jumps_;
     Revision revision_ = 0;
 };
 

@@ -53,6 +53,7 @@ const std::array kFields = {
     field("class_himm_free", &O::class_himm_free, &C::class_himm_free),
     field("danger_cells", &O::danger_cells, &C::danger_cells),
     field("danger_radius", &O::danger_radius, &C::danger_radius),
+    field("max_jump", &O::max_jump, &C::max_jump),
 };
 
 constexpr std::int32_t kDangerCellsMax = classify::ClassLayer::kDangerCellsMax;
@@ -210,6 +211,7 @@ Result<> check_classes(const MapConfig& c) {
 
 Result<> check(const MapConfig& c) {
     constexpr double kThicknessMax = 10.0;
+    constexpr double kJumpMax = 100'000.0;
     if (!(c.cell_size >= 0.01 && c.cell_size <= 1.0)) {
         return out_of_range("cell_size", c.cell_size, "cells of 0.01 to 1.0 metres are possible");
     }
@@ -222,7 +224,7 @@ Result<> check(const MapConfig& c) {
           check_positive("himm_beam_aperture", c.himm_beam_aperture, std::numbers::pi, " radians"),
           check_positive("sonar_obstacle_thickness", c.sonar_obstacle_thickness, kThicknessMax, " metres"),
           check_positive("sonar_beam_aperture", c.sonar_beam_aperture, std::numbers::pi, " radians"), check_sonar(c),
-          check_classes(c)}) {
+          check_classes(c), check_within("max_jump", c.max_jump, 0.0, kJumpMax, " metres")}) {
         if (!ok) return ok;
     }
     return {};

@@ -21,7 +21,8 @@ Projection::Projection(const MapConfig& config)
     : Projection(config, LaserLayers(config), SonarLayer(config), classify::ClassLayer(danger_reach(config))) {}
 
 Projection::Projection(const MapConfig& config, LaserLayers laser, SonarLayer sonar, classify::ClassLayer classes)
-    : config_(config), laser_(std::move(laser)), sonar_(std::move(sonar)), classes_(std::move(classes)) {}
+    : config_(config), laser_(std::move(laser)), sonar_(std::move(sonar)), classes_(std::move(classes)),
+      jumps_(config.max_jump) {}
 
 const std::string* Projection::find_robot_name(RobotIndex robot) const noexcept {
     return robot < robots_.size() ? &robots_[robot].state.name : nullptr;
@@ -89,8 +90,12 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
                                                robot.state.last_seq));
     }
     const Sensor& sensor = *known->second.sensor;
-    if (!integrate(robot, sensor, scan, work)) return false;
+    const Point2 place{scan.pose.x, scan.pose.y};
+    const bool is_integrated = jumps_.integrates(taken.robot, place);
+    if (is_integrated && !integrate(robot, sensor, scan, work)) return false;
+    jumps_.take(taken.robot, place);
     robot.state.last_seq = scan.seq;
+    if (!is_integrated) return true;
     robot.state.scan_count += 1;
     robot.newest = {revision, scan.stamp, scan.pose};
     robot.trajectory.append(*robot.newest);
@@ -150,6 +155,7 @@ Snapshot Projection::snapshot() {
     snapshot.robots.reserve(robots_.size());
     for (const auto& robot : robots_) {
         auto& state = snapshot.robots.emplace_back(robot.state);
+        state.jumps = jumps_.state(static_cast<RobotIndex>(snapshot.robots.size() - 1)).left_out;
         state.trajectory = robot.trajectory.snapshot();
         if (!robot.newest) continue;
         state.stamp = robot.newest->stamp;
@@ -178,6 +184,7 @@ Projection Projection::branch() {
     other.classes_at_ = classes_at_;
     other.robots_.reserve(robots_.size());
     for (const auto& robot : robots_) other.robots_.push_back(robot.branch());
+    other.jumps_ = jumps_;
     return other;
 }
 
@@ -188,13 +195,15 @@ Projection::Robot Projection::Robot::branch() const {
 
 ProjectionState Projection::state() const {
     ProjectionState state{revision_, bounds(), chunk_count(), {}};
-    for (const auto& robot : robots_) {
+    for (RobotIndex index = 0; index < robots_.size(); ++index) {
+        const Robot& robot = robots_[index];
         auto& out = state.robots.emplace_back(ProjectionState::Robot{robot.state.name,
                                                                      robot.source,
                                                                      robot.state.body_radius,
                                                                      robot.state.last_seq,
                                                                      robot.state.scan_count,
                                                                      robot.newest,
+                                                                     jumps_.state(index),
                                                                      {}});
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
         if (robot.newest) state.pages += 1; // what restore() keeps of its path
@@ -218,6 +227,7 @@ void Projection::restore(const ProjectionState& state) {
         robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));
         if (has_point) robot.trajectory.append(*saved.newest);
         for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;
+        if (jumps_.is_on()) jumps_.restore(static_cast<RobotIndex>(robots_.size() - 1), saved.jumps);
     }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
+#include "common/scan/jump_filter.hpp"
 #include "common/scan/log_entry.hpp"
 #include "server/classify/class_layer.hpp"
 #include "server/mapping/snapshot.hpp"
@@ -31,8 +32,9 @@ struct ProjectionState {
         std::string source;                ///< RobotJoined::source
         std::optional<double> body_radius; ///< RobotJoined::body_radius
         std::uint64_t last_seq = 0;
-        std::uint64_t scan_count = 0;
-        std::optional<TrajectoryPoint> newest; ///< of its scans
+        std::uint64_t scan_count = 0;          ///< integrated
+        std::optional<TrajectoryPoint> newest; ///< of those
+        JumpFilter::Robot jumps;               ///< only with max_jump
         std::vector<KnownSensor> sensors;      ///< by rising id
     };
 
@@ -78,6 +80,12 @@ public:
     /// The same description, for as long as it is held.
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
+    /// Whether max_jump has left out the newest entry. Pre  it is a scan of that robot.
+    [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
+        const auto& newest = robots_[robot].newest;
+        return !newest || newest->revision != revision_;
+    }
+
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
     ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.
@@ -122,7 +130,7 @@ private:
 
         RobotState state; // what it says of its newest scan is filled in by snapshot()
         std::string source;
-        std::optional<TrajectoryPoint> newest; // of its scans
+        std::optional<TrajectoryPoint> newest; // of its integrated scans
         Trajectory trajectory;
         std::map<std::uint32_t, KnownSensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;
@@ -146,6 +154,7 @@ private:
     classify::ClassLayer classes_;
     Revision classes_at_ = 0; // the classes are those of the laser chunks at this revision
     std::vector<Robot> robots_;
+    JumpFilter jumps_;
     bool is_folding_ = false; // a scan, of which a part is in
 };
 

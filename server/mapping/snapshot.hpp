@@ -29,9 +29,10 @@ struct RobotState {
     std::string name;
     std::optional<double> body_radius; ///< metres, as it stated when it joined last
     std::uint64_t last_seq = 0;
-    std::uint64_t scan_count = 0;
-    double stamp = 0.0;        ///< seconds, of the newest scan
-    std::optional<Pose2> pose; ///< T_map_robot of the newest scan
+    std::uint64_t scan_count = 0; ///< integrated
+    std::uint64_t jumps = 0;      ///< scans that max_jump left out
+    double stamp = 0.0;           ///< seconds, of the newest integrated scan
+    std::optional<Pose2> pose;    ///< T_map_robot of the newest integrated scan
     TrajectoryView trajectory;
 
     /// To be looked at, no part of the maps: only a session that takes scans has it, of scans taken since it was

@@ -82,7 +82,7 @@ public:
 
 private:
     struct Kept {
-        explicit Kept(store::SessionId of) : session(of) {}
+        explicit Kept(const SessionInfo& of) : session(of.id), captures(JumpFilter(of.config.max_jump)) {}
 
         const store::SessionId session;
         PatientMutex mutex;
@@ -92,7 +92,7 @@ private:
         std::size_t size = 0;                // whoever has that of all
     };
 
-    [[nodiscard]] std::shared_ptr<Kept> find_or_begin(store::SessionId session);
+    [[nodiscard]] std::shared_ptr<Kept> find_or_begin(const SessionInfo& session);
     [[nodiscard]] Result<> go_on(Kept& kept, Revision revision, const std::function<bool()>& is_wanted) const;
     [[nodiscard]] Error full(const SessionInfo& session) const;
     void account(Kept& kept);

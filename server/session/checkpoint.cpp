@@ -61,7 +61,13 @@ std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     put(value, robot.scan_count);
     if (robot.newest) put(value, *robot.newest); // there is one just when it took scans
     value += robot.name + '\0' + robot.source;
-    if (robot.body_radius) put(value += '\0', *robot.body_radius); // earlier versions knew of none
+    const bool has_jumps = robot.jumps.newest.has_value();
+    if (!robot.body_radius && !has_jumps) return value; // as earlier versions wrote it, which knew of neither
+    put(value += '\0', robot.body_radius.value_or(0.0));
+    if (!has_jumps) return value;
+    put(value, *robot.jumps.integrated);
+    put(value, *robot.jumps.newest);
+    put(value, robot.jumps.left_out);
     return value;
 }
 
@@ -239,8 +245,13 @@ bool CheckpointReader::add_robot(const Numbers& numbers, std::string_view value)
     robot.source = part.rest().substr(0, source_end);
     part.skip(source_end + 1);
     if (part.rest().empty()) return !part.failed();
-    robot.body_radius = part.take<double>();
-    return part.complete() && is_body_radius(*robot.body_radius);
+    if (const auto radius = part.take<double>(); radius != 0.0) robot.body_radius = radius;
+    if (robot.body_radius && !is_body_radius(*robot.body_radius)) return false;
+    if (part.complete()) return true;
+    robot.jumps.integrated = part.take<Point2>();
+    robot.jumps.newest = part.take<Point2>();
+    robot.jumps.left_out = part.take<std::uint64_t>();
+    return part.complete() && is_finite(*robot.jumps.integrated) && is_finite(*robot.jumps.newest);
 }
 
 bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value) {

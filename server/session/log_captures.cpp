@@ -18,7 +18,7 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
         if (*taken && !captures.needs((*taken)->robot, (*taken)->stamp, (*taken)->pose)) {
-            captures.pass_over();
+            captures.pass_over((*taken)->robot, (*taken)->pose);
             return {};
         }
         const auto entry = wire::decode_entry(bytes);

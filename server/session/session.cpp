@@ -226,9 +226,8 @@ Result<> Session::fold_some(double work) {
             if (!folded) return folded.error();
             if (!*folded) return {}; // goes on in the next slice
             work_since_checkpoint_ += next.reach.work;
-            if (std::holds_alternative<ScanTaken>(*next.entry)) ++counters_->scans_applied;
+            if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) count_and_keep(*taken);
             if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
-            keep_newest(*next.entry);
         }
         return {};
     } catch (const std::bad_alloc&) {
@@ -237,12 +236,15 @@ Result<> Session::fold_some(double work) {
 }
 
 /// Takes the readings out of a scan that has been folded: of what is left, Members reads the seq.
-void Session::keep_newest(LogEntry& folded) {
-    auto* taken = std::get_if<ScanTaken>(&folded);
-    if (taken == nullptr) return;
-    if (newest_scans_.size() <= taken->robot) newest_scans_.resize(taken->robot + 1);
-    newest_scans_[taken->robot] = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{
-        projection_.revision(), projection_.sensor_of(taken->robot, taken->scan.sensor), std::move(taken->scan)});
+void Session::count_and_keep(ScanTaken& folded) {
+    if (projection_.has_left_out_newest(folded.robot)) {
+        ++counters_->scans_jumped;
+        return;
+    }
+    ++counters_->scans_applied;
+    if (newest_scans_.size() <= folded.robot) newest_scans_.resize(folded.robot + 1);
+    newest_scans_[folded.robot] = std::make_shared<const mapping::FoldedScan>(mapping::FoldedScan{
+        projection_.revision(), projection_.sensor_of(folded.robot, folded.scan.sensor), std::move(folded.scan)});
 }
 
 void Session::finish_group() {

@@ -118,7 +118,7 @@ private:
     void on_appended(Group group, const Result<>& appended);
     void fold_slice();
     [[nodiscard]] Result<> fold_some(double work);
-    void keep_newest(LogEntry& folded);
+    void count_and_keep(ScanTaken& folded);
     void finish_group();
     [[nodiscard]] Result<> publish();
     void tell_watchers();

@@ -44,6 +44,7 @@ struct SessionInfo {
 /// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.
 struct SessionCounters {
     std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
+    std::atomic<std::uint64_t> scans_jumped = 0;     ///< in the log, left out of the map for max_jump
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
     std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or come when their link had ended; not acknowledged
 };

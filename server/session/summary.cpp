@@ -18,6 +18,7 @@ Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConf
         told.body_radius = robot.body_radius;
         told.last_seq = robot.last_seq;
         told.scan_count = robot.scan_count;
+        told.jumps = robot.jumps.left_out;
         if (!robot.newest) continue;
         told.stamp = robot.newest->stamp;
         told.pose = robot.newest->pose;

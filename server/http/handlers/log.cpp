@@ -50,7 +50,8 @@ public:
 
 class CarmenFormat final : public Format {
 public:
-    explicit CarmenFormat(std::string session) : session_(std::move(session)) {}
+    CarmenFormat(std::string session, double max_jump_m)
+        : session_(std::move(session)), carmen_(JumpFilter(max_jump_m)) {}
 
     [[nodiscard]] std::string head() const override { return exchange::CarmenText::head(session_); }
     [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
@@ -117,16 +118,17 @@ Result<Response> get_log(session::SessionRegistry& sessions, store::ScanLog& log
     }
     const auto session = find_session(sessions, call);
     if (!session) return session.error();
-    const auto& name = (*session)->info().name;
+    const auto& info = (*session)->info();
 
     std::unique_ptr<Format> written_as = std::make_unique<ProtobufFormat>();
-    if (is_carmen) written_as = std::make_unique<CarmenFormat>(name);
+    if (is_carmen) written_as = std::make_unique<CarmenFormat>(info.name, info.config.max_jump);
     auto stream = std::make_shared<LogStream>(*session, log, std::move(written_as));
     if (auto begun = stream->begin(); !begun) return begun.error();
 
     Response response;
     response.set("Content-Type", is_carmen ? "text/plain; charset=utf-8" : "application/octet-stream")
-        .set("Content-Disposition", fmt::format("attachment; filename=\"{}.{}\"", name, is_carmen ? "clf" : "scanlog"))
+        .set("Content-Disposition",
+             fmt::format("attachment; filename=\"{}.{}\"", info.name, is_carmen ? "clf" : "scanlog"))
         .set("Cache-Control", kNotKept);
     response.stream = std::move(stream);
     return response;

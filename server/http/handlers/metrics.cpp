@@ -59,6 +59,8 @@ Families session_families(const session::SessionRegistry& sessions, const sessio
                   static_cast<double>(backlog)),
         counter_now("scanloom_scans_applied_total", "Scans that are durable and in their map.",
                     static_cast<double>(sessions.counters().scans_applied)),
+        counter_now("scanloom_scans_jumped_total", "Scans that are durable and that max_jump left out of their map.",
+                    static_cast<double>(sessions.counters().scans_jumped)),
         counter_now("scanloom_scans_duplicates_total", "Scans sent again after a reconnect and dropped.",
                     static_cast<double>(sessions.counters().scans_duplicates)),
         counter_now("scanloom_scans_dropped_total",

@@ -120,11 +120,11 @@ private:
     const std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + kPatience;
 };
 
-Result<> choose(store::ScanLog& log, store::SessionId session, const CloudQuery& query, Revision newest,
+Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
-    landmarks::SessionCaptures cut;
+    landmarks::SessionCaptures cut(JumpFilter(session.config.max_jump));
     auto read = session::read_captures(
-        log, session, cut, std::min(newest, query.until.value_or(newest)),
+        log, session.id, cut, std::min(newest, query.until.value_or(newest)),
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
         [&](Revision) { return patience(); });
     if (!read || query.until) return read;
@@ -146,7 +146,7 @@ Result<Response> get_points(session::SessionRegistry& sessions, store::ScanLog& 
     if (!query) return query.error();
     const Patience patience(sessions);
     Chosen chosen(*query);
-    const auto read = choose(log, (*session)->info().id, *query, snapshot->revision, patience, chosen);
+    const auto read = choose(log, (*session)->info(), *query, snapshot->revision, patience, chosen);
     if (!read) return read.error();
     auto slot = slots.take(chosen.points() * exchange::kPointTextBytes);
     if (!slot) return slot.error();

@@ -59,6 +59,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
         robots.push_back(boost::json::object{{"name", robot.name},
                                              {"connected", session != nullptr && session->is_connected(index)},
                                              {"scans", robot.scan_count},
+                                             {"jumps", robot.jumps},
                                              {"last_seq", robot.last_seq},
                                              {"stamp", robot.stamp},
                                              {"pose", pose_json(robot.pose)},

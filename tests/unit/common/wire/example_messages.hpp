@@ -65,7 +65,8 @@ inline SessionOptions every_option() {
             .class_himm_occupied = 9,
             .class_himm_free = 3,
             .danger_cells = 4,
-            .danger_radius = 0.35};
+            .danger_radius = 0.35,
+            .max_jump = 2.5};
 }
 
 inline Hello example_hello() {

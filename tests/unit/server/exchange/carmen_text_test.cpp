@@ -7,6 +7,7 @@ namespace scanloom::exchange {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 Sensor laser() {
     Sensor sensor;
@@ -39,6 +40,17 @@ TEST(CarmenText, AScanIsOneLineOfTheLoggersFormat) {
     EXPECT_EQ(carmen.lines(ScanTaken{0, scan()}).value(),
               "ROBOTLASER1 0 -0.5 0.75 0.25 12 0 0 4 2.005 0 12 0 0 1.25 2 0 1.25 2 0 0 0 0 0 0 976052857.125 crawler "
               "976052857.125\n");
+}
+
+TEST(CarmenText, AScanThatIsNotIntegratedIsNoLine) {
+    CarmenText carmen{JumpFilter(2.0)};
+    EXPECT_EQ(carmen.lines(RobotJoined{0, "crawler"}).value(), "");
+    EXPECT_TRUE(carmen.lines(SensorDescribed{0, laser()}));
+    EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));
+    Scan stray = scan();
+    stray.pose.x += 2.5;
+    EXPECT_EQ(carmen.lines(ScanTaken{0, stray}).value(), "");
+    EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));
 }
 
 TEST(CarmenText, NumbersAreReadAgainAsTheyWere) {

@@ -72,7 +72,8 @@ TEST_F(ApiTest, EverySettingIsShownAsItWasGiven) {
                                R"("sonar_obstacle_thickness":0.6,"sonar_beam_aperture":0.4,)"
                                R"("sonar_p_occupied_max":0.9,"sonar_p_min":0.02,"sonar_p_max":0.95,)"
                                R"("class_source":"himm","class_p_occupied":0.7,"class_p_free":0.3,)"
-                               R"("class_himm_occupied":9,"class_himm_free":3,"danger_cells":5,"danger_radius":0.4})";
+                               R"("class_himm_occupied":9,"class_himm_free":3,"danger_cells":5,"danger_radius":0.4,)"
+                               R"("max_jump":1.5})";
     const auto wanted = boost::json::parse(config).as_object();
     ASSERT_EQ(wanted.size(), mapping::config_fields().size());
     const auto response = ask("POST", "/api/v1/sessions", R"({"name":"a",)" + config.substr(1));
@@ -127,12 +128,33 @@ TEST_F(ApiTest, AStreamingRobotIsShown) {
     EXPECT_EQ(shown.at("robots"), (boost::json::array{{{"name", "r1"},
                                                        {"connected", true},
                                                        {"scans", 3},
+                                                       {"jumps", 0},
                                                        {"last_seq", 3},
                                                        {"stamp", 103},
                                                        {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}},
                                                        {"body_radius", nullptr}}}));
     EXPECT_NEAR(shown.at("bounds").at("max_x").to_number<double>(), 3.5, 0.2);
     EXPECT_NEAR(shown.at("bounds").at("min_y").to_number<double>(), -0.75, 0.2);
+}
+
+TEST_F(ApiTest, ScansThatMaxJumpLeavesOutAreCountedAndOnlyInTheLog) {
+    ASSERT_EQ(ask("POST", "/api/v1/sessions", R"({"name":"a","max_jump":2})").status, Status::created);
+    Scan stray = scan(3);
+    stray.pose.x = 450.0;
+    stream("a", "r", {scan(1), scan(2), stray, scan(4)});
+    const auto session = get_json("/api/v1/sessions/a");
+    EXPECT_EQ(session.at("scans"), 3);
+    EXPECT_LT(session.at("bounds").at("max_x").to_number<double>(), 10.0);
+    const auto& robot = session.at("robots").at(0);
+    EXPECT_EQ(robot.at("scans"), 3);
+    EXPECT_EQ(robot.at("jumps"), 1);
+    EXPECT_EQ(robot.at("last_seq"), 4);
+    EXPECT_THAT(std::string(get("/metrics").body.bytes()), HasSubstr("scanloom_scans_jumped_total 1\n"));
+    const auto path = get_json("/api/v1/sessions/a/trajectory.geojson").at("features").at(0).at("geometry");
+    EXPECT_EQ(path.at("coordinates").as_array().size(), 3U);
+    const std::string digest = "/api/v1/sessions/a/digest?layer=occupancy";
+    EXPECT_EQ(get(digest + "&max_jump=2").body.bytes(), get(digest).body.bytes());
+    EXPECT_NE(get(digest + "&max_jump=0").body.bytes(), get(digest).body.bytes());
 }
 
 TEST_F(ApiTest, TheBodyThatARobotStatesIsShown) {

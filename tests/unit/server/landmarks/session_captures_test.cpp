@@ -76,7 +76,7 @@ TEST_F(SessionCapturesTest, WhatIsNotNeededIsPassedOver) {
     static_cast<void>(captures_.add(scan(0, 0.1)));
     EXPECT_FALSE(captures_.needs(0, 1.0, {0.2, 0.0, 0.0}));
     EXPECT_TRUE(captures_.needs(0, 1.0, {0.6, 0.0, 0.0}));
-    captures_.pass_over();
+    captures_.pass_over(0, {});
     EXPECT_EQ(captures_.revision(), 7U);
 }
 

@@ -64,6 +64,7 @@ const std::vector<Bounds> kBounds = {
     {"class_himm_free", {-1, 8, 15}, {0, 7}},
     {"danger_cells", {0, -1, 65}, {1, 64}},
     {"danger_radius", {-0.01, 3.21, HUGE_VAL, kNan}, {0.0, 0.01, 3.2}},
+    {"max_jump", {-0.01, 100'001.0, HUGE_VAL, kNan}, {0.0, 0.01, 100'000.0}},
 };
 
 SessionOptions with(const char* name, double value) {

@@ -1,0 +1,52 @@
+#include "common/scan/jump_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace scanloom {
+namespace {
+
+/// For the places of one robot's scans along a line: '+' integrated, '-' left out.
+std::string decisions(double max_jump_m, const std::vector<double>& places) {
+    JumpFilter filter(max_jump_m);
+    std::string text;
+    for (const double x : places) text += filter.take(0, {x, 0.0}) ? '+' : '-';
+    return text;
+}
+
+TEST(JumpFilter, OneWrongPlaceCostsOneScan) { EXPECT_EQ(decisions(1.0, {0.0, 0.5, 450.0, 1.0, 1.5}), "++-++"); }
+
+TEST(JumpFilter, ARobotThatWasCarriedElsewhereCostsOneScan) {
+    EXPECT_EQ(decisions(1.0, {0.0, 0.5, 9.0, 9.5, 10.0}), "++-++");
+}
+
+TEST(JumpFilter, AWrongFirstPlaceCostsTheNextScan) { EXPECT_EQ(decisions(1.0, {450.0, 0.0, 0.5}), "+-+"); }
+
+TEST(JumpFilter, AJumpOfExactlyTheMostIsNone) { EXPECT_EQ(decisions(1.0, {0.0, 1.0, 2.0, 3.001}), "+++-"); }
+
+TEST(JumpFilter, ZeroLeavesNothingOut) { EXPECT_EQ(decisions(0.0, {0.0, 1e6, -1e6}), "+++"); }
+
+TEST(JumpFilter, RobotsDoNotCountForEachOther) {
+    JumpFilter filter(1.0);
+    EXPECT_TRUE(filter.take(3, {0.0, 0.0}));
+    EXPECT_TRUE(filter.take(1, {100.0, 0.0}));
+    EXPECT_FALSE(filter.take(3, {100.0, 0.0}));
+    EXPECT_EQ(filter.state(3).left_out, 1U);
+    EXPECT_EQ(filter.state(1).left_out, 0U);
+    EXPECT_EQ(filter.state(7), JumpFilter::Robot{});
+}
+
+TEST(JumpFilter, GoesOnFromItsState) {
+    JumpFilter filter(1.0);
+    for (const double x : {0.0, 0.5, 9.0}) filter.take(0, {x, 0.0});
+    JumpFilter other(1.0);
+    other.restore(0, filter.state(0));
+    EXPECT_TRUE(other.integrates(0, {9.5, 0.0}));
+    EXPECT_TRUE(other.integrates(0, {1.0, 0.0}));
+    EXPECT_FALSE(other.integrates(0, {5.0, 0.0}));
+    EXPECT_EQ(other.state(0).left_out, 1U);
+}
+
+} // namespace
+} // namespace scanloom

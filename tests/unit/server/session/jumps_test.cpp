@@ -1,0 +1,166 @@
+#include "server/session/log_captures.hpp"
+#include "server/session/old_paths.hpp"
+#include "tests/unit/server/session/session_fixture.hpp"
+
+#include <random>
+
+/// With max_jump, a session's maps are those of a session that never had the scans that are left out.
+namespace scanloom::session {
+namespace {
+
+constexpr double kMaxJump = 1.0;
+
+/// Robots that walk, whose poses are wrong now and then, or that are carried elsewhere.
+std::vector<Scan> walk(unsigned seed, std::size_t count) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> step(-0.6, 0.6);
+    auto scans = random_scans(seed, 1, count);
+    Point2 place{step(random), step(random)};
+    for (auto& scan : scans) {
+        place += {step(random), step(random)};
+        if (random() % 20 == 0) place += {30.0 * step(random), 3.0}; // carried
+        const bool is_wrong = random() % 6 == 0;
+        scan.pose.x = place.x + (is_wrong ? 50.0 * step(random) : 0.0);
+        scan.pose.y = place.y + (is_wrong ? 20.0 : 0.0);
+    }
+    return scans;
+}
+
+/// As the definition says, from the whole log each time.
+bool is_left_out(const std::vector<Scan>& scans, std::size_t n) {
+    const auto distance = [&](std::size_t to) {
+        return std::hypot(scans[n].pose.x - scans[to].pose.x, scans[n].pose.y - scans[to].pose.y);
+    };
+    if (n == 0 || distance(n - 1) <= kMaxJump) return false;
+    std::size_t integrated = n - 1;
+    while (is_left_out(scans, integrated)) --integrated; // the first one never is
+    return distance(integrated) > kMaxJump;
+}
+
+std::vector<Scan> without_jumps(const std::vector<Scan>& scans) {
+    std::vector<Scan> kept;
+    for (std::size_t n = 0; n < scans.size(); ++n) {
+        if (is_left_out(scans, n)) continue;
+        kept.push_back(scans[n]);
+        kept.back().seq = kept.size();
+    }
+    return kept;
+}
+
+class JumpsTest : public SessionTest {
+protected:
+    void SetUp() override {
+        config_.max_jump = kMaxJump;
+        SessionTest::SetUp();
+    }
+
+    /// Both robots' scans in turn, `each` at a time; between them the session ends and comes back, or crashes.
+    void stream(const std::vector<std::vector<Scan>>& walks, std::size_t each) {
+        for (std::size_t begin = 0; begin < walks[0].size(); begin += each) {
+            for (std::size_t robot = 0; robot < walks.size(); ++robot) {
+                const auto first = walks[robot].begin() + static_cast<std::ptrdiff_t>(begin);
+                session_->submit(join(robot == 0 ? "a" : "b"),
+                                 std::vector<Scan>(first, first + static_cast<std::ptrdiff_t>(each)), 10);
+                run();
+            }
+            if (begin / each % 3 == 0) session_->close({Errc::kShuttingDown, "bye"}, [] {}); // writes a checkpoint
+            run();
+            session_.reset();
+            start_session();
+        }
+    }
+
+    /// The log of a session that never had them.
+    [[nodiscard]] std::vector<LogEntry> log_without_jumps(const std::vector<std::vector<Scan>>& walks) const {
+        std::vector<LogEntry> log;
+        for (RobotIndex robot = 0; robot < walks.size(); ++robot) {
+            log.push_back(RobotJoined{robot, robot == 0 ? "a" : "b"});
+            log.push_back(SensorDescribed{robot, small_laser()});
+            for (const Scan& scan : without_jumps(walks[robot])) log.push_back(ScanTaken{robot, scan});
+        }
+        return log;
+    }
+};
+
+TEST_F(JumpsTest, MapsAndPathsAreThoseOfASessionThatNeverHadThem) {
+    const std::vector<std::vector<Scan>> walks = {walk(1, 240), walk(2, 240)};
+    stream(walks, 20);
+    mapping::Projection expected{mapping::MapConfig{}};
+    for (const auto& entry : log_without_jumps(walks)) ASSERT_TRUE(expected.fold(entry));
+    const auto maps = session_->snapshot();
+    const auto wanted = expected.snapshot();
+    EXPECT_EQ(maps->bounds, wanted.bounds);
+    std::uint64_t jumps = 0;
+    const auto old = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value();
+    for (RobotIndex robot = 0; robot < 2; ++robot) {
+        const auto& has = maps->robots[robot];
+        const auto& should = wanted.robots[robot];
+        EXPECT_EQ(has.last_seq, 240U);
+        EXPECT_EQ(has.scan_count, should.scan_count);
+        EXPECT_EQ(has.jumps, 240U - should.scan_count);
+        EXPECT_EQ(std::tie(has.stamp, has.pose), std::tie(should.stamp, should.pose));
+        jumps += has.jumps;
+        ASSERT_EQ(has.trajectory.size(), should.trajectory.size());
+        for (std::size_t n = 0; n < should.trajectory.size(); ++n) {
+            const auto& point = n < has.trajectory.begin() ? old.robots[robot][n] : has.trajectory[n];
+            ASSERT_EQ(point.pose, should.trajectory[n].pose) << robot << ", " << n;
+        }
+    }
+    EXPECT_GT(jumps, 40U);
+    EXPECT_EQ(counters_->scans_jumped, jumps);
+    EXPECT_EQ(counters_->scans_applied, 480U - jumps);
+}
+
+TEST_F(JumpsTest, OfOneRobotAtATimeTheCellsAreTheSameBitForBit) {
+    const std::vector<std::vector<Scan>> walks = {walk(3, 120)};
+    stream(walks, 8);
+    mapping::Projection expected{mapping::MapConfig{}};
+    for (const auto& entry : log_without_jumps(walks)) ASSERT_TRUE(expected.fold(entry));
+    EXPECT_EQ(digest(), testing_support::digests_of(expected.snapshot()));
+    EXPECT_EQ(digest(), digest_of_log());
+}
+
+TEST_F(JumpsTest, PathsReadFromWhereverAreTheSame) {
+    stream({walk(4, 120)}, 30);
+    const auto maps = session_->snapshot();
+    const auto whole = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value().robots[0];
+    for (Revision since = 0; since < maps->revision; since += 7) {
+        const auto part = read_old_paths(log_, id_, *maps, since, [] { return true; }).value().robots[0];
+        const auto beyond = std::ranges::upper_bound(whole, since, {}, &mapping::TrajectoryPoint::revision);
+        ASSERT_EQ(part, std::vector(beyond, whole.end())) << since;
+    }
+}
+
+TEST_F(JumpsTest, CapturesHoldNoneOfThem) {
+    const std::vector<std::vector<Scan>> walks = {walk(5, 200)};
+    stream(walks, 50);
+    landmarks::SessionCaptures expected;
+    std::vector<landmarks::Capture> wanted;
+    for (const auto& entry : log_without_jumps(walks)) {
+        if (const auto ended = expected.add(entry)) wanted.push_back(ended->capture);
+    }
+    landmarks::SessionCaptures captures{JumpFilter(kMaxJump)};
+    std::size_t n = 0;
+    const auto visit = [&](const landmarks::RobotCapture& ended) -> Result<> {
+        if (n >= wanted.size()) return Error{Errc::kInternal, "a capture more than there should be"};
+        EXPECT_EQ(ended.capture.points, wanted[n].points) << n;
+        ++n;
+        return {};
+    };
+    ASSERT_TRUE(
+        read_captures(log_, id_, captures, session_->snapshot()->revision, visit, [](Revision) { return Result<>(); }));
+    EXPECT_EQ(n, wanted.size());
+    EXPECT_GT(n, 5U);
+}
+
+TEST_F(JumpsTest, WithoutTheSettingAllScansAreIntegrated) {
+    config_.max_jump = 0.0;
+    session_.reset();
+    start_session();
+    stream({walk(6, 40)}, 40);
+    EXPECT_EQ(session_->snapshot()->robots[0].scan_count, 40U);
+    EXPECT_EQ(session_->snapshot()->robots[0].jumps, 0U);
+}
+
+} // namespace
+} // namespace scanloom::session
