@@ -3,8 +3,8 @@
 #include "common/scan/limits.hpp"
 #include "common/wire/log_codec.hpp"
 #include "server/log/context.hpp"
-#include "server/mapping/reach.hpp"
 #include "server/session/checkpoint.hpp"
+#include "server/session/imported_map.hpp"
 
 #include <malloc.h>
 
@@ -24,23 +24,6 @@ Result<> check_name(std::string_view name) {
         fmt::format("name is not a valid session name; use 1 to {} characters of A-Z a-z 0-9 _ -", kNameBytesMax)};
 }
 
-/// Whether a map fits into a session.
-Result<> check_patches(const mapping::MapConfig& config, const std::vector<MapPatch>& patches, const Maker& maker) {
-    if (patches.empty()) return Error{Errc::kInvalidField, "the map has no cells"};
-    grid::CellBox cells;
-    for (const auto& patch : patches) {
-        const auto reach = mapping::reach_of(config, patch);
-        if (auto ok = mapping::check_work(reach); !ok) return ok;
-        cells.include(reach.cells);
-    }
-    if (mapping::chunk_count_of(cells) <= static_cast<std::int64_t>(maker.chunks_max)) return {};
-    const auto whose = maker.chunks_max == SessionLimits::kMost
-                           ? std::string("a session can have")
-                           : fmt::format("the limit `cells` of the token '{}' allows", maker.token);
-    return Error{Errc::kFull, fmt::format("the map has {} x {} cells of {} metres, more than {}; use larger cells",
-                                          cells.width(), cells.height(), config.cell_size, whose)};
-}
-
 /// What the store keeps of a new session.
 wire::SessionRecord record_of(std::string_view name, double created, const mapping::MapConfig& config,
                               const Maker& maker) {
@@ -48,20 +31,6 @@ wire::SessionRecord record_of(std::string_view name, double created, const mappi
     record.created_by = maker.token;
     record.chunks_max = maker.chunks_max == SessionLimits::kMost ? 0 : maker.chunks_max;
     return record;
-}
-
-/// Errors  kOverloaded: the memory ran out.
-Result<mapping::Projection> woven(const mapping::MapConfig& config, const std::vector<MapPatch>& patches) {
-    try {
-        mapping::Projection projection(config);
-        for (const auto& patch : patches) {
-            if (auto folded = projection.fold(patch); !folded) return folded.error();
-        }
-        static_cast<void>(projection.snapshot()); // the classes are made here
-        return projection;
-    } catch (const std::bad_alloc&) {
-        return Error{Errc::kOverloaded, "there is no memory left for this map; use larger cells"};
-    }
 }
 
 Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revision, const MapPatch& patch) {
@@ -160,17 +129,17 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    if (auto ok = check_patches(*config, patches, maker); !ok) return ok.error();
     // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
-    auto projection = woven(*config, patches);
-    if (!projection) return projection.error();
-    const auto pages = static_cast<std::int64_t>(projection->page_count());
-    if (pages_->free() < pages) {
-        make_room(static_cast<std::size_t>(pages));
-        return Error{Errc::kOverloaded,
-                     fmt::format("there is no room for this map's {} MiB in the memory for maps now; try again soon, "
-                                 "or use larger cells",
-                                 pages * static_cast<std::int64_t>(mapping::kPageBytes) >> 20)};
+    PageShare share({pages_});
+    auto projection = integrate_imported(*config, patches, maker, share);
+    if (!projection) {
+        share.give_back_all();
+        if (projection.error().code == Errc::kOverloaded) {
+            const std::size_t pages = pages_of_imported(*config, patches);
+            make_room(pages);
+            give_back_memory(pages); // of the part that was integrated
+        }
+        return projection.error();
     }
 
     const std::lock_guard changing(changing_);
@@ -185,6 +154,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
         static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
         return imported.error();
     }
+    share.give_back_all(); // the session takes them itself
     return add({*id, record.name, record.created, *config, maker.token, maker.chunks_max}, std::move(*projection));
 }
 

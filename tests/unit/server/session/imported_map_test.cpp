@@ -12,6 +12,16 @@
 namespace scanloom::session {
 namespace {
 
+/// The most that this process had in memory.
+std::size_t peak_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        std::size_t kibibytes = 0;
+        if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+    }
+    return 0;
+}
+
 TEST(ImportedMap, IsThereAgainAfterARestart) {
     store::MemoryScanLog log;
     boost::asio::thread_pool pool(2);
@@ -29,6 +39,38 @@ TEST(ImportedMap, IsThereAgainAfterARestart) {
     SessionRegistry registry(log, {pool.get_executor(), [] { return 1.0; }});
     ASSERT_TRUE(registry.recover());
     EXPECT_EQ(testing_support::digests_of(*registry.wake("depot").value()->snapshot()), digests);
+    registry.drain();
+}
+
+/// A square map of whole chunks at 0.1 m, in strips.
+std::vector<MapPatch> square_map(std::uint32_t chunks_wide, MapCell of) {
+    const std::uint32_t side = chunks_wide * 64;
+    std::vector<MapPatch> patches;
+    for (std::uint32_t row = 0; row < chunks_wide; ++row) {
+        patches.push_back({0.1, 0.0, 6.4 * row, side, std::vector<MapCell>(std::size_t{side} * 64, of)});
+    }
+    return patches;
+}
+
+TEST(ImportedMap, ThatDoesNotFitIntoTheMemoryForMapsIsRefusedBeforeItTakesIt) {
+    store::MemoryScanLog log;
+    boost::asio::thread_pool pool(2);
+    RegistryConfig config{pool.get_executor(), [] { return 1.0; }};
+    config.pages_max = 100;
+    SessionRegistry registry(log, config);
+    const auto patches = square_map(64, MapCell::kFree); // 4096 chunks, 80 MiB
+    std::ofstream("/proc/self/clear_refs") << 5;         // the peak is counted from here
+    const std::size_t before = peak_bytes();
+    const auto refused = registry.import_map("large", {.cell_size = 0.1}, patches);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kOverloaded);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("up to 82 MiB"));
+    EXPECT_LT(peak_bytes(), before + (std::size_t{16} << 20));
+    EXPECT_TRUE(log.sessions()->empty());
+    EXPECT_TRUE(registry.import_map("unknown", {.cell_size = 0.1}, square_map(64, MapCell::kUnknown)));
+    EXPECT_TRUE(registry.import_map("small", {.cell_size = 0.1}, square_map(9, MapCell::kFree)));
+    EXPECT_EQ(registry.import_map("other", {.cell_size = 0.1}, square_map(9, MapCell::kFree)).error().code,
+              Errc::kOverloaded);
     registry.drain();
 }
 
