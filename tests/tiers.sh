@@ -121,7 +121,7 @@ readonly parts_of_all=(
     '^core[.](Coverage|GridPath)Trials;;server/planning'
     '^maps[.].*Trials;;server/mapping'
     '^server[.]SalvageTrials;;server/store'
-    '^http[.]ApiPointsTrials;;server/http'
+    '^http[.].*Trials;;server/http'
     '^robot[.]SpoolTrials;;robot_client/spool'
     '^robot[.].*WallFollowerTrials;;robot_client/sim'
 )

@@ -3,6 +3,7 @@
 #include "server/http/handlers/openapi.hpp"
 #include "server/http/router.hpp"
 #include "server/http/target.hpp"
+#include "tests/unit/server/http/api_description.hpp"
 
 #include <boost/json/array.hpp>
 #include <boost/json/object.hpp>
@@ -18,18 +19,6 @@ namespace scanloom::http {
 namespace {
 
 namespace json = boost::json;
-
-const json::value& document() {
-    static const json::value whole = json::parse(get_openapi(Call{{}, {}, {}}).value().body.bytes());
-    return whole;
-}
-
-/// What a "$ref" leads to, or the value itself.
-const json::object& resolved(const json::value& value) {
-    const auto* reference = value.as_object().if_contains("$ref");
-    if (reference == nullptr) return value.as_object();
-    return document().at_pointer(std::string_view(reference->as_string()).substr(1)).as_object();
-}
 
 /// The fields an object may have and those it must have, also of the schemas that it is all of.
 struct Fields {
@@ -126,7 +115,7 @@ const json::object* operation_of(const Request& request) {
     if (match == nullptr) return nullptr;
     const auto route = std::ranges::find(routes(), match->operation, &Route::operation);
     const auto method = route->method == "GET" ? "get" : route->method == "POST" ? "post" : "delete";
-    return &document().at("paths").at(route->pattern).at(method).as_object();
+    return &described_api().at("paths").at(route->pattern).at(method).as_object();
 }
 
 Faults faults_of_body(const json::object& described, const Response& response) {
@@ -144,6 +133,17 @@ Faults faults_of_body(const json::object& described, const Response& response) {
 }
 
 } // namespace
+
+const json::value& described_api() {
+    static const json::value whole = json::parse(get_openapi(Call{{}, {}, {}}).value().body.bytes());
+    return whole;
+}
+
+const json::object& resolved(const json::value& value) {
+    const auto* reference = value.as_object().if_contains("$ref");
+    if (reference == nullptr) return value.as_object();
+    return described_api().at_pointer(std::string_view(reference->as_string()).substr(1)).as_object();
+}
 
 std::vector<std::string> undescribed(const Request& request, const Response& response) {
     const auto* operation = operation_of(request);
