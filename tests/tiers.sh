@@ -115,6 +115,7 @@ readonly parts_of_all=(
     '^python_client_;;proto robot_client/python'
     '^observability_;;docs/observability server/metrics tests/integration/observability'
     '^openapi_;openapi_packages;server/http/openapi.json tests/openapi'
+    '^readers$;readers_packages;server/exchange server/http server/tiles tests/readers'
     '^package$;;CMakeLists.txt cmake robot_client/package scanloom tests/package'
     '^bench_chart$;;tests/bench/report'
     '^core[.](Alignment|Localization)Trials;;server/landmarks'
@@ -199,7 +200,7 @@ sanitize() {
 # run_nightly: all tests, and whatever takes hours or looks at the sources in another way. A part that fails does not end it.
 run_nightly() {
     local failed=()
-    need fmt fuzz bench system
+    need fmt fuzz bench system readers
     build_tier nightly
     nightly_part run_ctest test --label-exclude '^nightly$'
     nightly_part ctest --preset test --label-regex '^nightly$' # they compare speeds: one at a time
