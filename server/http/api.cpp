@@ -1,5 +1,6 @@
 #include "server/http/api.hpp"
 
+#include "server/http/content_coding.hpp"
 #include "server/http/handlers/backups.hpp"
 #include "server/http/handlers/changes.hpp"
 #include "server/http/handlers/coverage.hpp"
@@ -120,7 +121,7 @@ Response Api::answer(const Request& request) {
     auto& [match, query, who] = std::get<Admitted>(admitted);
     auto response = call(match, {request, match.arguments, query, std::move(who)});
     if (!response) return problem(response.error(), instance_of(request.target));
-    return for_who_asked(match.operation, std::move(*response));
+    return encoded_for(request.accept_encoding, for_who_asked(match.operation, std::move(*response)));
 }
 
 std::optional<Response> Api::refuse(const Request& request) const {

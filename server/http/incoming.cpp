@@ -34,6 +34,17 @@ void split_absolute_form(Request& request) {
     request.target = resource.starts_with('/') ? resource : '/' + resource;
 }
 
+/// All fields of that name.
+std::string joined(const Incoming& message, beast::http::field name) {
+    std::string values;
+    const auto [begin, end] = message.equal_range(name);
+    for (auto field = begin; field != end; ++field) {
+        if (!values.empty()) values += ", ";
+        values += view(field->value());
+    }
+    return values;
+}
+
 } // namespace
 
 Request head_of(const Incoming& message) {
@@ -52,11 +63,8 @@ Request head_of(const Incoming& message) {
 
 Request request_of(Incoming& message) {
     Request request = head_of(message);
-    const auto [begin, end] = message.equal_range(beast::http::field::if_none_match);
-    for (auto field = begin; field != end; ++field) {
-        if (!request.if_none_match.empty()) request.if_none_match += ", ";
-        request.if_none_match += view(field->value());
-    }
+    request.if_none_match = joined(message, beast::http::field::if_none_match);
+    request.accept_encoding = joined(message, beast::http::field::accept_encoding);
     request.body = std::move(message.body());
     return request;
 }

@@ -16,10 +16,11 @@ struct WebSocketUpgrade {
 struct Request {
     std::string method = "GET";
     std::string target = "/";
-    std::string host;          ///< empty when absent
-    std::string content_type;  ///< empty when absent
-    std::string if_none_match; ///< all such fields, joined with commas; empty when absent
-    std::string authorization; ///< empty when absent, as the two below
+    std::string host;            ///< empty when absent
+    std::string content_type;    ///< empty when absent
+    std::string accept_encoding; ///< all such fields, joined with commas; empty when absent
+    std::string if_none_match;   ///< all such fields, joined with commas; empty when absent
+    std::string authorization;   ///< empty when absent, as the two below
     std::string cookie;
     std::string origin;
     std::string body;
