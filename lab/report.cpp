@@ -48,8 +48,8 @@ std::vector<std::string> score_cells(const Chosen& chosen) {
 
 Items conditions(const Matrix& matrix) {
     return {{
-        "Scenes: static, a furnished room of 10 x 10 m; dynamic, the same with a person (a disc of 0.5 m) who walks "
-        "around its furniture at 1 m/s. The truth is the room without the person.",
+        ("Scenes: static, a furnished room of 10 x 10 m; dynamic, the same with a person (a disc of 0.5 m) who walks "
+         "around its furniture at 1 m/s. The truth is the room without the person."),
         fmt::format(
             "Each run: {} scans, ten a second, of the reference laser (684 beams over 180 degrees, 5 m), on the "
             "way of the wall follower from one of {} starts. Poses are exact, and the way is the same in "
@@ -57,9 +57,9 @@ Items conditions(const Matrix& matrix) {
             matrix.scans, matrix.starts.size()),
         fmt::format("The room's middle is at ({}, {}) m, so that no wall stands on the border between two cells.",
                     kRoomMiddle.x, kRoomMiddle.y),
-        "Noise: none; gaussian, ranges with sigma 0.02 m and beam angles with sigma 0.005 rad, beams without a return "
-        "left out (elsewhere they are free up to 5 m); 1_cell and 3_cells, each reading too long by 0 up to one or "
-        "three cells, evenly spread.",
+        ("Noise: none; gaussian, ranges with sigma 0.02 m and beam angles with sigma 0.005 rad, beams without a return "
+         "left out (elsewhere they are free up to 5 m); 1_cell and 3_cells, each reading too long by 0 up to one or "
+         "three cells, evenly spread."),
         fmt::format(
             "All settings of the maps are the defaults but the cell size and the ray model. Seed of the noise: {}.",
             matrix.seed),
@@ -68,25 +68,27 @@ Items conditions(const Matrix& matrix) {
 
 Items definitions() {
     return {{
-        "A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the truth is solid when a "
-        "solid stands in any part of it.",
-        "Could be seen: a free cell whose centre, a solid cell with a point of whose surface, was in the line of "
-        "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for.",
+        ("A cell of the map is occupied from p = 0.65 on and free up to 0.35. A cell of the truth is solid when a "
+         "solid stands in any part of it."),
+        ("Could be seen: a free cell whose centre, a solid cell with a point of whose surface, was in the line of "
+         "sight of one of the run's poses, in the laser's range and field of view. Other cells are not asked for."),
         "Tolerance: one cell (the eight around a cell count as itself), but for exact IoU, which has none.",
-        "precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
-        "those with an occupied one in the map. IoU: the Jaccard index of precision P and recall R, "
-        "P R / (P + R - P R).",
-        "exact IoU: solid cells that could be seen and are occupied in the map, of all that could be seen and all that "
-        "are occupied in the map and not solid. Cells inside solids that could not be seen count neither for nor "
-        "against it.",
+        ("precision: of the map's occupied cells, those at a solid. recall: of the solid cells that could be seen, "
+         "those with an occupied one in the map. IoU: the Jaccard index of precision P and recall R, "
+         "P R / (P + R - P R)."),
+        ("exact IoU: solid cells that could be seen and are occupied in the map, of all that could be seen and all "
+         "that "
+         "are occupied in the map and not solid. Cells inside solids that could not be seen count neither for nor "
+         "against it."),
         "free recall: of the free cells that could be seen and do not touch a solid one, those free in the map.",
-        "person: readings of the run that met the person. residue: occupied cells away from every solid where only the "
-        "person was, and is not at the end of the run: what was not cleared again. Cells where the person stands at "
-        "the end count against precision, if the last scans saw it.",
+        ("person: readings of the run that met the person. residue: occupied cells away from every solid where only "
+         "the "
+         "person was, and is not at the end of the run: what was not cleared again. Cells where the person stands at "
+         "the end count against precision, if the last scans saw it."),
         "occupied: the map's occupied cells. touched: its cells that any scan changed.",
-        "The inverse sensor model marks a band of 0.1 m, half of it before the surface. At 1 cm that half is five "
-        "cells, more than the tolerance, and counts against precision and free recall; and all five against exact "
-        "IoU, in which a surface is one cell.",
+        ("The inverse sensor model marks a band of 0.1 m, half of it before the surface. At 1 cm that half is five "
+         "cells, more than the tolerance, and counts against precision and free recall; and all five against exact "
+         "IoU, in which a surface is one cell."),
     }};
 }
 

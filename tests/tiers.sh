@@ -58,7 +58,7 @@ labels_beyond() {
 # run_ctest PRESET OPTION...: runs tests, then names those that were skipped, with the reason.
 run_ctest() {
     local status=0 skipped
-    ctest --preset "$1" --parallel "$(($(nproc) + 1))" "${@:2}" || status=$? # many wait for a browser or a process
+    ctest --preset "$1" --parallel "$(($(nproc) + 1))" --no-tests=error "${@:2}" || status=$? # many wait for a browser or a process
     skipped=$(grep --no-filename --after-context 1 ': Skipped$' "$(folder_of "$1")"/Testing/Temporary/LastTest.log 2>/dev/null |
         grep --invert-match -e ': Skipped$' -e '^--$' | sort | uniq --count || true)
     [[ -z $skipped ]] || printf 'Tests that were skipped, by reason:\n%s\n' "$skipped"
@@ -89,7 +89,7 @@ run_filtered() {
         found=yes
         echo "${program}_test: $cases tests"
         status=0
-        timeout 1800 "build/tests/${program}_test" --gtest_filter="$filter" --gtest_brief=1 || status=$?
+        timeout --foreground 1800 "build/tests/${program}_test" --gtest_filter="$filter" --gtest_brief=1 || status=$?
         ((status != 124)) || echo "${program}_test was stopped: it had not ended after 1800 s"
         ((status == 0)) || failed=yes
     done
@@ -106,43 +106,32 @@ run_filtered() {
     [[ -z $failed ]] || tests_failed
 }
 
-# The parts of --all: a pattern of their tests' names; their targets beyond those of tier 1; their files. The tests of
-# FOLDER in tests/unit are files of FOLDER.
+# The parts of --all, but for the suites named Trials: a pattern of their tests' names; their files. The tests of FOLDER in
+# tests/unit are files of FOLDER.
 readonly parts_of_all=(
-    '^tools[.];tools_test;lab load tests/integration/lab tests/integration/load'
-    '^faults[.];faults_test;tests/fault robot_client/spool robot_client/uplink server/ingest server/store'
-    '^e2e_([^l]|layers);;tests/e2e web'
-    '^python_client_;;proto robot_client/python'
-    '^observability_;;docs/observability server/metrics tests/integration/observability'
-    '^openapi_;openapi_packages;server/http/openapi.json tests/openapi'
-    '^readers$;readers_packages;server/exchange server/http server/tiles tests/readers'
-    '^package$;;CMakeLists.txt cmake robot_client/package scanloom tests/package'
-    '^bench_chart$;;tests/bench/report'
-    '^core[.](Alignment|Localization)Trials;;server/landmarks'
-    '^core[.](Coverage|GridPath)Trials;;server/planning'
-    '^maps[.].*Trials;;server/mapping'
-    '^server[.]SalvageTrials;;server/store'
-    '^http[.].*Trials;;server/http'
-    '^robot[.]SpoolTrials;;robot_client/spool'
-    '^robot[.].*WallFollowerTrials;;robot_client/sim'
+    '^tools[.];lab load tests/integration/lab tests/integration/load'
+    '^faults[.];load robot_client server/ingest server/session server/store tests/fault tests/integration/robot_client'
+    '^e2e_([^l]|layers);server/http server/live tests/e2e web'
+    '^python_client_;proto robot_client/python server/ingest tests/integration/robot_client/python'
+    '^observability_;docs/observability server/metrics tests/integration/observability'
+    '^openapi_;server/http/openapi.json tests/openapi'
+    '^readers$;server/exchange server/http server/tiles tests/readers'
+    '^package$;cmake docker packaging robot_client/client robot_client/package scanloom tests/package'
+    '^bench_chart$;tests/bench/report'
 )
+readonly files_of_all_parts=(CMakeLists.txt tests/support)
 
-# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All programs are built.
+# run_changed COMMIT: tier 1, and the parts of --all whose files differ from those of that commit. All of --all is compiled;
+# the suites named Trials are left out, as tier 1 has their short forms.
 run_changed() {
     (($# == 1)) && git rev-parse --quiet --verify "$1^{commit}" >/dev/null || misused "test --changed takes a commit, not '$*'"
-    local part tests targets files left_out=('^$') wanted=("${programs[@]}")
+    local part tests files left_out=('^(core|maps|server|http|robot)[.].*Trials(/|$)')
     for part in "${parts_of_all[@]}"; do
-        IFS=';' read -r tests targets files <<<"$part"
+        IFS=';' read -r tests files <<<"$part"
         mapfile -t files < <(tr ' ' '\n' <<<"$files" | sed 'p; s,^,tests/unit/,')
-        if git diff --quiet "$1" -- "${files[@]}"; then
-            left_out+=("$tests")
-        else
-            # shellcheck disable=SC2206 # several words
-            wanted+=($targets)
-        fi
+        ! git diff --quiet "$1" -- "${files[@]}" "${files_of_all_parts[@]}" || left_out+=("$tests")
     done
-    need build test fault package tidy
-    make_preset test tests "${wanted[@]}"
+    build_tier all
     run_ctest test --label-exclude "$(labels_beyond all)" --exclude-regex "$(IFS='|' && echo "${left_out[*]}")"
 }
 
@@ -271,7 +260,7 @@ list_core_failures() {
 # list_failures PRESET CTEST_OPTION...: runs tests; prints and keeps the names of those that fail.
 list_failures() {
     local log=$logs/flakes-$1.log status=0
-    ctest --preset "$1" --parallel "$(nproc)" "${@:2}" --quiet --output-log "$log" || status=$?
+    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" --quiet --output-log "$log" || status=$?
     ((status == 0 || status == 8)) || fail "ctest ended with code $status; $log is its output"
     ((status == 0)) || failed_tests "$log" | sed "s/^/$1: /" | tee -a "$failures"
 }

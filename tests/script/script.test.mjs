@@ -114,9 +114,11 @@ test('words that a command does not know are refused before anything is built', 
 });
 
 test('the files of each part of --all exist', () => {
-  const table = readFileSync(join(source, 'tests/tiers.sh'), 'utf8').match(/parts_of_all=\(\n([^]*?)\n\)/)[1];
+  const text = readFileSync(join(source, 'tests/tiers.sh'), 'utf8');
+  const table = text.match(/parts_of_all=\(\n([^]*?)\n\)/)[1];
   const files = [...table.matchAll(/^ *'.*;(.*)'$/gm)].flatMap((row) => row[1].split(' '));
   assert.ok(files.length > 15);
+  files.push(...text.match(/files_of_all_parts=\((.*)\)/)[1].split(' '));
   for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
 
