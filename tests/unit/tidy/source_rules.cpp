@@ -133,7 +133,7 @@ const std::vector<Package> kPackages = {
       "load/net", "load/app"}},
     {"boost/beast", {"common/net", "server/live", "server/http", "server/app", "load/net"}},
     {"bzlib.h", {"robot_client/source"}},
-    {"zlib.h", {"robot_client/source", "robot_client/spool", "server/tiles"}},
+    {"zlib.h", {"robot_client/source", "robot_client/spool", "server/http", "server/tiles"}},
     {"zstd.h", {"common/wire", "server/session"}},
     {"CLI/", {"common/app", "server/app", "robot_client/app", "lab", "load/app"}},
 };

@@ -102,7 +102,7 @@ TEST(MapConfig, EveryFieldOfTheOptionsIsInTheList) {
         std::visit([&](const auto& member) { set += (all.*member.option).has_value(); }, field.member);
     }
     EXPECT_EQ(set, config_fields().size());
-    EXPECT_EQ(set, 28U) << "SessionOptions has this many";
+    EXPECT_EQ(set, 29U) << "SessionOptions has this many";
 }
 
 TEST(MapConfig, CombinationsThatMeanNothingAreRefusedByName) {
