@@ -105,6 +105,8 @@ test('words that a command does not know are refused before anything is built', 
     [['install', 'nonsense'], /packages.txt has no section 'nonsense'/],
     [['build', '--robot', 'x'], /build --robot takes no 'x'/],
     [['bench', 'projection', 'x'], /bench projection takes no 'x'/],
+    [['fuzz', 'nonsense'], /there is no fuzzer 'nonsense', only /],
+    [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number is needed/],
   ]) {
     const told = scanloomBeside(debian, ...words);
