@@ -72,6 +72,7 @@ TEST(ImportedMap, ThatDoesNotFitIntoTheMemoryForMapsIsRefusedBeforeItTakesIt) {
     EXPECT_EQ(registry.import_map("other", {.cell_size = 0.1}, square_map(9, MapCell::kFree)).error().code,
               Errc::kOverloaded);
     registry.drain();
+    pool.join(); // the registry makes room there
 }
 
 std::size_t resident_bytes() {
