@@ -2,6 +2,7 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/log/context.hpp"
+#include "server/mapping/main_bounds.hpp"
 #include "server/session/checkpoint.hpp"
 
 #include <boost/asio/post.hpp>
@@ -68,6 +69,16 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
     members_.restore(projection_.state());
     static_cast<void>(no_maps()); // made while there is memory
     if (!publish()) throw std::bad_alloc();
+}
+
+grid::CellBox Session::main_bounds() const {
+    const auto maps = snapshot();
+    const std::lock_guard lock(main_bounds_mutex_);
+    if (main_bounds_at_ != maps->revision) {
+        main_bounds_ = mapping::main_bounds_of(*maps);
+        main_bounds_at_ = maps->revision;
+    }
+    return main_bounds_;
 }
 
 std::optional<Error> Session::failure() const {

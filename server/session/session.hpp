@@ -53,6 +53,9 @@ public:
     /// The same for threads that may not wait: null where they are being written.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return published_.try_get(); }
 
+    /// mapping::main_bounds_of() the newest maps. Found once for each revision: a few milliseconds.
+    [[nodiscard]] grid::CellBox main_bounds() const;
+
     /// Entries that wait to be handed to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
@@ -167,6 +170,10 @@ private:
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     Published published_;
+
+    mutable std::mutex main_bounds_mutex_; // guards what follows
+    mutable grid::CellBox main_bounds_;
+    mutable std::optional<Revision> main_bounds_at_;
 
     mutable std::mutex failure_mutex_; // guards what follows, held for a copy only
     std::optional<Error> failure_;

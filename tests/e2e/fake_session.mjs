@@ -10,6 +10,7 @@ export class FakeSession {
     Object.assign(this, { name, id, cellSize, created, number });
     this.revision = 0;
     this.bounds = null;
+    this.mainBounds = null;
     this.robots = [];
     this.tracks = new Map();
     this.tiles = new Map();
@@ -119,6 +120,7 @@ export class FakeSession {
       config: { cell_size: this.cellSize },
       layers: this.layers,
       bounds: this.bounds,
+      main_bounds: this.mainBounds,
       robots: this.robots,
     };
   }

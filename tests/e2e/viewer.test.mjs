@@ -288,6 +288,17 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await says(page, '#cursor-y', /^6\.[34]\d$/);
   });
 
+  it('shows where most of the map is, not what one scan left far away', async () => {
+    const session = painted('map');
+    session.mainBounds = session.bounds;
+    session.bounds = { min_x: 0, min_y: 0, max_x: 1_000_000, max_y: 1_000_000 };
+    await open();
+    await page.click('#fit');
+    await page.mouse.move(884, 400); // as above
+    await says(page, '#cursor-x', /^8\.2\d$/);
+    await says(page, '#cursor-y', /^6\.[34]\d$/);
+  });
+
   it('takes on the colours of the dark', async () => {
     painted('map', 0);
     await open({ scheme: 'dark' });

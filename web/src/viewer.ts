@@ -254,7 +254,7 @@ export class Viewer {
     const { session } = this.open;
     this.parts.facts.show(session);
     this.parts.noRobots.hidden = this.open.robots.size > 0;
-    this.parts.camera.see(session.bounds, this.moment?.robots ?? this.robots);
+    this.parts.camera.see(session.mainBounds ?? session.bounds, this.moment?.robots ?? this.robots);
     this.parts.notice.show(session.bounds ? { kind: 'none' } : { kind: 'empty', name: session.name });
   }
 

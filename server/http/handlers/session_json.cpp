@@ -22,10 +22,9 @@ std::string rfc3339(double seconds) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(std::floor(seconds))));
 }
 
-boost::json::value bounds_json(const mapping::Snapshot& snapshot) {
-    const auto bounds = mapping::bounds_of(snapshot);
+boost::json::value bounds_json(const grid::CellBox& bounds, double cell_size) {
     if (bounds.empty()) return nullptr;
-    const auto extent = tiles::extent_of(bounds, snapshot.config.cell_size);
+    const auto extent = tiles::extent_of(bounds, cell_size);
     return boost::json::object{{"min_x", rounded_metres(extent.min_x)},
                                {"min_y", rounded_metres(extent.min_y)},
                                {"max_x", rounded_metres(extent.max_x)},
@@ -65,6 +64,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                                              {"pose", pose_json(robot.pose)},
                                              {"body_radius", radius_json(robot.body_radius)}});
     }
+    const auto main_bounds = session == nullptr ? grid::CellBox() : session->main_bounds();
     const auto failure = session == nullptr ? std::nullopt : session->failure();
     boost::json::object json{{"name", info.name},
                              {"state", failure ? "failed" : "ok"},
@@ -76,7 +76,8 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                              {"scans", scans},
                              {"config", to_json(info.config)},
                              {"layers", layer_names()},
-                             {"bounds", bounds_json(snapshot)},
+                             {"bounds", bounds_json(mapping::bounds_of(snapshot), info.config.cell_size)},
+                             {"main_bounds", bounds_json(main_bounds, info.config.cell_size)},
                              {"robots", std::move(robots)}};
     if (failure) json["reason"] = failure->message;
     return json;

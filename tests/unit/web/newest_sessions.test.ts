@@ -14,6 +14,7 @@ function session(id: string, revision: number): Session {
     cellSize: 0.05,
     config: {},
     bounds: null,
+    mainBounds: null,
     robots: [],
     failure: null,
   };

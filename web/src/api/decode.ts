@@ -60,6 +60,7 @@ export function decodeSession(json: unknown): Session {
     cellSize: cellSizeOf(config),
     config,
     bounds: session['bounds'] == null ? null : decodeBounds(session['bounds']),
+    mainBounds: session['main_bounds'] == null ? null : decodeBounds(session['main_bounds']),
     robots: list(session['robots'], 'robots').map(decodeRobot),
     failure: session['state'] === 'failed' ? text(session['reason'], 'reason') : null,
   };

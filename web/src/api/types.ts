@@ -39,6 +39,8 @@ export interface Session {
   config: MapConfig;
   /** Null while nothing has been seen. */
   bounds: Bounds | null;
+  /** Where most of it is; null: not known. One scan with a wrong pose can make `bounds` useless to look at. */
+  mainBounds: Bounds | null;
   robots: Robot[];
   /** Why it takes no scans until it is read from the store again; null while it does. */
   failure: string | null;

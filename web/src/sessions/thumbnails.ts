@@ -100,7 +100,7 @@ export class Thumbnails {
     this.underWay += 1;
     try {
       if (thumbnail.tiles.id !== session.id) thumbnail.tiles = { id: session.id, byLayer: new Map() };
-      const picture = await compose(session, session.bounds, thumbnail.tiles, table);
+      const picture = await compose(session, session.mainBounds ?? session.bounds, thumbnail.tiles, table);
       // The old picture stays until the new one is there, and where that cannot be had.
       paint(canvas, picture);
       if (table === this.table) thumbnail.shown = versionOf(session);

@@ -19,7 +19,8 @@ function session(): Record<string, unknown> {
     scans: 910,
     config: { cell_size: 0.05, p_occupied: 0.9 },
     layers: ['occupancy'],
-    bounds: { min_x: -20.1, min_y: -3.2, max_x: 18, max_y: 30 },
+    bounds: { min_x: -20.1, min_y: -3.2, max_x: 450, max_y: 30 },
+    main_bounds: { min_x: -20.1, min_y: -3.2, max_x: 18, max_y: 30 },
     robots: [{ name: 'r1', connected: true, scans: 910, last_seq: 910, stamp: 1.5, pose: { x: 1, y: 2, yaw: 0.1 } }],
   };
 }
@@ -35,7 +36,8 @@ describe('decoding', () => {
       scans: 910,
       cellSize: 0.05,
       config: { cell_size: 0.05, p_occupied: 0.9 },
-      bounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
+      bounds: { minX: -20.1, minY: -3.2, maxX: 450, maxY: 30 },
+      mainBounds: { minX: -20.1, minY: -3.2, maxX: 18, maxY: 30 },
       robots: [{ name: 'r1', connected: true, scans: 910, pose: { x: 1, y: 2, yaw: 0.1 }, bodyRadius: null }],
       failure: null,
     });
@@ -72,8 +74,14 @@ describe('decoding', () => {
   });
 
   it('takes a session in which nothing was seen', () => {
-    const empty = decodeSession({ ...session(), bounds: null, robots: [{ name: 'r', scans: 0, pose: null }] });
+    const empty = decodeSession({
+      ...session(),
+      bounds: null,
+      main_bounds: null,
+      robots: [{ name: 'r', scans: 0, pose: null }],
+    });
     assert.equal(empty.bounds, null);
+    assert.equal(empty.mainBounds, null);
     assert.deepEqual(empty.robots, [{ name: 'r', connected: false, scans: 0, pose: null, bodyRadius: null }]);
   });
 

@@ -95,6 +95,7 @@ describe('fetching a file of paths', () => {
       scans: 5,
       config,
       bounds: null,
+      mainBounds: null,
       robots: [],
     });
   }

@@ -14,6 +14,7 @@ function session(name: string, created: string, number = 1): Session {
     cellSize: 0.05,
     config: {},
     bounds: null,
+    mainBounds: null,
     robots: [],
     failure: null,
   };

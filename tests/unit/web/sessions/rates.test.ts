@@ -14,6 +14,7 @@ function session(scans: number, id = '1', name = 'a'): Session {
     cellSize: 0.05,
     config: {},
     bounds: null,
+    mainBounds: null,
     robots: [],
     failure: null,
   };
