@@ -121,7 +121,9 @@ Response Api::answer(const Request& request) {
     auto& [match, query, who] = std::get<Admitted>(admitted);
     auto response = call(match, {request, match.arguments, query, std::move(who)});
     if (!response) return problem(response.error(), instance_of(request.target));
-    return encoded_for(request.accept_encoding, for_who_asked(match.operation, std::move(*response)));
+    auto plain = for_who_asked(match.operation, std::move(*response));
+    if (lane_of(match, query) == Lane::kAtOnce) return plain; // compressing takes milliseconds: not on the I/O thread
+    return encoded_for(request.accept_encoding, std::move(plain));
 }
 
 std::optional<Response> Api::refuse(const Request& request) const {

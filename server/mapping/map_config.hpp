@@ -49,7 +49,7 @@ struct MapConfig {
     std::int32_t danger_cells = 3;        ///< free cells as near as this to an occupied one are in danger, 1..64
     double danger_radius = 0.0;           ///< metres, rounded up to cells; more than 0: in place of danger_cells
 
-    double max_jump = 0.0; ///< metres; more than 0: scans further than this from their robot's last ones are left out
+    double max_jump = 0.0; ///< metres; 0: off. See JumpFilter
 
     friend bool operator==(const MapConfig&, const MapConfig&) = default;
 };

@@ -99,5 +99,11 @@ TEST_F(ContentCodingTest, ATableOfAMapComesAsGzipToWhoTakesIt) {
     EXPECT_EQ(ask_for("/api/v1/sessions/a/map.npy", "gzip").get("Content-Encoding"), "");
 }
 
+TEST_F(ContentCodingTest, WhatTheIoThreadAnswersIsNotCompressed) {
+    const auto description = ask_for("/openapi.json", "gzip");
+    EXPECT_GT(description.body.bytes().size(), 100'000U);
+    EXPECT_EQ(description.get("Content-Encoding"), "");
+}
+
 } // namespace
 } // namespace scanloom::http
