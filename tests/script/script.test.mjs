@@ -124,6 +124,15 @@ test('the files of each part of --all exist', () => {
   for (const file of files) assert.ok(existsSync(join(source, file)), file);
 });
 
+test('each setting that a document changes gets its value back at the next configuration', () => {
+  const [base] = JSON.parse(readFileSync(join(source, 'CMakePresets.json'), 'utf8')).configurePresets;
+  const texts = ['CONTRIBUTING.md', 'docs/internals/build.md', 'docs/internals/testing.md', 'web/CMakeLists.txt'];
+  const text = texts.map((name) => readFileSync(join(source, name), 'utf8')).join();
+  const changed = [...text.matchAll(/-D([A-Z_]+)=/g)].map((match) => match[1]);
+  assert.ok(changed.length > 3);
+  for (const name of changed) assert.ok(name in base.cacheVariables, name);
+});
+
 test('where there is no Debian a sentence says so', () => {
   const bin = join(place, 'no_debian');
   mkdirSync(bin);
