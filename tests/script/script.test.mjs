@@ -1,6 +1,7 @@
 // What ./scanloom says by itself: of a copy that has nothing to build beside it, so that building fails.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
+import { once } from 'node:events';
 import {
   chmodSync,
   copyFileSync,
@@ -15,6 +16,7 @@ import {
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 
 const source = resolve(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../..');
 
@@ -34,19 +36,24 @@ const scanloom = (...words) => scanloomBeside({}, ...words);
 const debian = { 'dpkg-query': 'for package; do echo "installed $package"; done' };
 
 /** The script where these programs, of one line each, are found before the system's. */
-const scanloomBeside = (programs, ...words) => {
+const scanloomBeside = (programs, ...words) =>
+  spawnSync(join(place, 'scanloom'), words, {
+    encoding: 'utf8',
+    stdio: ['ignore', 'pipe', 'pipe'],
+    env: withPrograms(programs),
+  });
+
+/** The environment where these programs are found first. */
+const withPrograms = (programs) => {
   const bin = join(place, 'bin');
   rmSync(bin, { recursive: true, force: true });
   mkdirSync(bin);
   for (const [name, line] of Object.entries(programs)) {
     writeFileSync(join(bin, name), `#!/bin/sh\n${line}\n`, { mode: 0o755 });
   }
-  return spawnSync(join(place, 'scanloom'), words, {
-    encoding: 'utf8',
-    stdio: ['ignore', 'pipe', 'pipe'],
-    env: { ...process.env, PATH: `${bin}:${process.env.PATH}` },
-  });
+  return { ...process.env, PATH: `${bin}:${process.env.PATH}` };
 };
+
 const commandsIn = (text) => [...text.matchAll(/^ {2}([a-z]+) /gm)].map((match) => match[1]);
 
 test('every command of the usage tells its part of it, and nothing of the others', () => {
@@ -107,12 +114,25 @@ test('words that a command does not know are refused before anything is built', 
     [['bench', 'projection', 'x'], /bench projection takes no 'x'/],
     [['fuzz', 'nonsense'], /there is no fuzzer 'nonsense', only /],
     [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
-    [['demo', '--for', 'ever'], /--for is 'ever'; a whole number is needed/],
+    [['demo', '--for', 'ever'], /--for is 'ever'; a whole number/],
   ]) {
     const told = scanloomBeside(debian, ...words);
     assert.equal(told.status, 2, words.join(' '));
     assert.match(told.stderr, sentence);
   }
+});
+
+test('a second build waits until the first has ended', async () => {
+  const slow = { ...debian, cmake: `echo "$$" >>${place}/order; sleep 0.3; echo "$$" >>${place}/order` };
+  const first = spawn(join(place, 'scanloom'), ['build'], { stdio: 'ignore', env: withPrograms(slow) });
+  while (!existsSync(join(place, 'order'))) await setTimeout(20);
+  const ended = once(first, 'exit');
+  const second = spawnSync(join(place, 'scanloom'), ['build'], { encoding: 'utf8', env: withPrograms(slow) });
+  assert.equal(second.status, 0, second.stderr);
+  assert.match(second.stdout, /another .\/scanloom builds here; this one waits for it/);
+  assert.deepEqual(await ended, [0, null]);
+  const ids = readFileSync(join(place, 'order'), 'utf8').trim().split('\n');
+  for (let i = 0; i < ids.length; i += 2) assert.equal(ids[i], ids[i + 1]);
 });
 
 test('the files of each part of --all exist', () => {
