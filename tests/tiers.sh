@@ -277,7 +277,7 @@ run_mutants() {
         case $1 in
             --all) tier=(--all) ;;
             -*) misused "mutants takes no '$1'" ;;
-            *) only=$1 ;;
+            *) [[ -z $only ]] || misused "mutants takes one name, not also '$1'" && only=$1 ;;
         esac
         shift
     done

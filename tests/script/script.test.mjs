@@ -24,8 +24,16 @@ let place;
 
 before(() => {
   place = mkdtempSync(join(tmpdir(), 'scanloom-script-test.'));
-  mkdirSync(join(place, 'tests'));
-  for (const name of ['scanloom', 'packages.txt', 'tests/tiers.sh'])
+  mkdirSync(join(place, 'tests/bench/projection'), { recursive: true });
+  mkdirSync(join(place, 'tests/fault'));
+  for (const name of [
+    'scanloom',
+    'packages.txt',
+    'tests/tiers.sh',
+    'tests/fault/rows.cpp',
+    'tests/bench/projection_bench.cpp',
+    'tests/bench/projection/peers.cpp',
+  ])
     copyFileSync(join(source, name), join(place, name));
 });
 after(() => rmSync(place, { recursive: true, force: true }));
@@ -104,7 +112,7 @@ test('words that a command does not know are refused before anything is built', 
     [['test', '--changed'], /test --changed takes a commit, not ''/],
     [['test', '--changed', 'nonsense'], /test --changed takes a commit, not 'nonsense'/],
     [['test', '--sanitizers', 'a'], /test --sanitizers takes no 'a'/],
-    [['flakes', '--count', 'x'], /--count is 'x'; a whole number is needed/],
+    [['flakes', '--count', 'x'], /--count is 'x'; a whole number of at most 9 digits is needed/],
     [['flakes', '--count', '0'], /at least 1 is needed/],
     [['mutants', 'nonsense'], /there is no mutant 'nonsense'/],
     [['fmt', '--chekc'], /fmt takes no '--chekc'/],
@@ -115,10 +123,32 @@ test('words that a command does not know are refused before anything is built', 
     [['fuzz', 'nonsense'], /there is no fuzzer 'nonsense', only /],
     [['demo', '--http-port', '99999'], /--http-port is 99999; ports go up to 65535/],
     [['demo', '--for', 'ever'], /--for is 'ever'; a whole number/],
+    [['demo', '--log', 'no_such.log'], /the file 'no_such.log' cannot be read/],
+    [['bench', 'nonsense'], /no part of the benchmarks, and none of their names, is like 'nonsense'/],
+    [['bench', 'robot'], /the file '' cannot be read/],
+    [['fault', '--foo'], /fault takes \[ROW\] .*, not '--foo'/],
+    [['fault', 'nonsense'], /there is no row 'nonsense' /],
+    [['fault', 'kill', 'link'], /fault takes \[ROW\] .*, not 'kill link'/],
+    [['fault', 'kill', '--count'], /fault takes \[ROW\] .*, not 'kill --count'/],
+    [['fuzz', 'a', 'b'], /fuzz takes one target, not also 'b'/],
+    [['mutants', 'a', 'b'], /mutants takes one name, not also 'b'/],
   ]) {
     const told = scanloomBeside(debian, ...words);
     assert.equal(told.status, 2, words.join(' '));
     assert.match(told.stderr, sentence);
+  }
+});
+
+test('words that a command knows are not refused', () => {
+  const failing = { ...debian, cmake: 'exit 1' };
+  for (const words of [
+    ['bench', 'Insert'],
+    ['bench', 'Tile.*/1024$'], // perhaps a name
+    ['fault', 'kill', '--seed', '7', '--count', '1', '--long'],
+    ['fault', 'all'],
+  ]) {
+    const told = scanloomBeside(failing, ...words);
+    assert.match(told.stderr, /^scanloom: configure \(.*\) failed\n$/, words.join(' '));
   }
 });
 
