@@ -3,6 +3,7 @@
 # what they consist of (SPDX). The same build and commit give the same bytes.
 # usage: package.sh BUILD_DIRECTORY OUTPUT_DIRECTORY
 set -euo pipefail
+unset CDPATH
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(realpath "$1")
 mkdir -p "$2"

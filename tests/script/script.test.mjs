@@ -132,6 +132,7 @@ test('words that a command does not know are refused before anything is built', 
     [['fault', 'kill', '--count'], /fault takes \[ROW\] .*, not 'kill --count'/],
     [['fuzz', 'a', 'b'], /fuzz takes one target, not also 'b'/],
     [['mutants', 'a', 'b'], /mutants takes one name, not also 'b'/],
+    [['pictures', 'a', 'b', 'c', 'd'], /pictures needs a log: /],
   ]) {
     const told = scanloomBeside(debian, ...words);
     assert.equal(told.status, 2, words.join(' '));
@@ -152,6 +153,18 @@ test('words that a command knows are not refused', () => {
   }
 });
 
+test('it runs from any folder, by sh, with a CDPATH, and files are those of that folder', () => {
+  const elsewhere = join(place, 'else where');
+  mkdirSync(elsewhere);
+  mkdirSync(join(elsewhere, 'copy'));
+  writeFileSync(join(elsewhere, 'a.log'), '');
+  const env = { ...process.env, CDPATH: `.:${elsewhere}` };
+  const run = (...words) => spawnSync('sh', ['../scanloom', ...words], { cwd: elsewhere, encoding: 'utf8', env });
+  assert.equal(run('help').stdout, scanloom('help').stdout);
+  assert.match(run('pictures', 'b.log').stderr, /the file 'b.log' cannot be read/);
+  assert.match(run('demo', '--log', 'a.log', '--for', 'ever').stderr, /--for is 'ever'/);
+});
+
 test('a second build waits until the first has ended', async () => {
   const slow = { ...debian, cmake: `echo "$$" >>${place}/order; sleep 0.3; echo "$$" >>${place}/order` };
   const first = spawn(join(place, 'scanloom'), ['build'], { stdio: 'ignore', env: withPrograms(slow) });
@@ -163,6 +176,16 @@ test('a second build waits until the first has ended', async () => {
   assert.deepEqual(await ended, [0, null]);
   const ids = readFileSync(join(place, 'order'), 'utf8').trim().split('\n');
   for (let i = 0; i < ids.length; i += 2) assert.equal(ids[i], ids[i + 1]);
+});
+
+test('clang-tidy says which files it does not check', () => {
+  mkdirSync(join(place, 'tests/e2e/node_modules/.bin'), { recursive: true });
+  writeFileSync(join(place, 'tests/e2e/package-lock.json'), '');
+  writeFileSync(join(place, 'tests/e2e/node_modules/.package-lock.json'), '');
+  writeFileSync(join(place, 'tests/x.cpp'), '');
+  const told = scanloomBeside({ ...debian, npm: '' }, 'tidy', join(place, 'tests/x.cpp'));
+  assert.equal(told.status, 0, told.stderr);
+  assert.match(told.stdout, /^not checked: tests\/x.cpp \(clang-tidy reads only common, /m);
 });
 
 test('the files of each part of --all exist', () => {
