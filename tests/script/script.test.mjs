@@ -178,6 +178,33 @@ test('a second build waits until the first has ended', async () => {
   for (let i = 0; i < ids.length; i += 2) assert.equal(ids[i], ids[i + 1]);
 });
 
+test('a demo whose ports are taken gets others, and keeps its logs if it fails', () => {
+  const bin = join(place, 'build/bin');
+  mkdirSync(bin, { recursive: true });
+  const program = (name, ...lines) =>
+    writeFileSync(join(bin, name), ['#!/bin/sh', ...lines].join('\n'), { mode: 0o755 });
+  const demo = () =>
+    spawnSync(join(place, 'scanloom'), ['demo', '--for', '1'], {
+      encoding: 'utf8',
+      env: { ...withPrograms({ ...debian, cmake: '' }), TMPDIR: place },
+    });
+  program('scanloom-robot', `echo '{"scans":9,"acknowledged":7}'`, 'exec sleep 60');
+  program(
+    'scanloom-server',
+    'case "$2 $4" in *:7447*|*:8080*) echo "a port is taken" >&2; exit 1 ;; esac',
+    `echo '{"event":"ready","robot_port":5001,"http_port":5002}'`,
+    'exec sleep 60',
+  );
+  const told = demo();
+  assert.equal(told.status, 0, told.stderr);
+  assert.match(told.stdout, /http:\/\/127.0.0.1:5002\/\n.*127.0.0.1:5001\.[^]* 7 scans were stored/);
+  program('scanloom-server', 'echo "no store" >&2', 'exit 1');
+  const failed = demo();
+  assert.equal(failed.status, 1);
+  const [, log] = failed.stderr.match(/^FAILED the server did not start; the end of (.*):\nno store\n$/);
+  assert.equal(readFileSync(log, 'utf8'), 'no store\n');
+});
+
 test('clang-tidy says which files it does not check', () => {
   mkdirSync(join(place, 'tests/e2e/node_modules/.bin'), { recursive: true });
   writeFileSync(join(place, 'tests/e2e/package-lock.json'), '');
