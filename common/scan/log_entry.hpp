@@ -42,7 +42,53 @@ struct ScanTaken {
     friend bool operator==(const ScanTaken&, const ScanTaken&) = default;
 };
 
-/// One entry of a session's append-only log, from which every map is woven.
-using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch>;
+/// What decides whether a scan is integrated: when and where its robot took it.
+struct ScanPose {
+    RobotIndex robot = 0;
+    std::uint64_t seq = 0;
+    double stamp = 0.0; ///< seconds
+    Pose2 pose;         ///< T_map_robot
+
+    friend bool operator==(const ScanPose&, const ScanPose&) = default;
+};
+
+[[nodiscard]] inline ScanPose scan_pose_of(const ScanTaken& taken) noexcept {
+    return {taken.robot, taken.scan.seq, taken.scan.stamp, taken.scan.pose};
+}
+
+/// From one stamp to another, in seconds, both included.
+struct StampRange {
+    double from = 0.0;
+    double to = 0.0;
+
+    friend bool operator==(const StampRange&, const StampRange&) = default;
+};
+
+/// From one seq to another, both included.
+struct SeqRange {
+    std::uint64_t from = 0;
+    std::uint64_t to = 0;
+
+    friend bool operator==(const SeqRange&, const SeqRange&) = default;
+};
+
+/// An operator excludes scans of a robot from the maps: those in the range that are before this entry in the log.
+struct ScansExcluded {
+    std::uint64_t id = 0; ///< from 1, rising within the session
+    RobotIndex robot = 0;
+    std::variant<StampRange, SeqRange> scans;
+
+    friend bool operator==(const ScansExcluded&, const ScansExcluded&) = default;
+};
+
+/// The exclusion of that id has no effect any more.
+struct ExclusionLifted {
+    std::uint64_t id = 0;
+
+    friend bool operator==(const ExclusionLifted&, const ExclusionLifted&) = default;
+};
+
+/// One entry of a session's append-only log, from which all maps are computed.
+using LogEntry = std::variant<RobotJoined, SensorDescribed, ScanTaken, MapPatch, ScansExcluded, ExclusionLifted>;
 
 } // namespace scanloom

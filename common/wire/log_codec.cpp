@@ -46,6 +46,20 @@ struct EntryToProto {
         proto.set_width(patch.width);
         proto.set_cells(patch.cells.data(), patch.cells.size());
     }
+    void operator()(const ScansExcluded& excluded) const {
+        auto& proto = *out.mutable_scans_excluded();
+        proto.set_id(excluded.id);
+        proto.set_robot(excluded.robot);
+        if (const auto* stamps = std::get_if<StampRange>(&excluded.scans)) {
+            proto.mutable_stamps()->set_from(stamps->from);
+            proto.mutable_stamps()->set_to(stamps->to);
+        } else {
+            const auto& seqs = std::get<SeqRange>(excluded.scans);
+            proto.mutable_seqs()->set_from(seqs.from);
+            proto.mutable_seqs()->set_to(seqs.to);
+        }
+    }
+    void operator()(const ExclusionLifted& lifted) const { out.mutable_exclusion_lifted()->set_id(lifted.id); }
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
@@ -82,6 +96,20 @@ Result<LogEntry> read_map_patch(const v1::MapPatch& proto) {
     return LogEntry(std::move(patch));
 }
 
+Result<LogEntry> read_scans_excluded(const v1::ScansExcluded& proto) {
+    ScansExcluded excluded{proto.id(), proto.robot(), {}};
+    if (proto.has_stamps()) {
+        const StampRange range{proto.stamps().from(), proto.stamps().to()};
+        if (!(range.from <= range.to)) return damaged("a log entry"); // nor is NaN
+        excluded.scans = range;
+    } else {
+        const SeqRange range{proto.seqs().from(), proto.seqs().to()};
+        if (!proto.has_seqs() || range.from > range.to) return damaged("a log entry");
+        excluded.scans = range;
+    }
+    return LogEntry(excluded);
+}
+
 } // namespace
 
 std::string encode_entry(const LogEntry& entry) {
@@ -104,6 +132,8 @@ Result<LogEntry> decode_entry(std::string_view bytes) {
     }
     case v1::LogEntry::kMapPatch: return read_map_patch(proto->map_patch());
     case v1::LogEntry::kScanTaken: return read_scan_taken(proto->scan_taken());
+    case v1::LogEntry::kScansExcluded: return read_scans_excluded(proto->scans_excluded());
+    case v1::LogEntry::kExclusionLifted: return LogEntry(ExclusionLifted{proto->exclusion_lifted().id()});
     case v1::LogEntry::BODY_NOT_SET: break;
     }
     return damaged("a log entry");
@@ -117,7 +147,7 @@ Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes) {
     const auto& scan = proto->scan_taken().scan();
     const auto pose = from_proto(scan.pose());
     if (!pose) return prefixed("scan_taken.pose: ", pose.error());
-    return std::optional(ScanPose{proto->scan_taken().robot(), scan.stamp(), *pose});
+    return std::optional(ScanPose{proto->scan_taken().robot(), scan.seq(), scan.stamp(), *pose});
 }
 
 Result<std::string> plain_entry(std::string_view bytes) {

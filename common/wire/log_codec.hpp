@@ -32,17 +32,8 @@ struct SessionRecord {
 [[nodiscard]] Result<LogEntry> decode_entry(std::string_view bytes);
 [[nodiscard]] Result<SessionRecord> decode_session(std::string_view bytes);
 
-/// Where a robot was when it took a scan.
-struct ScanPose {
-    RobotIndex robot = 0;
-    double stamp = 0.0; ///< seconds
-    Pose2 pose;         ///< T_map_robot
-
-    friend bool operator==(const ScanPose&, const ScanPose&) = default;
-};
-
-/// What an entry tells of that, several times as fast as decode_entry(): the ranges are not looked at. Nothing where it
-/// is of another kind.
+/// When and where a scan was taken, several times as fast as decode_entry(): its ranges are not read. Nothing for an
+/// entry of another kind.
 /// Errors  as of decode_entry().
 [[nodiscard]] Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes);
 

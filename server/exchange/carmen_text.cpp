@@ -55,6 +55,7 @@ std::string CarmenText::head(const std::string& session) {
 }
 
 Result<std::string> CarmenText::lines(const LogEntry& entry) {
+    ++revision_;
     return std::visit([&](const auto& body) { return text_of(body); }, entry);
 }
 
@@ -75,6 +76,10 @@ Result<std::string> CarmenText::text_of(const MapPatch&) {
                                   "log without format=clf"};
 }
 
+Result<std::string> CarmenText::text_of(const ScansExcluded&) { return std::string(); }
+
+Result<std::string> CarmenText::text_of(const ExclusionLifted&) { return std::string(); }
+
 Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
     const Scan& scan = taken.scan;
     const auto known = sensors_.find({taken.robot, scan.sensor});
@@ -82,7 +87,7 @@ Result<std::string> CarmenText::text_of(const ScanTaken& taken) {
         return Error{Errc::kMalformed,
                      fmt::format("scan {} is of sensor {}, which was not described", scan.seq, scan.sensor)};
     }
-    if (!jumps_.take(taken.robot, {scan.pose.x, scan.pose.y})) return std::string();
+    if (filter_.take(revision_, scan_pose_of(taken)) != ScanUse::kIntegrated) return std::string();
     const Sensor& sensor = known->second;
     const auto& robot = robots_[taken.robot];
     const BeamAngles angles = angles_of(scan, sensor);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/jump_filter.hpp"
 #include "common/scan/log_entry.hpp"
+#include "common/scan/scan_filter.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -26,8 +26,8 @@ namespace scanloom::exchange {
 /// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
 class CarmenText {
 public:
-    /// @param jumps  which scans are integrated in the session's maps; no others become lines
-    explicit CarmenText(JumpFilter jumps = JumpFilter()) : jumps_(std::move(jumps)) {}
+    /// @param filter  which scans are integrated in the session's maps; no others become lines
+    explicit CarmenText(ScanFilter filter = ScanFilter()) : filter_(std::move(filter)) {}
 
     /// The lines at the head of the file.
     [[nodiscard]] static std::string head(const std::string& session);
@@ -43,8 +43,11 @@ private:
     [[nodiscard]] Result<std::string> text_of(const SensorDescribed& described);
     [[nodiscard]] Result<std::string> text_of(const ScanTaken& taken);
     [[nodiscard]] static Result<std::string> text_of(const MapPatch& patch);
+    [[nodiscard]] static Result<std::string> text_of(const ScansExcluded& excluded);
+    [[nodiscard]] static Result<std::string> text_of(const ExclusionLifted& lifted);
 
-    JumpFilter jumps_;
+    ScanFilter filter_;
+    Revision revision_ = 0; ///< of the newest entry
     std::vector<std::string> robots_;
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;
     double latest_ = std::numeric_limits<double>::lowest(); ///< stamp written

@@ -6,6 +6,7 @@
 #include "server/http/handlers/coverage.hpp"
 #include "server/http/handlers/difference.hpp"
 #include "server/http/handlers/digest.hpp"
+#include "server/http/handlers/exclusions.hpp"
 #include "server/http/handlers/frontiers.hpp"
 #include "server/http/handlers/goal.hpp"
 #include "server/http/handlers/goals.hpp"
@@ -217,6 +218,9 @@ Result<Response> Api::call(const Match& match, const Call& call) {
     case Operation::kListWeaves: return list_weaves(maps_, call);
     case Operation::kGetWeave: return get_weave(maps_, call);
     case Operation::kDeleteWeave: return delete_weave(maps_, call);
+    case Operation::kExclude: return exclude_scans(sessions_, call);
+    case Operation::kListExclusions: return list_exclusions(sessions_, call);
+    case Operation::kLiftExclusion: return lift_exclusion(sessions_, call);
     }
     return Error{Errc::kNotFound, "this operation has no handler"};
 }

@@ -39,7 +39,9 @@ Lane lane_of(const Match& match, const Query& query) {
     case Operation::kAssignGoal: return Lane::kPlanning;
     case Operation::kMakeBackup:
     case Operation::kCreateSession:
-    case Operation::kDeleteSession: return Lane::kChanging;
+    case Operation::kDeleteSession:
+    case Operation::kExclude:
+    case Operation::kLiftExclusion: return Lane::kChanging;
     default: return Lane::kServing;
     }
 }

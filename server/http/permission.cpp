@@ -19,7 +19,9 @@ Need need_of(Operation operation) noexcept {
     case Operation::kCreateSession: return Need::kCreate;
     case Operation::kDeleteSession:
     case Operation::kImportMap:
-    case Operation::kDeleteWeave: return Need::kChange;
+    case Operation::kDeleteWeave:
+    case Operation::kExclude:
+    case Operation::kLiftExclusion: return Need::kChange;
     case Operation::kGetSession:
     case Operation::kTilePng:
     case Operation::kTileBin:
@@ -44,6 +46,7 @@ Need need_of(Operation operation) noexcept {
     case Operation::kGoals:
     case Operation::kLog:
     case Operation::kLive:
+    case Operation::kListExclusions:
     case Operation::kListWeaves:
     case Operation::kStartWeave:
     case Operation::kGetWeave: return Need::kLook;

@@ -53,6 +53,9 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/sessions/{session}/weave", Operation::kStartWeave},
     Route{"GET", "/api/v1/sessions/{session}/weave/{weave}", Operation::kGetWeave},
     Route{"DELETE", "/api/v1/sessions/{session}/weave/{weave}", Operation::kDeleteWeave},
+    Route{"POST", "/api/v1/sessions/{session}/exclude", Operation::kExclude},
+    Route{"GET", "/api/v1/sessions/{session}/exclusions", Operation::kListExclusions},
+    Route{"DELETE", "/api/v1/sessions/{session}/exclusions/{exclusion}", Operation::kLiftExclusion},
 };
 
 /// Takes the first segment off a pattern that begins with '/'.

@@ -53,6 +53,9 @@ enum class Operation {
     kListWeaves,
     kGetWeave,
     kDeleteWeave,
+    kExclude,
+    kListExclusions,
+    kLiftExclusion,
     kListBackups,
     kMakeBackup,
 };

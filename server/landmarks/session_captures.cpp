@@ -11,7 +11,7 @@ std::optional<RobotCapture> SessionCaptures::add(const LogEntry& entry) {
     }
     const auto* taken = std::get_if<ScanTaken>(&entry);
     if (taken == nullptr) return std::nullopt;
-    if (!jumps_.take(taken->robot, {taken->scan.pose.x, taken->scan.pose.y})) return std::nullopt;
+    if (filter_.take(revision_, scan_pose_of(*taken)) != ScanUse::kIntegrated) return std::nullopt;
     const auto sensor = sensors_.find({taken->robot, taken->scan.sensor});
     if (sensor == sensors_.end() || sensor->second.kind != SensorKind::kLaser) return std::nullopt;
     if (cutters_.size() <= taken->robot) cutters_.resize(taken->robot + 1);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/scan/jump_filter.hpp"
+#include "common/scan/scan_filter.hpp"
 #include "server/landmarks/capture.hpp"
 
 #include <cstdint>
@@ -24,22 +24,19 @@ struct RobotCapture {
 /// Thread  one at a time.
 class SessionCaptures {
 public:
-    /// @param jumps  which scans are integrated in the session's maps; no others are in captures
-    explicit SessionCaptures(JumpFilter jumps = JumpFilter()) : jumps_(std::move(jumps)) {}
+    /// @param filter  which scans are integrated in the session's maps; captures hold no others
+    explicit SessionCaptures(ScanFilter filter = ScanFilter()) : filter_(std::move(filter)) {}
 
     /// Of the entries that are in.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
     /// Whether a scan that is the next entry may change anything, told without its readings. One that does not is
     /// passed over.
-    [[nodiscard]] bool needs(RobotIndex robot, double stamp, const Pose2& pose) const noexcept {
-        if (!jumps_.integrates(robot, {pose.x, pose.y})) return false;
-        return robot >= cutters_.size() || cutters_[robot].needs(stamp, pose);
+    [[nodiscard]] bool needs(const ScanPose& scan) const noexcept {
+        if (filter_.use_of(revision_ + 1, scan) != ScanUse::kIntegrated) return false;
+        return scan.robot >= cutters_.size() || cutters_[scan.robot].needs(scan.stamp, scan.pose);
     }
-    void pass_over(RobotIndex robot, const Pose2& pose) {
-        jumps_.take(robot, {pose.x, pose.y});
-        ++revision_;
-    }
+    void pass_over(const ScanPose& scan) { filter_.take(++revision_, scan); }
 
     /// Adds the next entry. A scan of a sensor that was never described is passed over: only a damaged log has such.
     /// @return the capture that has ended with it
@@ -51,7 +48,7 @@ public:
 private:
     std::vector<CaptureCutter> cutters_;                             // by RobotIndex
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by robot and id, as described last
-    JumpFilter jumps_;
+    ScanFilter filter_;
     Revision revision_ = 0;
 };
 

@@ -17,12 +17,14 @@ Error misplaced(Revision revision, std::string what) {
 
 } // namespace
 
-Projection::Projection(const MapConfig& config)
-    : Projection(config, LaserLayers(config), SonarLayer(config), classify::ClassLayer(danger_reach(config))) {}
+Projection::Projection(const MapConfig& config, SharedExclusions exclusions)
+    : Projection(config, std::move(exclusions), LaserLayers(config), SonarLayer(config),
+                 classify::ClassLayer(danger_reach(config))) {}
 
-Projection::Projection(const MapConfig& config, LaserLayers laser, SonarLayer sonar, classify::ClassLayer classes)
+Projection::Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
+                       classify::ClassLayer classes)
     : config_(config), laser_(std::move(laser)), sonar_(std::move(sonar)), classes_(std::move(classes)),
-      jumps_(config.max_jump) {}
+      filter_(config.max_jump, std::move(exclusions)) {}
 
 const std::string* Projection::find_robot_name(RobotIndex robot) const noexcept {
     return robot < robots_.size() ? &robots_[robot].state.name : nullptr;
@@ -40,6 +42,12 @@ std::shared_ptr<const Sensor> Projection::sensor_of(RobotIndex robot, std::uint3
     return known == robots_[robot].sensors.end() ? nullptr : known->second.sensor;
 }
 
+bool Projection::is_outdated_by(const LogEntry& entry) const noexcept {
+    const bool is_exclusion =
+        std::holds_alternative<ScansExcluded>(entry) || std::holds_alternative<ExclusionLifted>(entry);
+    return is_exclusion && exclusions()->revision() <= revision_;
+}
+
 Result<> Projection::fold(const LogEntry& entry) {
     double unbounded = HUGE_VAL;
     if (auto folded = fold(entry, unbounded); !folded) return folded.error();
@@ -47,6 +55,12 @@ Result<> Projection::fold(const LogEntry& entry) {
 }
 
 Result<bool> Projection::fold(const LogEntry& entry, double& work) {
+    if (is_outdated_by(entry)) {
+        return Error{Errc::kConflict,
+                     fmt::format("log entry {} changes which of the earlier scans are integrated; fold "
+                                 "the log from its beginning with its exclusions",
+                                 revision_ + 1)};
+    }
     auto folded = std::visit([&](const auto& body) { return fold_entry(body, work); }, entry);
     if (folded && *folded) ++revision_;
     return folded;
@@ -90,12 +104,12 @@ Result<bool> Projection::fold_entry(const ScanTaken& taken, double& work) {
                                                robot.state.last_seq));
     }
     const Sensor& sensor = *known->second.sensor;
-    const Point2 place{scan.pose.x, scan.pose.y};
-    const bool is_integrated = jumps_.integrates(taken.robot, place);
-    if (is_integrated && !integrate(robot, sensor, scan, work)) return false;
-    jumps_.take(taken.robot, place);
+    const ScanUse use = filter_.use_of(revision, scan_pose_of(taken));
+    if (use == ScanUse::kIntegrated && !integrate(robot, sensor, scan, work)) return false;
+    filter_.take(revision, scan_pose_of(taken));
     robot.state.last_seq = scan.seq;
-    if (!is_integrated) return true;
+    if (use == ScanUse::kExcluded) ++robot.state.excluded;
+    if (use != ScanUse::kIntegrated) return true;
     robot.state.scan_count += 1;
     robot.newest = {revision, scan.stamp, scan.pose};
     robot.trajectory.append(*robot.newest);
@@ -108,6 +122,14 @@ Result<bool> Projection::fold_entry(const MapPatch& patch, double& work) {
     laser_.import(patch, revision_ + 1);
     return true;
 }
+
+/// Its scans were left out when their turn came.
+Result<bool> Projection::fold_entry(const ScansExcluded& excluded, double&) {
+    if (excluded.robot < robots_.size()) return true;
+    return misplaced(revision_ + 1, fmt::format("scans of robot {} are excluded, which never joined", excluded.robot));
+}
+
+Result<bool> Projection::fold_entry(const ExclusionLifted&, double&) { return true; }
 
 /// @return whether all of the scan is in.
 bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
@@ -146,6 +168,7 @@ std::size_t Projection::page_count() const noexcept {
 Snapshot Projection::snapshot() {
     Snapshot snapshot{.revision = revision_,
                       .config = config_,
+                      .exclusions = filter_.exclusions(),
                       .bounds = bounds(),
                       .chunk_count = chunk_count(),
                       .laser = laser_.snapshot(),
@@ -155,7 +178,7 @@ Snapshot Projection::snapshot() {
     snapshot.robots.reserve(robots_.size());
     for (const auto& robot : robots_) {
         auto& state = snapshot.robots.emplace_back(robot.state);
-        state.jumps = jumps_.state(static_cast<RobotIndex>(snapshot.robots.size() - 1)).left_out;
+        state.jumps = filter_.jumps().state(static_cast<RobotIndex>(snapshot.robots.size() - 1)).left_out;
         state.trajectory = robot.trajectory.snapshot();
         if (!robot.newest) continue;
         state.stamp = robot.newest->stamp;
@@ -179,12 +202,12 @@ void Projection::bring_classes_up_to(const LaserView& laser) {
 
 Projection Projection::branch() {
     assert(!is_folding_);
-    Projection other(config_, laser_.branch(), sonar_.branch(), classes_.branch());
+    Projection other(config_, filter_.exclusions(), laser_.branch(), sonar_.branch(), classes_.branch());
     other.revision_ = revision_;
     other.classes_at_ = classes_at_;
     other.robots_.reserve(robots_.size());
     for (const auto& robot : robots_) other.robots_.push_back(robot.branch());
-    other.jumps_ = jumps_;
+    other.filter_ = filter_;
     return other;
 }
 
@@ -194,7 +217,7 @@ Projection::Robot Projection::Robot::branch() const {
 }
 
 ProjectionState Projection::state() const {
-    ProjectionState state{revision_, bounds(), chunk_count(), {}};
+    ProjectionState state{revision_, bounds(), chunk_count(), {}, filter_.exclusions()};
     for (RobotIndex index = 0; index < robots_.size(); ++index) {
         const Robot& robot = robots_[index];
         auto& out = state.robots.emplace_back(ProjectionState::Robot{robot.state.name,
@@ -203,7 +226,8 @@ ProjectionState Projection::state() const {
                                                                      robot.state.last_seq,
                                                                      robot.state.scan_count,
                                                                      robot.newest,
-                                                                     jumps_.state(index),
+                                                                     filter_.jumps().state(index),
+                                                                     robot.state.excluded,
                                                                      {}});
         for (const auto& [id, known] : robot.sensors) out.sensors.push_back(known);
         if (robot.newest) state.pages += 1; // what restore() keeps of its path
@@ -213,6 +237,7 @@ ProjectionState Projection::state() const {
 
 void Projection::restore(const ProjectionState& state) {
     revision_ = state.revision;
+    filter_ = ScanFilter(config_.max_jump, state.exclusions);
     laser_.restore(state.bounds.laser);
     sonar_.restore(state.bounds.sonar);
     for (const auto& saved : state.robots) {
@@ -227,7 +252,9 @@ void Projection::restore(const ProjectionState& state) {
         robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));
         if (has_point) robot.trajectory.append(*saved.newest);
         for (const auto& known : saved.sensors) robot.sensors[known.sensor->id] = known;
-        if (jumps_.is_on()) jumps_.restore(static_cast<RobotIndex>(robots_.size() - 1), saved.jumps);
+        robot.state.excluded = saved.excluded;
+        auto& jumps = filter_.jumps();
+        if (jumps.is_on()) jumps.restore(static_cast<RobotIndex>(robots_.size() - 1), saved.jumps);
     }
 }
 

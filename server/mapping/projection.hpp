@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/jump_filter.hpp"
 #include "common/scan/log_entry.hpp"
+#include "common/scan/scan_filter.hpp"
 #include "server/classify/class_layer.hpp"
 #include "server/mapping/snapshot.hpp"
 
@@ -35,6 +35,7 @@ struct ProjectionState {
         std::uint64_t scan_count = 0;          ///< integrated
         std::optional<TrajectoryPoint> newest; ///< of those
         JumpFilter::Robot jumps;               ///< only with max_jump
+        std::uint64_t excluded = 0;            ///< scans
         std::vector<KnownSensor> sensors;      ///< by rising id
     };
 
@@ -42,6 +43,7 @@ struct ProjectionState {
     LayerBounds bounds;
     std::size_t pages = 0; ///< Projection::page_count() of what is read back
     std::vector<Robot> robots;
+    SharedExclusions exclusions = no_exclusions();
 };
 
 /// What a page of a projection takes in memory, about: a chunk with its classes and its share of the trees, or a block
@@ -55,7 +57,8 @@ inline constexpr std::size_t kPageBytes = 20 << 10;
 /// Thread  one writer; snapshots are for everybody.
 class Projection {
 public:
-    explicit Projection(const MapConfig& config);
+    /// @param exclusions  of the whole log that will be folded: they leave out scans that are before them
+    explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
 
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
@@ -80,11 +83,17 @@ public:
     /// The same description, for as long as it is held.
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
-    /// Whether max_jump has left out the newest entry. Pre  it is a scan of that robot.
+    /// Whether the newest entry was not integrated. Pre  it is a scan of that robot.
     [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
         const auto& newest = robots_[robot].newest;
         return !newest || newest->revision != revision_;
     }
+
+    [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return filter_.exclusions(); }
+
+    /// Whether the next entry excludes scans that may be in these maps, or brings some back: then the log is to be
+    /// folded from its beginning, with its exclusions. fold() refuses such an entry with kConflict.
+    [[nodiscard]] bool is_outdated_by(const LogEntry& entry) const noexcept;
 
     /// Adds the next entry of the log.
     /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
@@ -136,12 +145,15 @@ private:
         std::map<std::uint32_t, KnownFan> fans;
     };
 
-    Projection(const MapConfig& config, LaserLayers laser, SonarLayer sonar, classify::ClassLayer classes);
+    Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
+               classify::ClassLayer classes);
 
     Result<bool> fold_entry(const RobotJoined& joined, double& work);
     Result<bool> fold_entry(const SensorDescribed& described, double& work);
     Result<bool> fold_entry(const ScanTaken& taken, double& work);
     Result<bool> fold_entry(const MapPatch& patch, double& work);
+    Result<bool> fold_entry(const ScansExcluded& excluded, double& work);
+    Result<bool> fold_entry(const ExclusionLifted& lifted, double& work);
     [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
@@ -154,7 +166,7 @@ private:
     classify::ClassLayer classes_;
     Revision classes_at_ = 0; // the classes are those of the laser chunks at this revision
     std::vector<Robot> robots_;
-    JumpFilter jumps_;
+    ScanFilter filter_;
     bool is_folding_ = false; // a scan, of which a part is in
 };
 

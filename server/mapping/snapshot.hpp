@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/scan/log_entry.hpp"
+#include "common/scan/exclusions.hpp"
 #include "server/classify/cell_class.hpp"
 #include "server/grid/cell.hpp"
 #include "server/mapping/laser_layers.hpp"
@@ -31,6 +31,7 @@ struct RobotState {
     std::uint64_t last_seq = 0;
     std::uint64_t scan_count = 0; ///< integrated
     std::uint64_t jumps = 0;      ///< scans that max_jump left out
+    std::uint64_t excluded = 0;   ///< scans that exclusions left out
     double stamp = 0.0;           ///< seconds, of the newest integrated scan
     std::optional<Pose2> pose;    ///< T_map_robot of the newest integrated scan
     TrajectoryView trajectory;
@@ -56,6 +57,7 @@ struct LayerBounds {
 struct Snapshot {
     Revision revision = 0;
     MapConfig config;
+    SharedExclusions exclusions = no_exclusions(); ///< of its log
     LayerBounds bounds;
     std::size_t chunk_count = 0; ///< of lasers and sonars
     LaserView laser;

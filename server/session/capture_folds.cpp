@@ -35,7 +35,7 @@ Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Rev
         const auto done = go_on(*kept, revision, is_wanted);
         if (kept->layer.size() > limits_.size_max) { // and has ever more
             kept->is_full = true;
-            kept->captures = landmarks::SessionCaptures(JumpFilter(session.config.max_jump));
+            kept->captures = landmarks::SessionCaptures(scan_filter_of(session));
             kept->layer = {};
         }
         account(*kept);
@@ -45,7 +45,7 @@ Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Rev
         if constexpr (FoldedInto<Layer>::kWithOpen) folded.open = kept->captures.open();
         return folded;
     } catch (const std::bad_alloc&) {
-        kept->captures = landmarks::SessionCaptures(JumpFilter(session.config.max_jump)); // a part may be missing
+        kept->captures = landmarks::SessionCaptures(scan_filter_of(session)); // a part may be missing
         kept->layer = {};
         remove(session.id);
         return Error{Errc::kOverloaded,
@@ -77,7 +77,11 @@ Result<> CaptureFolds<Layer>::go_on(Kept& kept, Revision revision, const std::fu
 template <class Layer>
 auto CaptureFolds<Layer>::find_or_begin(const SessionInfo& session) -> std::shared_ptr<Kept> {
     const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(kept_, session.id, [](const auto& kept) { return kept->session; });
+    auto found = std::ranges::find(kept_, session.id, [](const auto& kept) { return kept->session; });
+    if (found != kept_.end() && (*found)->exclusions != session.exclusions->revision()) {
+        kept_.erase(found);
+        found = kept_.end();
+    }
     if (found == kept_.end()) {
         kept_.push_front(std::make_shared<Kept>(session));
     } else {

@@ -82,9 +82,11 @@ public:
 
 private:
     struct Kept {
-        explicit Kept(const SessionInfo& of) : session(of.id), captures(JumpFilter(of.config.max_jump)) {}
+        explicit Kept(const SessionInfo& of)
+            : session(of.id), exclusions(of.exclusions->revision()), captures(scan_filter_of(of)) {}
 
         const store::SessionId session;
+        const Revision exclusions; // Exclusions::revision() of those that were applied
         PatientMutex mutex;
         landmarks::SessionCaptures captures; // whoever has the mutex
         Layer layer;                         // likewise

@@ -16,6 +16,8 @@
 /// Parts, in the order in which the store visits them, integers little-endian:
 ///   format                   weaving version, version of the parts
 ///   head                     revision, bounds, pages
+///   head/exclusions          what Exclusions holds, and how many scans of each robot they leave out; only where there
+///                            are any
 ///   robot/<index>            last seq, scan count, revision, stamp and pose of the newest scan, if any, name, a zero
 ///                            byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
@@ -72,6 +74,7 @@ private:
 
     [[nodiscard]] Result<> add_format(std::string_view value);
     [[nodiscard]] Result<> add_head(std::string_view value);
+    [[nodiscard]] Result<> add_exclusions(std::string_view value);
     [[nodiscard]] bool add_robot(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_sensor(const Numbers& numbers, std::string_view value);
     [[nodiscard]] bool add_old_points(const Numbers& numbers, std::string_view value);
@@ -82,6 +85,7 @@ private:
     PartDecompressor decompressor_;
     mapping::Projection projection_;
     mapping::ProjectionState state_;
+    std::vector<std::uint64_t> excluded_; // scans, by robot
     std::uint32_t parts_version_ = 0;
     bool has_format_ = false;
     bool weaving_ = false; // the state is complete and in the projection

@@ -56,4 +56,17 @@ Result<> EntryOrder::check(const MapPatch&) {
     return {};
 }
 
+Result<> EntryOrder::check(const ScansExcluded& excluded) {
+    if (excluded.robot >= robots_.size()) {
+        return misplaced(fmt::format("scans of robot {} are excluded, which never joined", excluded.robot));
+    }
+    const auto added = exclusions_.add(revision_ + 1, excluded);
+    return added ? added : misplaced(added.error().message);
+}
+
+Result<> EntryOrder::check(const ExclusionLifted& lifted) {
+    const auto added = exclusions_.add(revision_ + 1, lifted);
+    return added ? added : misplaced(added.error().message);
+}
+
 } // namespace scanloom::session

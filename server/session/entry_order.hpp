@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/log_entry.hpp"
+#include "common/scan/exclusions.hpp"
 
 #include <cstdint>
 #include <set>
@@ -30,15 +30,20 @@ public:
     /// By RobotIndex.
     [[nodiscard]] const std::vector<Robot>& robots() const noexcept { return robots_; }
 
+    [[nodiscard]] const Exclusions& exclusions() const noexcept { return exclusions_; }
+
 private:
     [[nodiscard]] Result<> check(const RobotJoined& joined);
     [[nodiscard]] Result<> check(const SensorDescribed& described);
     [[nodiscard]] Result<> check(const ScanTaken& taken);
     [[nodiscard]] Result<> check(const MapPatch& patch);
+    [[nodiscard]] Result<> check(const ScansExcluded& excluded);
+    [[nodiscard]] Result<> check(const ExclusionLifted& lifted);
     [[nodiscard]] Error misplaced(const std::string& what) const;
 
     Revision revision_ = 0;
     std::vector<Robot> robots_;
+    Exclusions exclusions_;
 };
 
 } // namespace scanloom::session

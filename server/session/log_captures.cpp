@@ -17,8 +17,8 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
     const auto add = [&](Revision revision, std::string_view bytes) -> Result<> {
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
-        if (*taken && !captures.needs((*taken)->robot, (*taken)->stamp, (*taken)->pose)) {
-            captures.pass_over((*taken)->robot, (*taken)->pose);
+        if (*taken && !captures.needs(**taken)) {
+            captures.pass_over(**taken);
             return {};
         }
         const auto entry = wire::decode_entry(bytes);

@@ -1,6 +1,6 @@
 #include "server/session/old_paths.hpp"
 
-#include "common/scan/jump_filter.hpp"
+#include "common/scan/scan_filter.hpp"
 #include "common/wire/log_codec.hpp"
 #include "server/session/damage.hpp"
 
@@ -65,7 +65,7 @@ Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, c
     for (const auto& robot : maps.robots) kept.push_back(kept_from(maps, robot.trajectory));
     const Revision all_kept = kept.empty() ? 0 : *std::ranges::max_element(kept);
     std::size_t points = 0;
-    JumpFilter jumps(maps.config.max_jump);
+    ScanFilter filter(maps.config.max_jump, maps.exclusions);
     const auto visit = [&](Revision revision, std::string_view bytes) -> Result<> {
         if (revision >= all_kept) return kRestIsKept;
         if (revision % kAskEvery == 0 && !is_wanted()) {
@@ -78,14 +78,14 @@ Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session, c
         const auto taken = wire::decode_scan_pose(bytes);
         if (!taken) return damaged_entry(revision, taken.error());
         if (!*taken || (*taken)->robot >= kept.size() || revision >= kept[(*taken)->robot]) return {};
-        const bool is_integrated = jumps.take((*taken)->robot, {(*taken)->pose.x, (*taken)->pose.y});
+        const bool is_integrated = filter.take(revision, **taken) == ScanUse::kIntegrated;
         if (!is_integrated || revision <= since) return {};
         paths.robots[(*taken)->robot].push_back({revision, (*taken)->stamp, (*taken)->pose});
         ++points;
         return {};
     };
     if (all_kept > since + 1) {
-        const auto read = log.read(session, jumps.is_on() ? 0 : since, visit); // what jumps depends on all before
+        const auto read = log.read(session, filter.depends_on_earlier_scans() ? 0 : since, visit);
         if (!read && read.error() != kRestIsKept) return read.error();
     }
     shorten(paths, maps, since, points_max);

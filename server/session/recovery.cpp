@@ -3,6 +3,7 @@
 #include "common/wire/log_codec.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/session/damage.hpp"
+#include "server/session/log_exclusions.hpp"
 #include "server/store/advice.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,10 @@ namespace scanloom::session {
 namespace {
 
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
+
+/// Not a failure: the log is to be folded from its beginning.
+const Error kOutdated{Errc::kConflict,
+                      "the rest of the log excludes scans that are in these maps, or brings some back"};
 
 struct FromCheckpoint {
     mapping::Projection projection;
@@ -38,11 +43,25 @@ Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::P
         if (stop) return stopped();
         auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
+        if (projection.is_outdated_by(*entry)) return kOutdated;
         return projection.fold(*entry);
     });
     if (!read && read.error() == stopped()) return false;
     if (!read) return read.error();
     return true;
+}
+
+/// The whole log, with its exclusions.
+Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
+                                   const std::atomic<bool>& stop) {
+    auto exclusions =
+        read_exclusions(log, session, [&](Revision, const std::optional<ScanPose>&) { return !stop.load(); });
+    if (!exclusions) return exclusions.error();
+    Recovered recovered{mapping::Projection(config, std::make_shared<const Exclusions>(std::move(*exclusions)))};
+    const auto complete = stop ? Result<bool>(false) : fold_rest(log, session, recovered.projection, stop);
+    if (!complete) return complete.error();
+    recovered.complete = *complete;
+    return recovered;
 }
 
 Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
@@ -59,6 +78,7 @@ Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId sessio
         recovered.checkpointed = recovered.projection.revision();
     }
     const auto complete = fold_rest(log, session, recovered.projection, stop);
+    if (!complete && complete.error() == kOutdated) return recover_from_log(log, session, config, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
     if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {

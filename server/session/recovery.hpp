@@ -15,11 +15,12 @@ struct Recovered {
     /// Revision of the checkpoint it began from, 0 if there was none; nothing if there is one that cannot be used, or
     /// that an earlier version wrote in another format: the next one takes its place.
     std::optional<Revision> checkpointed{};
-    std::optional<Error> checkpoint_rejected{}; ///< why it was woven from the whole log instead
+    std::optional<Error> checkpoint_rejected{}; ///< why the whole log was folded instead
     bool complete = true;                       ///< false: `stop` became true before the log's end
 };
 
-/// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used.
+/// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used, or where the rest
+/// excludes scans that are in it.
 /// Errors  kDataLoss, kMalformed: the log is damaged; the message names the entry. kStoreFailed.
 ///         kOverloaded: memory ran out.
 [[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,

@@ -91,7 +91,9 @@ void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_pat
 bool SessionRegistry::can_stay_asleep(const SessionInfo& info, std::uint32_t map_patches) {
     auto summary = read_summary(log_, info.id, info.config);
     if (!summary || !*summary || (*summary)->facts->revision < map_patches) return false; // reading it will tell
-    roster_.add(info, std::move(**summary));
+    SessionInfo asleep = info;
+    asleep.exclusions = (*summary)->facts->exclusions;
+    roster_.add(std::move(asleep), std::move(**summary));
     return true;
 }
 

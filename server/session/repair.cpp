@@ -31,10 +31,7 @@ public:
         const Revision first = end_ + 1;
         end_ += entries_.size();
         bytes_ = 0;
-        std::promise<Result<>> appended;
-        log_.append(session_, first, std::exchange(entries_, {}),
-                    [&](Result<> done) { appended.set_value(std::move(done)); });
-        return appended.get_future().get();
+        return store::append_and_wait(log_, session_, first, std::exchange(entries_, {}));
     }
 
     [[nodiscard]] Revision end() const noexcept { return end_ + entries_.size(); }

@@ -52,6 +52,7 @@ bool Rescue::renumber(LogEntry& entry) {
     RobotIndex* robot = nullptr;
     if (auto* described = std::get_if<SensorDescribed>(&entry)) robot = &described->robot;
     if (auto* taken = std::get_if<ScanTaken>(&entry)) robot = &taken->robot;
+    if (auto* excluded = std::get_if<ScansExcluded>(&entry)) robot = &excluded->robot;
     if (robot == nullptr) return true;
     const auto known = robots_.find(*robot);
     if (known == robots_.end()) return false;

@@ -111,6 +111,7 @@ void Roster::arrived(std::shared_ptr<Session> session, Clock::time_point now) {
     {
         const std::unique_lock lock(mutex_);
         Entry& entry = entries_.find(session->info().name)->second;
+        entry.info = session->info(); // its exclusions may be others
         entry.session = session;
         entry.state = State::kAwake;
         entry.summary = {};

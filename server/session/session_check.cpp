@@ -5,6 +5,7 @@
 #include "server/session/checkpoint.hpp"
 #include "server/session/damage.hpp"
 #include "server/session/entry_order.hpp"
+#include "server/session/log_exclusions.hpp"
 #include "server/session/recovery.hpp"
 
 #include <fmt/format.h>
@@ -64,7 +65,13 @@ Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, 
 Result<> compare_maps(Checking& checking, const mapping::MapConfig& config) {
     auto recovered = recover(checking.log, checking.id, config, false);
     if (!recovered) return recovered.error();
-    mapping::Projection woven(config);
+    const auto exclusions =
+        read_exclusions(checking.log, checking.id, [](Revision, const std::optional<ScanPose>&) { return true; });
+    if (!exclusions) return exclusions.error();
+    if (*exclusions != *recovered->projection.exclusions()) {
+        return Error{Errc::kMalformed, "the exclusions of the log differ from those of the checkpoint"};
+    }
+    mapping::Projection woven(config, recovered->projection.exclusions());
     auto folded = checking.log.read(checking.id, 0, [&](Revision, std::string_view bytes) -> Result<> {
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return entry.error();

@@ -43,7 +43,9 @@ Result<std::shared_ptr<Session>> SessionFactory::read(const SessionInfo& info, c
         keep_progress(log, info, *recovered, hurried);
         return std::shared_ptr<Session>();
     }
-    return make(info, std::move(recovered->projection), recovered->checkpointed);
+    SessionInfo read = info;
+    read.exclusions = recovered->projection.exclusions();
+    return make(std::move(read), std::move(recovered->projection), recovered->checkpointed);
 }
 
 } // namespace scanloom::session

@@ -21,4 +21,6 @@ std::string tag_of(const SessionInfo& info) {
     return fmt::format("{:016x}", mixed(mixed(info.id) ^ std::bit_cast<std::uint64_t>(info.created)));
 }
 
+ScanFilter scan_filter_of(const SessionInfo& info) { return ScanFilter(info.config.max_jump, info.exclusions); }
+
 } // namespace scanloom::session

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/scan/scan_filter.hpp"
 #include "server/mapping/map_config.hpp"
 #include "server/session/page_budget.hpp"
 #include "server/store/scan_log.hpp"
@@ -27,7 +28,7 @@ struct SessionLimits {
     std::function<void(std::size_t)> on_short = {};
 };
 
-/// What a session is, for as long as it exists.
+/// What a session is, for as long as it is in memory; all but its exclusions for as long as it exists.
 struct SessionInfo {
     store::SessionId id = 0;
     std::string name;
@@ -35,7 +36,11 @@ struct SessionInfo {
     mapping::MapConfig config;
     std::string created_by;                        ///< name of the token it was made with; empty: there was none
     std::size_t chunks_max = SessionLimits::kMost; ///< less where that token was to make only small ones
+    SharedExclusions exclusions = no_exclusions(); ///< of its log, when it was last read from the store
 };
+
+/// Which scans its maps hold.
+[[nodiscard]] ScanFilter scan_filter_of(const SessionInfo& info);
 
 /// Tells a session from every other, also from a deleted one of the same name and from one of another
 /// store: 16 hexadecimal digits.

@@ -33,12 +33,6 @@ wire::SessionRecord record_of(std::string_view name, double created, const mappi
     return record;
 }
 
-Result<> append_and_wait(store::ScanLog& log, store::SessionId id, Revision revision, const MapPatch& patch) {
-    std::promise<Result<>> appended;
-    log.append(id, revision, {wire::encode_entry(patch)}, [&](Result<> done) { appended.set_value(std::move(done)); });
-    return appended.get_future().get();
-}
-
 } // namespace
 
 SessionRegistry::SessionRegistry(store::ScanLog& log, RegistryConfig config)
@@ -149,7 +143,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     const auto id = log_.create_session(wire::encode_session(record));
     if (!id) return id.error();
     for (std::size_t n = 0; n < patches.size(); ++n) {
-        const auto imported = append_and_wait(log_, *id, n + 1, patches[n]);
+        const auto imported = store::append_and_wait(log_, *id, n + 1, {wire::encode_entry(patches[n])});
         if (imported) continue;
         static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
         return imported.error();

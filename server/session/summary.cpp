@@ -11,7 +11,8 @@ namespace {
 const Error kSummaryIsRead{Errc::kShuttingDown, "what follows are sensors and cells"};
 
 Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConfig& config) {
-    mapping::Snapshot facts{.revision = state.revision, .config = config, .bounds = state.bounds};
+    mapping::Snapshot facts{
+        .revision = state.revision, .config = config, .exclusions = state.exclusions, .bounds = state.bounds};
     for (const auto& robot : state.robots) {
         auto& told = facts.robots.emplace_back();
         told.name = robot.name;
@@ -19,6 +20,7 @@ Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConf
         told.last_seq = robot.last_seq;
         told.scan_count = robot.scan_count;
         told.jumps = robot.jumps.left_out;
+        told.excluded = robot.excluded;
         if (!robot.newest) continue;
         told.stamp = robot.newest->stamp;
         told.pose = robot.newest->pose;
@@ -29,7 +31,10 @@ Summary summary_of(const mapping::ProjectionState& state, const mapping::MapConf
 } // namespace
 
 Summary summary_of(const mapping::Snapshot& snapshot) {
-    mapping::Snapshot facts{.revision = snapshot.revision, .config = snapshot.config, .bounds = snapshot.bounds};
+    mapping::Snapshot facts{.revision = snapshot.revision,
+                            .config = snapshot.config,
+                            .exclusions = snapshot.exclusions,
+                            .bounds = snapshot.bounds};
     for (const auto& robot : snapshot.robots) {
         auto& told = facts.robots.emplace_back(robot);
         told.trajectory = {};

@@ -52,6 +52,10 @@ Result<> check(const mapping::Projection& projection, const MapPatch& patch) {
     return too_many_cells(projection, "a part of the imported map");
 }
 
+Result<> check(const mapping::Projection&, const ScansExcluded&) { return {}; }
+
+Result<> check(const mapping::Projection&, const ExclusionLifted&) { return {}; }
+
 } // namespace
 
 Result<> check_weavable(const mapping::Projection& projection, const LogEntry& entry) {

@@ -2,6 +2,7 @@
 
 #include "common/wire/log_codec.hpp"
 #include "server/session/damage.hpp"
+#include "server/session/log_exclusions.hpp"
 #include "server/session/weavable.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@ constexpr int kNiceness = 10;      // weaving again is never more urgent than wh
 const Error kEnd{Errc::kShuttingDown, "the end of what is to be woven"};
 const Error kTurnIsOver{Errc::kShuttingDown, "others have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
+const Error kOutdated{Errc::kShuttingDown, "the entry excludes scans that are in these maps, or brings some back"};
 
 Error no_room() {
     return {Errc::kFull,
@@ -35,6 +37,8 @@ bool is_taken_after(const std::optional<double>& stamp, const LogEntry& entry) {
     const auto* taken = std::get_if<ScanTaken>(&entry);
     return taken != nullptr && stamp && taken->scan.stamp > *stamp;
 }
+
+SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const Exclusions>(std::move(exclusions)); }
 
 } // namespace
 
@@ -98,6 +102,8 @@ std::optional<Revision> Weave::base_for(const Weave& other, Revision target) con
 std::optional<Revision> Weave::revision_before(const WeaveEnd& end, Revision target) const {
     const bool stands_still = state_ == State::kDone || (state_ == State::kWaiting && !cancelled_);
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
+    const Revision within = end.stamp ? projection_->revision() : target; // exclusions beyond it do not count there
+    if (projection_->exclusions()->revision() > within) return std::nullopt;
     if (end.stamp && newest_stamp_ && *newest_stamp_ > *end.stamp) return std::nullopt;
     return projection_->revision();
 }
@@ -146,8 +152,15 @@ bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
     step_back();
     turn_left_ = turn_work;
     try {
-        if (!projection_) projection_.emplace(request_.config);
-        const auto is_complete = weave_up_to(*target, log, budget);
+        if (!projection_) {
+            const Revision known_until = request_.end.stamp ? 0 : *target;
+            projection_.emplace(request_.config, shared(session_.exclusions->as_of(known_until)));
+        }
+        auto is_complete = weave_up_to(*target, log, budget);
+        if (!is_complete && is_complete.error() == kOutdated) {
+            const auto begun = begin_again(*target, log, budget);
+            is_complete = begun ? weave_up_to(*target, log, budget) : begun.error();
+        }
         if (!is_complete && is_complete.error() == kTurnIsOver) return wait_for_another_turn(*target);
         if (is_complete) return publish(*target, *is_complete, budget);
         give_up(is_complete.error(), budget);
@@ -187,12 +200,29 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget
                 is_complete = true;
                 return kEnd;
             }
+            if (projection_->is_outdated_by(*entry)) return kOutdated;
             if (auto ok = check_weavable(*projection_, *entry); !ok) return ok;
             return fold(*entry, budget);
         });
     if (!read && read.error().code == Errc::kNotFound) return session_was_deleted(session_);
     if (!read && read.error() != kEnd) return read.error();
     return is_complete;
+}
+
+/// With all exclusions up to `target`, or to its end.
+Result<> Weave::begin_again(Revision target, store::ScanLog& log, PageBudget& budget) {
+    const auto exclusions =
+        read_exclusions(log, session_.id, [&](Revision revision, const std::optional<ScanPose>& scan) {
+            const bool is_beyond =
+                revision > target || (scan && request_.end.stamp && scan->stamp > *request_.end.stamp);
+            return !is_beyond && !cancelled_;
+        });
+    if (!exclusions) return exclusions.error();
+    if (cancelled_) return kCancelled;
+    projection_.emplace(request_.config, shared(*exclusions));
+    newest_stamp_.reset();
+    woven_ = 0;
+    return claim(budget);
 }
 
 Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {

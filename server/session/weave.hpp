@@ -106,6 +106,7 @@ private:
     [[nodiscard]] std::optional<Revision> revision_before(const WeaveEnd& end, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
     [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget);
+    [[nodiscard]] Result<> begin_again(Revision target, store::ScanLog& log, PageBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);
     [[nodiscard]] Result<> fold(const LogEntry& entry, PageBudget& budget);
     [[nodiscard]] Result<> claim(PageBudget& budget);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-/// The store's keys and values as bytes, format version 2.
+/// The store's keys and values as bytes, format version 3.
 ///
 ///   key                                       value, followed by 4 bytes of checksum
 ///   'f'                                       format version, u64
@@ -19,11 +19,13 @@
 /// Numbers are big-endian, so that the order of keys is the order of sessions and revisions.
 /// The checksum is the CRC-32C of key and value, little-endian.
 ///
-/// Version 2 has packed ranges in its scans (ScanTaken of log.proto), which programs that know version 1 cannot read. A
-/// store of version 1 becomes one of version 2 when it is opened; its entries stay as they are.
+/// Version 2 added packed ranges of scans (ScanTaken of log.proto); version 3 added exclusions (ScansExcluded,
+/// ExclusionLifted) and the session setting max_jump. A program refuses stores of a later version than it knows, as it
+/// could not read their entries or would compute other maps from them. A store of an earlier version becomes one of
+/// this version when it is opened; its entries stay as they are.
 namespace scanloom::store {
 
-inline constexpr std::uint64_t kFormatVersion = 2;
+inline constexpr std::uint64_t kFormatVersion = 3;
 inline constexpr std::string_view kFormatKey = "f";
 inline constexpr std::string_view kNextSessionKey = "n";
 inline constexpr std::string_view kSessionsBegin = "s";

@@ -1,9 +1,20 @@
 #include "server/store/scan_log.hpp"
 
+#include <future>
+#include <memory>
+#include <utility>
+
 namespace scanloom::store {
 
 Result<> ScanLog::copy_with(const CopyDatabase&) {
     return Error{Errc::kInvalidField, "this log is not kept on a disk: there is nothing to copy"};
+}
+
+Result<> append_and_wait(ScanLog& log, SessionId session, Revision first, std::vector<std::string> entries) {
+    const auto outcome = std::make_shared<std::promise<Result<>>>();
+    auto appended = outcome->get_future();
+    log.append(session, first, std::move(entries), [outcome](Result<> done) { outcome->set_value(std::move(done)); });
+    return appended.get();
 }
 
 } // namespace scanloom::store

@@ -127,6 +127,11 @@ public:
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
 };
 
+/// append(), and waits until it is durable or has failed.
+/// Errors  as of ScanLog::append(). Thread  not the committer's.
+[[nodiscard]] Result<> append_and_wait(ScanLog& log, SessionId session, Revision first,
+                                       std::vector<std::string> entries);
+
 struct StoreOptions {
     /// Bound of write buffers and block cache together. The default suits 1 GB of memory and 24 GB:
     /// the log is read in order, so more cache would hardly be used, and the system caches files.

@@ -11,14 +11,6 @@
 /// A scan log's calls as plain values, for tests that look at what is in it.
 namespace scanloom::store {
 
-inline Result<> append_and_wait(ScanLog& log, SessionId session, Revision first, std::vector<std::string> entries) {
-    const auto outcome = std::make_shared<std::promise<Result<>>>();
-    auto result = outcome->get_future();
-    log.append(session, first, std::move(entries),
-               [outcome](Result<> appended) { outcome->set_value(std::move(appended)); });
-    return result.get();
-}
-
 inline Result<std::vector<std::string>> entries_after(ScanLog& log, SessionId session, Revision after) {
     std::vector<std::string> entries;
     auto read = log.read(session, after, [&](Revision, std::string_view entry) -> Result<> {

@@ -50,8 +50,8 @@ public:
 
 class CarmenFormat final : public Format {
 public:
-    CarmenFormat(std::string session, double max_jump_m)
-        : session_(std::move(session)), carmen_(JumpFilter(max_jump_m)) {}
+    explicit CarmenFormat(const session::SessionInfo& session)
+        : session_(session.name), carmen_(session::scan_filter_of(session)) {}
 
     [[nodiscard]] std::string head() const override { return exchange::CarmenText::head(session_); }
     [[nodiscard]] Result<> append(std::string& text, std::string_view bytes) override {
@@ -121,7 +121,7 @@ Result<Response> get_log(session::SessionRegistry& sessions, store::ScanLog& log
     const auto& info = (*session)->info();
 
     std::unique_ptr<Format> written_as = std::make_unique<ProtobufFormat>();
-    if (is_carmen) written_as = std::make_unique<CarmenFormat>(info.name, info.config.max_jump);
+    if (is_carmen) written_as = std::make_unique<CarmenFormat>(info);
     auto stream = std::make_shared<LogStream>(*session, log, std::move(written_as));
     if (auto begun = stream->begin(); !begun) return begun.error();
 

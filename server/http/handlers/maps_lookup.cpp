@@ -19,6 +19,7 @@ Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::share
                      std::shared_ptr<const mapping::Snapshot> maps) {
     if (maps) {
         auto tag = fmt::format("{}-{}", session_tag(session->info()), weave->id());
+        tag = tag_with(tag, *maps->exclusions);
         return Maps{std::move(session), std::move(maps), weave, std::move(tag)};
     }
     const auto progress = weave->progress();

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -122,9 +123,11 @@ private:
 
 Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
-    landmarks::SessionCaptures cut(JumpFilter(session.config.max_jump));
+    const Revision until = std::min(newest, query.until.value_or(newest));
+    const auto exclusions = std::make_shared<const Exclusions>(session.exclusions->as_of(until));
+    landmarks::SessionCaptures cut(ScanFilter(session.config.max_jump, exclusions));
     auto read = session::read_captures(
-        log, session.id, cut, std::min(newest, query.until.value_or(newest)),
+        log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
         [&](Revision) { return patience(); });
     if (!read || query.until) return read;

@@ -59,6 +59,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                                              {"connected", session != nullptr && session->is_connected(index)},
                                              {"scans", robot.scan_count},
                                              {"jumps", robot.jumps},
+                                             {"excluded", robot.excluded},
                                              {"last_seq", robot.last_seq},
                                              {"stamp", robot.stamp},
                                              {"pose", pose_json(robot.pose)},

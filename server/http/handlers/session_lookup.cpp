@@ -35,7 +35,12 @@ std::optional<Error> damage_of(const session::SessionRegistry& sessions, const s
 }
 
 std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions) {
-    return fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
+    const auto tag = fmt::format("{}-{}.{}", session::tag_of(info), versions.weaving, versions.rendering);
+    return tag_with(tag, *info.exclusions);
+}
+
+std::string tag_with(std::string_view tag, const Exclusions& exclusions) {
+    return exclusions.revision() == 0 ? std::string(tag) : fmt::format("{}-x{}", tag, exclusions.revision());
 }
 
 Result<mapping::Layer> find_layer(std::string_view name) {
@@ -58,7 +63,7 @@ Result<Revision> since_parameter(const Query& query) {
 }
 
 Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept {
-    return since <= snapshot.revision ? since : 0;
+    return since >= snapshot.exclusions->revision() && since <= snapshot.revision ? since : 0;
 }
 
 } // namespace scanloom::http

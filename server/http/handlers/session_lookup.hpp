@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace scanloom::http {
 
@@ -33,6 +34,9 @@ struct MakingVersions {
 /// immutable. In every entity tag of what is made from the session. Begins with what robots are told as session_id.
 [[nodiscard]] std::string session_tag(const session::SessionInfo& info, const MakingVersions& versions = {});
 
+/// The tag of maps that these exclusions were applied to: each change of them makes other maps at the same revisions.
+[[nodiscard]] std::string tag_with(std::string_view tag, const Exclusions& exclusions);
+
 /// Errors  kNotFound: no such layer.
 [[nodiscard]] Result<mapping::Layer> find_layer(std::string_view name);
 
@@ -45,7 +49,8 @@ struct MakingVersions {
 [[nodiscard]] Result<Revision> since_parameter(const Query& query);
 
 /// The revision to count from: 0 when `since` has not been reached, as then it is of a session that was deleted, and
-/// whoever asks knows nothing of the one that has its name now.
+/// the client knows nothing of the one that has its name now; and when it is before the newest change of exclusions,
+/// which may have changed the maps anywhere.
 [[nodiscard]] Revision since_in(const mapping::Snapshot& snapshot, Revision since) noexcept;
 
 } // namespace scanloom::http

@@ -129,7 +129,7 @@ Result<Response> delete_session(session::SessionRegistry& sessions, const Forget
         forgetful.weaves.remove_all(info->id);
         forgetful.landmarks.remove(info->id);
         if (forgetful.locator != nullptr) forgetful.locator->remove(info->id);
-        forgetful.tiles.forget(session_tag(*info));
+        forgetful.tiles.forget(session::tag_of(*info));
     }
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }

@@ -18,8 +18,14 @@ using testing::StartsWith;
 std::vector<LogEntry> one_of_each() {
     Scan stepped = example_scan(18);
     stepped.angles = SteppedAngles{1.5e-5, {395'000, 12, -7}};
-    return {RobotJoined{3, "robot-1"}, RobotJoined{3, "robot-1", "carmen:12", 0.25},
-            SensorDescribed{3, example_sensor()}, ScanTaken{3, example_scan(17)}, ScanTaken{3, stepped}};
+    return {RobotJoined{3, "robot-1"},
+            RobotJoined{3, "robot-1", "carmen:12", 0.25},
+            SensorDescribed{3, example_sensor()},
+            ScanTaken{3, example_scan(17)},
+            ScanTaken{3, stepped},
+            ScansExcluded{2, 3, StampRange{-1.5, 1e9}},
+            ScansExcluded{3, 1, SeqRange{4, 4}},
+            ExclusionLifted{2}};
 }
 
 TEST(LogCodec, EveryKindOfEntryComesBackAsItWas) {
@@ -37,7 +43,7 @@ TEST(LogCodec, WhereAScanWasTakenIsReadWithoutTheScan) {
             const auto* taken = std::get_if<ScanTaken>(&entry);
             ASSERT_EQ(where.has_value(), taken != nullptr);
             if (taken == nullptr) continue;
-            EXPECT_EQ(*where, (ScanPose{taken->robot, taken->scan.stamp, taken->scan.pose}));
+            EXPECT_EQ(*where, scan_pose_of(*taken));
         }
     }
     EXPECT_FALSE(decode_scan_pose("\xff"));

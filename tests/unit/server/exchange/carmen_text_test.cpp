@@ -43,7 +43,7 @@ TEST(CarmenText, AScanIsOneLineOfTheLoggersFormat) {
 }
 
 TEST(CarmenText, AScanThatIsNotIntegratedIsNoLine) {
-    CarmenText carmen{JumpFilter(2.0)};
+    CarmenText carmen{ScanFilter(2.0)};
     EXPECT_EQ(carmen.lines(RobotJoined{0, "crawler"}).value(), "");
     EXPECT_TRUE(carmen.lines(SensorDescribed{0, laser()}));
     EXPECT_THAT(carmen.lines(ScanTaken{0, scan()}).value(), StartsWith("ROBOTLASER1"));

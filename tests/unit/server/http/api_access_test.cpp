@@ -106,11 +106,12 @@ TEST_F(ApiAccessTest, OnlyWhoMayChangeThingsChangesThem) {
         {"/api/v1/sessions/{session}/plan", R"({"from":{"robot":"r1"},"to":[0.5,0.1]})"},
         {"/api/v1/sessions/{session}/goal", R"({"robot":"r1","size_min":1,"body_radius":0})"},
         {"/api/v1/sessions/{session}/weave", R"({"cell_size":0.1})"},
+        {"/api/v1/sessions/{session}/exclude", R"({"robot":"r1","from":0,"to":200})"},
     };
     const auto state = [&] {
         std::string seen;
         for (const auto* path : {"", "/depot-1", "/depot-1/goals.geojson", "/depot-1/goal?robot=r1", "/depot-1/weave",
-                                 "/depot-1/digest"}) {
+                                 "/depot-1/digest", "/depot-1/exclusions"}) {
             const auto answer = ask_as("operator-all", "GET", std::string("/api/v1/sessions") + path);
             EXPECT_EQ(answer.status, Status::ok) << path;
             seen.append(answer.body.bytes());

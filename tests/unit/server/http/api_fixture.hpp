@@ -72,6 +72,7 @@ inline std::string target_of(const Route& route, std::string_view session) {
                                                        {"{x}", "256"},
                                                        {"{y}", "255"},
                                                        {"{weave}", "none"},
+                                                       {"{exclusion}", "1"},
                                                        {"{file}", "none.js"}};
     for (const auto& [name, value] : values) {
         if (const auto at = target.find(name); at != std::string::npos) target.replace(at, name.size(), value);

@@ -129,6 +129,7 @@ TEST_F(ApiTest, AStreamingRobotIsShown) {
                                                        {"connected", true},
                                                        {"scans", 3},
                                                        {"jumps", 0},
+                                                       {"excluded", 0},
                                                        {"last_seq", 3},
                                                        {"stamp", 103},
                                                        {"pose", {{"x", 1.5}, {"y", 1.25}, {"yaw", 0}}},

@@ -71,12 +71,12 @@ TEST_F(SessionCapturesTest, SonarsAndSensorsThatNobodyDescribedArePassedOver) {
 }
 
 TEST_F(SessionCapturesTest, WhatIsNotNeededIsPassedOver) {
-    EXPECT_TRUE(captures_.needs(5, 0.0, {})) << "a robot that nobody knows yet";
+    EXPECT_TRUE(captures_.needs({5, 1, 0.0, {}})) << "a robot without scans";
     static_cast<void>(captures_.add(scan(0, 0.0)));
     static_cast<void>(captures_.add(scan(0, 0.1)));
-    EXPECT_FALSE(captures_.needs(0, 1.0, {0.2, 0.0, 0.0}));
-    EXPECT_TRUE(captures_.needs(0, 1.0, {0.6, 0.0, 0.0}));
-    captures_.pass_over(0, {});
+    EXPECT_FALSE(captures_.needs({0, 3, 1.0, {0.2, 0.0, 0.0}}));
+    EXPECT_TRUE(captures_.needs({0, 3, 1.0, {0.6, 0.0, 0.0}}));
+    captures_.pass_over({0, 3, 1.0, {}});
     EXPECT_EQ(captures_.revision(), 7U);
 }
 

@@ -61,7 +61,7 @@ protected:
     std::string digests_;
 };
 
-TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfVersion2AndIsWovenFromItsLog) {
+TEST_F(EarlierFormatsTest, AStoreOfVersion1BecomesOneOfTheNewestAndItsLogIsFolded) {
     write("store_1_parts_1.txt");
     auto recovered = recover_session();
     EXPECT_EQ(recovered.checkpointed, std::nullopt);
@@ -149,7 +149,7 @@ TEST_F(EarlierFormatsTest, ANewerStoreIsRefusedWithASentence) {
     const auto log = store::open_rocksdb(store());
     ASSERT_FALSE(log);
     EXPECT_EQ(log.error().code, Errc::kUnsupportedVersion);
-    EXPECT_THAT(log.error().message, AllOf(HasSubstr("newer scanloom-server (format 3, this one knows up to 2)"),
+    EXPECT_THAT(log.error().message, AllOf(HasSubstr("newer scanloom-server (format 4, this one knows up to 3)"),
                                            HasSubstr("update the server")));
 }
 
@@ -160,6 +160,27 @@ TEST_F(EarlierFormatsTest, ANewerCheckpointIsWovenFromTheLog) {
     auto recovered = recover_session();
     EXPECT_THAT(recovered.checkpoint_rejected.value().message, HasSubstr("parts are of version 99"));
     expect_its_maps(recovered);
+}
+
+/// Of the newest format: a session with max_jump, a jump, and exclusions before and behind its checkpoint.
+TEST_F(EarlierFormatsTest, OfAStoreOfVersion3ExclusionsAndJumpsAreReadFromCheckpointAndLog) {
+    write("store_3_parts_4.txt");
+    auto recovered = recover_session();
+    EXPECT_FALSE(recovered.checkpoint_rejected);
+    EXPECT_EQ(testing_support::digests_of(recovered.projection.snapshot()), digests_);
+    const auto state = recovered.projection.state();
+    EXPECT_EQ(state.revision, 11U);
+    EXPECT_EQ(state.robots.at(0).scan_count, 2U);
+    EXPECT_EQ(state.robots.at(0).excluded, 2U);
+    EXPECT_EQ(state.robots.at(0).jumps.left_out, 1U);
+    EXPECT_EQ(state.exclusions->count_in_effect(), 2U);
+
+    const auto log = store::open_rocksdb(store()).value();
+    CheckpointReader reader(recovered.projection.config());
+    for (const auto& [key, value] : store::checkpoint_of(*log, kSession).value())
+        EXPECT_TRUE(reader.add(key, value)) << key;
+    EXPECT_TRUE(reader.is_newest_format());
+    EXPECT_EQ(std::move(reader).finish().value().exclusions()->all(), state.exclusions->as_of(9).all());
 }
 
 } // namespace

@@ -64,5 +64,18 @@ TEST(EntryOrder, RefusesWhatTheFoldRefusesInTheSameWords) {
     EXPECT_GT(refused, 1000);
 }
 
+TEST(EntryOrder, KnowsWhichExclusionsCanFollow) {
+    EntryOrder order;
+    EXPECT_FALSE(order.add(ScansExcluded{1, 0, SeqRange{1, 1}})) << "the robot never joined";
+    ASSERT_TRUE(order.add(RobotJoined{0, "a", ""}));
+    EXPECT_FALSE(order.add(ExclusionLifted{1}));
+    ASSERT_TRUE(order.add(ScansExcluded{1, 0, SeqRange{1, 1}}));
+    EXPECT_FALSE(order.add(ScansExcluded{1, 0, SeqRange{1, 1}})) << "ids rise";
+    ASSERT_TRUE(order.add(ExclusionLifted{1}));
+    EXPECT_FALSE(order.add(ExclusionLifted{1}));
+    EXPECT_EQ(order.revision(), 3U);
+    EXPECT_EQ(order.exclusions().revision(), 3U);
+}
+
 } // namespace
 } // namespace scanloom::session

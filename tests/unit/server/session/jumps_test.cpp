@@ -139,7 +139,7 @@ TEST_F(JumpsTest, CapturesHoldNoneOfThem) {
     for (const auto& entry : log_without_jumps(walks)) {
         if (const auto ended = expected.add(entry)) wanted.push_back(ended->capture);
     }
-    landmarks::SessionCaptures captures{JumpFilter(kMaxJump)};
+    landmarks::SessionCaptures captures{ScanFilter(kMaxJump)};
     std::size_t n = 0;
     const auto visit = [&](const landmarks::RobotCapture& ended) -> Result<> {
         if (n >= wanted.size()) return Error{Errc::kInternal, "a capture more than there should be"};

@@ -1,0 +1,63 @@
+#include "common/scan/exclusions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
+
+namespace scanloom {
+namespace {
+
+bool has(const StampRange& range, const ScanPose& scan) { return range.from <= scan.stamp && scan.stamp <= range.to; }
+bool has(const SeqRange& range, const ScanPose& scan) { return range.from <= scan.seq && scan.seq <= range.to; }
+
+} // namespace
+
+Result<> Exclusions::add(Revision revision, const ScansExcluded& excluded) {
+    const std::uint64_t last = all_.empty() ? 0 : all_.back().excluded.id;
+    if (excluded.id <= last) {
+        return Error{Errc::kMalformed, fmt::format("exclusion {} follows exclusion {}", excluded.id, last)};
+    }
+    all_.push_back({excluded, revision});
+    revision_ = std::max(revision_, revision);
+    return {};
+}
+
+Result<> Exclusions::add(Revision revision, const ExclusionLifted& lifted) {
+    const auto found = std::ranges::find(all_, lifted.id, [](const Exclusion& one) { return one.excluded.id; });
+    if (found == all_.end() || found->lifted != 0) {
+        return Error{Errc::kMalformed, fmt::format("exclusion {} is lifted, but not in effect", lifted.id)};
+    }
+    found->lifted = revision;
+    revision_ = std::max(revision_, revision);
+    return {};
+}
+
+bool Exclusions::cover(Revision revision, const ScanPose& scan) const noexcept {
+    return std::ranges::any_of(all_, [&](const Exclusion& one) {
+        return one.lifted == 0 && revision < one.since && scan.robot == one.excluded.robot &&
+               std::visit([&](const auto& range) { return has(range, scan); }, one.excluded.scans);
+    });
+}
+
+Exclusions Exclusions::as_of(Revision revision) const {
+    Exclusions earlier;
+    for (Exclusion one : all_) {
+        if (one.since > revision) break;
+        if (one.lifted > revision) one.lifted = 0;
+        earlier.revision_ = std::max({earlier.revision_, one.since, one.lifted});
+        earlier.all_.push_back(one);
+    }
+    return earlier;
+}
+
+std::size_t Exclusions::count_in_effect() const noexcept {
+    return static_cast<std::size_t>(std::ranges::count(all_, Revision{0}, &Exclusion::lifted));
+}
+
+SharedExclusions no_exclusions() {
+    static const auto none = std::make_shared<const Exclusions>();
+    return none;
+}
+
+} // namespace scanloom

@@ -1,0 +1,113 @@
+#include "server/http/handlers/exclusions.hpp"
+
+#include "server/http/handlers/session_lookup.hpp"
+#include "server/http/in_quotes.hpp"
+#include "server/http/json_read.hpp"
+#include "server/http/number.hpp"
+
+#include <boost/json/array.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace scanloom::http {
+namespace {
+
+constexpr std::array<std::string_view, 3> kExclusionMembers = {"robot", "from", "to"};
+constexpr std::string_view kSeq = "seq:";
+
+/// One end of a range.
+using Bound = std::variant<double, std::uint64_t>; // a stamp in seconds, or a seq
+
+Result<Bound> read_bound(const boost::json::object& body, std::string_view name) {
+    const auto* value = body.if_contains(name);
+    if (value != nullptr && value->is_string()) {
+        const std::string_view text = value->get_string();
+        const auto seq = text.starts_with(kSeq) ? parse_integer<std::uint64_t>(text.substr(kSeq.size())) : std::nullopt;
+        if (seq) return Bound(*seq);
+    } else if (value != nullptr) {
+        const auto stamp = read_number(body, name);
+        if (!stamp) return stamp.error();
+        return Bound(**stamp);
+    }
+    return Error{Errc::kInvalidField, fmt::format("{} is {}; a stamp in seconds or a text \"seq:N\" is needed", name,
+                                                  value == nullptr ? std::string("missing") : "no such text")};
+}
+
+Result<std::variant<StampRange, SeqRange>> read_range(const boost::json::object& body) {
+    const auto from = read_bound(body, "from");
+    if (!from) return from.error();
+    const auto to = read_bound(body, "to");
+    if (!to) return to.error();
+    if (from->index() != to->index()) {
+        return Error{Errc::kInvalidField, "from and to are of two kinds; give two stamps, or two texts \"seq:N\""};
+    }
+    if (*from > *to) return Error{Errc::kInvalidField, "from is greater than to; exchange them"};
+    if (const auto* stamp = std::get_if<double>(&*from)) return {StampRange{*stamp, std::get<double>(*to)}};
+    return {SeqRange{std::get<std::uint64_t>(*from), std::get<std::uint64_t>(*to)}};
+}
+
+boost::json::object to_json(const Exclusion& exclusion, std::string_view robot) {
+    const auto& [id, index, scans] = exclusion.excluded;
+    boost::json::object json{{"id", id}, {"robot", robot}};
+    if (const auto* stamps = std::get_if<StampRange>(&scans)) {
+        json["from"] = stamps->from;
+        json["to"] = stamps->to;
+    } else {
+        const auto& seqs = std::get<SeqRange>(scans);
+        json["from"] = fmt::format("{}{}", kSeq, seqs.from);
+        json["to"] = fmt::format("{}{}", kSeq, seqs.to);
+    }
+    json["revision"] = exclusion.since;
+    return json;
+}
+
+} // namespace
+
+Result<Response> exclude_scans(session::SessionRegistry& sessions, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto body = parse_json_object(call.request.body);
+    if (!body) return body.error();
+    if (auto known = check_members(*body, kExclusionMembers); !known) return known.error();
+    const auto robot = read_text(*body, "robot");
+    if (!robot) return robot.error();
+    const auto range = read_range(*body);
+    if (!range) return range.error();
+    const auto& name = call.arguments["session"];
+    if (auto session = find_session(sessions, call); !session) return session.error();
+    const auto exclusion = sessions.exclude(name, *robot, *range);
+    if (!exclusion) return exclusion.error();
+    auto response =
+        ok(to_json(*exclusion, *robot))
+            .set("Location", fmt::format("/api/v1/sessions/{}/exclusions/{}", name, exclusion->excluded.id));
+    response.status = Status::created;
+    return response;
+}
+
+Result<Response> list_exclusions(session::SessionRegistry& sessions, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    const auto session = find_session(sessions, call);
+    if (!session) return session.error();
+    const auto maps = (*session)->snapshot();
+    boost::json::array exclusions;
+    for (const auto& one : maps->exclusions->all()) {
+        if (one.lifted == 0) exclusions.push_back(to_json(one, maps->robots[one.excluded.robot].name));
+    }
+    return ok(boost::json::object{{"exclusions", std::move(exclusions)}});
+}
+
+Result<Response> lift_exclusion(session::SessionRegistry& sessions, const Call& call) {
+    if (auto known = call.query.check_only({}); !known) return known.error();
+    if (auto session = find_session(sessions, call); !session) return session.error();
+    const auto& text = call.arguments["exclusion"];
+    const auto id = parse_integer<std::uint64_t>(text);
+    if (!id)
+        return Error{Errc::kNotFound, fmt::format("there is no exclusion {}; exclusions lists them", in_quotes(text))};
+    if (auto lifted = sessions.lift_exclusion(call.arguments["session"], *id); !lifted) return lifted.error();
+    return Response{.status = Status::no_content, .fields = {}, .body = {}};
+}
+
+} // namespace scanloom::http

@@ -1,0 +1,80 @@
+#include "common/scan/scan_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace scanloom {
+namespace {
+
+ScanPose scan_of(RobotIndex robot, std::uint64_t seq, double stamp) { return {robot, seq, stamp, {}}; }
+
+TEST(Exclusions, CoverEarlierScansOfTheRobotInTheRangeOnly) {
+    Exclusions exclusions;
+    ASSERT_TRUE(exclusions.add(10, ScansExcluded{1, 0, StampRange{5.0, 7.0}}));
+    EXPECT_TRUE(exclusions.cover(9, scan_of(0, 1, 5.0)));
+    EXPECT_TRUE(exclusions.cover(1, scan_of(0, 1, 7.0)));
+    EXPECT_FALSE(exclusions.cover(9, scan_of(0, 1, 4.9)));
+    EXPECT_FALSE(exclusions.cover(9, scan_of(0, 1, 7.1)));
+    EXPECT_FALSE(exclusions.cover(9, scan_of(1, 1, 6.0))) << "another robot's";
+    EXPECT_FALSE(exclusions.cover(11, scan_of(0, 1, 6.0))) << "a later entry of the log";
+
+    ASSERT_TRUE(exclusions.add(12, ScansExcluded{2, 1, SeqRange{3, 4}}));
+    EXPECT_TRUE(exclusions.cover(11, scan_of(1, 3, 0.0)));
+    EXPECT_TRUE(exclusions.cover(11, scan_of(1, 4, 0.0)));
+    EXPECT_FALSE(exclusions.cover(11, scan_of(1, 5, 0.0)));
+}
+
+TEST(Exclusions, HaveNoEffectOnceLifted) {
+    Exclusions exclusions;
+    ASSERT_TRUE(exclusions.add(10, ScansExcluded{1, 0, StampRange{5.0, 7.0}}));
+    ASSERT_TRUE(exclusions.add(20, ExclusionLifted{1}));
+    EXPECT_FALSE(exclusions.cover(9, scan_of(0, 1, 6.0)));
+    EXPECT_EQ(exclusions.count_in_effect(), 0U);
+    EXPECT_EQ(exclusions.revision(), 20U);
+    EXPECT_TRUE(exclusions.as_of(19).cover(9, scan_of(0, 1, 6.0)));
+    EXPECT_EQ(exclusions.as_of(19).revision(), 10U);
+}
+
+TEST(Exclusions, RefuseWhatCannotFollow) {
+    Exclusions exclusions;
+    EXPECT_EQ(exclusions.add(1, ExclusionLifted{1}).error().code, Errc::kMalformed);
+    ASSERT_TRUE(exclusions.add(2, ScansExcluded{3, 0, SeqRange{1, 1}}));
+    EXPECT_EQ(exclusions.add(3, ScansExcluded{3, 0, SeqRange{1, 1}}).error().code, Errc::kMalformed);
+    ASSERT_TRUE(exclusions.add(4, ExclusionLifted{3}));
+    EXPECT_EQ(exclusions.add(5, ExclusionLifted{3}).error().code, Errc::kMalformed);
+    EXPECT_EQ(exclusions.revision(), 4U);
+}
+
+TEST(Exclusions, AsOfARevisionAreThoseAddedUntilThen) {
+    std::mt19937 random(1);
+    Exclusions all;
+    std::vector<Exclusions> prefixes = {all};
+    std::uint64_t id = 0;
+    for (Revision revision = 1; revision <= 60; ++revision) {
+        if (random() % 3 == 0) {
+            static_cast<void>(all.add(revision, ExclusionLifted{1 + random() % (id + 1)})); // some are refused
+        } else if (random() % 2 == 0) {
+            ASSERT_TRUE(all.add(revision, ScansExcluded{++id, 0, SeqRange{random() % 9, 9}}));
+        }
+        prefixes.push_back(all);
+    }
+    for (Revision revision = 0; revision <= 60; ++revision) ASSERT_EQ(all.as_of(revision), prefixes[revision]);
+}
+
+TEST(ScanFilter, MaxJumpDoesNotSeeExcludedScans) {
+    auto exclusions = std::make_shared<Exclusions>();
+    ASSERT_TRUE(exclusions->add(9, ScansExcluded{1, 0, SeqRange{2, 3}}));
+    ScanFilter filter(1.0, exclusions);
+    const auto use_of = [&](std::uint64_t seq, double x) {
+        return filter.take(seq, ScanPose{0, seq, 0.0, {x, 0.0, 0.0}});
+    };
+    EXPECT_EQ(use_of(1, 0.0), ScanUse::kIntegrated);
+    EXPECT_EQ(use_of(2, 40.0), ScanUse::kExcluded);
+    EXPECT_EQ(use_of(3, 40.5), ScanUse::kExcluded);
+    EXPECT_EQ(use_of(4, 40.9), ScanUse::kJump) << "only the excluded scans were near";
+    EXPECT_EQ(use_of(5, 0.5), ScanUse::kIntegrated);
+}
+
+} // namespace
+} // namespace scanloom

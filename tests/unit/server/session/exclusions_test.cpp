@@ -1,0 +1,287 @@
+#include "server/session/log_captures.hpp"
+#include "server/session/old_paths.hpp"
+#include "server/session/session_check.hpp"
+#include "server/session/weave.hpp"
+#include "tests/unit/server/session/registry_fixture.hpp"
+
+#include <random>
+
+/// A session's maps are those of a session that never had the scans that are excluded.
+namespace scanloom::session {
+namespace {
+
+using testing::HasSubstr;
+
+bool is_in(const ScanTaken& taken, const std::variant<StampRange, SeqRange>& range) {
+    if (const auto* seqs = std::get_if<SeqRange>(&range)) {
+        return taken.scan.seq >= seqs->from && taken.scan.seq <= seqs->to;
+    }
+    const auto& stamps = std::get<StampRange>(range);
+    return taken.scan.stamp >= stamps.from && taken.scan.stamp <= stamps.to;
+}
+
+/// As the definition says: whether an exclusion behind the entry, not lifted by the log's end, covers its scan.
+bool is_excluded(const std::vector<LogEntry>& log, std::size_t n) {
+    const auto* taken = std::get_if<ScanTaken>(&log[n]);
+    for (std::size_t later = n + 1; taken != nullptr && later < log.size(); ++later) {
+        const auto* excluded = std::get_if<ScansExcluded>(&log[later]);
+        if (excluded == nullptr || excluded->robot != taken->robot || !is_in(*taken, excluded->scans)) continue;
+        const bool is_lifted = std::ranges::find(log, LogEntry(ExclusionLifted{excluded->id})) != log.end();
+        if (!is_lifted) return true;
+    }
+    return false;
+}
+
+/// What is left without them.
+std::vector<LogEntry> kept_of(const std::vector<LogEntry>& log) {
+    std::vector<LogEntry> kept;
+    for (std::size_t n = 0; n < log.size(); ++n) {
+        const bool is_exclusion =
+            std::holds_alternative<ScansExcluded>(log[n]) || std::holds_alternative<ExclusionLifted>(log[n]);
+        if (!is_exclusion && !is_excluded(log, n)) kept.push_back(log[n]);
+    }
+    return kept;
+}
+
+/// The log of a session that never had them: each seq follows the one before.
+std::vector<LogEntry> log_without_excluded(const std::vector<LogEntry>& log) {
+    auto kept = kept_of(log);
+    std::map<RobotIndex, std::uint64_t> seqs;
+    for (auto& entry : kept) {
+        if (auto* taken = std::get_if<ScanTaken>(&entry)) taken->scan.seq = ++seqs[taken->robot];
+    }
+    return kept;
+}
+
+mapping::Projection folded(const std::vector<LogEntry>& log, const mapping::MapConfig& config) {
+    mapping::Projection projection(config);
+    for (const auto& entry : log) projection.fold(entry).value();
+    return projection;
+}
+
+class ExclusionsTest : public SessionRegistryTest {
+protected:
+    ~ExclusionsTest() override { registry_->drain(); }
+
+    void create(double max_jump = 0.0) {
+        SessionOptions options;
+        options.max_jump = max_jump;
+        const auto session = registry_->create("lab", options).value();
+        id_ = session->info().id;
+        config_ = session->info().config;
+    }
+
+    [[nodiscard]] std::shared_ptr<Session> session() { return registry_->wake("lab").value(); }
+
+    /// The robot's next scans.
+    void stream(const std::string& robot, std::uint64_t count) {
+        const auto link = std::make_shared<AwaitedLink>();
+        const auto held = session();
+        const auto last = join_and_wait(*held, robot, link).value().last_durable_seq;
+        held->submit(link, small_laser(), 0);
+        for (std::uint64_t seq = last + 1; seq <= last + count; ++seq) held->submit(link, {random_scan(7, seq)}, 0);
+        link->wait_for_seq(last + count);
+        held->leave(link);
+    }
+
+    /// By revision, from 1 on at place 0.
+    [[nodiscard]] std::vector<LogEntry> log() {
+        std::vector<LogEntry> entries;
+        for (const auto& bytes : store::entries_after(log_, id_, 0).value()) {
+            entries.push_back(wire::decode_entry(bytes).value());
+        }
+        return entries;
+    }
+
+    /// Maps, paths and captures.
+    void expect_that_excluded_scans_leave_no_trace() {
+        const auto entries = log();
+        auto expected = folded(log_without_excluded(entries), config_);
+        const auto wanted = expected.snapshot();
+        const auto maps = session()->snapshot();
+        ASSERT_EQ(maps->revision, entries.size());
+        EXPECT_EQ(testing_support::digests_of(*maps), testing_support::digests_of(wanted));
+        EXPECT_EQ(maps->bounds, wanted.bounds);
+        std::uint64_t excluded = 0;
+        for (std::size_t n = 0; n < entries.size(); ++n) excluded += is_excluded(entries, n) ? 1 : 0;
+        const auto old = read_old_paths(log_, id_, *maps, 0, [] { return true; }).value();
+        for (RobotIndex robot = 0; robot < maps->robots.size(); ++robot) {
+            const auto& has = maps->robots[robot];
+            const auto& should = wanted.robots[robot];
+            EXPECT_EQ(has.scan_count, should.scan_count);
+            EXPECT_EQ(std::tie(has.stamp, has.pose), std::tie(should.stamp, should.pose));
+            EXPECT_EQ(has.last_seq, has.scan_count + has.jumps + has.excluded);
+            excluded -= has.excluded;
+            ASSERT_EQ(has.trajectory.size(), should.trajectory.size());
+            for (std::size_t n = 0; n < should.trajectory.size(); ++n) {
+                const auto& point = n < has.trajectory.begin() ? old.robots[robot][n] : has.trajectory[n];
+                ASSERT_EQ(point.pose, should.trajectory[n].pose) << robot << ", " << n;
+            }
+        }
+        EXPECT_EQ(excluded, 0U) << "the robots' counts are those of all";
+        EXPECT_EQ(captures(scan_filter_of(session()->info())), captures_of(kept_of(entries)));
+    }
+
+    /// Without the revisions, which differ: when each was taken, and what was seen.
+    using SeenThings = std::vector<std::pair<double, std::vector<PointMm>>>;
+
+    [[nodiscard]] SeenThings captures(ScanFilter filter) {
+        landmarks::SessionCaptures cut(std::move(filter));
+        SeenThings found;
+        const auto visit = [&](const landmarks::RobotCapture& one) -> Result<> {
+            found.emplace_back(one.capture.stamp, one.capture.points);
+            return {};
+        };
+        read_captures(log_, id_, cut, log().size(), visit, [](Revision) { return Result<>(); }).value();
+        return found;
+    }
+
+    [[nodiscard]] SeenThings captures_of(const std::vector<LogEntry>& entries) const {
+        landmarks::SessionCaptures cut(ScanFilter(config_.max_jump));
+        SeenThings found;
+        for (const auto& entry : entries) {
+            if (const auto ended = cut.add(entry)) found.emplace_back(ended->capture.stamp, ended->capture.points);
+        }
+        return found;
+    }
+
+    void come_back(std::mt19937& random) {
+        static_cast<void>(session()); // a registry may end when none of its sessions is being read
+        switch (random() % 4) {
+        case 0: registry_->drain(); [[fallthrough]]; // with a checkpoint
+        case 1: restart(); break;                    // or as after a crash
+        case 2:
+            clock_ = clock_.load() + std::chrono::hours(1);
+            registry_->tidy();
+            break;
+        default: break;
+        }
+    }
+
+    store::SessionId id_ = 0;
+    mapping::MapConfig config_;
+};
+
+class ExclusionTrialsTest : public ExclusionsTest, public testing::WithParamInterface<unsigned> {};
+
+TEST_P(ExclusionTrialsTest, LeaveNoTraceInMapsPathsAndCaptures) {
+    std::mt19937 random(GetParam());
+    create(random() % 2 == 0 ? 0.0 : 1.5);
+    const auto number = [&](std::uint64_t below) { return random() % below; };
+    for (int step = 0; step < 8; ++step) {
+        for (const auto* robot : {"a", "b"}) stream(robot, 1 + number(12));
+        const std::string robot = number(2) == 0 ? "a" : "b";
+        if (number(2) == 0) {
+            const std::uint64_t from = 1 + number(40);
+            ASSERT_TRUE(registry_->exclude("lab", robot, SeqRange{from, from + number(9)}));
+        } else {
+            const double from = static_cast<double>(number(40)) * 0.1; // stamps are a tenth of the seq
+            const double length = static_cast<double>(number(20)) * 0.1;
+            ASSERT_TRUE(registry_->exclude("lab", robot, StampRange{from, from + length}));
+        }
+        come_back(random);
+        const auto& all = session()->info().exclusions->all();
+        const auto& one = all[number(all.size())];
+        if (number(3) == 0) {
+            EXPECT_EQ(registry_->lift_exclusion("lab", one.excluded.id).has_value(), one.lifted == 0);
+        }
+        come_back(random);
+        expect_that_excluded_scans_leave_no_trace();
+    }
+    const auto stored = log_.sessions().value().at(0);
+    registry_->drain();
+    EXPECT_EQ(check_session(log_, stored, CheckDepth::kMaps, [](std::size_t) { return Result<>(); }).value().damage,
+              std::nullopt);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ExclusionTrialsTest, testing::Range(1U, 13U));
+
+TEST_F(ExclusionsTest, ChangeNothingOfWhatRobotsContinueWith) {
+    create();
+    stream("a", 10);
+    const auto link = std::make_shared<AwaitedLink>();
+    ASSERT_TRUE(join_and_wait(*session(), "a", link));
+    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{1, 10}));
+    EXPECT_EQ(link->wait_for_failure().code, Errc::kShuttingDown);
+    EXPECT_EQ(join_and_wait(*session(), "a", std::make_shared<AwaitedLink>()).value().last_durable_seq, 10U);
+    EXPECT_EQ(session()->snapshot()->robots.at(0).excluded, 10U);
+    stream("a", 5);
+    expect_that_excluded_scans_leave_no_trace();
+}
+
+TEST_F(ExclusionsTest, MapsUntilAnEarlierRevisionShowTheScans) {
+    create();
+    stream("a", 12);
+    const auto exclusion = registry_->exclude("lab", "a", SeqRange{3, 9}).value();
+    stream("a", 6);
+    ASSERT_TRUE(registry_->lift_exclusion("lab", exclusion.excluded.id));
+    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{11, 14}));
+    const auto entries = log();
+    PageBudget budget(1 << 20);
+    const auto info = session()->info();
+    // As someone who knows of all exclusions, and as someone who started before there was any.
+    for (const bool is_known : {true, false}) {
+        SessionInfo of = info;
+        if (!is_known) of.exclusions = no_exclusions();
+        for (Revision until = 1; until <= entries.size(); ++until) {
+            Weave weave(of, {config_, {.revision = until}}, until);
+            while (weave.run(log_, budget)) {
+            }
+            auto expected = folded(log_without_excluded({entries.begin(), entries.begin() + until}), config_);
+            ASSERT_TRUE(weave.maps()) << weave.progress().error->message;
+            ASSERT_EQ(testing_support::digests_of(*weave.maps()), testing_support::digests_of(expected.snapshot()))
+                << until;
+            ASSERT_EQ(weave.maps()->revision, until);
+        }
+    }
+    EXPECT_EQ(budget.free(), budget.pages_max());
+}
+
+TEST_F(ExclusionsTest, ReachMapsThatFollowTheSession) {
+    create();
+    stream("a", 12);
+    PageBudget budget(1 << 20);
+    Weave weave(session()->info(), {config_, {}}, log().size());
+    while (weave.run(log_, budget)) {
+    }
+    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{3, 9}));
+    stream("a", 3);
+    ASSERT_TRUE(weave.resume(log().size(), budget));
+    while (weave.run(log_, budget)) {
+    }
+    auto expected = folded(log_without_excluded(log()), config_);
+    EXPECT_EQ(testing_support::digests_of(*weave.maps()), testing_support::digests_of(expected.snapshot()));
+
+    Weave earlier(session()->info(), {config_, {.revision = 8}}, 8);
+    EXPECT_FALSE(weave.base_for(earlier, 8)) << "the scans are not excluded there";
+}
+
+TEST_F(ExclusionsTest, AreRefusedWithASentence) {
+    create();
+    stream("a", 3);
+    const auto refusal = [&](const auto& done) { return std::pair(done.error().code, done.error().message); };
+    using testing::Pair;
+    EXPECT_THAT(refusal(registry_->exclude("none", "a", SeqRange{1, 1})), Pair(Errc::kNotFound, HasSubstr("'none'")));
+    EXPECT_THAT(refusal(registry_->exclude("lab", "b", SeqRange{1, 1})),
+                Pair(Errc::kInvalidField, HasSubstr("no robot of that name")));
+    EXPECT_THAT(refusal(registry_->lift_exclusion("lab", 1)), Pair(Errc::kNotFound, HasSubstr("no exclusion 1")));
+    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{1, 1}));
+    ASSERT_TRUE(registry_->lift_exclusion("lab", 1));
+    EXPECT_THAT(refusal(registry_->lift_exclusion("lab", 1)), Pair(Errc::kNotFound, HasSubstr("lifted already")));
+    registry_->drain();
+    EXPECT_EQ(registry_->exclude("lab", "a", SeqRange{1, 1}).error().code, Errc::kShuttingDown);
+}
+
+TEST_F(ExclusionsTest, ThatAreNotStoredChangeNothing) {
+    create();
+    stream("a", 8);
+    const auto before = testing_support::digests_of(*session()->snapshot());
+    log_.refuse_appends(1);
+    EXPECT_EQ(registry_->exclude("lab", "a", SeqRange{2, 4}).error().code, Errc::kOverloaded);
+    EXPECT_EQ(testing_support::digests_of(*session()->snapshot()), before);
+    stream("a", 2);
+    expect_that_excluded_scans_leave_no_trace();
+}
+
+} // namespace
+} // namespace scanloom::session
