@@ -21,6 +21,7 @@ protected:
         sink->set_formatter(std::make_unique<JsonFormatter>());
         spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", std::move(sink)));
     }
+    void TearDown() override { spdlog::set_default_logger(earlier_); }
 
     /// Every line, which must be an object of JSON by itself.
     [[nodiscard]] std::vector<boost::json::object> lines() const {
@@ -31,6 +32,7 @@ protected:
     }
 
     std::ostringstream text_;
+    std::shared_ptr<spdlog::logger> earlier_ = spdlog::default_logger();
 };
 
 TEST_F(JsonFormatterTest, SaysWhomALineIsAbout) {
