@@ -123,7 +123,8 @@ Response Api::answer(const Request& request) {
     auto response = call(match, {request, match.arguments, query, std::move(who)});
     if (!response) return problem(response.error(), instance_of(request.target));
     auto plain = for_who_asked(match.operation, std::move(*response));
-    if (lane_of(match, query) == Lane::kAtOnce) return plain; // compressing takes milliseconds: not on the I/O thread
+    const bool is_on_io_thread = lane_of(match, query) == Lane::kAtOnce;
+    if (is_on_io_thread && !plain.gzip) return plain; // compressing takes milliseconds
     return encoded_for(request.accept_encoding, std::move(plain));
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <utility>
 
 namespace scanloom::http {
 namespace {
@@ -92,14 +93,21 @@ Result<std::string> gzipped(std::string_view text) {
     return compressed;
 }
 
+std::shared_ptr<const std::string> gzip_of(std::string_view content_type, std::string_view text) {
+    if (text.size() < kBytesMin || !is_text(content_type)) return nullptr;
+    auto compressed = gzipped(text);
+    if (!compressed || compressed->size() >= text.size()) return nullptr;
+    return std::make_shared<const std::string>(std::move(*compressed));
+}
+
 Response encoded_for(std::string_view accept_encoding, Response response) {
     const auto text = response.body.bytes();
     if (response.stream || text.size() < kBytesMin || !is_text(response.get("Content-Type"))) return response;
     response.set("Vary", "Accept-Encoding");
     if (!accepts_gzip(accept_encoding)) return response;
-    auto compressed = gzipped(text);
-    if (!compressed || compressed->size() >= text.size()) return response;
-    response.body = Body(std::move(*compressed));
+    const auto compressed = response.gzip ? response.gzip : gzip_of(response.get("Content-Type"), text);
+    if (!compressed) return response;
+    response.body = Body(compressed);
     response.set("Content-Encoding", "gzip");
     for (auto& [field, value] : response.fields) {
         if (field == "ETag" && !value.starts_with("W/")) value.insert(0, "W/");

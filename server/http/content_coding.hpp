@@ -2,6 +2,7 @@
 
 #include "server/http/response.hpp"
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,8 +13,9 @@ namespace scanloom::http {
 /// Source  RFC 9110, section 12.5.3.
 [[nodiscard]] bool accepts_gzip(std::string_view field);
 
-/// Text as gzip (RFC 1952). Errors  kOverloaded: there is no memory for it.
-[[nodiscard]] Result<std::string> gzipped(std::string_view text);
+/// A text of more than a packet as gzip (RFC 1952); null where the content is no text, gzip makes it no smaller, or
+/// there is no memory for it.
+[[nodiscard]] std::shared_ptr<const std::string> gzip_of(std::string_view content_type, std::string_view text);
 
 /// The answer as the client takes it: texts of more than a packet as gzip, where that makes them smaller and
 /// `accept_encoding` lets it. An entity tag becomes weak, as the bytes differ from those of the plain answer.

@@ -52,6 +52,7 @@ struct Response {
     Status status = Status::ok;
     std::vector<std::pair<std::string_view, std::string>> fields; ///< names are literals, "ETag"
     Body body;
+    std::shared_ptr<const std::string> gzip = nullptr;            ///< the body as gzip, where it was compressed before
     std::shared_ptr<BodyStream> stream = nullptr;                 ///< in place of `body`
     std::shared_ptr<const live::Invitation> invitation = nullptr; ///< with 101: the connection becomes a viewer's
 

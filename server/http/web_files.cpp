@@ -1,6 +1,7 @@
 #include "server/http/web_files.hpp"
 
 #include "server/http/conditional.hpp"
+#include "server/http/content_coding.hpp"
 #include "server/http/host.hpp"
 #include "server/http/in_quotes.hpp"
 
@@ -115,9 +116,11 @@ Result<WebFiles> load_web_files(const std::filesystem::path& folder) {
                 fmt::format("the viewer in {} has more than 64 MiB; name its folder with --web", folder.native())};
         }
         const std::string name = path.lexically_relative(folder).generic_string();
-        auto etag = etag_of(*content);
-        files[name] = WebFile{std::make_shared<const std::string>(std::move(*content)), type_of(path), std::move(etag),
-                              name != "index.html" && has_hash(path)};
+        WebFile file{std::make_shared<const std::string>(std::move(*content)), type_of(path)};
+        file.etag = etag_of(*file.content);
+        file.immutable = name != "index.html" && has_hash(path);
+        file.gzip = gzip_of(file.content_type, *file.content);
+        files[name] = std::move(file);
     }
     return files;
 }
@@ -131,10 +134,12 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
     }
     const WebFile& file = found->second;
     const auto cache_control = file.immutable ? kImmutable : kRevalidate;
-    auto response =
-        if_none_match_has(if_none_match, file.etag)
-            ? not_modified(file.etag, cache_control)
-            : ok(file.content_type, Body(file.content)).set("ETag", file.etag).set("Cache-Control", cache_control);
+    const bool is_known = if_none_match_has(if_none_match, file.etag);
+    auto response = is_known ? not_modified(file.etag, cache_control) : ok(file.content_type, Body(file.content));
+    if (!is_known) {
+        response.set("ETag", file.etag).set("Cache-Control", cache_control);
+        response.gzip = file.gzip;
+    }
     // Of a 304, too: a browser applies its fields to the page it has (RFC 9111, section 3.2).
     response.set("Content-Security-Policy", viewer_policy(host, is_secure));
     return response;

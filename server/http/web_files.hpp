@@ -16,7 +16,8 @@ struct WebFile {
     std::shared_ptr<const std::string> content;
     std::string_view content_type;
     std::string etag;
-    bool immutable = false; ///< its name holds a hash of its content
+    bool immutable = false;                            ///< its name holds a hash of its content
+    std::shared_ptr<const std::string> gzip = nullptr; ///< gzip_of() the content
 };
 
 /// The files of the viewer, by path below the folder it was built into: "index.html",
