@@ -8,6 +8,7 @@ import {
   existsSync,
   mkdirSync,
   mkdtempSync,
+  readdirSync,
   readFileSync,
   rmSync,
   symlinkSync,
@@ -255,4 +256,13 @@ test('the list of faults is that of the program that is there', () => {
     0,
     'a row is that of the sources, which are built first',
   );
+});
+
+test('every mutant applies to the sources and is in the table of docs/internals/testing.md', () => {
+  const table = readFileSync(join(source, 'docs/internals/testing.md'), 'utf8');
+  for (const file of readdirSync(join(source, 'tests/mutants'))) {
+    const run = spawnSync('git', ['apply', '--check', join('tests/mutants', file)], { cwd: source, encoding: 'utf8' });
+    assert.equal(run.status, 0, `${file}: make it again\n${run.stderr}`);
+    assert.ok(table.includes(`| \`${file.replace('.patch', '')}\` |`), `${file} is not in the table`);
+  }
 });
