@@ -64,7 +64,7 @@ describe('a robot that streams to the server', { timeout: 240_000 }, () => {
     const pose = '[data-robot="r1"] [data-role="pose"]';
     const before = await textOf(page, pose);
     await page.waitForFunction(([at, old]) => document.querySelector(at)?.textContent !== old, [pose, before]);
-    await says(page, '[data-robot="r1"] .row-detail', /connected .* [1-9]\d*\.\d m/);
+    await says(page, '[data-robot="r1"] .row-detail', /online .* [1-9]\d*\.\d m/);
     assert.ok((await countPixels(page, await colourOf(page, '--robot-0'))) > 100, 'marker and path are drawn');
   });
 

@@ -70,9 +70,9 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     session.robots[1].connected = false;
     server.add(new FakeSession('bare', 'id-bare')).failure = 'the disk is full';
     await open();
-    await says(page, '[data-session="map"]', /live.*2 scans.*12\.8 × 12\.8 m · 1 of 2 online/);
+    await says(page, '[data-session="map"]', /online.*2 scans.*12\.8 × 12\.8 m · 1 of 2 online/);
     await says(page, '[data-session="bare"]', /takes no scans.*0 scans.*nothing seen yet · no robots.*disk is full/);
-    assert.equal(await page.isVisible('[data-session="bare"] .live'), false);
+    assert.equal(await page.isVisible('[data-session="bare"] .online'), false);
   });
 
   it('pictures what is in view, and again only what has changed', async () => {
@@ -154,14 +154,14 @@ describe('the list of sessions', { timeout: 240_000 }, () => {
     await says(page, '#notice', /fresh_1.*waits for the first scan/);
   });
 
-  it('says in the dialog that the server is away', async () => {
+  it('says in the dialog that the server is offline', async () => {
     await open();
     await says(page, '#notice', /No sessions yet/);
     await page.click('#new-session');
     await page.fill('#new-name', 'later');
     await server.vanish();
     await page.keyboard.press('Enter');
-    await says(page, '.dialog-failure', /No connection/);
+    await says(page, '.dialog-failure', /Offline/);
     await server.comeBack();
     await page.keyboard.press('Enter');
     await page.waitForSelector('#sessions a[aria-current]:has-text("later")');

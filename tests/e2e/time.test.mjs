@@ -235,7 +235,7 @@ describe('the history of a session', { timeout: 240_000 }, () => {
   it('goes on when the server is there again', async () => {
     await page.route('**/weave', (route) => route.abort());
     await page.fill('#time-slider', '60');
-    await says(page, '#time-message', /^No connection to the server; the map stays as it is\. Trying again\.$/);
+    await says(page, '#time-message', /^Offline: the server does not answer; the map stays as it is\. Trying again\.$/);
     await page.unrouteAll();
     await showsScan(page, 60);
   });

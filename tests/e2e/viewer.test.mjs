@@ -180,17 +180,28 @@ describe('the viewer', { timeout: 180_000 }, () => {
 
   it('says that it is offline, and comes back by itself', async () => {
     const session = painted('map');
+    for (const scan of [1, 2, 3]) session.move('r1', scan, 1, 0);
+    session.move('r2', 1, 1, 0);
+    session.robots[1].connected = false;
     await open();
     await tilesShown();
+    session.move('r1', 4, 1, 0);
+    await says(page, '#sessions', /online.*scans\/s.*1 of 2 online/);
+    await says(page, '[data-robot="r1"]', /online/);
+    await says(page, '[data-robot="r2"]', /offline/);
     await server.vanish();
-    await says(page, '#status', /No connection/);
+    await says(page, '#status', /Offline/);
+    await says(page, '#robots', /unknown.*unknown/);
+    // Nothing of the present is shown while it is not known.
+    for (const part of ['#sessions', '#robots']) assert.doesNotMatch(await shownText(part), /online|offline|scans\/s/);
     assert.ok((await countPixels(page, await colourOf(page, '--cell-free'))) > 0, 'the map stays');
     await keepPicture(page, 'offline');
     session.paint(256, 255, 100);
     await server.comeBack();
-    await says(page, '#status', /Connected again/);
+    await says(page, '#status', /Online again/);
     await occupiedShown();
     await says(page, '#status', /^$/);
+    await says(page, '[data-robot="r1"]', /online/);
   });
 
   it('shows the sentence of an error, and goes on when it is over', async () => {
@@ -314,6 +325,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
     const session = server.add(new FakeSession(name, id));
     session.paint(256, 255, percent);
     return session;
+  }
+
+  /** Without what is hidden. */
+  function shownText(selector) {
+    return page.locator(selector).innerText();
   }
 
   function countOf(path) {

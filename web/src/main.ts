@@ -142,6 +142,10 @@ function buildPanels(): void {
 }
 
 function listen(): void {
+  status.listen((isOffline) => {
+    sessionPanel.setOffline(isOffline);
+    robotList.setOffline(isOffline);
+  });
   settings.listen(takeColours);
   picture.listen(rememberLayer);
   viewer.listen((session) => {

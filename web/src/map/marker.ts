@@ -5,7 +5,7 @@ export interface MarkerLook {
   yaw: number;
   colour: string;
   halo: string;
-  /** Hollow when the robot is away. */
+  /** Hollow when the robot is offline. */
   filled: boolean;
 }
 

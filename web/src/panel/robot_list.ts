@@ -20,6 +20,7 @@ export class RobotList {
   private robots: Robot[] = [];
   private colours: RobotColours | null = null;
   private followed: string | null = null;
+  private isOffline = false;
 
   constructor(
     list: HTMLElement,
@@ -55,6 +56,12 @@ export class RobotList {
     this.rows.show(this.robots);
   }
 
+  /** @param isOffline whether the server does not answer: the state of the robots is unknown */
+  setOffline(isOffline: boolean): void {
+    this.isOffline = isOffline;
+    this.rows.show(this.robots);
+  }
+
   private createRow({ name }: Robot): RobotRow {
     const swatch = el('span', { class: 'swatch' });
     const detail = el('span', { class: 'row-detail' });
@@ -69,9 +76,9 @@ export class RobotList {
   private update(row: RobotRow, robot: Robot): void {
     row.element.dataset['robot'] = robot.name;
     row.swatch.dataset['colour'] = String(this.colours?.indexOf(robot.name) ?? 0);
-    row.swatch.classList.toggle('hollow', !robot.connected);
+    row.swatch.classList.toggle('hollow', this.isOffline || !robot.connected);
     const travelled = format.length(this.source.pathLength(robot.name));
-    const state = robot.connected ? 'connected' : 'away';
+    const state = this.isOffline ? 'unknown' : robot.connected ? 'online' : 'offline';
     setText(row.detail, [state, format.counted(robot.scans, 'scan'), travelled].join(' \u00b7 '));
     setText(row.place, robot.pose ? format.pose(robot.pose) : 'no position yet');
     row.follow.disabled = !robot.pose;

@@ -1,4 +1,4 @@
-/** Whether the server can be heard: silent while all is well. */
+/** The line that reports whether the server answers; empty while it does. */
 import { MalformedAnswer } from '../api/decode';
 import { Refused, Unreachable } from '../api/http';
 import { setText } from '../dom';
@@ -11,6 +11,8 @@ export class Status {
   private readonly troubles = new Map<string, Trouble>();
   private timer = 0;
   private wasOffline = false;
+  private isOffline = false;
+  private readonly listeners: ((isOffline: boolean) => void)[] = [];
 
   constructor(private readonly line: HTMLElement) {}
 
@@ -24,6 +26,11 @@ export class Status {
     this.show();
   }
 
+  /** Calls `listener` when the connection to the server is lost (true) and when it is there again (false). */
+  listen(listener: (isOffline: boolean) => void): void {
+    this.listeners.push(listener);
+  }
+
   /** That question is asked no longer. */
   forget(source: string): void {
     this.troubles.delete(source);
@@ -33,17 +40,24 @@ export class Status {
   private show(): void {
     const all = [...this.troubles.values()];
     const worst = all.find(({ kind }) => kind === 'offline') ?? all[0];
+    this.notify(worst?.kind === 'offline');
     if (worst) {
       clearTimeout(this.timer);
       this.wasOffline ||= worst.kind === 'offline';
       this.say(worst.kind, worst.text);
     } else if (this.wasOffline) {
       this.wasOffline = false;
-      this.say('well', 'Connected again.');
+      this.say('well', 'Online again.');
       this.timer = window.setTimeout(() => this.say('silent', ''), kReassureMs);
     } else if (this.line.dataset['state'] !== 'well') {
       this.say('silent', '');
     }
+  }
+
+  private notify(isOffline: boolean): void {
+    if (isOffline === this.isOffline) return;
+    this.isOffline = isOffline;
+    for (const listener of this.listeners) listener(isOffline);
   }
 
   private say(state: string, text: string): void {
@@ -54,7 +68,10 @@ export class Status {
 
 export function troubleOf(error: unknown): Trouble {
   if (error instanceof Unreachable) {
-    return { kind: 'offline', text: 'No connection to the server. Trying again; the map shows what was last seen.' };
+    return {
+      kind: 'offline',
+      text: 'Offline: the server does not answer. Trying again; the map shows what was last received.',
+    };
   }
   if (error instanceof Refused) {
     return { kind: 'error', text: `The server reports an error: ${error.message}. Trying again.` };

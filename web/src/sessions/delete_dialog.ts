@@ -6,7 +6,7 @@ import { counted } from '../format';
 import { FormDialog } from './form_dialog';
 
 const kConsequence =
-  'Its log of scans and all its maps are deleted for good. Robots that are connected to it are sent away.';
+  'Its log of scans and all its maps are deleted for good. Robots that are online in it are disconnected.';
 
 export interface DeleteEvents {
   /** The request is on its way: whoever watches the session may hear of its end before the answer comes. */

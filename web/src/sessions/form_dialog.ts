@@ -75,7 +75,7 @@ export class FormDialog {
 }
 
 function sentenceOf(error: unknown): string {
-  if (error instanceof Unreachable) return 'No connection to the server. Try again when it is back.';
+  if (error instanceof Unreachable) return 'Offline: the server does not answer. Try again when it is online.';
   if (error instanceof Refused) return `The server refuses: ${error.message}.`;
   if (error instanceof MalformedAnswer) return `The server\u2019s answer cannot be read: ${error.message}.`;
   return `Something in this page failed: ${String(error)}.`;

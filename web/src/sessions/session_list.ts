@@ -21,6 +21,7 @@ export class SessionList {
   private readonly thumbnails: Thumbnails;
   private chosen: string | null = null;
   private names: string[] = [];
+  private isOffline = false;
 
   /** @param rate scans per second; null where unknown */
   constructor(
@@ -75,6 +76,11 @@ export class SessionList {
     if (row) this.update(row, session);
   }
 
+  /** Takes effect with the next show(). @param isOffline whether the server does not answer */
+  setOffline(isOffline: boolean): void {
+    this.isOffline = isOffline;
+  }
+
   choose(name: string): void {
     this.chosen = name;
     for (const [each, row] of this.byName) this.mark(row, each);
@@ -98,7 +104,7 @@ export class SessionList {
   }
 
   private update(row: SessionRow, session: Session): void {
-    updateSessionRow(row, session, this.rate(session.name));
+    updateSessionRow(row, session, this.rate(session.name), this.isOffline);
     this.thumbnails.show(row.picture, session);
   }
 

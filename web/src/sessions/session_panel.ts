@@ -80,6 +80,12 @@ export class SessionPanel {
     this.tellState();
   }
 
+  /** @param isOffline whether the server does not answer */
+  setOffline(isOffline: boolean): void {
+    this.list.setOffline(isOffline);
+    this.arrange();
+  }
+
   setTheme(theme: Theme): void {
     this.list.setPalette(theme.cells);
   }

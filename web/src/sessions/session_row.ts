@@ -9,7 +9,7 @@ export interface SessionRow extends Row {
   picture: HTMLCanvasElement;
   pace: HTMLElement;
   place: HTMLElement;
-  live: HTMLElement;
+  online: HTMLElement;
   failed: HTMLElement;
   failure: HTMLElement;
   remove: HTMLButtonElement;
@@ -21,27 +21,32 @@ export interface DamagedRow extends Row {
 
 export function createSessionRow({ name }: Session): SessionRow {
   const picture = el('canvas', { class: 'thumbnail', 'aria-hidden': 'true', width: '1', height: '1' });
-  const live = el('span', { class: 'live' }, 'live');
+  const online = el('span', { class: 'online' }, 'online');
   const failed = el('span', { class: 'damaged' }, 'takes no scans');
   const [pace, place, failure] = [detail(), detail(), detail()];
-  const title = el('span', { class: 'row-title' }, nameOf(name), live, failed);
+  const title = el('span', { class: 'row-title' }, nameOf(name), online, failed);
   const words = el('span', { class: 'row-words' }, title, pace, place, failure);
   const link = el('a', { href: hashOfSession(name), class: 'row' }, picture, words);
   const remove = removeButton(name);
   const element = el('li', { class: 'session', 'data-session': name }, link, remove);
-  return { element, link, picture, pace, place, live, failed, failure, remove };
+  return { element, link, picture, pace, place, online, failed, failure, remove };
 }
 
-/** @param rate scans per second; null where unknown */
-export function updateSessionRow(row: SessionRow, session: Session, rate: number | null): void {
-  const isLive = session.robots.some(({ connected }) => connected);
-  const busy = rate !== null && (isLive || rate > 0) ? [`${format.decimal(rate, 1)} scans/s`] : [];
+/**
+ * Shows the session's newest values.
+ *
+ * @param rate      scans per second; null where unknown
+ * @param isOffline the server does not answer: the row says nothing of the present
+ */
+export function updateSessionRow(row: SessionRow, session: Session, rate: number | null, isOffline: boolean): void {
+  const isOnline = !isOffline && session.robots.some(({ connected }) => connected);
+  const busy = !isOffline && rate !== null && (isOnline || rate > 0) ? [`${format.decimal(rate, 1)} scans/s`] : [];
   setText(row.pace, [format.counted(session.scans, 'scan'), ...busy].join(' \u00b7 '));
   const area = session.bounds ? format.area(session.bounds) : 'nothing seen yet';
-  setText(row.place, [area, robotsOf(session)].join(' \u00b7 '));
+  setText(row.place, [area, robotsOf(session, isOffline)].join(' \u00b7 '));
   row.failed.hidden = row.failure.hidden = session.failure === null;
   setText(row.failure, session.failure ?? '');
-  row.live.hidden = !isLive;
+  row.online.hidden = !isOnline;
 }
 
 /** Nothing to open: the server cannot weave its map. */
@@ -54,8 +59,9 @@ export function createDamagedRow({ name }: DamagedSession, remove: (name: string
   return { element: el('li', { class: 'session', 'data-session': name }, words, button), reason };
 }
 
-function robotsOf({ robots }: Session): string {
+function robotsOf({ robots }: Session, isOffline: boolean): string {
   if (robots.length === 0) return 'no robots';
+  if (isOffline) return format.counted(robots.length, 'robot');
   const online = robots.filter(({ connected }) => connected).length;
   return `${format.count(online)} of ${format.count(robots.length)} online`;
 }

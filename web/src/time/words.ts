@@ -48,7 +48,7 @@ export function loading(share: number): string {
 /** Why a moment cannot be shown. @param trying whether it is tried again */
 export function troubleOf(error: unknown, trying: boolean): string {
   const again = trying ? ' Trying again.' : '';
-  if (error instanceof Unreachable) return `No connection to the server; the map stays as it is.${again}`;
+  if (error instanceof Unreachable) return `Offline: the server does not answer; the map stays as it is.${again}`;
   if (error instanceof Refused && error.status === 404) return 'The server has that map no longer: it is woven again.';
   const because = `${reasonOf(error)}.`.replace(/\.\.$/, '.');
   return `That moment cannot be shown; the map stays as it is. ${because}${again}`;

@@ -4,7 +4,7 @@ import { Refused, Unreachable } from '../../../../web/src/api/http';
 import { troubleOf } from '../../../../web/src/panel/status';
 
 describe('trouble', () => {
-  it('tells a server that is away from one that refuses', () => {
+  it('reports a server that is offline apart from one that refuses', () => {
     assert.equal(troubleOf(new Unreachable('x')).kind, 'offline');
     assert.equal(troubleOf(new Refused(503, 'x')).kind, 'error');
   });

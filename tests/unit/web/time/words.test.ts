@@ -57,7 +57,7 @@ describe('words for times', () => {
   });
 
   it('say what is wrong, and what happens next', () => {
-    assert.match(words.troubleOf(new Unreachable('x'), true), /^No connection .* Trying again\.$/);
+    assert.match(words.troubleOf(new Unreachable('x'), true), /^Offline: .* Trying again\.$/);
     assert.match(words.troubleOf(new Refused(503, 'too many maps'), true), /reports: too many maps\. Trying again\.$/);
     assert.match(words.troubleOf(new Refused(404, 'x'), true), /woven again/);
     assert.match(words.troubleOf(new Unwoven('no room.'), false), /could not be woven: no room\.$/);
