@@ -48,7 +48,7 @@ export function exportTool(context: ToolContext): Tool {
     title: 'Export',
     key: 'e',
     does: 'saves what is seen as files',
-    icon: 'M8 9.5v-7M5 5.5l3-3 3 3M2.5 10.5v3h11v-3',
+    icon: 'M7.5 2.5h-5v11h5M6.5 8h8M11.5 5l3 3-3 3',
     open: (card, signal) => void new ExportCard(context, card, signal),
   };
 }

@@ -19,7 +19,7 @@ export function importTool(): Tool {
     title: 'Import a map',
     key: 'i',
     does: 'makes a session from a ROS map',
-    icon: 'M8 2.5v7M5 6.5l3 3 3-3M2.5 10.5v3h11v-3',
+    icon: 'M8.5 2.5h5v11h-5M1.5 8h8M6.5 5l3 3-3 3',
     withoutMap: true,
     open: (card, signal) => void new ImportCard(card, signal),
   };
