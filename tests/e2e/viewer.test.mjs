@@ -193,7 +193,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await says(page, '#status', /Offline/);
     await says(page, '#robots', /unknown.*unknown/);
     // Nothing of the present is shown while it is not known.
-    for (const part of ['#sessions', '#robots']) assert.doesNotMatch(await shownText(part), /online|offline|scans\/s/);
+    assert.equal(await page.isVisible('#sessions .online'), false);
+    for (const part of ['#sessions .row-detail', '#robots']) {
+      for (const text of await page.locator(part).allTextContents())
+        assert.doesNotMatch(text, /online|offline|scans\/s/);
+    }
     assert.ok((await countPixels(page, await colourOf(page, '--cell-free'))) > 0, 'the map stays');
     await keepPicture(page, 'offline');
     session.paint(256, 255, 100);
@@ -325,11 +329,6 @@ describe('the viewer', { timeout: 180_000 }, () => {
     const session = server.add(new FakeSession(name, id));
     session.paint(256, 255, percent);
     return session;
-  }
-
-  /** Without what is hidden. */
-  function shownText(selector) {
-    return page.locator(selector).innerText();
   }
 
   function countOf(path) {
