@@ -35,7 +35,11 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
   it('asks for a token, and shows what it is for', async () => {
     const { page, complaints } = await openPage(browser, server.address, { hash: '#session=depot' });
     await page.waitForSelector('dialog[open] #token');
+    await says(page, 'dialog[open]', /This server requires a token\./);
     assert.equal(await page.isVisible('#sign-in'), false);
+    await askedAgain(page);
+    for (const other of ['#status', '#notice', '#sessions-state'])
+      assert.equal(await page.isVisible(other), false, other);
     await signIn(page, 'scanloom_guess');
     await says(page, 'dialog[open] .dialog-failure', /not in force/);
     await page.keyboard.press('Escape');
@@ -67,6 +71,7 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     const address = page.url();
     await page.context().clearCookies(); // as when the server was started again
     await page.waitForSelector('dialog[open] #token');
+    await says(page, 'dialog[open]', /Your session has expired\./);
     await signIn(page, operator.secret);
     await says(page, '#session-count', /^3 sessions$/);
     assert.equal(page.url(), address);
@@ -89,6 +94,12 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     assert.equal(answer.status, 401);
     await page.context().close();
   });
+
+  /** Waits until the page has taken an answer 401 to each of its polls. */
+  async function askedAgain(page) {
+    for (let answers = 0; answers < 2; ++answers) await page.waitForResponse((answer) => answer.status() === 401);
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
+  }
 
   async function signIn(page, secret) {
     await page.fill('#token', secret);

@@ -1,4 +1,4 @@
-/** Who looks: asks for a token where the server does, and lets the person sign out again. */
+/** Signing in and out: asks for a token when the server requires one. The dialog is the only message about it. */
 import { onUnauthorized } from './api/http';
 import { fetchLogin, signIn, signOut, type Login } from './api/login';
 import { el, setText } from './dom';
@@ -9,6 +9,8 @@ export class SignIn {
   private readonly dialog: FormDialog;
   private readonly secret: HTMLInputElement;
   private readonly name = el('span', { dir: 'auto' });
+  private readonly reason = el('p');
+  private wasSignedIn = false;
 
   /** @param place shows who is signed in; hidden where nobody has to be */
   constructor(private readonly place: HTMLElement) {
@@ -24,12 +26,14 @@ export class SignIn {
     this.dialog = new FormDialog(
       { title: 'Sign in', submit: 'Sign in', busy: 'Signing in\u2026' },
       [
+        this.reason,
         el('label', { for: 'token' }, 'Token'),
         this.secret,
-        el('p', { id: 'token-rule', class: 'quiet' }, 'Whoever runs this server gives you one.'),
+        el('p', { id: 'token-rule', class: 'quiet' }, 'The operator of the server gives you one.'),
       ],
       (signal) => this.attempt(signal),
     );
+    this.dialog.element.classList.add('sign-in');
     // Without a token there is nothing to go back to.
     this.dialog.cancel.remove();
     this.dialog.element.addEventListener('cancel', (event) => event.preventDefault());
@@ -49,6 +53,10 @@ export class SignIn {
   private ask(): void {
     if (this.dialog.element.open) return;
     this.secret.value = '';
+    setText(
+      this.reason,
+      this.wasSignedIn ? 'Your session has expired. Sign in again.' : 'This server requires a token.',
+    );
     this.dialog.open(this.secret);
   }
 
@@ -60,6 +68,7 @@ export class SignIn {
   }
 
   private show({ token }: Login): void {
+    this.wasSignedIn ||= token !== null;
     this.place.hidden = token === null;
     setText(this.name, token === null ? '' : `${token.name} (${token.role})`);
   }

@@ -22,6 +22,11 @@ export class Refused extends Error {
   }
 }
 
+/** Whether the server asks for a token: sign_in.ts shows this, no other part of the page. */
+export function isUnauthorized(error: unknown): boolean {
+  return error instanceof Refused && error.status === kUnauthorized;
+}
+
 /** Whether waiting may mend it: there was no answer, or one that says so. */
 export function isPassing(error: unknown): boolean {
   return error instanceof Unreachable || (error instanceof Refused && kPassing.includes(error.status));

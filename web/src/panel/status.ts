@@ -1,6 +1,6 @@
 /** The line that reports whether the server answers; empty while it does. */
 import { MalformedAnswer } from '../api/decode';
-import { Refused, Unreachable } from '../api/http';
+import { isUnauthorized, Refused, Unreachable } from '../api/http';
 import { setText } from '../dom';
 
 export type Trouble = { kind: 'offline' | 'error'; text: string };
@@ -21,7 +21,7 @@ export class Status {
    * @param error null when it was answered
    */
   settle(source: string, error: unknown): void {
-    if (error === null) this.troubles.delete(source);
+    if (error === null || isUnauthorized(error)) this.troubles.delete(source);
     else this.troubles.set(source, troubleOf(error));
     this.show();
   }

@@ -1,6 +1,6 @@
 /** The panel's part about all sessions: search, order, list, and what makes sessions and ends them. */
 import type { DamagedSession, Session } from '../api/types';
-import { Refused, Unreachable } from '../api/http';
+import { isUnauthorized, Refused, Unreachable } from '../api/http';
 import { byId, setText } from '../dom';
 import { count, counted } from '../format';
 import type { Theme } from '../theme';
@@ -169,6 +169,7 @@ export class SessionPanel {
 function stateOf(heard: boolean, all: number, trouble: unknown): string {
   const kept = heard ? ' The list shows what was last heard.' : '';
   if (trouble instanceof Unreachable) return `Offline.${kept}`;
+  if (isUnauthorized(trouble)) return '';
   if (trouble instanceof Refused) return `The list cannot be had: ${trouble.message}.${kept}`;
   if (trouble !== null) return `The list cannot be read.${kept}`;
   if (!heard) return 'Loading\u2026';
