@@ -35,7 +35,7 @@ export async function openPage(
     viewport: { width: size[0], height: size[1] },
     colorScheme: scheme,
     deviceScaleFactor: scale,
-    hasTouch: size[0] < 700,
+    hasTouch: size[0] < 700 || size[1] < 500,
     ignoreHTTPSErrors: trusts === 'anybody',
   });
   const complaints = [];

@@ -345,9 +345,14 @@ describe('tools on the map', { timeout: 280_000 }, () => {
         await phone.page.click(`#tool-${tool}`);
         await phone.page.waitForSelector(`#tool[data-tool=${tool}]`, { state: 'visible' });
         assert.deepEqual(await violations(phone.page), [], tool);
-        const [card, stage] = await Promise.all(['#tool', '#map'].map((id) => phone.page.locator(id).boundingBox()));
-        assert.equal(card.width, stage.width);
-        assert.ok(card.height < 0.6 * stage.height, `${tool} leaves the map in view`);
+        const [card, map] = await Promise.all(['#tool', '#map'].map((id) => phone.page.locator(id).boundingBox()));
+        assert.equal(card.width, map.width);
+        assert.ok(card.y >= map.y + map.height && map.height > 300, `${tool} leaves the map in view`);
+        const start = phone.page.locator('#tool .primary');
+        if ((await start.count()) > 0) {
+          const { y, height } = await start.boundingBox();
+          assert.ok(y + height <= card.y + card.height, `the button of ${tool} is not cut off`);
+        }
         await keepPicture(phone.page, `tool-${tool}-phone`);
       }
       assert.deepEqual(phone.complaints, []);

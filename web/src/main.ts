@@ -5,6 +5,7 @@ import { Chooser } from './chooser';
 import { byId } from './dom';
 import { Keys } from './keys';
 import { Camera } from './map/camera';
+import type { Box } from './map/free_area';
 import { createMap, MapView } from './map/map_view';
 import { NewestSessions } from './newest_sessions';
 import { Cursor } from './panel/cursor';
@@ -58,7 +59,7 @@ const robotList = new RobotList(
   { pathLength: (robot) => viewer.pathLength(robot) },
   (robot) => (robot === null ? camera.free() : camera.follow(robot)),
 );
-const camera = new Camera(map, target, (robot) => robotList.setFollowed(robot));
+const camera = new Camera(map, target, controlsOnMap, (robot) => robotList.setFollowed(robot));
 const viewer: Viewer = new Viewer({
   map: mapView,
   picture,
@@ -81,7 +82,7 @@ const viewer: Viewer = new Viewer({
   endIsExpected: (name) => ending.has(name),
 });
 const chooser = new Chooser({ viewer, panel: sessionPanel, notice, newest });
-const toolbox = new Toolbox(keys, () => viewer.session?.bounds != null);
+const toolbox = new Toolbox(keys, () => viewer.session?.bounds != null, target);
 /** The colours that everything has. */
 let coloured = JSON.stringify(readTheme());
 const comparison = new Comparison(picture);
@@ -90,6 +91,15 @@ function open(): void {
   const layer = layerOfHash(location.hash);
   if (layer !== null) picture.change({ layer });
   chooser.open();
+}
+
+/** The boxes of the controls that lie on the map, in its pixels. */
+function controlsOnMap(): Box[] {
+  const origin = target.getBoundingClientRect();
+  return [...document.querySelectorAll('.tools, .scale-bar')].map((element) => {
+    const { left, top, right, bottom } = element.getBoundingClientRect();
+    return { left: left - origin.left, top: top - origin.top, right: right - origin.left, bottom: bottom - origin.top };
+  });
 }
 
 /** Matters on a phone only, where the panel covers most of the map. */

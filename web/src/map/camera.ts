@@ -3,10 +3,11 @@ import { containsExtent, type Extent } from 'ol/extent';
 import type Map from 'ol/Map';
 import type { Bounds, Robot } from '../api/types';
 import { motionMs } from '../motion';
+import { freePadding, type Box, type Padding } from './free_area';
 
 type Aim = { kind: 'everything' } | { kind: 'free' } | { kind: 'robot'; name: string };
 
-/** Room around what is fitted, for the tools in the corners. */
+/** Room around what is fitted, also where no control lies on the map. */
 const kPaddingPx = 56;
 const kPaddingShareMax = 0.08;
 const kMoveMs = 250;
@@ -24,10 +25,12 @@ export class Camera {
   constructor(
     private readonly map: Map,
     target: HTMLElement,
+    /** What lies on the map, to be left free when something is fitted. */
+    private readonly controls: () => Box[],
     private readonly aimed: (robot: string | null) => void,
   ) {
     map.on('pointerdrag', () => this.free());
-    map.on('change:size', () => this.update());
+    map.on('change:size', () => this.resized());
     for (const zooming of ['wheel', 'dblclick']) {
       target.addEventListener(zooming, () => this.zoomed(), { passive: true });
     }
@@ -88,6 +91,12 @@ export class Camera {
     this.aimed(this.followed);
   }
 
+  /** Shows everything in the map's new size, if the person has not moved the view. */
+  private resized(): void {
+    if (this.fitted && this.aim.kind === 'everything' && this.bounds && this.map.getSize()) this.fitTo(this.bounds, 0);
+    else this.update();
+  }
+
   private update(): void {
     if (!this.map.getSize()) return;
     if (this.aim.kind === 'robot') this.centreOn(this.aim.name);
@@ -108,14 +117,18 @@ export class Camera {
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
     // Following a robot is a movement under way, which would otherwise have the last word.
     this.map.getView().cancelAnimations();
-    const [width = 0, height = 0] = this.map.getSize() ?? [];
-    const padding = Math.min(kPaddingPx, kPaddingShareMax * Math.min(width, height));
     this.map.getView().fit(extent, {
-      padding: [padding, padding, padding, padding],
+      padding: this.paddingOf(bounds),
       minResolution: kFitResolutionMin,
       duration: this.fitted ? motionMs(kMoveMs) : 0,
     });
     this.fitted = true;
+  }
+
+  private paddingOf({ minX, minY, maxX, maxY }: Bounds): Padding {
+    const [width = 0, height = 0] = this.map.getSize() ?? [];
+    const margin = Math.min(kPaddingPx, kPaddingShareMax * Math.min(width, height));
+    return freePadding([width, height], (maxX - minX) / (maxY - minY), margin, this.controls());
   }
 
   private inView(bounds: Bounds): boolean {

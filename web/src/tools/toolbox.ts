@@ -1,6 +1,7 @@
 /** Tools that work on the map, one at a time: a button for each, and a card beside the map while it is open. */
 import { byId, el, setText } from '../dom';
 import type { Keys } from '../keys';
+import { makeDraggable } from './card_drag';
 
 export interface Tool {
   /** Of the button: #tool-ID. */
@@ -22,6 +23,7 @@ export class Toolbox {
     /** Where the buttons go. */
     bar: byId('toolbar', HTMLElement),
     card: byId('tool', HTMLElement),
+    head: byId('tool-head', HTMLElement),
     title: byId('tool-title', HTMLElement),
     body: byId('tool-body', HTMLElement),
     close: byId('tool-close', HTMLButtonElement),
@@ -34,7 +36,9 @@ export class Toolbox {
     private readonly keys: Keys,
     /** Whether there is a map to work on. */
     private readonly hasMap: () => boolean,
+    stage: HTMLElement,
   ) {
+    makeDraggable(this.fields.card, this.fields.head, stage);
     this.fields.close.addEventListener('click', () => this.close());
     keys.bind({ key: 'Escape', does: 'closes the tool that is open', run: () => this.close() });
   }
