@@ -29,12 +29,13 @@ export function launchBrowser() {
 export async function openPage(
   browser,
   address,
-  { hash = '', size = [1280, 800], scheme = 'light', scale = 1, trusts = '' } = {},
+  { hash = '', size = [1280, 800], scheme = 'light', scale = 1, motion = 'no-preference', trusts = '' } = {},
 ) {
   const context = await browser.newContext({
     viewport: { width: size[0], height: size[1] },
     colorScheme: scheme,
     deviceScaleFactor: scale,
+    reducedMotion: motion,
     hasTouch: size[0] < 700 || size[1] < 500,
     ignoreHTTPSErrors: trusts === 'anybody',
   });

@@ -4,6 +4,7 @@ import { describe, it } from 'node:test';
 import { colourOf, colourScheme, countPixels, keepPicture, says, showsColour, textOf, until } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
+import { kMiddle } from './one_tile.mjs';
 
 /** Upright and sideways: a recent one and a small one. */
 const kPhones = [
@@ -282,9 +283,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
 
   it('shows the robots without scrolling, and a card that can be dragged off the place to pick', async () => {
     for (const name of ['a', 'b', 'c', 'd', 'e', 'f', 'g']) painted(name).move('r1', 6, 6, 1);
-    await open({ size: [1280, 720], hash: '#session=a' });
+    await open({ size: [1280, 720], hash: '#session=g' });
     await tilesShown();
     await isInView('[data-robot="r1"] [data-role=pose]');
+    const [chosen, list] = await boxes('#sessions [aria-current]', '#sessions');
+    assert.ok(chosen.y >= list.y && chosen.y < list.y + list.height, 'the open session is in view in the list');
     await page.click('#tool-path');
     const before = await page.locator('#tool').boundingBox();
     await drag('#tool-title', -400, 30);
@@ -348,6 +351,28 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await page.mouse.move(884, 400);
     await says(page, '#cursor-x', /^8\.2\d$/);
     await says(page, '#cursor-y', /^6\.[34]\d$/);
+  });
+
+  it('keeps the growing map in view until the person moves it, and again after Fit', async () => {
+    const session = painted('map');
+    await open({ motion: 'reduce' });
+    await tilesShown();
+    await page.mouse.move(...kMiddle);
+    await says(page, '#cursor-x', /^6\.[34]\d$/);
+    for (const column of [257, 258]) session.paint(column, 255, 0);
+    await says(page, '#cursor-x', /^19\.[12]\d$/);
+    await page.mouse.down();
+    await page.mouse.move(kMiddle[0] + 60, kMiddle[1], { steps: 4 });
+    await page.mouse.up();
+    const moved = await textOf(page, '#cursor-x');
+    for (const column of [259, 260, 261]) session.paint(column, 255, 0);
+    await says(page, '#sessions', /76\.8 × 12\.8 m/);
+    assert.equal(await textOf(page, '#cursor-x'), moved, 'the view stays');
+    await page.click('#fit');
+    await page.mouse.move(...kMiddle);
+    await says(page, '#cursor-x', /^38\.[34]\d$/);
+    session.paint(262, 255, 0);
+    await says(page, '#cursor-x', /^44\.[78]\d$/);
   });
 
   it('shows where most of the map is, not what one scan left far away', async () => {

@@ -137,7 +137,7 @@ function bindKeys(): void {
   keys.bind({ key: 'v', does: 'shows the next layer', run: () => picture.step(1) });
   keys.bind({ key: 'b', does: 'shows the layer before', run: () => picture.step(-1) });
   keys.bind({ key: 'g', does: 'shows HIMM counters in the cells, when zoomed in', run: toggleCounters });
-  keys.bind({ key: 'f', does: 'fits the whole map', run: () => camera.fit() });
+  keys.bind({ key: 'f', does: 'fits the map and follows its growth', run: () => camera.fit() });
   keys.bind({ key: '/', does: 'searches the sessions', run: () => sessionPanel.focusSearch() });
 }
 

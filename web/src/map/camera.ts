@@ -1,4 +1,4 @@
-/** What part of the map is in view: all of it, what the person chose, or where a robot is. */
+/** What part of the map is in view: all of it as it grows, what the person moved it to, or where a robot is. */
 import { containsExtent, type Extent } from 'ol/extent';
 import type Map from 'ol/Map';
 import type { Bounds, Robot } from '../api/types';
@@ -13,6 +13,8 @@ const kPaddingShareMax = 0.08;
 const kMoveMs = 250;
 /** Nothing is shown larger than this by itself: metres per pixel for a room of a few metres. */
 const kFitResolutionMin = 0.01;
+/** Bounds may exceed the free part of the view by this much, which is rounding. */
+const kTolerancePx = 1;
 /** Bounds that outgrow the view are fitted with this much room to grow, so that the view does not creep. */
 const kRoomToGrow = 0.15;
 
@@ -21,19 +23,21 @@ export class Camera {
   private bounds: Bounds | null = null;
   private robots: Robot[] = [];
   private fitted = false;
+  /** Of the last fit. */
+  private padding: Padding = [0, 0, 0, 0];
 
   constructor(
     private readonly map: Map,
-    target: HTMLElement,
+    private readonly target: HTMLElement,
     /** What lies on the map, to be left free when something is fitted. */
     private readonly controls: () => Box[],
     private readonly aimed: (robot: string | null) => void,
   ) {
-    map.on('pointerdrag', () => this.free());
+    map.on('pointerdrag', () => this.isMapMoved() && this.free());
     map.on('change:size', () => this.resized());
-    for (const zooming of ['wheel', 'dblclick']) {
-      target.addEventListener(zooming, () => this.zoomed(), { passive: true });
-    }
+    target.addEventListener('wheel', () => this.zoomed(), { passive: true });
+    // While a tool takes clicks as places, a double click does not zoom.
+    target.addEventListener('dblclick', () => target.classList.contains('picking') || this.zoomed());
     target.addEventListener('keydown', ({ key }) => {
       if (key.startsWith('Arrow')) this.free();
       else if (key === '+' || key === '-') this.zoomed();
@@ -81,6 +85,11 @@ export class Camera {
     if (zoom !== undefined) view.animate({ zoom: zoom + levels, duration: motionMs(kMoveMs) });
   }
 
+  /** OpenLayers has marked a feature that is dragged in place of the map. */
+  private isMapMoved(): boolean {
+    return !this.target.classList.contains('ol-grabbing');
+  }
+
   /** Zooming while a robot is followed goes on following it. */
   private zoomed(): void {
     if (this.aim.kind === 'everything') this.free();
@@ -117,8 +126,9 @@ export class Camera {
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
     // Following a robot is a movement under way, which would otherwise have the last word.
     this.map.getView().cancelAnimations();
+    this.padding = this.paddingOf(bounds);
     this.map.getView().fit(extent, {
-      padding: this.paddingOf(bounds),
+      padding: this.padding,
       minResolution: kFitResolutionMin,
       duration: this.fitted ? motionMs(kMoveMs) : 0,
     });
@@ -134,7 +144,16 @@ export class Camera {
   private inView(bounds: Bounds): boolean {
     const view = this.map.getView();
     // An animation under way already goes there.
-    return view.getAnimating() || containsExtent(view.calculateExtent(this.map.getSize()), extentOf(bounds));
+    return view.getAnimating() || containsExtent(this.freeExtent(), extentOf(bounds));
+  }
+
+  /** What is in view, without the padding of the last fit: there may be controls. */
+  private freeExtent(): Extent {
+    const view = this.map.getView();
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = view.calculateExtent(this.map.getSize());
+    const resolution = view.getResolution() ?? 0;
+    const [top, right, bottom, left] = this.padding.map((side) => (side - kTolerancePx) * resolution) as Padding;
+    return [minX + left, minY + bottom, maxX - right, maxY - top];
   }
 }
 

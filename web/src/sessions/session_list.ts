@@ -22,6 +22,8 @@ export class SessionList {
   private chosen: string | null = null;
   private names: string[] = [];
   private isOffline = false;
+  /** The one that was scrolled into view last. */
+  private revealed: string | null = null;
 
   /** @param rate scans per second; null where unknown */
   constructor(
@@ -67,6 +69,7 @@ export class SessionList {
     const chosen = this.chosen === null ? undefined : this.byName.get(this.chosen);
     const stops = rows.map(({ link, remove }) => ({ link, others: [remove] }));
     this.roving.show(stops, chosen?.link ?? null);
+    this.reveal();
     this.thumbnails.tend();
   }
 
@@ -84,6 +87,7 @@ export class SessionList {
   choose(name: string): void {
     this.chosen = name;
     for (const [each, row] of this.byName) this.mark(row, each);
+    this.reveal();
   }
 
   /** @return whether there is a row to go to */
@@ -93,6 +97,17 @@ export class SessionList {
 
   setPalette(palette: Palette): void {
     this.thumbnails.setPalette(palette);
+  }
+
+  /** Scrolls to the session that was opened, once. */
+  private reveal(): void {
+    const row = this.chosen === null ? undefined : this.byName.get(this.chosen);
+    if (!row || this.revealed === this.chosen) return;
+    this.revealed = this.chosen;
+    const { offsetTop, offsetHeight } = row.element;
+    const top = offsetTop - this.list.offsetTop;
+    const { scrollTop, clientHeight } = this.list;
+    if (top < scrollTop || top + offsetHeight > scrollTop + clientHeight) this.list.scrollTop = top;
   }
 
   private create(session: Session): SessionRow {
