@@ -154,11 +154,11 @@ describe('tools on the map', { timeout: 280_000 }, () => {
 
     it('find a way between two places that are clicked, and another when an end is dragged', async () => {
       await open('p');
-      await told(/Click where the way begins/);
+      await told(/Click the start of the path/);
       await clickOn(left(300));
-      await told(/Click where the way ends/);
+      await told(/Click the end of the path/);
       await clickOn(left(600));
-      await told(/There is a way/);
+      await told(/Path found/);
       const length = await figure('Length');
       assert.match(length, /^\d+\.\d+ m$/);
       assert.ok((await countPixels(page, await colourOf(page, '--way'))) > 100, 'the way is drawn');
@@ -184,11 +184,11 @@ describe('tools on the map', { timeout: 280_000 }, () => {
       await says(page, '#cursor-y', new RegExp(`^.${Math.abs(y).toFixed(2)}$`));
       await open('p');
       await page.keyboard.press('Enter');
-      await told(/Click where the way ends/);
+      await told(/Click the end of the path/);
       await page.keyboard.press('ArrowRight');
       await says(page, '#cursor-x', new RegExp(`^(?!.${Math.abs(x).toFixed(2)}$)`));
       await page.keyboard.press('Enter');
-      await told(/There is a way/);
+      await told(/Path found/);
       await page.click('#fit');
     });
 
@@ -196,28 +196,28 @@ describe('tools on the map', { timeout: 280_000 }, () => {
       await open('p');
       await page.selectOption('#tool-body [name=start]', 'r1');
       await clickOn(left(300));
-      await told(/There is a way/);
+      await told(/Path found/);
       await page.fill('#tool-body [name=body_radius]', '4');
       await page.press('#tool-body [name=body_radius]', 'Enter');
       await alerted(/^No way there: .*\.$/);
       assert.equal(await page.locator('.tool-figures').count(), 0);
       await page.fill('#tool-body [name=body_radius]', '0.1');
       await page.press('#tool-body [name=body_radius]', 'Enter');
-      await told(/There is a way/);
+      await told(/Path found/);
     });
 
     it('cover all ground, or that of a box, and say how much', async () => {
       await open('c');
-      await page.click('#tool-body :text-is("Find the way")');
-      await told(/This is the way/);
+      await page.click('#tool-body :text-is("Plan path")');
+      await told(/Path found/);
       const everything = Number.parseFloat(await figure('Free ground'));
       assert.match(await figure('Covered'), /^(9\d|100)\.\d %$/);
       await page.selectOption('#tool-body [name=region]', 'box');
       await clickOn(left(300));
       await clickOn(left(500));
       await page.waitForSelector('#tool-body :text-is("Draw again")');
-      await page.click('#tool-body :text-is("Find the way")');
-      await told(/This is the way/);
+      await page.click('#tool-body :text-is("Plan path")');
+      await told(/Path found/);
       assert.ok(Number.parseFloat(await figure('Free ground')) < everything / 2);
       await keepPicture(page, 'tool-coverage');
       assert.deepEqual(await violations(page), []);
@@ -236,13 +236,13 @@ describe('tools on the map', { timeout: 280_000 }, () => {
         await held;
         await route.abort().catch(() => {});
       });
-      await page.click('#tool-body :text-is("Find the way")');
+      await page.click('#tool-body :text-is("Plan path")');
       await page.click('#tool-body :text-is("Cancel")');
       await told(/Given up/);
       release();
       await page.unroute('**/coverage');
-      await page.click('#tool-body :text-is("Find the way")');
-      await told(/This is the way/);
+      await page.click('#tool-body :text-is("Plan path")');
+      await told(/Path found/);
     });
 
     it('save maps, of all that was seen or of what is in view', async () => {

@@ -120,7 +120,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     await answered;
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve))));
     assert.match(await page.textContent('.tool-figures'), /2\.00 m/);
-    await page.click('#tool-body :text-is("Find the way")');
+    await page.click('#tool-body :text-is("Plan path")');
     await says(page, '.tool-figures', /3\.00 m/);
   });
 
@@ -139,12 +139,12 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     });
     await page.keyboard.press('p');
     await clickBoth();
-    await says(page, '#tool-body', /There is a way/);
+    await says(page, '#tool-body', /Path found/);
     session.move('r1', 2, 2, 0);
     await says(page, '#tool-body', /The map has grown since/);
     assert.equal(asked, 1);
     await page.check('[name=keep_up]');
-    await says(page, '#tool-body', /There is a way/);
+    await says(page, '#tool-body', /Path found/);
     session.move('r1', 3, 2, 0);
     await page.waitForRequest('**/plan');
   });
@@ -159,7 +159,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
       return route.fulfill({ contentType: 'application/json', body: JSON.stringify({ weaves: [] }) });
     });
     await page.keyboard.press('c');
-    await page.click('#tool-body :text-is("Find the way")');
+    await page.click('#tool-body :text-is("Plan path")');
     await alerted(/the start is in a wall\.$/);
     await page.keyboard.press('Escape');
     await page.keyboard.press('e');
@@ -240,7 +240,7 @@ describe('tools that are refused', { timeout: 180_000 }, () => {
     );
     await page.keyboard.press('p');
     await clickBoth();
-    await says(page, '#tool-body', /There is a way/);
+    await says(page, '#tool-body', /Path found/);
     await showsColour(page, '--way');
     await page.keyboard.press('Escape');
     await page.waitForSelector('#tool', { state: 'hidden' });

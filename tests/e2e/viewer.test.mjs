@@ -269,6 +269,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
       for (const tool of await tools.all()) await tool.tap({ trial: true });
       await until(page, async () => (await markerIsFree('--robot-0')) && (await markerIsFree('--robot-1')));
       await page.tap('#tool-measure');
+      await says(page, '#tool-body', /^Tap the places/);
       await until(page, async () => !(await overlap('#tool', '#map')));
       await page.tap('#tool-close');
       await page.tap('#panel-toggle');
@@ -289,6 +290,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
     const [chosen, list] = await boxes('#sessions [aria-current]', '#sessions');
     assert.ok(chosen.y >= list.y && chosen.y < list.y + list.height, 'the open session is in view in the list');
     await page.click('#tool-path');
+    await says(page, '#tool-body', /^Click the start of the path, or /);
     const before = await page.locator('#tool').boundingBox();
     await drag('#tool-title', -400, 30);
     const after = await page.locator('#tool').boundingBox();

@@ -11,7 +11,7 @@ const kSwitches: [key: Switch, label: string][] = [
   ['robots', 'Robots'],
   ['trails', 'Trails'],
   ['points', 'Newest scans'],
-  ['goals', 'Goals and ways'],
+  ['goals', 'Goals and paths'],
   ['frontiers', 'Frontiers'],
   ['landmarks', 'Landmarks (filled: seen again)'],
   ['counters', 'HIMM counters in cells'],

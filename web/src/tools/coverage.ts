@@ -1,9 +1,10 @@
-/** A way over all free ground of a region, for a robot that sweeps or searches it. */
+/** Plans a path over the free ground of a region, for a robot that sweeps or searches it. */
 import { requestCoverage, type Coverage } from '../api/coverage';
 import type { Start } from '../api/plan';
 import type { Point } from '../api/types';
 import { el, setText } from '../dom';
 import * as format from '../format';
+import { isTouch, pickSentence } from '../pointing';
 import { shownWeave, type ToolContext } from './context';
 import { CoverageLayer } from './coverage_layer';
 import { button, figures, labelled, numberInput, numberOf, selectOf } from './fields';
@@ -22,14 +23,13 @@ const kShapes = [
   ['polygon', 'A polygon'],
 ] as const;
 const kStartLetter = 'S';
-const kByKeyboard = 'or move the map with the arrow keys and press Enter';
 
 export function coverageTool(context: ToolContext): Tool {
   return {
     id: 'coverage',
     title: 'Coverage',
     key: 'c',
-    does: 'finds a way over all ground of a region',
+    does: 'plans a path over the free ground of a region',
     icon: 'M2.5 3h11v3.3h-11v3.4h11V13h-11',
     open: (card, signal) => void new CoverageCard(context, card, signal),
   };
@@ -46,7 +46,7 @@ class CoverageCard {
   private readonly spacing = numberInput('spacing', null, { min: 0, max: 10, empty: 'two body radii' });
   private readonly close = button('Close the outline', () => this.endOutline());
   private readonly redraw = button('Draw again', () => this.beginOutline());
-  private readonly find = el('button', { class: 'tool-button primary' }, 'Find the way');
+  private readonly find = el('button', { class: 'tool-button primary' }, 'Plan path');
   private readonly cancel = button('Cancel', () => this.giveUp());
   private readonly result = el('div');
   private readonly outcome = new Outcome();
@@ -155,10 +155,11 @@ class CoverageCard {
   }
 
   private advice(): string {
-    if (this.pickingStart) return `Click where the way begins, ${kByKeyboard}.`;
+    if (this.pickingStart) return pickSentence('the start of the path');
     if (!this.region.drawing) return '';
-    if (this.shape.value === 'box') return `Click two corners of the box, ${kByKeyboard}.`;
-    return `Click the corners of the polygon, ${kByKeyboard}; a double click, or Enter twice, closes it.`;
+    if (this.shape.value === 'box') return pickSentence('two corners of the box');
+    const close = isTouch() ? 'A double tap closes it.' : 'A double click, or Enter twice, closes it.';
+    return `${pickSentence('the corners of the polygon')} ${close}`;
   }
 
   private ask(): void {
@@ -166,7 +167,7 @@ class CoverageCard {
     const start: Start | null = this.start.robot === null ? this.startPlace : { robot: this.start.robot };
     if (this.region.closable) this.endOutline();
     if (!session || !start || this.region.drawing) {
-      return this.outcome.complain(new Error(this.advice() || 'Choose where the way begins'));
+      return this.outcome.complain(new Error(this.advice() || 'Choose the start of the path'));
     }
     const request = {
       start,
@@ -187,7 +188,7 @@ class CoverageCard {
 
   private showBusy(busy: boolean): void {
     this.cancel.hidden = !busy;
-    if (busy) this.outcome.say('Looking for a way\u2026');
+    if (busy) this.outcome.say('Planning the path\u2026');
   }
 
   private show(coverage: Coverage): void {
@@ -200,7 +201,7 @@ class CoverageCard {
         ['Length', format.distance(coverage.length)],
       ]),
     );
-    this.outcome.say('This is the way.');
+    this.outcome.say('Path found.');
   }
 
   private refuse(error: unknown): void {

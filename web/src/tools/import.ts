@@ -2,6 +2,7 @@
 import { hashOfSession } from '../address';
 import { importMap, type RosMap } from '../api/import';
 import { el, setText } from '../dom';
+import { isTouch } from '../pointing';
 import { button, labelled, numberInput, selectOf } from './fields';
 import { NewestOnly } from './newest_only';
 import { Outcome } from './outcome';
@@ -84,7 +85,8 @@ class ImportCard {
     this.yaml.addEventListener('change', () => this.proposeName());
     this.image.addEventListener('change', () => this.proposeName());
     this.name.addEventListener('input', () => (this.nameIsOwn = this.name.value !== ''));
-    const help = 'Choose the two files that map_saver writes, or drop them here.';
+    const drop = isTouch() ? '' : ', or drop them here';
+    const help = `Choose the two files that map_saver writes${drop}.`;
     card.append(el('p', {}, help), form, this.outcome.element);
   }
 

@@ -1,4 +1,4 @@
-/** Distances on the map: click from place to place; each piece and the sum are told. */
+/** Distances on the map: the length of a line through the places that a person picks. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import VectorLayer from 'ol/layer/Vector';
@@ -7,6 +7,7 @@ import VectorSource from 'ol/source/Vector';
 import { el, setText } from '../dom';
 import * as format from '../format';
 import { kOrder } from '../map/order';
+import { pickSentence } from '../pointing';
 import type { Theme } from '../theme';
 import { pathStyle } from './path_style';
 import { pickPlaces } from './pick_places';
@@ -33,8 +34,7 @@ function open(map: OlMap, target: HTMLElement, theme: () => Theme, card: HTMLEle
   map.addLayer(layer);
   const sum = el('output', { id: 'measured', class: 'numeric figure' });
   const again = el('button', { type: 'button' }, 'Start again');
-  const help = 'Click places on the map, or move it with the arrow keys and press Enter.';
-  card.append(el('p', {}, help), sum, again);
+  card.append(el('p', {}, pickSentence('the places to measure between')), sum, again);
   const show = (): void => setText(sum, line.getCoordinates().length < 2 ? '' : format.distance(line.getLength()));
   again.addEventListener('click', () => {
     line.setCoordinates([]);

@@ -1,4 +1,4 @@
-/** The way from one place to another, as a robot of some size could drive it. */
+/** Plans a path from one place to another for a robot of some size. */
 import Feature from 'ol/Feature';
 import LineString from 'ol/geom/LineString';
 import VectorLayer from 'ol/layer/Vector';
@@ -8,6 +8,7 @@ import type { Point } from '../api/types';
 import { el, setText } from '../dom';
 import * as format from '../format';
 import { kOrder } from '../map/order';
+import { isTouch, pickSentence } from '../pointing';
 import { shownWeave, type ToolContext } from './context';
 import { saveBlob } from './save_file';
 import { button, checkbox, choice, figures, labelled, numberInput } from './fields';
@@ -28,7 +29,7 @@ export function pathTool(context: ToolContext): Tool {
     id: 'path',
     title: 'Path',
     key: 'p',
-    does: 'finds a way between two places',
+    does: 'plans a path between two places',
     icon: 'M3 12.5h5.5a2.5 2.5 0 0 0 0-5h-2a2.5 2.5 0 0 1 0-5H13M11.5 1l1.5 1.5L11.5 4',
     open: (card, signal) => void new PathCard(context, card, signal),
   };
@@ -62,7 +63,7 @@ class PathCard {
     this.start = new StartSelect(context.robots);
     this.asking = new NewestOnly(
       signal,
-      (busy) => busy && this.outcome.say('Looking for a way\u2026'),
+      (busy) => busy && this.outcome.say('Planning the path\u2026'),
       (error) => this.refuse(error),
     );
     this.drawWay();
@@ -96,7 +97,7 @@ class PathCard {
       labelled('Cost of danger', this.dangerCost),
       choice('Through unknown ground, too', this.allowUnknown),
       choice('Again as the map grows', this.keepUp),
-      el('button', { class: 'tool-button primary' }, 'Find the way'),
+      el('button', { class: 'tool-button primary' }, 'Plan path'),
     );
     form.addEventListener('submit', (event) => {
       event.preventDefault();
@@ -148,9 +149,9 @@ class PathCard {
     const { from, to } = this.places;
     setText(this.told.from, this.start.robot ?? (from ? placeText(from) : 'not chosen yet'));
     setText(this.told.to, to ? placeText(to) : 'not chosen yet');
-    const wanted = this.next === 'from' ? 'begins' : 'ends';
+    const wanted = this.next === 'from' ? 'start' : 'end';
     const known = this.startPlace !== null && to !== null && this.next === 'to';
-    if (!known) this.outcome.say(`Click where the way ${wanted}, or move the map with the arrow keys and press Enter.`);
+    if (!known) this.outcome.say(pickSentence(`the ${wanted} of the path`));
   }
 
   private get startPlace(): Start | null {
@@ -182,9 +183,9 @@ class PathCard {
       ['Length', format.distance(way.length)],
       [`Cost, danger counting ${1 + this.dangerCost.valueAsNumber}-fold`, format.decimal(way.cost, 2)],
     ];
-    const save = button('Save the way (GeoJSON)', () => saveWay(this.context.session()?.name ?? 'map', way));
+    const save = button('Save the path (GeoJSON)', () => saveWay(this.context.session()?.name ?? 'map', way));
     this.result.replaceChildren(figures(rows), save);
-    this.outcome.say('There is a way. Drag its ends, or click another end.');
+    this.outcome.say(`Path found. Drag its ends, or ${isTouch() ? 'tap' : 'click'} another end.`);
   }
 
   private refuse(error: unknown): void {
@@ -200,7 +201,7 @@ class PathCard {
     const grown = this.way !== null && session !== null && session.revision > this.way.revision;
     if (!grown || this.asking.busy || shownWeave(this.context) !== null) return;
     if (this.keepUp.checked) this.ask();
-    else this.outcome.say('The map has grown since this way was found.');
+    else this.outcome.say('The map has grown since this path was planned.');
   }
 }
 
