@@ -44,18 +44,24 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(...pixelOf(3, 3), colour);
   });
 
-  it('show a robot with the ground that its body takes, and its trail', async () => {
+  it('show a robot with the ground that its body takes, and its trail, without a wrong pose', async () => {
     session.paint(256, 255, 0);
-    session.move('r1', 2, 6.4, 0);
-    session.move('r1', 10, 6.4, 0);
+    for (let x = 2; x <= 10; x += 0.5) {
+      session.move('r1', x, 6.4, 0);
+      if (x === 6) session.move('r1', x, 12.4, 0);
+    }
     session.robots[0].body_radius = 1.5;
     session.move('r1', 10, 6.4, 0);
     await open();
     const colour = await colourOf(page, '--robot-0');
     await showsNear(...pixelOf(10, 7.9), colour);
-    await showsNear(...pixelOf(4, 6.4), colour);
+    const free = await colourOf(page, '--cell-free');
+    await showsTrail(pixelOf(4, 6.4), colour, free);
+    const [x, y] = pixelOf(6, 9.4);
+    for (const dx of [-1, 0, 1]) assert.deepEqual(await colourAt(page, x + dx, y), free, 'no line to the wrong pose');
+    await keepPicture(page, 'trail');
     await page.uncheck('[data-switch=trails]');
-    await showsNotAt(...pixelOf(4, 6.4), colour);
+    await showsAt(...pixelOf(4, 6.4), free);
     await page.uncheck('[data-switch=robots]');
     await showsNoPixels(colour);
   });
@@ -245,6 +251,16 @@ describe('on the map', { timeout: 180_000 }, () => {
     await until(page, async () => {
       const seen = await Promise.all(steps.map((dy) => colourAt(page, x, y + dy)));
       return seen.some((each) => each !== null && isLike(each, colour, 80));
+    });
+  }
+
+  /** Waits for the trail there: a mixture of its colour and what lies below, which is seen through it. */
+  function showsTrail([x, y], trail, below) {
+    const steps = [-1, 0, 1];
+    return until(page, async () => {
+      const seen = await Promise.all(steps.map((dy) => colourAt(page, x, y + dy)));
+      const shares = seen.map((each) => (below[0] - (each?.[0] ?? below[0])) / (below[0] - trail[0]));
+      return Math.max(...shares) > 0.3 && Math.max(...shares) < 0.8;
     });
   }
 

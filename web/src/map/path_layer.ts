@@ -1,6 +1,6 @@
-/** Where each robot has been. */
+/** The trails: where each robot has been, fainter than the walls below them. */
 import Feature from 'ol/Feature';
-import LineString from 'ol/geom/LineString';
+import MultiLineString from 'ol/geom/MultiLineString';
 import VectorLayer from 'ol/layer/Vector';
 import VectorSource from 'ol/source/Vector';
 import Stroke from 'ol/style/Stroke';
@@ -9,9 +9,17 @@ import type { Point } from '../api/types';
 import type { RobotColours } from '../robot_colours';
 import type { Theme } from '../theme';
 import { kOrder } from './order';
+import { TrailParts } from './trail_parts';
+
+/** Opacity, in hexadecimal: walls are seen through trails. */
+const kOpacity = 'a6';
+/** Metres a pixel: from further off, lines are as thin as walls. */
+const kNear = 0.04;
+const kNearPx = 1.5;
+const kFarPx = 1;
 
 export class PathLayer {
-  private readonly source = new VectorSource<Feature<LineString>>();
+  private readonly source = new VectorSource<Feature<MultiLineString>>();
   readonly layer = new VectorLayer({
     source: this.source,
     zIndex: kOrder.trails,
@@ -46,22 +54,33 @@ export class PathLayer {
     return path;
   }
 
-  private styleOf(robot: string): Style {
-    const color = this.theme.robots[this.colours.indexOf(robot)];
-    return new Style({ stroke: new Stroke({ color, width: 1.5, lineJoin: 'round', lineCap: 'round' }) });
+  private styleOf(robot: string): (feature: unknown, resolution: number) => Style {
+    const color = `${this.theme.robots[this.colours.indexOf(robot)] ?? this.theme.ink}${kOpacity}`;
+    const style = (width: number): Style =>
+      new Style({ stroke: new Stroke({ color, width, lineJoin: 'round', lineCap: 'round' }) });
+    const [near, far] = [style(kNearPx), style(kFarPx)];
+    return (_feature, resolution) => (resolution <= kNear ? near : far);
   }
 }
 
 class Path {
   private shown: Point[] = [];
   private drawn = 0;
-  private readonly line = new LineString([]);
-  readonly feature = new Feature(this.line);
+  private trail = new TrailParts();
+  private readonly lines = new MultiLineString([]);
+  readonly feature = new Feature(this.lines);
 
   show(points: Point[]): void {
     if (points === this.shown && points.length === this.drawn) return;
-    this.shown = points;
+    if (points !== this.shown || points.length < this.drawn) this.restart(points);
+    this.trail.add(points.slice(this.drawn));
     this.drawn = points.length;
-    this.line.setCoordinates(points);
+    this.lines.setCoordinates(this.trail.parts);
+  }
+
+  private restart(points: Point[]): void {
+    this.shown = points;
+    this.drawn = 0;
+    this.trail = new TrailParts();
   }
 }
