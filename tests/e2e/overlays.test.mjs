@@ -1,6 +1,7 @@
 /** What lies on the map: robots, scans, frontiers, landmarks, goals; against a server that does what each test wants. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
+import { violations } from './accessibility.mjs';
 import {
   colourAt,
   colourOf,
@@ -10,11 +11,12 @@ import {
   says,
   showsColour,
   showsColourAt,
+  textOf,
   until,
 } from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
-import { pixelOf } from './one_tile.mjs';
+import { kMiddle, pixelOf } from './one_tile.mjs';
 
 describe('on the map', { timeout: 180_000 }, () => {
   let server;
@@ -135,6 +137,34 @@ describe('on the map', { timeout: 180_000 }, () => {
     await showsNotAt(...pixelOf(9, 3), colour);
   });
 
+  it('show fewer landmarks from far off, and say what the symbols mean', async () => {
+    session.paint(256, 255, 0);
+    // 21 along a line of 8 m, the middle one seen most often, and one that was seen once.
+    for (let n = 0; n <= 20; ++n) session.see(n, [2.4 + 0.4 * n, 6.4], n === 10 ? 9 : 2);
+    session.see(30, [6.4, 9.4], 1);
+    session.frontiers = [frontier([3, 3], [5, 5])];
+    session.frontiers.push(frontier([9, 3], null));
+    session.frontiers[1].properties.reachable = false;
+    await open({ motion: 'reduce' });
+    assert.deepEqual([await shown('frontiers'), await shown('landmarks')], [false, false]);
+    for (const key of ['frontiers', 'landmarks']) await page.check(`[data-switch=${key}]`);
+    assert.match(await textOf(page, '[data-legend=landmarks]'), /seen again.*seen once/);
+    assert.match(await textOf(page, '[data-legend=frontiers]'), /can be reached.*cannot be reached.*where to stand/);
+    const colour = await colourOf(page, '--landmark');
+    for (const x of [2.4, 6.4, 10.4]) await showsAt(...pixelOf(x, 6.4), colour);
+    const [x, y] = pixelOf(6.4, 9.4);
+    await showsNear(x, y - 4, colour);
+    await keepPicture(page, 'symbols');
+    await page.locator('[data-legend=landmarks]').scrollIntoViewIfNeeded();
+    assert.deepEqual(await violations(page), []);
+    for (let step = 0; step < 4; ++step) await page.click('#zoom-out');
+    // 8 m are 27 pixels wide now: one symbol or two, of 28 pixels each, and not a line of them.
+    await countsPixels(page, colour, (count) => count > 0 && count < 80);
+    await page.mouse.move(...kMiddle);
+    await says(page, '#cursor-others', /^Landmark#10: .*seen 9 times/);
+    await keepPicture(page, 'symbols-far');
+  });
+
   it('show the landmarks of another life of the server, and no others', async () => {
     session.paint(256, 255, 0);
     session.see(0, [3, 3], 2);
@@ -235,6 +265,10 @@ describe('on the map', { timeout: 180_000 }, () => {
 
   function feature(properties, geometry) {
     return { type: 'Feature', properties, geometry };
+  }
+
+  function shown(legend) {
+    return page.isVisible(`[data-legend=${legend}]`);
   }
 
   function showsAt(x, y, colour) {

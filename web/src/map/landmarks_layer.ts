@@ -1,4 +1,4 @@
-/** Things that robots saw, those filled that were seen again; from far off only these. */
+/** Landmarks: a diamond for one that was seen again, a triangle for one that was seen once; fewer from far off. */
 import Feature from 'ol/Feature';
 import PointGeometry from 'ol/geom/Point';
 import VectorLayer from 'ol/layer/Vector';
@@ -11,11 +11,15 @@ import Style from 'ol/style/Style';
 import type { Landmark } from '../api/types';
 import type { Theme } from '../theme';
 import { kOrder } from './order';
+import { thin } from './thinning';
 
 type Role = 'once' | 'again';
 
 /** Metres a pixel: from further off, those that were seen once would only hide the map. */
 const kNear = 0.04;
+
+/** Of landmarks that are nearer to each other than about this, one is drawn. */
+const kSpacingPx = 28;
 
 /** As far from its middle one is still meant. */
 const kHitPx = 8;
@@ -23,6 +27,10 @@ const kHitPx = 8;
 export class LandmarksLayer {
   private readonly source = new VectorSource();
   readonly layer = new VectorLayer({ source: this.source, zIndex: kOrder.landmarks });
+
+  /** Those that are drawn at the zoom of `drawnSide`; null: to be chosen again. */
+  private drawn: Set<number> | null = null;
+  private drawnSide = 0;
 
   constructor(theme: Theme) {
     this.setTheme(theme);
@@ -33,10 +41,12 @@ export class LandmarksLayer {
     const known = landmarks.map(({ id }) => this.source.getFeatureById(id)).filter((feature) => feature !== null);
     this.source.removeFeatures(known);
     this.source.addFeatures(landmarks.map(featureOf));
+    this.drawn = null;
   }
 
   clear(): void {
     this.source.clear(true);
+    this.drawn = null;
   }
 
   /** The one that is seen there, if any: the nearest. @param resolution metres a pixel */
@@ -47,7 +57,7 @@ export class LandmarksLayer {
     const distance = ({ at }: Landmark): number => Math.hypot(at[0] - x, at[1] - y);
     return around
       .map((feature) => feature.get('landmark') as Landmark)
-      .filter(({ seen }) => resolution <= kNear || seen > 1)
+      .filter(({ id }) => this.isDrawn(id, resolution))
       .reduce<Landmark | null>((best, each) => (best && distance(best) <= distance(each) ? best : each), null);
   }
 
@@ -55,10 +65,28 @@ export class LandmarksLayer {
     const near = stylesOf(theme);
     const far = dotOf(theme);
     this.layer.setStyle((feature, resolution) => {
-      const role = feature.get('role') as Role;
-      if (resolution <= kNear) return near[role];
-      return role === 'again' ? far : [];
+      if (!this.isDrawn(feature.getId() as number, resolution)) return [];
+      return resolution <= kNear ? near[feature.get('role') as Role] : far;
     });
+  }
+
+  /** @param resolution metres a pixel */
+  private isDrawn(id: number, resolution: number): boolean {
+    // Powers of two: zooming a little does not choose others.
+    const side = kSpacingPx * 2 ** Math.floor(Math.log2(resolution));
+    if (!this.drawn || side !== this.drawnSide) this.choose(side, resolution <= kNear ? 1 : 2);
+    return this.drawn?.has(id) ?? false;
+  }
+
+  /** @param seenMin fewer sightings are not drawn */
+  private choose(side: number, seenMin: number): void {
+    const landmarks = this.source.getFeatures().map((feature) => feature.get('landmark') as Landmark);
+    const wanted = landmarks.filter(({ seen }) => seen >= seenMin);
+    this.drawn = thin(
+      wanted.map(({ id, at, seen }) => ({ id, at, weight: seen })),
+      side,
+    );
+    this.drawnSide = side;
   }
 }
 
@@ -74,17 +102,17 @@ function dotOf({ landmark }: Theme): Style {
 }
 
 function stylesOf({ landmark, halo }: Theme): Record<Role, Style> {
-  const diamond = (radius: number, fill: string, stroke: string): Style =>
+  const shape = (points: number, radius: number, fill: string, stroke: string): Style =>
     new Style({
       image: new RegularShape({
-        points: 4,
+        points,
         radius,
         fill: new Fill({ color: fill }),
         stroke: new Stroke({ color: stroke, width: 1.5 }),
       }),
     });
   return {
-    once: diamond(4, halo, landmark),
-    again: diamond(6, landmark, halo),
+    once: shape(3, 5, halo, landmark),
+    again: shape(4, 6, landmark, halo),
   };
 }

@@ -4,6 +4,7 @@ import { isLayerName, kLayerNotes, kLayers, kLayerTitles } from '../layers/layer
 import type { Picture, PictureState } from '../picture';
 import type { Settings, SettingsStore } from '../settings';
 import { showLegend } from './legend';
+import { overlayLegend } from './overlay_legend';
 
 type Switch = { [Key in keyof Settings]: Settings[Key] extends boolean ? Key : never }[keyof Settings];
 
@@ -13,7 +14,7 @@ const kSwitches: [key: Switch, label: string][] = [
   ['points', 'Newest scans'],
   ['goals', 'Goals and paths'],
   ['frontiers', 'Frontiers'],
-  ['landmarks', 'Landmarks (filled: seen again)'],
+  ['landmarks', 'Landmarks'],
   ['counters', 'HIMM counters in cells'],
 ];
 
@@ -36,6 +37,7 @@ export class LayersPanel {
   };
   private readonly radios: HTMLInputElement[];
   private readonly switches = new Map<Switch, HTMLInputElement>();
+  private readonly legends = new Map<Switch, HTMLElement>();
 
   constructor(
     private readonly picture: Picture,
@@ -65,6 +67,11 @@ export class LayersPanel {
     const box = el('input', { type: 'checkbox', 'data-switch': key });
     this.switches.set(key, box);
     this.fields.overlays.append(el('label', { class: 'choice' }, box, label));
+    const legend = overlayLegend(key, label);
+    if (legend) {
+      this.legends.set(key, legend);
+      this.fields.overlays.append(legend);
+    }
     box.addEventListener('change', () => this.settings.change({ [key]: box.checked }));
   }
 
@@ -104,5 +111,6 @@ export class LayersPanel {
 
   private showSwitches(settings: Settings): void {
     for (const [key, box] of this.switches) box.checked = settings[key];
+    for (const [key, legend] of this.legends) legend.hidden = !settings[key];
   }
 }
