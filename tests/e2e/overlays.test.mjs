@@ -238,6 +238,29 @@ describe('on the map', { timeout: 180_000 }, () => {
     await note.waitFor({ state: 'hidden' });
   });
 
+  it('show a grid, the origin and the axes, also after a reload, when they are wanted', async () => {
+    session.paint(256, 255, 0);
+    await open();
+    await showsColour(page, '--cell-free');
+    const [alongX, alongY] = [await colourOf(page, '--axis-x'), await colourOf(page, '--axis-y')];
+    const onX = pixelOf(6.4, 0);
+    await showsNotAt(...onX, alongX);
+    await page.check('[data-switch=grid]');
+    await showsNear(...onX, alongX);
+    // The y axis lies on the left edge of the tile.
+    const [left, middle] = pixelOf(0, 6.4);
+    await until(page, async () => {
+      const seen = await Promise.all([-1, 0, 1].map((dx) => colourAt(page, left + dx, middle)));
+      return seen.some((each) => each !== null && isLike(each, alongY, 80));
+    });
+    await showsAt(...pixelOf(0, 0), await colourOf(page, '--ink'));
+    await keepPicture(page, 'grid');
+    await page.reload();
+    await showsNear(...onX, alongX);
+    await page.uncheck('[data-switch=grid]');
+    await showsNotAt(...onX, alongX);
+  });
+
   it('begin with a layer that holds something', async () => {
     session.layers = ['sonar'];
     session.paint(256, 255, 100);

@@ -15,11 +15,18 @@ export interface Settings {
   landmarks: boolean;
   /** Where robots are going. */
   goals: boolean;
+  /** A grid of round lengths, with the map's origin and axes. */
+  grid: boolean;
   /** HIMM counters as numbers. */
   counters: boolean;
   /** Whether single keys do anything. */
   keys: boolean;
 }
+
+const kSwitches = [
+  ...(['robots', 'trails', 'points', 'goals', 'frontiers', 'landmarks'] as const),
+  ...(['grid', 'counters', 'keys'] as const),
+] as const;
 
 const kKey = 'scanloom';
 const kDefaults: Settings = {
@@ -31,6 +38,7 @@ const kDefaults: Settings = {
   frontiers: false,
   landmarks: false,
   goals: true,
+  grid: false,
   counters: false,
   keys: true,
 };
@@ -89,7 +97,7 @@ function read(): Settings {
 
 function sound(kept: Record<string, unknown>): Settings {
   const settings: Settings = { ...kDefaults };
-  for (const key of ['robots', 'trails', 'points', 'goals', 'frontiers', 'landmarks', 'counters', 'keys'] as const) {
+  for (const key of kSwitches) {
     const value = kept[key];
     if (typeof value === 'boolean') settings[key] = value;
   }

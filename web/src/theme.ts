@@ -12,6 +12,8 @@ export interface Theme {
   frontier: string;
   landmark: string;
   warn: string;
+  axisX: string;
+  axisY: string;
   /** Of ways that nobody has driven yet. */
   way: string;
 }
@@ -39,6 +41,8 @@ export function readTheme(): Theme {
     frontier: colour('--class-frontier'),
     landmark: colour('--landmark'),
     warn: colour('--warn'),
+    axisX: colour('--axis-x'),
+    axisY: colour('--axis-y'),
     way: colour('--way'),
   };
 }

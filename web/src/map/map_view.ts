@@ -4,6 +4,7 @@ import { defaults as defaultInteractions } from 'ol/interaction/defaults';
 import KeyboardPan from 'ol/interaction/KeyboardPan';
 import KeyboardZoom from 'ol/interaction/KeyboardZoom';
 import Kinetic from 'ol/Kinetic';
+import type BaseLayer from 'ol/layer/Base';
 import OlMap from 'ol/Map';
 import View from 'ol/View';
 import type { RobotGoal } from '../api/goals';
@@ -19,6 +20,7 @@ import type { CellReader } from './cell_reader';
 import { FrontiersLayer } from './frontiers_layer';
 import { GoalsLayer } from './goals_layer';
 import { squareExtent, tileResolutions } from './grid';
+import { GridLayer } from './grid_layer';
 import { LandmarksLayer } from './landmarks_layer';
 import type { MapSource } from './map_source';
 import { kOrder } from './order';
@@ -45,12 +47,23 @@ interface Scene {
   beside: CellPane;
   labels: CellLabels;
   labelsBeside: CellLabels;
+  grid: GridLayer;
   frontiers: FrontiersLayer;
   landmarks: LandmarksLayer;
   goals: GoalsLayer;
   paths: PathLayer;
   points: PointsLayer;
   robots: RobotsLayer;
+}
+
+/** What is drawn over the cells. */
+interface MapOverlay {
+  layer: BaseLayer;
+  setTheme(theme: Theme): void;
+}
+
+function overlaysOf({ main: _main, beside: _beside, ...overlays }: Scene): MapOverlay[] {
+  return Object.values(overlays);
 }
 
 export function createMap(target: HTMLElement): OlMap {
@@ -87,6 +100,7 @@ export class MapView {
       beside: new CellPane(this.map, kOrder.cellsBeside, this.theme.cells, this.settled),
       labels: new CellLabels(this.map, this.theme),
       labelsBeside: new CellLabels(this.map, this.theme),
+      grid: new GridLayer(this.theme),
       frontiers: new FrontiersLayer(this.theme),
       landmarks: new LandmarksLayer(this.theme),
       goals: new GoalsLayer(colours, this.theme),
@@ -94,23 +108,20 @@ export class MapView {
       points: new PointsLayer(colours, this.theme),
       robots: new RobotsLayer(colours, this.theme),
     };
-    const { labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
-      this.map.addLayer(layer);
+    for (const { layer } of overlaysOf(this.scene)) this.map.addLayer(layer);
     this.choose(settings);
   }
 
   close(): void {
     if (!this.scene) return;
-    const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
-    for (const pane of [main, beside]) pane.clear();
-    for (const { layer } of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
-      this.map.removeLayer(layer);
+    for (const pane of [this.scene.main, this.scene.beside]) pane.clear();
+    for (const { layer } of overlaysOf(this.scene)) this.map.removeLayer(layer);
     this.scene = null;
   }
 
   /** Which of the things on top of the map are to be seen. */
-  choose({ robots, trails, points, goals, frontiers, landmarks }: Settings): void {
+  choose({ robots, trails, points, goals, frontiers, landmarks, grid }: Settings): void {
+    this.scene?.grid.layer.setVisible(grid);
     this.scene?.robots.layer.setVisible(robots);
     this.scene?.paths.layer.setVisible(trails);
     this.scene?.points.layer.setVisible(points);
@@ -196,10 +207,8 @@ export class MapView {
   setTheme(theme: Theme): void {
     this.theme = theme;
     if (!this.scene) return;
-    const { main, beside, labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots } = this.scene;
-    for (const pane of [main, beside]) pane.setPalette(theme.cells);
-    for (const overlay of [labels, labelsBeside, frontiers, goals, landmarks, paths, points, robots])
-      overlay.setTheme(theme);
+    for (const pane of [this.scene.main, this.scene.beside]) pane.setPalette(theme.cells);
+    for (const overlay of overlaysOf(this.scene)) overlay.setTheme(theme);
   }
 }
 

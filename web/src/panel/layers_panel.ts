@@ -15,6 +15,7 @@ const kSwitches: [key: Switch, label: string][] = [
   ['goals', 'Goals and paths'],
   ['frontiers', 'Frontiers'],
   ['landmarks', 'Landmarks'],
+  ['grid', 'Grid, origin and axes'],
   ['counters', 'HIMM counters in cells'],
 ];
 
