@@ -317,7 +317,7 @@ describe('on the map', { timeout: 180_000 }, () => {
     return until(page, async () => {
       const seen = await Promise.all(steps.map((dy) => colourAt(page, x, y + dy)));
       const shares = seen.map((each) => (below[0] - (each?.[0] ?? below[0])) / (below[0] - trail[0]));
-      return Math.max(...shares) > 0.3 && Math.max(...shares) < 0.8;
+      return Math.max(...shares) > 0.3 && Math.max(...shares) < 0.65;
     });
   }
 

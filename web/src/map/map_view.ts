@@ -11,6 +11,7 @@ import type { RobotGoal } from '../api/goals';
 import type { Frontier, Landmark, Point, Robot } from '../api/types';
 import type { LayerName } from '../layers/layers';
 import { motionMs } from '../motion';
+import { isTouch } from '../pointing';
 import type { RobotColours } from '../robot_colours';
 import type { Settings } from '../settings';
 import type { Theme } from '../theme';
@@ -31,6 +32,9 @@ import { RobotsLayer } from './robots_layer';
 
 /** A cell may be blown up to this many pixels. */
 const kCellPxMax = 48;
+
+/** A finger that moves less than this taps: it does not move the map. */
+const kTapPx = 6;
 
 const kZoomMs = 250;
 const kKeyMs = 100;
@@ -70,6 +74,7 @@ export function createMap(target: HTMLElement): OlMap {
   return new OlMap({
     target,
     controls: [],
+    moveTolerance: isTouch() ? kTapPx : 1,
     interactions: defaultInteractions({
       ...{ altShiftDragRotate: false, pinchRotate: false, keyboard: false, dragPan: false },
       zoomDuration: motionMs(kZoomMs),

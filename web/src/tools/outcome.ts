@@ -22,7 +22,7 @@ export class Outcome {
 /** The server's own sentence where it has one. */
 export function sentenceOf(error: unknown): string {
   if (error instanceof Refused) return ended(error.message);
-  if (error instanceof Unreachable) return ended(`No answer: ${error.message}`);
+  if (error instanceof Unreachable) return ended(`Offline: ${error.message}`);
   if (error instanceof MalformedAnswer) return ended(`The server\u2019s answer cannot be read: ${error.message}`);
   return ended(error instanceof Error ? error.message : String(error));
 }
