@@ -55,8 +55,8 @@ async function take({
   scale = 1,
   act = async () => {},
 }) {
-  const { page } = await openPage(browser, server.address, { hash: `#session=${session}${hash}`, size, scheme, scale });
-  await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+  const address = `#session=${session}${hash}`;
+  const { page } = await openPage(browser, server.address, { hash: address, size, scheme, scale, motion: 'reduce' });
   await page.waitForSelector('#notice', { state: 'hidden' });
   await act(page);
   await page.waitForLoadState('networkidle');
