@@ -1,4 +1,4 @@
-/** Where the parts of the page are, on wide screens and on phones, and what part of the map is in view, against a server that does what each test wants. */
+/** Where the parts of the page and of the map are, on wide screens and on phones, against a fake server. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 import { violations } from './accessibility.mjs';

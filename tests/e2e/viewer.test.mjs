@@ -189,8 +189,11 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await says(page, '#sessions', /online.*scans\/s.*1 of 2 online/);
     await says(page, '[data-robot="r1"]', /online/);
     await says(page, '[data-robot="r2"]', /offline/);
+    await page.click('#history-open');
+    await says(page, '#time-mode', /^Live$/);
     await server.vanish();
     await says(page, '#status', /Offline/);
+    await says(page, '#time-mode', /^Offline$/);
     await says(page, '#robots', /unknown.*unknown/);
     // Nothing of the present is shown while it is not known.
     assert.equal(await page.isVisible('#sessions .online'), false);
@@ -206,6 +209,7 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await occupiedShown();
     await says(page, '#status', /^$/);
     await says(page, '[data-robot="r1"]', /online/);
+    await says(page, '#time-mode', /^Live$/);
   });
 
   it('shows the sentence of an error, and goes on when it is over', async () => {

@@ -148,7 +148,8 @@ function buildPanels(): void {
   new DisplayPanel(settings, keys);
   keys.enable(() => settings.get().keys);
   const past = new SessionHistory(viewer, picture);
-  new TimeBar(byId('time-bar', HTMLElement), byId('history-open', HTMLButtonElement), past, keys);
+  const timeBar = new TimeBar(byId('time-bar', HTMLElement), byId('history-open', HTMLButtonElement), past, keys);
+  status.listen((isOffline) => timeBar.setOffline(isOffline));
 }
 
 function listen(): void {

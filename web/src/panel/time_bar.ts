@@ -33,6 +33,8 @@ export class TimeBar {
   private readonly message = el('span', { id: 'time-message', class: 'time-message', role: 'status' });
   private readonly progress = el('progress', { 'aria-label': 'Weaving' });
   private marked = '';
+  private isOffline = false;
+  private state: HistoryState | null = null;
 
   /** @param opener the button that opens it */
   constructor(
@@ -52,6 +54,12 @@ export class TimeBar {
     this.bindKeys(keys);
     history.listen((state) => this.show(state));
     this.show(null);
+  }
+
+  /** @param isOffline whether the server does not answer: then nothing is shown as live */
+  setOffline(isOffline: boolean): void {
+    this.isOffline = isOffline;
+    this.show(this.state);
   }
 
   private connect(): void {
@@ -87,6 +95,7 @@ export class TimeBar {
   }
 
   private show(state: HistoryState | null): void {
+    this.state = state;
     this.bar.hidden = state === null;
     this.bar.dataset['time'] = state !== null && state.shown !== null ? 'past' : 'present';
     this.opener.setAttribute('aria-expanded', String(state !== null));
@@ -117,19 +126,29 @@ export class TimeBar {
   private showWords(state: HistoryState): void {
     const { timeline, isKnown, share, index, shown, progress, trouble } = state;
     const { count } = timeline;
-    setText(this.mode, shown !== null ? 'Past' : index === null ? 'Live' : 'Going back');
+    setText(this.mode, shown !== null ? 'Past' : index !== null ? 'Going back' : this.isOffline ? 'Offline' : 'Live');
     const at = index ?? count - 1;
     setText(this.place, count > 0 ? `${words.scanOf(timeline, at)}${this.gapBefore(timeline, at)}` : '');
     const date = count > 0 ? words.dateOf(timeline, at) : '';
     this.place.title = date;
     setText(
       this.note,
-      isKnown && count === 0 ? 'No scans yet.' : shown === null && index !== null ? '' : noteOf(shown !== null, date),
+      isKnown && count === 0
+        ? 'No scans yet.'
+        : shown === null && index !== null
+          ? ''
+          : this.noteOf(shown !== null, date),
     );
     setText(this.message, trouble || (progress ? 'Weaving that moment\u2026' : isKnown ? '' : words.loading(share)));
     this.message.classList.toggle('trouble', trouble !== '');
     this.progress.hidden = progress === null;
     if (progress) Object.assign(this.progress, { max: Math.max(1, progress.until), value: progress.woven });
+  }
+
+  private noteOf(isPast: boolean, date: string): string {
+    if (!isPast) return this.isOffline ? 'The map as it was last received.' : 'The map as it is now.';
+    const then = date === '' ? '' : `, ${date}`;
+    return `Map, robots and trails as they were then${then}; newest scans, goals, frontiers and landmarks are hidden.`;
   }
 
   private gapBefore(timeline: Timeline, index: number): string {
@@ -153,10 +172,4 @@ export class TimeBar {
     const found = `${format.counted(gaps.length, 'gap')} without scans, marked here and played in a moment`;
     this.slider.title = gaps.length > 0 ? found : '';
   }
-}
-
-function noteOf(isPast: boolean, date: string): string {
-  if (!isPast) return 'The map as it is now.';
-  const then = date === '' ? '' : `, ${date}`;
-  return `Map, robots and trails as they were then${then}; newest scans, goals, frontiers and landmarks are hidden.`;
 }
