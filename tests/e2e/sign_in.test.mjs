@@ -5,7 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
-import { launchBrowser, openPage, says } from './browser.mjs';
+import { keepPicture, launchBrowser, openPage, says } from './browser.mjs';
 import { required } from './environment.mjs';
 import { Server } from './programs.mjs';
 
@@ -40,6 +40,7 @@ describe('a server with tokens', { timeout: 240_000 }, () => {
     await askedAgain(page);
     for (const other of ['#status', '#notice', '#sessions-state'])
       assert.equal(await page.isVisible(other), false, other);
+    await keepPicture(page, 'sign-in');
     await signIn(page, 'scanloom_guess');
     await says(page, 'dialog[open] .dialog-failure', /not in force/);
     await page.keyboard.press('Escape');

@@ -1,7 +1,16 @@
 /** The viewer against a server that does what each test wants. */
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { colourOf, colourScheme, countPixels, keepPicture, says, showsColour, textOf } from './browser.mjs';
+import {
+  colourOf,
+  colourScheme,
+  countPixels,
+  countsPixels,
+  keepPicture,
+  says,
+  showsColour,
+  textOf,
+} from './browser.mjs';
 import { withFakeServer } from './fake_fixture.mjs';
 import { FakeSession } from './fake_session.mjs';
 
@@ -191,9 +200,12 @@ describe('the viewer', { timeout: 180_000 }, () => {
     await says(page, '[data-robot="r2"]', /offline/);
     await page.click('#history-open');
     await says(page, '#time-mode', /^Live$/);
+    const filled = await countPixels(page, await colourOf(page, '--robot-0'));
     await server.vanish();
     await says(page, '#status', /Offline/);
     await says(page, '#time-mode', /^Offline$/);
+    await page.waitForSelector('#time-live[aria-pressed=false]');
+    await countsPixels(page, await colourOf(page, '--robot-0'), (count) => count > 0 && count < filled / 2);
     await says(page, '#robots', /unknown.*unknown/);
     // Nothing of the present is shown while it is not known.
     assert.equal(await page.isVisible('#sessions .online'), false);

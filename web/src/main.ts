@@ -156,6 +156,7 @@ function listen(): void {
   status.listen((isOffline) => {
     sessionPanel.setOffline(isOffline);
     robotList.setOffline(isOffline);
+    mapView.setOffline(isOffline);
   });
   settings.listen(takeColours);
   picture.listen(rememberLayer);

@@ -88,6 +88,7 @@ export function createMap(target: HTMLElement): OlMap {
 
 export class MapView {
   private scene: Scene | null = null;
+  private isOffline = false;
 
   constructor(
     private readonly map: OlMap,
@@ -114,6 +115,7 @@ export class MapView {
       robots: new RobotsLayer(colours, this.theme),
     };
     for (const { layer } of overlaysOf(this.scene)) this.map.addLayer(layer);
+    this.setOffline(this.isOffline);
     this.choose(settings);
   }
 
@@ -166,6 +168,12 @@ export class MapView {
 
   showRobots(robots: Robot[]): void {
     this.scene?.robots.show(robots);
+  }
+
+  /** @param isOffline whether the server does not answer */
+  setOffline(isOffline: boolean): void {
+    this.isOffline = isOffline;
+    this.scene?.robots.setOffline(isOffline);
   }
 
   showScan(robot: string, points: Point[]): void {

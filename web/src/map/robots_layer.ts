@@ -26,6 +26,7 @@ export class RobotsLayer {
     updateWhileInteracting: true,
   });
   private robots: Robot[] = [];
+  private isOffline = false;
 
   constructor(
     private readonly colours: RobotColours,
@@ -47,6 +48,12 @@ export class RobotsLayer {
     }
   }
 
+  /** @param isOffline whether the server does not answer: no robot is drawn as online */
+  setOffline(isOffline: boolean): void {
+    this.isOffline = isOffline;
+    this.show(this.robots);
+  }
+
   setTheme(theme: Theme): void {
     this.theme = theme;
     this.show(this.robots);
@@ -63,7 +70,7 @@ export class RobotsLayer {
 
   private styleOf(robot: Robot, yaw: number): Style[] {
     const colour = this.theme.robots[this.colours.indexOf(robot.name)] ?? this.theme.ink;
-    const look = { yaw, colour, halo: this.theme.halo, filled: robot.connected };
+    const look = { yaw, colour, halo: this.theme.halo, filled: robot.connected && !this.isOffline };
     return [
       new Style({
         renderer: (at, { context, pixelRatio, resolution }) => {

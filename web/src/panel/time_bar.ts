@@ -120,7 +120,7 @@ export class TimeBar {
     for (const button of [this.back, this.play, this.forward]) button.disabled = isEmpty;
     setIcon(this.play, isPlaying ? 'Pause' : 'Play', 'Space', isPlaying ? kIcons.pause : kIcons.play);
     this.speed.value = String(speed);
-    this.live.setAttribute('aria-pressed', String(index === null));
+    this.live.setAttribute('aria-pressed', String(index === null && !this.isOffline));
   }
 
   private showWords(state: HistoryState): void {
