@@ -13,6 +13,8 @@ const kPaddingShareMax = 0.08;
 const kMoveMs = 250;
 /** Nothing is shown larger than this by itself: metres per pixel for a room of a few metres. */
 const kFitResolutionMin = 0.01;
+/** A map that becomes larger or smaller by less than this is not fitted again: a line of text next to it came or went. */
+const kResizedPx = 48;
 /** Bounds may exceed the free part of the view by this much, which is rounding. */
 const kTolerancePx = 1;
 /** Bounds that outgrow the view are fitted with this much room to grow, so that the view does not creep. */
@@ -25,6 +27,8 @@ export class Camera {
   private fitted = false;
   /** Of the last fit. */
   private padding: Padding = [0, 0, 0, 0];
+  /** Of the map at the last fit. */
+  private size: [width: number, height: number] = [0, 0];
 
   constructor(
     private readonly map: Map,
@@ -102,8 +106,13 @@ export class Camera {
 
   /** Shows everything in the map's new size, if the person has not moved the view. */
   private resized(): void {
-    if (this.fitted && this.aim.kind === 'everything' && this.bounds && this.map.getSize()) this.fitTo(this.bounds, 0);
-    else this.update();
+    const [width = 0, height = 0] = this.map.getSize() ?? [];
+    const change = Math.max(Math.abs(width - this.size[0]), Math.abs(height - this.size[1]));
+    if (this.fitted && this.aim.kind === 'everything' && this.bounds && width > 0 && change >= kResizedPx) {
+      this.fitTo(this.bounds, 0);
+    } else {
+      this.update();
+    }
   }
 
   private update(): void {
@@ -126,6 +135,8 @@ export class Camera {
     const extent = [bounds.minX - dx, bounds.minY - dy, bounds.maxX + dx, bounds.maxY + dy];
     // Following a robot is a movement under way, which would otherwise have the last word.
     this.map.getView().cancelAnimations();
+    const [width = 0, height = 0] = this.map.getSize() ?? [];
+    this.size = [width, height];
     this.padding = this.paddingOf(bounds);
     this.map.getView().fit(extent, {
       padding: this.padding,
@@ -136,9 +147,8 @@ export class Camera {
   }
 
   private paddingOf({ minX, minY, maxX, maxY }: Bounds): Padding {
-    const [width = 0, height = 0] = this.map.getSize() ?? [];
-    const margin = Math.min(kPaddingPx, kPaddingShareMax * Math.min(width, height));
-    return freePadding([width, height], (maxX - minX) / (maxY - minY), margin, this.controls());
+    const margin = Math.min(kPaddingPx, kPaddingShareMax * Math.min(...this.size));
+    return freePadding(this.size, (maxX - minX) / (maxY - minY), margin, this.controls());
   }
 
   private inView(bounds: Bounds): boolean {
@@ -150,7 +160,7 @@ export class Camera {
   /** What is in view, without the padding of the last fit: there may be controls. */
   private freeExtent(): Extent {
     const view = this.map.getView();
-    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = view.calculateExtent(this.map.getSize());
+    const [minX = 0, minY = 0, maxX = 0, maxY = 0] = view.calculateExtent(this.size);
     const resolution = view.getResolution() ?? 0;
     const [top, right, bottom, left] = this.padding.map((side) => (side - kTolerancePx) * resolution) as Padding;
     return [minX + left, minY + bottom, maxX - right, maxY - top];
