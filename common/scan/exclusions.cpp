@@ -13,22 +13,29 @@ bool has(const SeqRange& range, const ScanPose& scan) { return range.from <= sca
 
 } // namespace
 
-Result<> Exclusions::add(Revision revision, const ScansExcluded& excluded) {
+Result<> Exclusions::check(const ScansExcluded& excluded) const {
     const std::uint64_t last = all_.empty() ? 0 : all_.back().excluded.id;
-    if (excluded.id <= last) {
-        return Error{Errc::kMalformed, fmt::format("exclusion {} follows exclusion {}", excluded.id, last)};
-    }
+    if (excluded.id > last) return {};
+    return Error{Errc::kMalformed, fmt::format("exclusion {} follows exclusion {}", excluded.id, last)};
+}
+
+Result<> Exclusions::check(const ExclusionLifted& lifted) const {
+    const bool is_in_effect = std::ranges::any_of(
+        all_, [&](const Exclusion& one) { return one.excluded.id == lifted.id && one.lifted == 0; });
+    if (is_in_effect) return {};
+    return Error{Errc::kMalformed, fmt::format("exclusion {} is lifted, but not in effect", lifted.id)};
+}
+
+Result<> Exclusions::add(Revision revision, const ScansExcluded& excluded) {
+    if (auto follows = check(excluded); !follows) return follows;
     all_.push_back({excluded, revision});
     revision_ = std::max(revision_, revision);
     return {};
 }
 
 Result<> Exclusions::add(Revision revision, const ExclusionLifted& lifted) {
-    const auto found = std::ranges::find(all_, lifted.id, [](const Exclusion& one) { return one.excluded.id; });
-    if (found == all_.end() || found->lifted != 0) {
-        return Error{Errc::kMalformed, fmt::format("exclusion {} is lifted, but not in effect", lifted.id)};
-    }
-    found->lifted = revision;
+    if (auto follows = check(lifted); !follows) return follows;
+    std::ranges::find(all_, lifted.id, [](const Exclusion& one) { return one.excluded.id; })->lifted = revision;
     revision_ = std::max(revision_, revision);
     return {};
 }

@@ -22,8 +22,12 @@ class Exclusions {
 public:
     static constexpr std::size_t kMost = 1000; ///< in effect at a time: each scan is compared with all of them
 
-    /// Adds the entry of that revision.
+    /// Checks whether the entry can follow.
     /// Errors  kMalformed: the id is not above all earlier ones; it names no exclusion that is in effect.
+    [[nodiscard]] Result<> check(const ScansExcluded& excluded) const;
+    [[nodiscard]] Result<> check(const ExclusionLifted& lifted) const;
+
+    /// Adds the entry of that revision. Errors  those of check().
     [[nodiscard]] Result<> add(Revision revision, const ScansExcluded& excluded);
     [[nodiscard]] Result<> add(Revision revision, const ExclusionLifted& lifted);
 

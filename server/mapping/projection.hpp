@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/error/error.hpp"
-#include "common/scan/log_entry.hpp"
+#include "common/scan/log_rules.hpp"
 #include "common/scan/scan_filter.hpp"
 #include "server/classify/class_layer.hpp"
 #include "server/mapping/snapshot.hpp"
@@ -18,25 +18,14 @@ namespace scanloom::mapping {
 /// Rises when the same log would give another map; checkpoints of another version are woven anew.
 inline constexpr std::uint32_t kWeavingVersion = 4;
 
-/// A sensor as a log entry described it. The description is shared, never changed.
-struct KnownSensor {
-    Revision revision = 0; ///< of that entry, or of a checkpoint after it
-    std::shared_ptr<const Sensor> sensor;
-};
-
 /// Everything but the chunks of a projection, and its trajectories, which the log has: what a checkpoint keeps besides
 /// the chunks.
 struct ProjectionState {
-    struct Robot {
-        std::string name;
-        std::string source;                ///< RobotJoined::source
-        std::optional<double> body_radius; ///< RobotJoined::body_radius
-        std::uint64_t last_seq = 0;
+    struct Robot : LoggedRobot {
         std::uint64_t scan_count = 0;          ///< integrated
         std::optional<TrajectoryPoint> newest; ///< of those
         JumpFilter::Robot jumps;               ///< only with max_jump
         std::uint64_t excluded = 0;            ///< scans
-        std::vector<KnownSensor> sensors;      ///< by rising id
     };
 
     Revision revision = 0;
@@ -61,7 +50,7 @@ public:
     explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
 
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
-    [[nodiscard]] Revision revision() const noexcept { return revision_; }
+    [[nodiscard]] Revision revision() const noexcept { return rules_.revision(); }
 
     /// The cells that any scan changed.
     [[nodiscard]] LayerBounds bounds() const noexcept { return {laser_.bounds(), sonar_.bounds()}; }
@@ -76,17 +65,16 @@ public:
     /// is held, there are so many more than chunk_count().
     [[nodiscard]] std::size_t copied_count() const noexcept { return laser_.copied() + sonar_.copied(); }
 
-    /// Null: no such robot has joined, or it has described no such sensor. Valid until the next fold().
-    [[nodiscard]] const std::string* find_robot_name(RobotIndex robot) const noexcept;
-    [[nodiscard]] const Sensor* find_sensor(RobotIndex robot, std::uint32_t id) const noexcept;
+    /// The robots as the log describes them, by RobotIndex. Valid until the next fold().
+    [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return rules_.robots(); }
 
-    /// The same description, for as long as it is held.
+    /// Null: no such robot has joined, or it has described no such sensor.
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
     /// Whether the newest entry was not integrated. Pre  it is a scan of that robot.
     [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
         const auto& newest = robots_[robot].newest;
-        return !newest || newest->revision != revision_;
+        return !newest || newest->revision != revision();
     }
 
     [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return filter_.exclusions(); }
@@ -134,38 +122,38 @@ private:
         std::variant<LaserFan, SonarFan> fan;
     };
 
+    /// What the maps hold of a robot.
     struct Robot {
         [[nodiscard]] Robot branch() const;
 
-        RobotState state; // what it says of its newest scan is filled in by snapshot()
-        std::string source;
+        std::uint64_t scan_count = 0; // integrated
+        std::uint64_t excluded = 0;
         std::optional<TrajectoryPoint> newest; // of its integrated scans
         Trajectory trajectory;
-        std::map<std::uint32_t, KnownSensor> sensors;
         std::map<std::uint32_t, KnownFan> fans;
     };
 
     Projection(const MapConfig& config, SharedExclusions exclusions, LaserLayers laser, SonarLayer sonar,
                classify::ClassLayer classes);
 
-    Result<bool> fold_entry(const RobotJoined& joined, double& work);
-    Result<bool> fold_entry(const SensorDescribed& described, double& work);
-    Result<bool> fold_entry(const ScanTaken& taken, double& work);
-    Result<bool> fold_entry(const MapPatch& patch, double& work);
-    Result<bool> fold_entry(const ScansExcluded& excluded, double& work);
-    Result<bool> fold_entry(const ExclusionLifted& lifted, double& work);
+    bool integrate_entry(const RobotJoined& joined, double& work);
+    bool integrate_entry(const SensorDescribed& described, double& work);
+    bool integrate_entry(const ScanTaken& taken, double& work);
+    bool integrate_entry(const MapPatch& patch, double& work);
+    bool integrate_entry(const ScansExcluded& excluded, double& work);
+    bool integrate_entry(const ExclusionLifted& lifted, double& work);
     [[nodiscard]] bool integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work);
     [[nodiscard]] const KnownFan& fan_of(Robot& robot, const Sensor& sensor, const Scan& scan);
 
     void bring_classes_up_to(const LaserView& laser);
 
     MapConfig config_;
-    Revision revision_ = 0;
+    LogRules rules_;
     LaserLayers laser_;
     SonarLayer sonar_;
     classify::ClassLayer classes_;
-    Revision classes_at_ = 0; // the classes are those of the laser chunks at this revision
-    std::vector<Robot> robots_;
+    Revision classes_at_ = 0;   // the classes are those of the laser chunks at this revision
+    std::vector<Robot> robots_; // by RobotIndex, as many as in rules_
     ScanFilter filter_;
     bool is_folding_ = false; // a scan, of which a part is in
 };

@@ -198,10 +198,10 @@ void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revisi
     if (state.exclusions->revision() != 0) out.add(std::string(kExclusions), exclusions_part(state));
     for (RobotIndex index = 0; index < state.robots.size(); ++index) {
         out.add(fmt::format("robot/{:08x}", index), robot_part(state.robots[index]));
-        for (const auto& [revision, sensor] : state.robots[index].sensors) {
-            if (revision <= since) continue;
-            out.add(fmt::format("sensor/{:08x}/{:08x}", index, sensor->id),
-                    wire::encode_entry(SensorDescribed{index, *sensor}));
+        for (const auto& [id, known] : state.robots[index].sensors) {
+            if (known.revision <= since) continue;
+            out.add(fmt::format("sensor/{:08x}/{:08x}", index, id),
+                    wire::encode_entry(SensorDescribed{index, *known.sensor}));
         }
     }
     out.write();
@@ -325,8 +325,9 @@ bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value
     if (!entry || numbers[0] >= state_.robots.size()) return false;
     auto* described = std::get_if<SensorDescribed>(&*entry);
     if (described == nullptr) return false;
-    state_.robots[numbers[0]].sensors.push_back(
-        {state_.revision, std::make_shared<const Sensor>(std::move(described->sensor))});
+    const auto id = described->sensor.id;
+    state_.robots[numbers[0]].sensors[id] = {state_.revision,
+                                             std::make_shared<const Sensor>(std::move(described->sensor))};
     return true;
 }
 

@@ -26,16 +26,13 @@ void Members::restore(const mapping::ProjectionState& state) {
     for (std::size_t n = 0; n < members_.size(); ++n) restore(members_[n], state.robots[n]);
 }
 
-void Members::restore(Member& member, const mapping::ProjectionState::Robot& state) {
-    if (member.received_seq > state.last_seq) counters_.scans_dropped += member.received_seq - state.last_seq;
-    member.name = state.name;
-    member.source = state.source;
-    member.body_radius = state.body_radius;
-    member.received_seq = member.durable_seq = state.last_seq;
-    if (member.showed_seq > member.received_seq) member.showed_seq = 0;
+void Members::restore(Member& member, const LoggedRobot& logged) {
+    const std::uint64_t lost = member.robot.last_seq - std::min(member.robot.last_seq, logged.last_seq);
+    counters_.scans_dropped += lost;
+    member.robot = logged;
+    member.durable_seq = logged.last_seq;
+    if (member.showed_seq > logged.last_seq) member.showed_seq = 0;
     member.under_way = 0;
-    member.sensors.clear();
-    for (const auto& known : state.sensors) member.sensors[known.sensor->id] = *known.sensor;
 }
 
 RobotIndex Members::index_of(const Member& member) const { return static_cast<RobotIndex>(&member - members_.data()); }
@@ -55,7 +52,8 @@ Submitted Members::submitted(Member& member, std::optional<LogEntry> entry, std:
 
 std::optional<Submitted> Members::join(Joining joining) {
     const auto& who = joining.who;
-    auto known = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == who.robot; });
+    auto known =
+        std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.robot.name == who.robot; });
     if (known == members_.end() && members_.size() >= kRobotsMax) {
         joining.done(Error{Errc::kFull,
                            fmt::format("session '{}' has {} robots already, the most it can hold; use another session",
@@ -65,7 +63,7 @@ std::optional<Submitted> Members::join(Joining joining) {
     const bool is_new = known == members_.end();
     Member& member = is_new ? members_.emplace_back() : *known;
     if (is_new) {
-        member.name = who.robot;
+        member.robot.name = who.robot;
     } else if (auto agrees = check_source(member, who.source); !agrees) {
         joining.done(agrees.error());
         return std::nullopt;
@@ -74,9 +72,9 @@ std::optional<Submitted> Members::join(Joining joining) {
                                                    who.robot, info_.name)});
     }
     std::optional<Submitted> entry;
-    if (is_new || member.source != who.source || member.body_radius != who.body_radius) {
-        member.source = who.source;
-        member.body_radius = who.body_radius;
+    if (is_new || member.robot.source != who.source || member.robot.body_radius != who.body_radius) {
+        member.robot.source = who.source;
+        member.robot.body_radius = who.body_radius;
         entry = submitted(member, RobotJoined{index_of(member), who.robot, who.source, who.body_radius}, 0);
     }
     member.joining = std::move(joining);
@@ -86,12 +84,13 @@ std::optional<Submitted> Members::join(Joining joining) {
 
 /// Scans are told apart by their number alone: those of another recording would be taken for the rest of this one.
 Result<> Members::check_source(const Member& member, const std::string& source) const {
-    if (member.received_seq == 0 || member.source == source) return {};
+    const LoggedRobot& robot = member.robot;
+    if (robot.accepts(source)) return {};
     const auto in_words = [](const std::string& name) { return name.empty() ? "a live robot" : "'" + name + "'"; };
     return Error{Errc::kConflict,
                  fmt::format("hello.source: the {} scans of robot '{}' in session '{}' come from {}, not from {}; "
                              "continue with the same, or use another robot or session name",
-                             member.received_seq, member.name, info_.name, in_words(member.source), in_words(source))};
+                             robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(source))};
 }
 
 /// Lets the link in that waits to become the robot's, once nothing of the earlier ones is under way.
@@ -101,7 +100,7 @@ void Members::admit(Member& member) {
     member.listener = joining.listener;
     set_connected(member, true);
     Joined joined{index_of(member), member.durable_seq};
-    for (const auto& [id, sensor] : member.sensors) joined.sensors.insert(id);
+    for (const auto& [id, known] : member.robot.sensors) joined.sensors.insert(id);
     joining.done(std::move(joined));
 }
 
@@ -158,9 +157,9 @@ std::vector<Submitted> Members::describe(const std::shared_ptr<RobotListener>& f
         return entries;
     }
     std::optional<LogEntry> entry;
-    const auto known = member->sensors.find(sensor.id);
-    if (known == member->sensors.end() || known->second != sensor) {
-        member->sensors[sensor.id] = sensor;
+    const auto* known = member->robot.find_sensor(sensor.id);
+    if (known == nullptr || *known->sensor != sensor) {
+        member->robot.sensors[sensor.id].sensor = std::make_shared<const Sensor>(sensor);
         entry = SensorDescribed{index_of(*member), std::move(sensor)};
     }
     entries.push_back(submitted(*member, std::move(entry), bytes));
@@ -179,7 +178,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
     std::size_t n = 0;
     for (; n < scans.size() && !fault; ++n) {
         Scan& scan = scans[n];
-        if (scan.seq <= member->received_seq) { // sent again after a reconnect: the log has it
+        if (scan.seq <= member->robot.last_seq) { // sent again after a reconnect: the log has it
             ++counters_.scans_duplicates;
             continue;
         }
@@ -187,12 +186,12 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        const auto reach = mapping::reach_of(info_.config, member->sensors.at(scan.sensor), scan);
+        const auto reach = mapping::reach_of(info_.config, *member->robot.find_sensor(scan.sensor)->sensor, scan);
         if (auto ok = mapping::check_work(reach); !ok) {
             fault = prefixed(fmt::format("scan_batch.scans[{}].", n), ok.error());
             continue;
         }
-        member->received_seq = scan.seq;
+        member->robot.last_seq = scan.seq;
         if (member->showed_seq == 0 && !reach.cells.empty()) member->showed_seq = scan.seq;
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
@@ -205,22 +204,23 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
 }
 
 Result<> Members::check_next(const Member& member, const Scan& scan, bool is_mapped) const {
-    if (scan.seq != member.received_seq + 1) {
+    const LoggedRobot& robot = member.robot;
+    if (!robot.is_next(scan.seq)) {
         return Error{
             Errc::kOutOfOrder,
             fmt::format("seq is {}, {} is the next of robot '{}'; connect again and continue after last_durable_seq",
-                        scan.seq, member.received_seq + 1, member.name)};
+                        scan.seq, robot.last_seq + 1, robot.name)};
     }
-    const auto sensor = member.sensors.find(scan.sensor);
-    if (sensor == member.sensors.end()) {
+    const auto* known = robot.find_sensor(scan.sensor);
+    if (known == nullptr) {
         return Error{Errc::kInvalidField,
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
-    if (scan.begins_map && member.received_seq == 0) { // what follows a robot's first scan lies to that as it says
+    if (scan.begins_map && robot.last_seq == 0) { // what follows a robot's first scan lies to that as it says
         const auto shows = [](const Member& other) { return other.showed_seq > 0; };
-        if (is_mapped || std::ranges::any_of(members_, shows)) return begun_already(member.name, info_.name);
+        if (is_mapped || std::ranges::any_of(members_, shows)) return begun_already(robot.name, info_.name);
     }
-    return wire::check_scan(scan, sensor->second);
+    return wire::check_scan(scan, *known->sensor);
 }
 
 // What became of it

@@ -67,16 +67,12 @@ public:
 
 private:
     struct Member {
-        std::string name;
-        std::string source;
-        std::optional<double> body_radius;
+        LoggedRobot robot; // as the log will have it when all that was submitted is in it
         std::shared_ptr<RobotListener> listener;
         std::optional<Joining> joining;
         std::size_t under_way = 0; // entries submitted and not released
-        std::uint64_t received_seq = 0;
         std::uint64_t durable_seq = 0;
         std::uint64_t showed_seq = 0; // of the first scan taken here that shows anything; 0: there is none
-        std::map<std::uint32_t, Sensor> sensors;
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;
@@ -84,7 +80,7 @@ private:
     [[nodiscard]] Submitted submitted(Member& member, std::optional<LogEntry> entry, std::size_t bytes);
     [[nodiscard]] Result<> check_source(const Member& member, const std::string& source) const;
     [[nodiscard]] Result<> check_next(const Member& member, const Scan& scan, bool is_mapped) const;
-    void restore(Member& member, const mapping::ProjectionState::Robot& state);
+    void restore(Member& member, const LoggedRobot& logged);
     void admit(Member& member);
     void fail(Member& member, const Error& error);
     void set_connected(const Member& member, bool connected);

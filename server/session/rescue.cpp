@@ -32,9 +32,9 @@ std::vector<LogEntry> Rescue::add(Revision revision, LogEntry entry) {
         entries = stand_ins_before(*taken);
     }
     for (const auto& stand_in : entries) {
-        if (!order_.add(stand_in)) return {}; // cannot be: they follow each other
+        if (!rules_.add(stand_in)) return {}; // cannot be: they follow each other
     }
-    if (!order_.add(entry)) return {};
+    if (!rules_.add(entry)) return {};
     if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
         sensors_[{described->robot, described->sensor.id}] = described->sensor;
     }
@@ -64,13 +64,13 @@ bool Rescue::renumber(LogEntry& entry) {
 bool Rescue::fits(const ScanTaken& taken) const {
     const auto sensor = sensors_.find({taken.robot, taken.scan.sensor});
     if (sensor == sensors_.end() || !wire::check_scan(taken.scan, sensor->second)) return false;
-    const auto last_seq = order_.robots()[taken.robot].last_seq;
+    const auto last_seq = rules_.robots()[taken.robot].last_seq;
     return taken.scan.seq > last_seq && taken.scan.seq - last_seq - 1 <= missing_ - stood_in_;
 }
 
 std::vector<LogEntry> Rescue::stand_ins_before(const ScanTaken& taken) {
     std::vector<LogEntry> entries;
-    for (auto seq = order_.robots()[taken.robot].last_seq + 1; seq < taken.scan.seq; ++seq) {
+    for (auto seq = rules_.robots()[taken.robot].last_seq + 1; seq < taken.scan.seq; ++seq) {
         entries.emplace_back(std::in_place_type<ScanTaken>, ScanTaken{taken.robot, blank(taken.scan, seq)});
     }
     return entries;

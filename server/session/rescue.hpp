@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/scan/log_entry.hpp"
-#include "server/session/entry_order.hpp"
+#include "common/scan/log_rules.hpp"
 
 #include <cstdint>
 #include <map>
@@ -38,7 +38,7 @@ private:
     [[nodiscard]] bool fits(const ScanTaken& taken) const;
     [[nodiscard]] std::vector<LogEntry> stand_ins_before(const ScanTaken& taken);
 
-    EntryOrder order_;
+    LogRules rules_;
     std::map<RobotIndex, RobotIndex> robots_;                        // old to new
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by the new
     Revision last_ = 0;

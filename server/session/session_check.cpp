@@ -1,10 +1,10 @@
 #include "server/session/session_check.hpp"
 
+#include "common/scan/log_rules.hpp"
 #include "common/wire/log_codec.hpp"
 #include "server/mapping/digest.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/session/damage.hpp"
-#include "server/session/entry_order.hpp"
 #include "server/session/log_exclusions.hpp"
 #include "server/session/recovery.hpp"
 
@@ -28,11 +28,11 @@ struct Checking {
 };
 
 Result<> check_log(Checking& checking, Revision& entries) {
-    EntryOrder order;
+    LogRules rules;
     return checking.log.read(checking.id, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
-        if (auto follows = order.add(*entry); !follows) return follows;
+        if (auto follows = rules.add(*entry); !follows) return follows;
         entries = revision;
         return checking.go_on(bytes.size());
     });

@@ -12,10 +12,10 @@ namespace scanloom::session {
 namespace {
 
 std::string named(const mapping::Projection& projection, RobotIndex robot, const Sensor& sensor) {
-    const auto* name = projection.find_robot_name(robot);
     auto text = fmt::format("sensor {}", sensor.id);
     if (!sensor.name.empty()) text += fmt::format(" ('{}')", sensor.name);
-    return text + fmt::format(" of robot '{}'", name == nullptr ? "" : *name);
+    return text +
+           fmt::format(" of robot '{}'", robot < projection.robots().size() ? projection.robots()[robot].name : "");
 }
 
 /// The smallest cell size, in whole millimetres, at which the sensor's reach is possible.
@@ -40,7 +40,7 @@ Result<> check(const mapping::Projection& projection, const SensorDescribed& des
 }
 
 Result<> check(const mapping::Projection& projection, const ScanTaken& taken) {
-    const auto* sensor = projection.find_sensor(taken.robot, taken.scan.sensor);
+    const auto sensor = projection.sensor_of(taken.robot, taken.scan.sensor);
     if (sensor == nullptr) return {};
     if (mapping::check_work(mapping::reach_of(projection.config(), *sensor, taken.scan))) return {};
     return too_many_cells(projection,

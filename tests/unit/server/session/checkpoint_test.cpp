@@ -36,7 +36,7 @@ void fold(mapping::Projection& projection, const std::vector<LogEntry>& log, std
 
 std::vector<Sensor> sensors_of(const mapping::ProjectionState::Robot& robot) {
     std::vector<Sensor> sensors;
-    for (const auto& known : robot.sensors) sensors.push_back(*known.sensor);
+    for (const auto& [id, known] : robot.sensors) sensors.push_back(*known.sensor);
     return sensors;
 }
 

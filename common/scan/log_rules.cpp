@@ -1,0 +1,91 @@
+#include "common/scan/log_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace scanloom {
+namespace {
+
+Error cannot_follow(std::string what) { return {Errc::kMalformed, std::move(what)}; }
+
+} // namespace
+
+Result<> LogRules::check(const LogEntry& entry) const {
+    const auto follows = std::visit([this](const auto& body) { return check_body(body); }, entry);
+    if (follows) return {};
+    return Error{follows.error().code,
+                 fmt::format("log entry {}: {}; the log is damaged", revision_ + 1, follows.error().message)};
+}
+
+void LogRules::apply(const LogEntry& entry) {
+    std::visit([this](const auto& body) { apply_body(body); }, entry);
+    ++revision_;
+}
+
+Result<> LogRules::add(const LogEntry& entry) {
+    auto follows = check(entry);
+    if (follows) apply(entry);
+    return follows;
+}
+
+Result<> LogRules::check_body(const RobotJoined& joined) const {
+    if (joined.robot == robots_.size()) return {};
+    const bool is_again = joined.robot < robots_.size() && robots_[joined.robot].name == joined.name &&
+                          robots_[joined.robot].accepts(joined.source);
+    if (is_again) return {};
+    return cannot_follow(fmt::format("robot {} joins after {} others", joined.robot, robots_.size()));
+}
+
+void LogRules::apply_body(const RobotJoined& joined) {
+    if (joined.robot == robots_.size()) robots_.emplace_back().name = joined.name;
+    robots_[joined.robot].source = joined.source;
+    robots_[joined.robot].body_radius = joined.body_radius;
+}
+
+Result<> LogRules::check_body(const SensorDescribed& described) const {
+    if (described.robot < robots_.size()) return {};
+    return cannot_follow(fmt::format("a sensor of robot {}, which never joined", described.robot));
+}
+
+void LogRules::apply_body(const SensorDescribed& described) {
+    robots_[described.robot].sensors[described.sensor.id] = {revision_ + 1,
+                                                             std::make_shared<const Sensor>(described.sensor)};
+}
+
+Result<> LogRules::check_body(const ScanTaken& taken) const {
+    if (taken.robot >= robots_.size()) {
+        return cannot_follow(fmt::format("a scan of robot {}, which never joined", taken.robot));
+    }
+    const LoggedRobot& robot = robots_[taken.robot];
+    if (robot.find_sensor(taken.scan.sensor) == nullptr) {
+        return cannot_follow(fmt::format("a scan of sensor {}, which was never described", taken.scan.sensor));
+    }
+    if (robot.is_next(taken.scan.seq)) return {};
+    return cannot_follow(
+        fmt::format("scan {} of robot '{}' follows scan {}", taken.scan.seq, robot.name, robot.last_seq));
+}
+
+void LogRules::apply_body(const ScanTaken& taken) { robots_[taken.robot].last_seq = taken.scan.seq; }
+
+Result<> LogRules::check_body(const MapPatch&) const {
+    if (robots_.empty()) return {};
+    return cannot_follow("an imported map after robots have joined");
+}
+
+void LogRules::apply_body(const MapPatch&) {}
+
+Result<> LogRules::check_body(const ScansExcluded& excluded) const {
+    if (excluded.robot < robots_.size()) return exclusions_.check(excluded);
+    return cannot_follow(fmt::format("scans of robot {} are excluded, which never joined", excluded.robot));
+}
+
+void LogRules::apply_body(const ScansExcluded& excluded) {
+    static_cast<void>(exclusions_.add(revision_ + 1, excluded));
+}
+
+Result<> LogRules::check_body(const ExclusionLifted& lifted) const { return exclusions_.check(lifted); }
+
+void LogRules::apply_body(const ExclusionLifted& lifted) { static_cast<void>(exclusions_.add(revision_ + 1, lifted)); }
+
+} // namespace scanloom

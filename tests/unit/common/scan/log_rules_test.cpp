@@ -1,0 +1,126 @@
+#include "common/scan/log_rules.hpp"
+
+#include "tests/support/random_scans.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace scanloom {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::random_scan;
+using testing_support::small_laser;
+
+/// Some of them cannot follow what came before.
+LogEntry random_entry(std::mt19937& engine) {
+    const auto random = [&](unsigned below) { return static_cast<unsigned>(engine() % below); };
+    const RobotIndex robot = random(4);
+    switch (random(10)) {
+    case 0: return RobotJoined{robot, std::string(1, static_cast<char>('a' + random(3))), random(2) ? "s" : ""};
+    case 1: {
+        Sensor sensor = small_laser();
+        sensor.id = random(3);
+        return SensorDescribed{robot, sensor};
+    }
+    case 2: return MapPatch{0.05, 0.0, 0.0, 1, {MapCell{}}};
+    case 3: return ScansExcluded{random(6), robot, SeqRange{1, 2}};
+    case 4: return ExclusionLifted{random(6)};
+    default: {
+        Scan scan = random_scan(1, random(5) + 1);
+        scan.sensor = random(3);
+        return ScanTaken{robot, scan};
+    }
+    }
+}
+
+/// The entries of one kind.
+template <class Body>
+std::vector<Body> all_of(const std::vector<LogEntry>& log) {
+    std::vector<Body> found;
+    for (const auto& entry : log) {
+        if (const auto* body = std::get_if<Body>(&entry)) found.push_back(*body);
+    }
+    return found;
+}
+
+/// As the definitions say, from all entries before it.
+struct CanFollow {
+    const std::vector<LogEntry>& log;
+
+    [[nodiscard]] bool has_joined(RobotIndex robot) const {
+        return std::ranges::any_of(all_of<RobotJoined>(log), [&](const auto& one) { return one.robot == robot; });
+    }
+    [[nodiscard]] std::size_t scans_of(RobotIndex robot) const {
+        return static_cast<std::size_t>(std::ranges::count(all_of<ScanTaken>(log), robot, &ScanTaken::robot));
+    }
+
+    bool operator()(const RobotJoined& joined) const {
+        std::vector<RobotJoined> earlier;
+        for (const auto& one : all_of<RobotJoined>(log)) {
+            if (one.robot == joined.robot) earlier.push_back(one);
+        }
+        if (earlier.empty()) return joined.robot == 0 || has_joined(joined.robot - 1);
+        const bool is_same = earlier.back().source == joined.source || scans_of(joined.robot) == 0;
+        return earlier.back().name == joined.name && is_same;
+    }
+    bool operator()(const SensorDescribed& described) const { return has_joined(described.robot); }
+    bool operator()(const ScanTaken& taken) const {
+        const bool is_described = std::ranges::any_of(all_of<SensorDescribed>(log), [&](const auto& one) {
+            return one.robot == taken.robot && one.sensor.id == taken.scan.sensor;
+        });
+        return is_described && taken.scan.seq == scans_of(taken.robot) + 1;
+    }
+    bool operator()(const MapPatch&) const { return !has_joined(0); }
+    bool operator()(const ScansExcluded& excluded) const {
+        const auto earlier = all_of<ScansExcluded>(log);
+        const auto is_later = [&](const auto& one) { return one.id >= excluded.id; };
+        return excluded.id > 0 && has_joined(excluded.robot) && std::ranges::none_of(earlier, is_later);
+    }
+    bool operator()(const ExclusionLifted& lifted) const {
+        const auto is_it = [&](const auto& one) { return one.id == lifted.id; };
+        return std::ranges::any_of(all_of<ScansExcluded>(log), is_it) &&
+               std::ranges::none_of(all_of<ExclusionLifted>(log), is_it);
+    }
+};
+
+TEST(LogRules, TakeTheEntriesThatCanFollowAllBefore) {
+    std::mt19937 random(1);
+    int taken = 0;
+    int refused = 0;
+    for (int run = 0; run < 300; ++run) {
+        LogRules rules;
+        std::vector<LogEntry> log;
+        for (int n = 0; n < 60; ++n) {
+            const auto entry = random_entry(random);
+            const bool can_follow = std::visit(CanFollow{log}, entry);
+            ASSERT_EQ(rules.check(entry).has_value(), can_follow) << run << ", " << n;
+            ASSERT_EQ(rules.add(entry).has_value(), can_follow);
+            if (can_follow) log.push_back(entry);
+            ASSERT_EQ(rules.revision(), log.size());
+            ++(can_follow ? taken : refused);
+        }
+        for (RobotIndex robot = 0; robot < rules.robots().size(); ++robot) {
+            EXPECT_EQ(rules.robots()[robot].last_seq, CanFollow{log}.scans_of(robot));
+        }
+        EXPECT_EQ(rules.exclusions().all().size(), all_of<ScansExcluded>(log).size());
+    }
+    EXPECT_GT(taken, 1000);
+    EXPECT_GT(refused, 1000);
+}
+
+TEST(LogRules, SayWhichEntryCannotFollowAndWhy) {
+    LogRules rules;
+    ASSERT_TRUE(rules.add(RobotJoined{0, "a", ""}));
+    ASSERT_TRUE(rules.add(SensorDescribed{0, small_laser()}));
+    const auto refusal = rules.check(ScanTaken{0, random_scan(1, 4)}).error();
+    EXPECT_EQ(refusal.code, Errc::kMalformed);
+    EXPECT_EQ(refusal.message, "log entry 3: scan 4 of robot 'a' follows scan 0; the log is damaged");
+    EXPECT_THAT(rules.check(ScanTaken{1, random_scan(1, 1)}).error().message, HasSubstr("robot 1, which never joined"));
+}
+
+} // namespace
+} // namespace scanloom
