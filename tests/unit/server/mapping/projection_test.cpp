@@ -2,6 +2,7 @@
 
 #include "server/mapping/reach.hpp"
 #include "tests/support/digests.hpp"
+#include "tests/support/random_scans.hpp"
 #include "tests/support/restored.hpp"
 
 #include <gmock/gmock.h>
@@ -226,6 +227,16 @@ TEST(Projection, ARobotMayComeAgainWithAnotherBodyButItsScansComeFromOneSource) 
     EXPECT_EQ(radius(), std::nullopt) << "what it said last holds, also when it said nothing";
     EXPECT_EQ(projection.snapshot().robots.at(0).scan_count, 1U);
     EXPECT_EQ(testing_support::digests_of(projection.snapshot()), cells);
+}
+
+TEST(Projection, RefusesEntriesThatCannotFollow) {
+    Projection projection{MapConfig{}};
+    ASSERT_TRUE(projection.fold(RobotJoined{0, "r"}));
+    ASSERT_TRUE(projection.fold(SensorDescribed{0, testing_support::small_laser()}));
+    EXPECT_EQ(projection.fold(ScanTaken{0, testing_support::random_scan(1, 2)}).error().code, Errc::kMalformed);
+    EXPECT_EQ(projection.revision(), 2U);
+    EXPECT_EQ(projection.chunk_count(), 0U);
+    EXPECT_TRUE(projection.fold(ScanTaken{0, testing_support::random_scan(1, 1)}));
 }
 
 TEST(Projection, TheBeamCountMayVaryFromScanToScan) {
