@@ -20,7 +20,7 @@ struct Exclusion {
 /// All exclusions of a session's log, up to one of its entries.
 class Exclusions {
 public:
-    static constexpr std::size_t kMost = 1000; ///< in effect at a time: each scan is compared with all of them
+    static constexpr std::size_t kMost = 1000; ///< in effect at a time
 
     /// Checks whether the entry can follow.
     /// Errors  kMalformed: the id is not above all earlier ones; it names no exclusion that is in effect.
@@ -34,7 +34,7 @@ public:
     /// Whether an exclusion that is in effect covers the scan of that log entry.
     [[nodiscard]] bool cover(Revision revision, const ScanPose& scan) const noexcept;
 
-    /// Of the newest entry that was added; 0: there is none.
+    /// The revision of the newest entry that was added; 0 if there is none.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
     /// Those of the log up to that revision.

@@ -30,16 +30,30 @@ MapMemory default_map_memory(const MemoryLimit& limit) {
     return {.maps = whole_mib(available / 2), .weaves = whole_mib(available / 4)};
 }
 
-Result<> check_address_space(const ServerOptions& options, const MemoryLimit& limit) {
-    if (!is_limited(limit)) return {};
+/// With maps that take at least what is given, of an address space that large.
+static std::uint64_t needed_with(const ServerOptions& options, MapMemory maps) {
     const auto stacks = 3 * options.threads * kStackBytes; // what grows with --threads
-    const auto needed =
-        kFixedAddressSpace + stacks + options.tile_cache_bytes + options.map_memory_bytes + options.weave_memory_bytes;
-    if (needed <= limit.address_space) return {};
+    return kFixedAddressSpace + stacks + options.tile_cache_bytes + std::max(options.map_memory_bytes, maps.maps) +
+           std::max(options.weave_memory_bytes, maps.weaves);
+}
+
+/// A limit that is enough: with a greater one, maps by default take more.
+static std::uint64_t enough_for(const ServerOptions& options, const MemoryLimit& limit) {
+    auto enough = needed_with(options, {});
+    for (;;) {
+        const auto needed = needed_with(options, default_map_memory({limit.bytes, enough}));
+        if (needed <= enough) return enough;
+        enough = needed;
+    }
+}
+
+Result<> check_address_space(const ServerOptions& options, const MemoryLimit& limit) {
+    if (!is_limited(limit) || needed_with(options, {}) <= limit.address_space) return {};
+    const auto enough = enough_for(options, limit);
     return Error{Errc::kInvalidField,
                  fmt::format("the address space of this process is limited to {} MiB, and the server needs {}: allow "
                              "that much with ulimit -v {}, or lower --map-memory, --weave-memory and --tile-cache",
-                             limit.address_space / kMib, needed / kMib, needed / 1024)};
+                             limit.address_space / kMib, enough / kMib, enough / 1024)};
 }
 
 void save_address_space(const MemoryLimit& limit) {

@@ -249,7 +249,8 @@ void Server::wait_for_signal() {
 /// From time to time, as long as the server runs.
 void Server::tidy_up() {
     if (sessions_.is_draining()) return;
-    asio::post(changing_.get_executor(), [this] {
+    asio::post(reading_.get_executor(), [this] { // who changes a session may wait for what this sets off
+        tell_of_failed_store();
         if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
         audit_.tell_what_is_due();
@@ -258,6 +259,13 @@ void Server::tidy_up() {
     tidying_.async_wait([this](const boost::system::error_code& error) {
         if (!error) tidy_up();
     });
+}
+
+/// Once for each failure: where no robot sends, no session learns of it.
+void Server::tell_of_failed_store() {
+    auto failure = log_->stats().last_error;
+    if (failure && failure != store_failure_) spdlog::error("{}", *failure);
+    store_failure_ = std::move(failure);
 }
 
 void Server::wait_for_hangup() {

@@ -38,10 +38,10 @@ namespace scanloom::app {
 ///   awaiting       answers that wait for such maps
 ///   planning       ways through maps, for robots and people: one search at a time
 ///   locating       robots that ask where they are: one at a time
-///   changing       creating and deleting sessions, making backups: waits for the disk and for strands
+///   changing       creating and deleting sessions, excluding scans, making backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
-///   reading        sessions that come back to memory: reads them from the store
-///   checking       reads the sessions that the start left in the store: behind all others, at a bounded rate
+///   reading        sessions that come back to memory: reads them from the store; from time to time, sends idle ones
+///   away checking       reads the sessions that the start left in the store: behind all others, at a bounded rate
 ///   telling        metrics
 ///   showing        what viewers are told live: one event at a time, as snapshots are read for it
 ///
@@ -68,6 +68,7 @@ private:
     void announce() const;
     void wait_for_signal();
     void tidy_up();
+    void tell_of_failed_store();
     void wait_for_hangup();
     void read_tokens_again();
     void read_certificates_again();
@@ -115,6 +116,7 @@ private:
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
     boost::asio::steady_timer tidying_;
+    std::optional<std::string> store_failure_; // that was logged; of the reading pool, one at a time
 };
 
 } // namespace scanloom::app

@@ -68,7 +68,10 @@ bool needs_maps(Operation operation) {
     case Operation::kCreateSession:
     case Operation::kImportMap:
     case Operation::kGetSession:
-    case Operation::kDeleteSession: return false;
+    case Operation::kDeleteSession:
+    case Operation::kExclude:
+    case Operation::kListExclusions:
+    case Operation::kLiftExclusion: return false;
     default: return needs_sessions(operation);
     }
 }

@@ -71,8 +71,10 @@ std::string_view session_in(const Match& match) {
 } // namespace
 
 std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Match& match) const {
-    // A token in a field of its own is shown by nobody but who knows it; where there is none, the origin has to do.
-    const bool is_told_to = request.authorization.empty() && !request.origin.empty() && is_of_foreign_page(request);
+    // Only a program that knows a token sends it in a field. Other credentials, as of a proxy, a browser adds by
+    // itself.
+    const bool has_token = !gate_.is_open() && bearer_of(request.authorization);
+    const bool is_told_to = !has_token && !request.origin.empty() && is_of_foreign_page(request);
     const bool asks_no_token = gate_.is_open() || need_of(match.operation) == Need::kNothing;
     if (is_told_to && asks_no_token) return refuse(request, foreign_page(request, ""), session_in(match));
     if (gate_.is_open()) return access::anybody();
@@ -91,7 +93,7 @@ std::optional<Denied> Doorman::objection(const Token& token, std::string_view se
 }
 
 guard::Admitted<TokenRef> Doorman::identify(const Request& request) const {
-    if (request.authorization.empty()) {
+    if (!bearer_of(request.authorization)) {
         if (const auto cookie = cookie_of(request.cookie, kLoginCookie)) return identify_browser(request, *cookie);
     }
     return gate_.admit(bearer_of(request.authorization).value_or(""));

@@ -98,8 +98,10 @@ net::awaitable<void> Server::accept_loop() {
 void Server::take(tcp::socket socket) {
     boost::system::error_code ignored;
     const auto peer = socket.remote_endpoint(ignored).address();
-    const auto of_peer = peers_.find(peer);
-    if (!may_connect(peer, of_peer == peers_.end() ? 0 : of_peer->second, service_->config))
+    const auto found = peers_.find(peer);
+    const std::size_t of_peer = found == peers_.end() ? 0 : found->second;
+    const bool is_closing_enough = of_peer >= service_->config.connections_per_peer_max + kOnTheirWayOutMax;
+    if (!may_connect(peer, of_peer, service_->config) && (is_closing_enough || !make_room(&peer)))
         return refuse(std::move(socket), "too many connections of this address are open");
     if (connections_.size() >= service_->config.connections_max && !make_room())
         return refuse(std::move(socket), "too many connections are open");
@@ -119,12 +121,14 @@ void Server::take(tcp::socket socket) {
 }
 
 /// Closes the connection whose peer is furthest behind: it is silent, sends its body slowly or reads slowly.
+/// @param of_peer  an address, whose connections alone are looked at; null: all
 /// @return false: every peer waits for this server, or more connections are closing already than places are lent.
-bool Server::make_room() {
+bool Server::make_room(const net::ip::address* of_peer) {
     if (connections_.size() >= service_->config.connections_max + kOnTheirWayOutMax) return false;
     std::shared_ptr<Connection> slowest;
     std::chrono::duration<double> furthest{};
     for (const auto& [connection, peer] : connections_) {
+        if (of_peer != nullptr && peer != *of_peer) continue;
         const auto behind = connection->behind();
         if (!behind || (slowest && *behind <= furthest)) continue;
         furthest = *behind;

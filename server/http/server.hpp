@@ -63,7 +63,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> accept_loop();
     [[nodiscard]] boost::asio::awaitable<void> serve(std::shared_ptr<Connection> connection);
     void take(boost::asio::ip::tcp::socket socket);
-    [[nodiscard]] bool make_room();
+    [[nodiscard]] bool make_room(const boost::asio::ip::address* of_peer = nullptr);
     void refuse(boost::asio::ip::tcp::socket socket, std::string_view why);
     void forget(const std::shared_ptr<Connection>& connection);
     void call_done_when_empty();

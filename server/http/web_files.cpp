@@ -136,6 +136,7 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
     const auto cache_control = file.immutable ? kImmutable : kRevalidate;
     const bool is_known = if_none_match_has(if_none_match, file.etag);
     auto response = is_known ? not_modified(file.etag, cache_control) : ok(file.content_type, Body(file.content));
+    if (file.gzip) response.set("Vary", "Accept-Encoding");
     if (!is_known) {
         response.set("ETag", file.etag).set("Cache-Control", cache_control);
         response.gzip = file.gzip;

@@ -20,8 +20,9 @@ struct Invitation {
     std::string tag;  ///< LiveEvent::session
     guide::WayBook& ways;
     std::shared_ptr<WatchedLandmarks> landmarks;
-    std::shared_ptr<guard::Pass> pass = nullptr; ///< by whose leave; none: nobody takes it back
-    std::function<void()> taken_back = [] {};    ///< called when the pass is no longer good, as the viewer ends
+    std::function<bool()> is_stored = [] { return false; }; ///< whether the session exists, in memory or not
+    std::shared_ptr<guard::Pass> pass = nullptr;            ///< by whose leave; none: nobody takes it back
+    std::function<void()> taken_back = [] {}; ///< called when the pass is no longer good, as the viewer ends
 };
 
 } // namespace scanloom::live

@@ -199,15 +199,20 @@ Viewer::Narration Viewer::narrate() {
     }
     const auto session = invitation_.session.lock();
     const auto closing = session ? session->closing() : std::nullopt;
-    if (!session || (closing && closing->code == Errc::kGone)) {
+    const bool is_deleted = closing ? closing->code == Errc::kGone : !session && !invitation_.is_stored();
+    if (is_deleted) {
         return {{}, close_with(kSessionDeleted, fmt::format("session '{}' was deleted", invitation_.name)), {}};
     }
+    if (!session)
+        return {{}, close_with(websocket::close_code::going_away, "the session left memory; connect again"), {}};
     const auto ways = invitation_.ways.state(session, Clock::now());
     Moment moment = moment_of(*session, ways.revision);
     const auto until = std::min(ways.until, add_landmarks(session, moment));
     const auto event = narrator_.next(moment);
-    if (!event) return {{}, {}, until};
-    return {wire::encode(*event), {}, narrator_.has_more() ? Clock::now() : until};
+    std::optional<Close> end;
+    if (closing) end = close_with(websocket::close_code::going_away, closing->message);
+    if (!event) return {{}, end, until};
+    return {wire::encode(*event), end, narrator_.has_more() ? Clock::now() : until};
 }
 
 /// @return when there may be others

@@ -31,8 +31,8 @@ namespace scanloom::live {
 /// written and its time has come, from what the session shows then. So a slow viewer gets the newest state, never a
 /// backlog, and costs one event's memory; the session knows nothing of it.
 ///
-/// Ends with one of these codes, and a reason: 1001 the server shuts down, 1003 a text message, 1007 no LiveRequest,
-/// 1009 a message of more than request_bytes_max, 1011 a fault of ours, 4401 its token is
+/// Ends with one of these codes, and a reason: 1001 the server shuts down or the session is read again, 1003 a text
+/// message, 1007 no LiveRequest, 1009 a message of more than request_bytes_max, 1011 a fault of ours, 4401 its token is
 /// no longer in force, 4404 the session was deleted; without a code
 /// when the viewer hangs up, breaks the protocol of the WebSocket, or a deadline passes.
 /// Thread  everything on the socket's executor, a strand, but narrate(), which runs on `showing` while the strand's

@@ -78,7 +78,7 @@ template <class Layer>
 auto CaptureFolds<Layer>::find_or_begin(const SessionInfo& session) -> std::shared_ptr<Kept> {
     const std::lock_guard lock(mutex_);
     auto found = std::ranges::find(kept_, session.id, [](const auto& kept) { return kept->session; });
-    if (found != kept_.end() && (*found)->exclusions != session.exclusions->revision()) {
+    if (found != kept_.end() && (*found)->exclusions < session.exclusions->revision()) {
         kept_.erase(found);
         found = kept_.end();
     }

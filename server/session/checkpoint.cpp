@@ -392,6 +392,9 @@ std::optional<mapping::ProjectionState> CheckpointReader::state() && {
 
 Result<mapping::Projection> CheckpointReader::finish() && {
     begin_weaving();
+    for (const auto& exclusion : state_.exclusions->all()) {
+        if (exclusion.excluded.robot >= state_.robots.size()) return damaged(kExclusions);
+    }
     for (const auto& robot : state_.robots) {
         if (robot.newest || robot.scan_count == 0) continue;
         return Error{Errc::kMalformed, fmt::format("the checkpoint has no pose of robot '{}', which took {} scans",

@@ -31,10 +31,16 @@ std::int64_t pages_of(const mapping::MapConfig& config, const MapPatch& patch) {
     return is_known ? mapping::chunk_count_of(mapping::reach_of(config, patch).cells) : 0;
 }
 
-Error no_room(std::int64_t pages, std::int64_t free) {
+/// @param most  pages of all maps together
+Error no_room(std::int64_t pages, std::int64_t free, std::int64_t most) {
     const auto mebibytes = [](std::int64_t count) {
         return count * static_cast<std::int64_t>(mapping::kPageBytes) >> 20;
     };
+    if (pages > most) {
+        return {Errc::kFull, fmt::format("this map takes up to {} MiB, and the memory for maps has {} MiB in all; use "
+                                         "larger cells, or have the server given more (--map-memory)",
+                                         mebibytes(pages), mebibytes(most))};
+    }
     return {Errc::kOverloaded, fmt::format("there is no room for this map in the memory for maps: it takes up to {} "
                                            "MiB, and {} MiB are free; try again soon, or use larger cells",
                                            mebibytes(pages), mebibytes(free))};
@@ -61,7 +67,7 @@ Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,
         for (const auto& patch : patches) {
             const std::int64_t pages = pages_of(config, patch);
             if (!share.take(pages)) {
-                return no_room(static_cast<std::int64_t>(pages_of_imported(config, patches)), free);
+                return no_room(static_cast<std::int64_t>(pages_of_imported(config, patches)), free, share.most());
             }
             const std::size_t before = projection.page_count();
             if (auto folded = projection.fold(patch); !folded) return folded.error();

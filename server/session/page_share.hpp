@@ -51,6 +51,13 @@ public:
         return std::max<std::int64_t>(0, free);
     }
 
+    /// What there is of the smallest budget in all.
+    [[nodiscard]] std::int64_t most() const noexcept {
+        auto most = std::numeric_limits<std::int64_t>::max();
+        for (const auto& budget : budgets_) most = std::min(most, budget->pages_max());
+        return most;
+    }
+
 private:
     std::vector<std::shared_ptr<PageBudget>> budgets_;
     std::int64_t taken_ = 0;

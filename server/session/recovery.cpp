@@ -13,7 +13,7 @@ namespace {
 
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
 
-/// Not a failure: the log is to be folded from its beginning.
+/// Not a failure: the log is folded from its beginning.
 const Error kOutdated{Errc::kConflict,
                       "the rest of the log excludes scans that are in these maps, or brings some back"};
 
@@ -64,8 +64,8 @@ Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session
     return recovered;
 }
 
-Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
-                                    const std::atomic<bool>& stop) {
+Result<Recovered> recover_from_checkpoint(store::ScanLog& log, store::SessionId session,
+                                          const mapping::MapConfig& config, const std::atomic<bool>& stop) {
     auto checkpoint = read_checkpoint(log, session, config, stop);
     Recovered recovered{checkpoint ? std::move(checkpoint->projection) : mapping::Projection(config)};
     if (!checkpoint && checkpoint.error() == stopped()) {
@@ -78,7 +78,6 @@ Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId sessio
         recovered.checkpointed = recovered.projection.revision();
     }
     const auto complete = fold_rest(log, session, recovered.projection, stop);
-    if (!complete && complete.error() == kOutdated) return recover_from_log(log, session, config, stop);
     if (!complete) return complete.error();
     recovered.complete = *complete;
     if (recovered.complete && recovered.projection.revision() < recovered.projection.newest_restored()) {
@@ -96,7 +95,9 @@ Result<Recovered> recover_unguarded(store::ScanLog& log, store::SessionId sessio
 Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                           const std::atomic<bool>& stop) {
     try {
-        return recover_unguarded(log, session, config, stop);
+        auto recovered = recover_from_checkpoint(log, session, config, stop);
+        if (recovered || recovered.error() != kOutdated) return recovered;
+        return recover_from_log(log, session, config, stop); // the outdated maps are gone from memory
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left for its map; free some and start the server again"};
     }

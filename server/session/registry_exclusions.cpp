@@ -1,89 +1,109 @@
 #include "server/session/session_registry.hpp"
 
 #include "common/wire/log_codec.hpp"
+#include "server/log/context.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <future>
+#include <new>
 
 /// How scans are excluded from the maps of a session.
 namespace scanloom::session {
 namespace {
-
-Result<RobotIndex> find_robot(const Session& session, std::string_view name) {
-    const auto maps = session.snapshot();
-    const auto found = std::ranges::find(maps->robots, name, &mapping::RobotState::name);
-    if (found != maps->robots.end()) return static_cast<RobotIndex>(found - maps->robots.begin());
-    return Error{
-        Errc::kInvalidField,
-        fmt::format("session '{}' has no robot of that name; GET the session lists its robots", session.info().name)};
-}
 
 Error maps_are_computed_again(const std::string& name) {
     return {Errc::kShuttingDown,
             fmt::format("the maps of session '{}' are computed again from its log; connect again", name)};
 }
 
+/// Returns when the session is closed. What it has acknowledged is durable; robots send the rest again.
+void close_and_wait(Session& session) {
+    std::promise<void> closed;
+    session.discard(maps_are_computed_again(session.info().name), [&closed] { closed.set_value(); });
+    closed.get_future().wait();
+}
+
+Result<> check_room(const SessionInfo& info) {
+    if (info.exclusions->count_in_effect() < Exclusions::kMost) return {};
+    return Error{Errc::kFull, fmt::format("session '{}' has {} exclusions in effect, the most there may be; lift some, "
+                                          "or exclude larger ranges",
+                                          info.name, Exclusions::kMost)};
+}
+
 } // namespace
 
-Result<Exclusion> SessionRegistry::exclude(std::string_view name, std::string_view robot,
+Result<Exclusion> SessionRegistry::exclude(std::string_view name, RobotIndex robot,
                                            const std::variant<StampRange, SeqRange>& scans) {
-    const std::lock_guard changing(changing_);
-    auto session = wake(name);
-    if (!session) return session.error();
-    const auto index = find_robot(**session, robot);
-    if (!index) return index.error();
-    const SessionInfo info = (*session)->info();
-    if (info.exclusions->count_in_effect() >= Exclusions::kMost) {
-        return Error{Errc::kFull, fmt::format("session '{}' has {} exclusions in effect, the most there may be; lift "
-                                              "some, or exclude larger ranges",
-                                              name, Exclusions::kMost)};
-    }
-    const auto& known = info.exclusions->all();
-    const ScansExcluded excluded{known.empty() ? 1 : known.back().excluded.id + 1, *index, scans};
-    session->reset();
-    const auto since = append_and_read_again(info, excluded);
+    ScansExcluded excluded{0, robot, scans};
+    const auto since = change_exclusions(name, [&](const SessionInfo& info) -> Result<LogEntry> {
+        if (auto room = check_room(info); !room) return room.error();
+        const auto& known = info.exclusions->all();
+        excluded.id = known.empty() ? 1 : known.back().excluded.id + 1;
+        return LogEntry(excluded);
+    });
     if (!since) return since.error();
+    log::info({.session = name}, "session '{}': exclusion {} was added; its maps are computed again", name,
+              excluded.id);
     return Exclusion{excluded, *since};
 }
 
 Result<> SessionRegistry::lift_exclusion(std::string_view name, std::uint64_t id) {
-    const std::lock_guard changing(changing_);
-    auto session = wake(name);
-    if (!session) return session.error();
-    const SessionInfo info = (*session)->info();
-    const bool is_in_effect = std::ranges::any_of(
-        info.exclusions->all(), [&](const Exclusion& one) { return one.excluded.id == id && one.lifted == 0; });
-    if (!is_in_effect) {
+    const ExclusionLifted lifted{id};
+    const auto since = change_exclusions(name, [&](const SessionInfo& info) -> Result<LogEntry> {
+        if (info.exclusions->check(lifted)) return LogEntry(lifted);
         return Error{Errc::kNotFound,
-                     fmt::format("session '{}' has no exclusion {}, or it is lifted already", name, id)};
-    }
-    session->reset();
-    const auto appended = append_and_read_again(info, ExclusionLifted{id});
-    return appended ? Result<>() : appended.error();
+                     fmt::format("session '{}' has no exclusion {} in effect; GET .../exclusions lists "
+                                 "those that it has",
+                                 info.name, id)};
+    });
+    if (!since) return since.error();
+    log::info({.session = name}, "session '{}': exclusion {} was lifted; its maps are computed again", name, id);
+    return {};
 }
 
-/// Appends an entry while the session is closed, so that no other thread writes to its log.
-/// Pre  changing_ is held. @return the entry's revision
-Result<Revision> SessionRegistry::append_and_read_again(const SessionInfo& info, const LogEntry& entry) {
+/// Appends the entry while the session is closed, so that no other thread writes to its log. Its maps are computed
+/// again when the next client or robot asks for it. @return the entry's revision
+Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const MakeEntry& make) {
+    const std::lock_guard changing(changing_);
     if (draining_) return Error{Errc::kShuttingDown, "the server is shutting down; try again when it is back"};
-    auto left = roster_.leave(info.name);
-    if (!left) return no_such_session(info.name);
-    if (left->session) {
-        const auto closed = std::make_shared<std::promise<void>>();
-        auto is_closed = closed->get_future();
-        left->session->discard(maps_are_computed_again(info.name), [closed] { closed->set_value(); });
-        is_closed.wait();
-        left->summary = summary_of(*left->session->snapshot());
+    auto left = roster_.leave(name);
+    if (!left) return damage_of(name).value_or(no_such_session(name));
+    const auto stay = [&](Error why) {
+        if (const auto wanted = roster_.stay(name)) start_reading(*wanted);
+        return why;
+    };
+    try {
+        const auto entry = make(left->info);
+        if (!entry) return stay(entry.error());
+        if (left->session) left->summary = summary_of(*left->session->snapshot());
+        auto facts = std::make_shared<mapping::Snapshot>(*left->summary.facts);
+        auto exclusions = std::make_shared<Exclusions>(*left->info.exclusions);
+        std::vector<std::string> bytes = {wire::encode_entry(*entry)};
+        if (left->session) close_and_wait(*left->session);
+        const auto end = log_.end_of(left->info.id);
+        const auto appended =
+            end ? store::append_and_wait(log_, left->info.id, *end + 1, std::move(bytes)) : Result<>(end.error());
+        if (appended) { // what can be said of the session until its maps are there
+            facts->revision = *end + 1;
+            if (const auto* excluded = std::get_if<ScansExcluded>(&*entry)) {
+                static_cast<void>(exclusions->add(*end + 1, *excluded));
+            } else {
+                static_cast<void>(exclusions->add(*end + 1, std::get<ExclusionLifted>(*entry)));
+            }
+            facts->exclusions = exclusions;
+            left->summary.facts = facts;
+        }
+        if (const auto wanted = roster_.arrived(left->info.name, left->summary)) start_reading(*wanted);
+        if (!appended) return appended.error();
+        return *end + 1;
+    } catch (const std::bad_alloc&) {
+        if (left->session && left->session->closing()) { // it is closed: it has to be read again
+            if (const auto wanted = roster_.arrived(left->info.name, left->summary)) start_reading(*wanted);
+            return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
+        }
+        return stay({Errc::kOverloaded, "there is no memory left for this; try again later"});
     }
-    const auto end = log_.end_of(info.id);
-    const auto appended =
-        end ? store::append_and_wait(log_, info.id, *end + 1, {wire::encode_entry(entry)}) : Result<>(end.error());
-    if (const auto wanted = roster_.arrived(info.name, left->summary)) start_reading(*wanted);
-    wake(info.name, [](const Result<std::shared_ptr<Session>>&) {}); // robots and viewers come back for it
-    if (!appended) return appended.error();
-    return *end + 1;
 }
 
 } // namespace scanloom::session

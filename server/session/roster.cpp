@@ -175,6 +175,7 @@ std::optional<Resting> Roster::arrived(const std::string& name, Summary summary)
         const std::unique_lock lock(mutex_);
         Entry& entry = entries_.find(name)->second;
         entry.session.swap(last);
+        if (summary.facts) entry.info.exclusions = summary.facts->exclusions;
         entry.summary = std::move(summary);
         entry.state = State::kAsleep;
         wanted = wake_if_wanted(entry);

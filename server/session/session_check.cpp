@@ -5,7 +5,6 @@
 #include "server/mapping/digest.hpp"
 #include "server/session/checkpoint.hpp"
 #include "server/session/damage.hpp"
-#include "server/session/log_exclusions.hpp"
 #include "server/session/recovery.hpp"
 
 #include <fmt/format.h>
@@ -27,8 +26,7 @@ struct Checking {
     }
 };
 
-Result<> check_log(Checking& checking, Revision& entries) {
-    LogRules rules;
+Result<> check_log(Checking& checking, LogRules& rules, Revision& entries) {
     return checking.log.read(checking.id, 0, [&](Revision revision, std::string_view bytes) -> Result<> {
         const auto entry = wire::decode_entry(bytes);
         if (!entry) return damaged_entry(revision, entry.error());
@@ -62,13 +60,10 @@ Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, 
 }
 
 /// Pre  log and checkpoint are whole.
-Result<> compare_maps(Checking& checking, const mapping::MapConfig& config) {
+Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, const Exclusions& exclusions) {
     auto recovered = recover(checking.log, checking.id, config, false);
     if (!recovered) return recovered.error();
-    const auto exclusions =
-        read_exclusions(checking.log, checking.id, [](Revision, const std::optional<ScanPose>&) { return true; });
-    if (!exclusions) return exclusions.error();
-    if (*exclusions != *recovered->projection.exclusions()) {
+    if (exclusions != *recovered->projection.exclusions()) {
         return Error{Errc::kMalformed, "the exclusions of the log differ from those of the checkpoint"};
     }
     mapping::Projection woven(config, recovered->projection.exclusions());
@@ -90,12 +85,12 @@ Result<> compare_maps(Checking& checking, const mapping::MapConfig& config) {
     return {};
 }
 
-Result<> check_checkpoint_and_maps(Checking& checking, const mapping::MapConfig& config, Revision entries,
+Result<> check_checkpoint_and_maps(Checking& checking, const mapping::MapConfig& config, const LogRules& log,
                                    CheckDepth depth) {
-    if (auto checkpoint = check_checkpoint(checking, config, entries); !checkpoint) {
+    if (auto checkpoint = check_checkpoint(checking, config, log.revision()); !checkpoint) {
         return prefixed("its log is whole and is woven anew, but ", checkpoint.error());
     }
-    return depth == CheckDepth::kMaps ? compare_maps(checking, config) : Result<>{};
+    return depth == CheckDepth::kMaps ? compare_maps(checking, config, log.exclusions()) : Result<>{};
 }
 
 Result<> check(Checking& checking, const store::StoredSession& stored, CheckDepth depth, SessionCheck& found) {
@@ -105,10 +100,11 @@ Result<> check(Checking& checking, const store::StoredSession& stored, CheckDept
     found.name = record->name;
     const auto config = mapping::resolve(record->options);
     if (!config) return config.error();
-    if (auto log = check_log(checking, found.entries); !log) return log;
+    LogRules rules;
+    if (auto log = check_log(checking, rules, found.entries); !log) return log;
     if (stored.damage) return *stored.damage;
     if (depth == CheckDepth::kLog) return check_sums_of_checkpoint(checking);
-    return check_checkpoint_and_maps(checking, *config, found.entries, depth);
+    return check_checkpoint_and_maps(checking, *config, rules, depth);
 }
 
 } // namespace

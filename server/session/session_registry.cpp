@@ -197,7 +197,8 @@ void SessionRegistry::give_back_memory(std::size_t pages) {
 }
 
 void SessionRegistry::drain() {
-    draining_ = true; // recover() and whatever is to be read give up
+    draining_ = true;      // recover() and whatever is to be read give up
+    start_reading_again(); // who holds the mutex may wait for one of them
     const std::lock_guard changing(changing_);
     start_reading_again();
     roster_.settle();

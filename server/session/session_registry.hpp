@@ -98,14 +98,15 @@ public:
                                                               const std::vector<MapPatch>& patches,
                                                               const Maker& maker = {});
 
-    /// Excludes scans of a robot from the session's maps, by an entry of its log. The maps are then computed again from
-    /// the log: robots and viewers are asked to connect again, and all who ask for the session wait until it is read.
-    /// Errors  those of wake(); kInvalidField: there is no such robot; kFull: Exclusions::kMost are in effect;
-    ///         kOverloaded, kStoreFailed: the entry was not stored; kShuttingDown.
-    [[nodiscard]] Result<Exclusion> exclude(std::string_view name, std::string_view robot,
+    /// Excludes scans of a robot from the session's maps by an entry of its log. The session leaves memory: robots and
+    /// viewers are asked to connect again, and its maps are computed again from the log when it is read.
+    /// Pre     the robot has joined the session.
+    /// Errors  kNotFound: no such session; kFull: Exclusions::kMost are in effect; kOverloaded, kStoreFailed: the entry
+    ///         was not stored; kShuttingDown.
+    [[nodiscard]] Result<Exclusion> exclude(std::string_view name, RobotIndex robot,
                                             const std::variant<StampRange, SeqRange>& scans);
 
-    /// Lifts an exclusion, likewise. Errors  also kNotFound: none of that id is in effect.
+    /// Lifts an exclusion in the same way. Errors  also kNotFound: none of that id is in effect.
     [[nodiscard]] Result<> lift_exclusion(std::string_view name, std::uint64_t id);
 
     /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
@@ -160,7 +161,9 @@ private:
     void read_failed_again();
     void lay_down(std::vector<std::shared_ptr<Session>> sessions, const Error& why);
     void is_asleep_now(const Session& session);
-    [[nodiscard]] Result<Revision> append_and_read_again(const SessionInfo& info, const LogEntry& entry);
+
+    using MakeEntry = std::function<Result<LogEntry>(const SessionInfo&)>;
+    [[nodiscard]] Result<Revision> change_exclusions(std::string_view name, const MakeEntry& make);
 
     store::ScanLog& log_;
     const RegistryConfig config_;

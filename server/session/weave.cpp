@@ -33,11 +33,6 @@ Error no_room() {
 /// Linux: of this thread alone.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
-bool is_taken_after(const std::optional<double>& stamp, const LogEntry& entry) {
-    const auto* taken = std::get_if<ScanTaken>(&entry);
-    return taken != nullptr && stamp && taken->scan.stamp > *stamp;
-}
-
 SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const Exclusions>(std::move(exclusions)); }
 
 } // namespace
@@ -95,15 +90,18 @@ bool Weave::is_same_map(const Weave& other) const noexcept {
 std::optional<Revision> Weave::base_for(const Weave& other, Revision target) const {
     if (!is_same_map(other)) return std::nullopt;
     const std::lock_guard lock(mutex_);
-    return revision_before(other.request_.end, target);
+    return revision_before(other, target);
 }
 
 /// Pre: mutex_ is held.
-std::optional<Revision> Weave::revision_before(const WeaveEnd& end, Revision target) const {
+std::optional<Revision> Weave::revision_before(const Weave& other, Revision target) const {
+    const auto& end = other.request_.end;
     const bool stands_still = state_ == State::kDone || (state_ == State::kWaiting && !cancelled_);
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
-    const Revision within = end.stamp ? projection_->revision() : target; // exclusions beyond it do not count there
-    if (projection_->exclusions()->revision() > within) return std::nullopt;
+    const Revision known = projection_->exclusions()->revision();
+    const bool is_same = known == other.session_.exclusions->as_of(target).revision();
+    // One that ends with a stamp may end before it meets the exclusions that this one does not know.
+    if (end.stamp ? !is_same : known > target) return std::nullopt;
     if (end.stamp && newest_stamp_ && *newest_stamp_ > *end.stamp) return std::nullopt;
     return projection_->revision();
 }
@@ -121,7 +119,7 @@ bool Weave::begin_from(Weave& base) {
     std::optional<double> newest_stamp;
     {
         const std::lock_guard lock(base.mutex_);
-        if (!base.revision_before(request_.end, target)) return false;
+        if (!base.revision_before(*this, target)) return false;
         branch.emplace(base.projection_->branch());
         newest_stamp = base.newest_stamp_;
     }
@@ -152,10 +150,7 @@ bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
     step_back();
     turn_left_ = turn_work;
     try {
-        if (!projection_) {
-            const Revision known_until = request_.end.stamp ? 0 : *target;
-            projection_.emplace(request_.config, shared(session_.exclusions->as_of(known_until)));
-        }
+        if (!projection_) projection_.emplace(request_.config, shared(session_.exclusions->as_of(*target)));
         auto is_complete = weave_up_to(*target, log, budget);
         if (!is_complete && is_complete.error() == kOutdated) {
             const auto begun = begin_again(*target, log, budget);
@@ -196,7 +191,7 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget
             if (turn_left_ <= 0.0) return kTurnIsOver;
             const auto entry = wire::decode_entry(bytes);
             if (!entry) return damaged_entry(revision, entry.error());
-            if (is_taken_after(request_.end.stamp, *entry)) {
+            if (is_beyond_end(revision, *entry)) {
                 is_complete = true;
                 return kEnd;
             }
@@ -209,16 +204,21 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget
     return is_complete;
 }
 
-/// With all exclusions up to `target`, or to its end.
+/// Whether it is a scan, not excluded, that was taken after the stamp with which the maps end.
+bool Weave::is_beyond_end(Revision revision, const LogEntry& entry) const {
+    const auto* taken = std::get_if<ScanTaken>(&entry);
+    return taken != nullptr && request_.end.stamp && taken->scan.stamp > *request_.end.stamp &&
+           !projection_->exclusions()->cover(revision, scan_pose_of(*taken));
+}
+
+/// Restarts with all exclusions up to `target`. The maps shown so far go first, as both may not fit into the memory.
 Result<> Weave::begin_again(Revision target, store::ScanLog& log, PageBudget& budget) {
-    const auto exclusions =
-        read_exclusions(log, session_.id, [&](Revision revision, const std::optional<ScanPose>& scan) {
-            const bool is_beyond =
-                revision > target || (scan && request_.end.stamp && scan->stamp > *request_.end.stamp);
-            return !is_beyond && !cancelled_;
-        });
+    const auto exclusions = read_exclusions(log, session_.id, [&](Revision revision, const std::optional<ScanPose>&) {
+        return revision <= target && !cancelled_;
+    });
     if (!exclusions) return exclusions.error();
     if (cancelled_) return kCancelled;
+    forget_maps();
     projection_.emplace(request_.config, shared(*exclusions));
     newest_stamp_.reset();
     woven_ = 0;
@@ -236,7 +236,8 @@ Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {
         if (auto claimed = claim(budget); !claimed) return claimed;
     }
     woven_ = projection_->revision();
-    if (const auto* taken = std::get_if<ScanTaken>(&entry)) {
+    const auto* taken = std::get_if<ScanTaken>(&entry);
+    if (taken != nullptr && !projection_->exclusions()->cover(woven_, scan_pose_of(*taken))) {
         newest_stamp_ = std::max(newest_stamp_.value_or(taken->scan.stamp), taken->scan.stamp);
     }
     return {};

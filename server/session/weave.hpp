@@ -103,9 +103,10 @@ public:
 
 private:
     [[nodiscard]] bool is_same_map(const Weave& other) const noexcept;
-    [[nodiscard]] std::optional<Revision> revision_before(const WeaveEnd& end, Revision target) const;
+    [[nodiscard]] std::optional<Revision> revision_before(const Weave& other, Revision target) const;
     [[nodiscard]] std::optional<Revision> begin();
     [[nodiscard]] Result<bool> weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget);
+    [[nodiscard]] bool is_beyond_end(Revision revision, const LogEntry& entry) const;
     [[nodiscard]] Result<> begin_again(Revision target, store::ScanLog& log, PageBudget& budget);
     [[nodiscard]] bool wait_for_another_turn(Revision target);
     [[nodiscard]] Result<> fold(const LogEntry& entry, PageBudget& budget);

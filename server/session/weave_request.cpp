@@ -13,6 +13,10 @@ std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request)
     std::string text = tag_of(session);
     if (request.end.revision) text += fmt::format(" until {}", *request.end.revision);
     if (request.end.stamp) text += fmt::format(" until {} s", *request.end.stamp);
+    // The scan with which such maps end is another when exclusions change.
+    if (request.end.stamp && session.exclusions->revision() != 0) {
+        text += fmt::format(" excluding {}", session.exclusions->revision());
+    }
     for (const auto& field : mapping::config_fields()) {
         std::visit([&](const auto& value) { text += fmt::format("\n{} {}", field.name, value); },
                    mapping::value_of(field, request.config));

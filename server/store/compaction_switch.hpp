@@ -2,6 +2,7 @@
 
 #include <rocksdb/db.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace scanloom::store {
@@ -12,9 +13,13 @@ namespace scanloom::store {
 /// Thread  that of the committer.
 class CompactionSwitch {
 public:
-    /// @param reserve_bytes  what the store leaves free: compactions pause below twice of it
+    /// @param reserve_bytes  what the store leaves free: compactions pause below twice of it, and below kRoom more than
+    /// it
     CompactionSwitch(rocksdb::DB& database, std::uint64_t reserve_bytes)
-        : database_(database), pause_below_(2 * reserve_bytes) {}
+        : database_(database), pause_below_(reserve_bytes + std::max(reserve_bytes, kRoom)) {}
+
+    /// What one compaction of a store of up to a gigabyte may write. Scans go on meanwhile, down to the reserve.
+    static constexpr std::uint64_t kRoom = std::uint64_t{128} << 20;
 
     /// Pauses compactions, or resumes them once an eighth more than that is free.
     /// @param free_bytes  of the store's disk, now

@@ -40,6 +40,8 @@ bool rocksdb_is_open(const fs::path& directory) {
 
 Result<LockedDirectory> LockedDirectory::open(const fs::path& directory, Files files) {
     if (auto created = create_store_directory(directory); !created) return created.error();
+    std::error_code ignored; // of another owner, or on a file system without permissions
+    fs::permissions(directory, fs::perms::group_all | fs::perms::others_all, fs::perm_options::remove, ignored);
     auto lock = FileLock::alone(directory / kLockFile);
     if (!lock) return not_locked(directory, lock.error());
     auto locked = checked({directory, *std::move(lock)}, files);

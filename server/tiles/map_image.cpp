@@ -42,7 +42,7 @@ Result<MapFrame> checked_frame(const MapFrame& frame, std::int64_t bytes_per_pix
     if (width > kMapSideMax || height > kMapSideMax || width * height > kMapPixelsMax / bytes_per_pixel) {
         return Error{Errc::kTooLarge,
                      fmt::format("this map has {} x {} pixels, more than {} or a side of more than {}; ask for a part "
-                                 "of it with bbox=min_x,min_y,max_x,max_y in metres",
+                                 "of it with bbox=min_x,min_y,max_x,max_y in metres, such as the session's main_bounds",
                                  width, height, kMapPixelsMax / bytes_per_pixel, kMapSideMax)};
     }
     return frame;

@@ -10,7 +10,7 @@ import type { Trail, Trails } from './live/trails';
 import type { Camera } from './map/camera';
 import type { CellReader } from './map/cell_reader';
 import { CellReaders } from './map/cell_readers';
-import { LiveSource, type MapSource } from './map/map_source';
+import { LiveSource, ownFamily, type MapSource } from './map/map_source';
 import type { MapView, Shown } from './map/map_view';
 import type { Cursor } from './panel/cursor';
 import type { Facts } from './panel/facts';
@@ -171,7 +171,7 @@ export class Viewer {
     this.clear();
     const { map, picture, cursor, details, settings, newest } = this.parts;
     this.colours = new RobotColours(kRobotColours);
-    const source = new LiveSource(session, session.cellSize);
+    const source = new LiveSource(session, session.cellSize, ownFamily(session.exclusions));
     const readers = new CellReaders(this.reading.signal, () => {
       cursor.update();
       map.updateCounters();

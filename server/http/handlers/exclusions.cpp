@@ -1,5 +1,6 @@
 #include "server/http/handlers/exclusions.hpp"
 
+#include "server/guide/robots.hpp"
 #include "server/http/handlers/session_lookup.hpp"
 #include "server/http/in_quotes.hpp"
 #include "server/http/json_read.hpp"
@@ -22,19 +23,20 @@ constexpr std::string_view kSeq = "seq:";
 /// One end of a range.
 using Bound = std::variant<double, std::uint64_t>; // a stamp in seconds, or a seq
 
+Error no_bound(std::string_view name, std::string_view what) {
+    return {Errc::kInvalidField, fmt::format("{} is {}; a stamp in seconds or a text \"seq:N\" is needed", name, what)};
+}
+
 Result<Bound> read_bound(const boost::json::object& body, std::string_view name) {
     const auto* value = body.if_contains(name);
-    if (value != nullptr && value->is_string()) {
+    if (value == nullptr) return no_bound(name, "missing");
+    if (value->is_string()) {
         const std::string_view text = value->get_string();
         const auto seq = text.starts_with(kSeq) ? parse_integer<std::uint64_t>(text.substr(kSeq.size())) : std::nullopt;
-        if (seq) return Bound(*seq);
-    } else if (value != nullptr) {
-        const auto stamp = read_number(body, name);
-        if (!stamp) return stamp.error();
-        return Bound(**stamp);
+        return seq ? Result<Bound>(*seq) : no_bound(name, in_quotes(text));
     }
-    return Error{Errc::kInvalidField, fmt::format("{} is {}; a stamp in seconds or a text \"seq:N\" is needed", name,
-                                                  value == nullptr ? std::string("missing") : "no such text")};
+    const auto stamp = read_number(body, name);
+    return stamp ? Result<Bound>(**stamp) : no_bound(name, "neither");
 }
 
 Result<std::variant<StampRange, SeqRange>> read_range(const boost::json::object& body) {
@@ -45,7 +47,7 @@ Result<std::variant<StampRange, SeqRange>> read_range(const boost::json::object&
     if (from->index() != to->index()) {
         return Error{Errc::kInvalidField, "from and to are of two kinds; give two stamps, or two texts \"seq:N\""};
     }
-    if (*from > *to) return Error{Errc::kInvalidField, "from is greater than to; exchange them"};
+    if (*from > *to) return Error{Errc::kInvalidField, "from is greater than to; swap them"};
     if (const auto* stamp = std::get_if<double>(&*from)) return {StampRange{*stamp, std::get<double>(*to)}};
     return {SeqRange{std::get<std::uint64_t>(*from), std::get<std::uint64_t>(*to)}};
 }
@@ -65,6 +67,15 @@ boost::json::object to_json(const Exclusion& exclusion, std::string_view robot) 
     return json;
 }
 
+/// What is known of the session without its maps.
+Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const session::SessionRegistry& sessions,
+                                                            const Call& call) {
+    const auto& name = call.arguments["session"];
+    const auto listed = sessions.listed(name);
+    if (!listed) return damage_of(sessions, name).value_or(session::no_such_session(name));
+    return listed->session ? listed->session->snapshot() : listed->summary.facts;
+}
+
 } // namespace
 
 Result<Response> exclude_scans(session::SessionRegistry& sessions, const Call& call) {
@@ -76,36 +87,34 @@ Result<Response> exclude_scans(session::SessionRegistry& sessions, const Call& c
     if (!robot) return robot.error();
     const auto range = read_range(*body);
     if (!range) return range.error();
-    const auto& name = call.arguments["session"];
-    if (auto session = find_session(sessions, call); !session) return session.error();
-    const auto exclusion = sessions.exclude(name, *robot, *range);
+    const auto facts = find_facts(sessions, call);
+    if (!facts) return facts.error();
+    const auto index = guide::find_robot(**facts, *robot);
+    if (!index) return prefixed(fmt::format("robot is {}: ", in_quotes(*robot)), index.error());
+    const auto exclusion = sessions.exclude(call.arguments["session"], *index, *range);
     if (!exclusion) return exclusion.error();
-    auto response =
-        ok(to_json(*exclusion, *robot))
-            .set("Location", fmt::format("/api/v1/sessions/{}/exclusions/{}", name, exclusion->excluded.id));
+    auto response = ok(to_json(*exclusion, *robot));
     response.status = Status::created;
     return response;
 }
 
-Result<Response> list_exclusions(session::SessionRegistry& sessions, const Call& call) {
+Result<Response> list_exclusions(const session::SessionRegistry& sessions, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
-    const auto session = find_session(sessions, call);
-    if (!session) return session.error();
-    const auto maps = (*session)->snapshot();
+    const auto facts = find_facts(sessions, call);
+    if (!facts) return facts.error();
     boost::json::array exclusions;
-    for (const auto& one : maps->exclusions->all()) {
-        if (one.lifted == 0) exclusions.push_back(to_json(one, maps->robots[one.excluded.robot].name));
+    for (const auto& one : (*facts)->exclusions->all()) {
+        if (one.lifted == 0) exclusions.push_back(to_json(one, (*facts)->robots[one.excluded.robot].name));
     }
     return ok(boost::json::object{{"exclusions", std::move(exclusions)}});
 }
 
 Result<Response> lift_exclusion(session::SessionRegistry& sessions, const Call& call) {
     if (auto known = call.query.check_only({}); !known) return known.error();
-    if (auto session = find_session(sessions, call); !session) return session.error();
     const auto& text = call.arguments["exclusion"];
     const auto id = parse_integer<std::uint64_t>(text);
     if (!id)
-        return Error{Errc::kNotFound, fmt::format("there is no exclusion {}; exclusions lists them", in_quotes(text))};
+        return Error{Errc::kNotFound, fmt::format("there is no exclusion {}; ids are whole numbers", in_quotes(text))};
     if (auto lifted = sessions.lift_exclusion(call.arguments["session"], *id); !lifted) return lifted.error();
     return Response{.status = Status::no_content, .fields = {}, .body = {}};
 }

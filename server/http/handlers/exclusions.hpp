@@ -6,13 +6,13 @@
 
 namespace scanloom::http {
 
-/// POST .../exclude: excludes scans of a robot from the maps. 201; the maps are then computed again from the log.
+/// POST .../exclude: excludes scans of a robot from the maps, which are computed again when they are next asked for.
 [[nodiscard]] Result<Response> exclude_scans(session::SessionRegistry& sessions, const Call& call);
 
 /// GET .../exclusions: those in effect, by rising id.
-[[nodiscard]] Result<Response> list_exclusions(session::SessionRegistry& sessions, const Call& call);
+[[nodiscard]] Result<Response> list_exclusions(const session::SessionRegistry& sessions, const Call& call);
 
-/// DELETE .../exclusions/{exclusion}: lifts it; the maps are then computed again from the log.
+/// DELETE .../exclusions/{exclusion}: lifts it, likewise.
 [[nodiscard]] Result<Response> lift_exclusion(session::SessionRegistry& sessions, const Call& call);
 
 } // namespace scanloom::http

@@ -49,7 +49,12 @@ Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& wa
     Response response;
     response.status = Status::switching_protocols;
     response.invitation = std::make_shared<const live::Invitation>(
-        live::Invitation{*session, info.id, info.name, session_tag(info), ways, landmarks.of(info.id), std::move(*pass),
+        live::Invitation{*session, info.id, info.name, session_tag(info), ways, landmarks.of(info.id),
+                         [&sessions, id = info.id, name = info.name] {
+                             const auto stored = sessions.info(name);
+                             return stored && stored->id == id;
+                         },
+                         std::move(*pass),
                          [doorman, peer = call.request.peer, token = call.token->name, name = info.name] {
                              doorman.note({access::Port::kHttp, access::Reason::kRevoked, peer, token, name});
                          }});

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -124,8 +123,7 @@ private:
 Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
-    const auto exclusions = std::make_shared<const Exclusions>(session.exclusions->as_of(until));
-    landmarks::SessionCaptures cut(ScanFilter(session.config.max_jump, exclusions));
+    landmarks::SessionCaptures cut(session::scan_filter_of(session)); // also for `until`: parts make up a whole
     auto read = session::read_captures(
         log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },

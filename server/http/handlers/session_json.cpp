@@ -74,6 +74,7 @@ boost::json::object session_json(const session::SessionInfo& info, const mapping
                              {"created", rfc3339(info.created)},
                              {"number", info.id},
                              {"revision", snapshot.revision},
+                             {"exclusions", snapshot.exclusions->revision()},
                              {"scans", scans},
                              {"config", to_json(info.config)},
                              {"layers", layer_names()},

@@ -28,6 +28,7 @@ std::string_view name_of(State state) {
 
 boost::json::object shown(const session::Weave& weave) {
     const auto progress = weave.progress();
+    const auto maps = weave.maps();
     const auto& stamp = weave.request().end.stamp;
     boost::json::object until{{"revision", progress.target}, {"stamp", nullptr}};
     if (stamp) until["stamp"] = *stamp;
@@ -37,6 +38,7 @@ boost::json::object shown(const session::Weave& weave) {
                              {"woven", progress.woven},
                              {"until", std::move(until)},
                              {"follows", progress.follows},
+                             {"exclusions", maps ? maps->exclusions->revision() : 0},
                              {"config", to_json(weave.request().config)}};
     if (progress.revision) json["revision"] = *progress.revision;
     if (progress.error) json["reason"] = progress.error->message;

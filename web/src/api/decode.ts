@@ -56,6 +56,7 @@ export function decodeSession(json: unknown): Session {
     created: text(session['created'], 'created'),
     number: number(session['number'], 'number'),
     revision: number(session['revision'], 'revision'),
+    exclusions: session['exclusions'] == null ? 0 : number(session['exclusions'], 'exclusions'),
     scans: number(session['scans'], 'scans'),
     cellSize: cellSizeOf(config),
     config,

@@ -34,6 +34,8 @@ export interface Session {
   number: number;
   /** Rises with every scan. */
   revision: number;
+  /** Revision of the newest change of exclusions; 0: there is none. */
+  exclusions: number;
   scans: number;
   cellSize: number;
   config: MapConfig;

@@ -11,6 +11,8 @@ export interface Weave {
   /** Entries of the log that are in it so far, and that will be. */
   woven: number;
   until: number;
+  /** Revision of the newest change of exclusions that its maps follow; 0: there is none. */
+  exclusions: number;
   /** Why it failed or was cancelled; empty: it did not. */
   reason: string;
 }
@@ -46,6 +48,7 @@ export function decodeWeave(json: unknown): Weave {
     state,
     woven: number(weave['woven'], 'woven'),
     until: number(fields(weave['until'], 'until')['revision'], 'until.revision'),
+    exclusions: weave['exclusions'] == null ? 0 : number(weave['exclusions'], 'exclusions'),
     reason: weave['reason'] == null ? '' : text(weave['reason'], 'reason'),
   };
 }

@@ -22,18 +22,19 @@ export interface MapSource {
   changed: ((layer: LayerName) => void) | null;
 }
 
-export const kOwnFamily = 'own';
+/** Those with a session's own settings: each change of exclusions changes tiles of the same revision. */
+export const ownFamily = (exclusions: number): string => `own, exclusions ${exclusions}`;
 
 /** What the live connection tells. */
 export class LiveSource implements MapSource {
   readonly weave = null;
-  readonly family = kOwnFamily;
   changed: ((layer: LayerName) => void) | null = null;
   private readonly byLayer = forEachLayer(() => new TileVersions());
 
   constructor(
     readonly session: SessionKey,
     readonly cellSize: number,
+    readonly family: string,
   ) {}
 
   versions(layer: LayerName): TileVersions {

@@ -2,7 +2,7 @@
 import type { SessionKey } from '../api/api';
 import { deleteWeave, fetchWeave, startWeave, type Weave } from '../api/weaves';
 import type { LayerName } from '../layers/layers';
-import { kOwnFamily, WeaveSource, type MapSource } from '../map/map_source';
+import { ownFamily, WeaveSource, type MapSource } from '../map/map_source';
 
 /** What a journey into the past needs of a server. */
 export interface Weaver {
@@ -41,8 +41,8 @@ export class ServerWeaver implements Weaver {
   }
 
   async load(id: string, failed: (error: unknown) => void): Promise<MapSource> {
-    // With the session's own settings, tiles are equal to the session's of the same revision.
-    const source = new WeaveSource(this.session, this.cellSize, id, kOwnFamily, this.signal, failed);
+    const { exclusions } = await this.progress(id);
+    const source = new WeaveSource(this.session, this.cellSize, id, ownFamily(exclusions), this.signal, failed);
     await Promise.all([...new Set(this.layers())].map((layer) => source.load(layer)));
     return source;
   }

@@ -321,6 +321,11 @@ TEST_F(ApiLoginTest, WhatChangesAnythingHasToComeFromAPageOfThisServer) {
     }
     EXPECT_EQ(refusals(access::Reason::kForeignPage), 4.0);
     EXPECT_EQ(registry_.find("new"), nullptr);
+    for (const auto& route : routes()) {
+        if (route.method == "GET") continue;
+        const auto asked = with(cookie, std::string(route.method), target_of(route, "new"), "http://elsewhere");
+        EXPECT_EQ(answer(api_, asked).status, Status::forbidden) << route.method << " " << route.pattern;
+    }
     EXPECT_EQ(create(kOwnPage), Status::created);
     EXPECT_EQ(answer(api_, with(cookie, "DELETE", "/api/v1/login", "http://elsewhere")).status, Status::forbidden);
     EXPECT_EQ(answer(api_, with(cookie, "GET", "/api/v1/sessions", "")).status, Status::ok);
@@ -346,6 +351,24 @@ TEST_F(ApiTest, WithoutTokensToo) {
             << "which browsers send without asking first";
     }
     EXPECT_EQ(metrics_.refusals().of(access::Port::kHttp, access::Reason::kForeignPage).Value(), 6.0);
+    const auto from_elsewhere = [&](const Route& route, std::string_view authorization) {
+        Request asked;
+        asked.method = route.method;
+        asked.target = target_of(route, "new");
+        asked.host = kHost;
+        asked.content_type = "application/json";
+        asked.origin = "http://elsewhere";
+        asked.authorization = authorization;
+        asked.body = R"({"name":"new"})";
+        return answer(api_, asked).status;
+    };
+    for (const auto& route : routes()) {
+        if (route.method == "GET") continue;
+        for (const auto* added_by_a_browser : {"", "Basic eDp5", "Bearer anything", "x"}) {
+            EXPECT_EQ(from_elsewhere(route, added_by_a_browser), Status::forbidden)
+                << route.method << " " << route.pattern << " " << added_by_a_browser;
+        }
+    }
     EXPECT_EQ(registry_.find("new"), nullptr);
     EXPECT_EQ(create(kOwnPage, "application/json", "/api/v1/sessions").status, Status::created);
     for (const auto* foreign : {"http://maps.lab:9090", "http://maps.lab", "http://localhost:8080"}) {

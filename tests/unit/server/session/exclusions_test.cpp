@@ -170,7 +170,7 @@ TEST_P(ExclusionTrialsTest, LeaveNoTraceInMapsPathsAndCaptures) {
     const auto number = [&](std::uint64_t below) { return random() % below; };
     for (int step = 0; step < 8; ++step) {
         for (const auto* robot : {"a", "b"}) stream(robot, 1 + number(12));
-        const std::string robot = number(2) == 0 ? "a" : "b";
+        const auto robot = static_cast<RobotIndex>(number(2));
         if (number(2) == 0) {
             const std::uint64_t from = 1 + number(40);
             ASSERT_TRUE(registry_->exclude("lab", robot, SeqRange{from, from + number(9)}));
@@ -201,7 +201,7 @@ TEST_F(ExclusionsTest, ChangeNothingOfWhatRobotsContinueWith) {
     stream("a", 10);
     const auto link = std::make_shared<AwaitedLink>();
     ASSERT_TRUE(join_and_wait(*session(), "a", link));
-    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{1, 10}));
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{1, 10}));
     EXPECT_EQ(link->wait_for_failure().code, Errc::kShuttingDown);
     EXPECT_EQ(join_and_wait(*session(), "a", std::make_shared<AwaitedLink>()).value().last_durable_seq, 10U);
     EXPECT_EQ(session()->snapshot()->robots.at(0).excluded, 10U);
@@ -212,10 +212,10 @@ TEST_F(ExclusionsTest, ChangeNothingOfWhatRobotsContinueWith) {
 TEST_F(ExclusionsTest, MapsUntilAnEarlierRevisionShowTheScans) {
     create();
     stream("a", 12);
-    const auto exclusion = registry_->exclude("lab", "a", SeqRange{3, 9}).value();
+    const auto exclusion = registry_->exclude("lab", 0, SeqRange{3, 9}).value();
     stream("a", 6);
     ASSERT_TRUE(registry_->lift_exclusion("lab", exclusion.excluded.id));
-    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{11, 14}));
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{11, 14}));
     const auto entries = log();
     PageBudget budget(1 << 20);
     const auto info = session()->info();
@@ -237,6 +237,44 @@ TEST_F(ExclusionsTest, MapsUntilAnEarlierRevisionShowTheScans) {
     EXPECT_EQ(budget.free(), budget.pages_max());
 }
 
+TEST_F(ExclusionsTest, OfScansWithAWrongClockDoNotEndMapsUntilAStamp) {
+    create();
+    stream("a", 4);
+    const auto link = std::make_shared<AwaitedLink>();
+    ASSERT_TRUE(join_and_wait(*session(), "b", link));
+    session()->submit(link, small_laser(), 0);
+    Scan late = random_scan(8, 1);
+    late.stamp = 1e6;
+    session()->submit(link, {late}, 0);
+    link->wait_for_seq(1);
+    stream("a", 8);
+    PageBudget budget(1 << 20);
+    const auto end_of = [&] {
+        Weave weave(session()->info(), {config_, {.stamp = 1000.0}}, log().size());
+        while (weave.run(log_, budget)) {
+        }
+        return weave.maps()->robots.at(0).last_seq;
+    };
+    EXPECT_EQ(end_of(), 4U);
+    ASSERT_TRUE(registry_->exclude("lab", 1, SeqRange{1, 1}));
+    EXPECT_EQ(end_of(), 12U);
+}
+
+TEST_F(ExclusionsTest, NeedNoMemoryForMaps) {
+    create();
+    stream("a", 20);
+    registry_->drain();
+    restart(1); // no room for its maps
+    clock_ = clock_.load() + std::chrono::hours(1);
+    ASSERT_FALSE(registry_->find("lab"));
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{1, 20})) << "at once: nothing is read";
+    const auto facts = registry_->listed("lab")->summary.facts;
+    EXPECT_EQ(facts->revision, log().size());
+    EXPECT_EQ(facts->exclusions->count_in_effect(), 1U);
+    ASSERT_TRUE(registry_->lift_exclusion("lab", 1));
+    EXPECT_EQ(registry_->info("lab")->exclusions->count_in_effect(), 0U);
+}
+
 TEST_F(ExclusionsTest, ReachMapsThatFollowTheSession) {
     create();
     stream("a", 12);
@@ -244,7 +282,7 @@ TEST_F(ExclusionsTest, ReachMapsThatFollowTheSession) {
     Weave weave(session()->info(), {config_, {}}, log().size());
     while (weave.run(log_, budget)) {
     }
-    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{3, 9}));
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{3, 9}));
     stream("a", 3);
     ASSERT_TRUE(weave.resume(log().size(), budget));
     while (weave.run(log_, budget)) {
@@ -261,15 +299,14 @@ TEST_F(ExclusionsTest, AreRefusedWithASentence) {
     stream("a", 3);
     const auto refusal = [&](const auto& done) { return std::pair(done.error().code, done.error().message); };
     using testing::Pair;
-    EXPECT_THAT(refusal(registry_->exclude("none", "a", SeqRange{1, 1})), Pair(Errc::kNotFound, HasSubstr("'none'")));
-    EXPECT_THAT(refusal(registry_->exclude("lab", "b", SeqRange{1, 1})),
-                Pair(Errc::kInvalidField, HasSubstr("no robot of that name")));
+    EXPECT_THAT(refusal(registry_->exclude("none", 0, SeqRange{1, 1})), Pair(Errc::kNotFound, HasSubstr("'none'")));
     EXPECT_THAT(refusal(registry_->lift_exclusion("lab", 1)), Pair(Errc::kNotFound, HasSubstr("no exclusion 1")));
-    ASSERT_TRUE(registry_->exclude("lab", "a", SeqRange{1, 1}));
+    ASSERT_TRUE(registry_->exclude("lab", 0, SeqRange{1, 1}));
     ASSERT_TRUE(registry_->lift_exclusion("lab", 1));
-    EXPECT_THAT(refusal(registry_->lift_exclusion("lab", 1)), Pair(Errc::kNotFound, HasSubstr("lifted already")));
+    EXPECT_THAT(refusal(registry_->lift_exclusion("lab", 1)),
+                Pair(Errc::kNotFound, HasSubstr("no exclusion 1 in effect")));
     registry_->drain();
-    EXPECT_EQ(registry_->exclude("lab", "a", SeqRange{1, 1}).error().code, Errc::kShuttingDown);
+    EXPECT_EQ(registry_->exclude("lab", 0, SeqRange{1, 1}).error().code, Errc::kShuttingDown);
 }
 
 TEST_F(ExclusionsTest, ThatAreNotStoredChangeNothing) {
@@ -277,7 +314,7 @@ TEST_F(ExclusionsTest, ThatAreNotStoredChangeNothing) {
     stream("a", 8);
     const auto before = testing_support::digests_of(*session()->snapshot());
     log_.refuse_appends(1);
-    EXPECT_EQ(registry_->exclude("lab", "a", SeqRange{2, 4}).error().code, Errc::kOverloaded);
+    EXPECT_EQ(registry_->exclude("lab", 0, SeqRange{2, 4}).error().code, Errc::kOverloaded);
     EXPECT_EQ(testing_support::digests_of(*session()->snapshot()), before);
     stream("a", 2);
     expect_that_excluded_scans_leave_no_trace();

@@ -63,8 +63,8 @@ TEST(ImportedMap, ThatDoesNotFitIntoTheMemoryForMapsIsRefusedBeforeItTakesIt) {
     const std::size_t before = peak_bytes();
     const auto refused = registry.import_map("large", {.cell_size = 0.1}, patches);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, Errc::kOverloaded);
-    EXPECT_THAT(refused.error().message, testing::HasSubstr("up to 82 MiB"));
+    EXPECT_EQ(refused.error().code, Errc::kFull);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("up to 82 MiB, and the memory for maps has 1 MiB in all"));
     EXPECT_LT(peak_bytes(), before + (std::size_t{16} << 20));
     EXPECT_TRUE(log.sessions()->empty());
     EXPECT_TRUE(registry.import_map("unknown", {.cell_size = 0.1}, square_map(64, MapCell::kUnknown)));

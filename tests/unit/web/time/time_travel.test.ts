@@ -21,7 +21,7 @@ class World {
   readonly travel: TimeTravel;
 
   constructor() {
-    const source: MapSource = new LiveSource({ name: 's', id: '1' }, 0.05);
+    const source: MapSource = new LiveSource({ name: 's', id: '1' }, 0.05, 'own');
     this.travel = new TimeTravel(
       {
         start: async (revision) => {
