@@ -10,6 +10,7 @@ function session(id: string, revision: number): Session {
     created: '',
     number: 1,
     revision,
+    exclusions: 0,
     scans: revision,
     cellSize: 0.05,
     config: {},

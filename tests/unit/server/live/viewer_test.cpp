@@ -312,6 +312,22 @@ TEST(LiveViewer, DeletingASessionWaitsForNobodyAndEndsItsConnections) {
     EXPECT_EQ(again.read().status, 404);
 }
 
+TEST(LiveViewer, ExcludingScansAsksViewersToConnectAgain) {
+    LiveServer server({.interval = 0ms});
+    server.stream("r1", 1, 3);
+    LiveClient client(server.port());
+    ASSERT_TRUE(client.read());
+    server.sessions().exclude("lab", 0, SeqRange{1, 2}).value();
+    client.read_to_the_end();
+    EXPECT_EQ(client.code(), 1001U);
+    EXPECT_THAT(client.reason(), HasSubstr("connect again"));
+
+    LiveClient again(server.port());
+    LiveReplay viewer;
+    catch_up(server, again, viewer);
+    EXPECT_EQ(viewer.robots.at(0).scan_count, 1U);
+}
+
 TEST(LiveViewer, DrainingIsToldAndShuttingDownEndsTheConnections) {
     LiveServer server({.interval = 0ms, .farewell = 50ms});
     server.stream("r1", 1, 3);

@@ -10,6 +10,7 @@ function session(name: string, created: string, number = 1): Session {
     created,
     number,
     revision: 0,
+    exclusions: 0,
     scans: 0,
     cellSize: 0.05,
     config: {},

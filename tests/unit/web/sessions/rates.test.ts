@@ -10,6 +10,7 @@ function session(scans: number, id = '1', name = 'a'): Session {
     created: '',
     number: 1,
     revision: scans,
+    exclusions: 0,
     scans,
     cellSize: 0.05,
     config: {},

@@ -85,7 +85,7 @@ class World {
 
   private weave(id: string): Weave {
     const woven = this.woven.get(id) ?? 0;
-    return { id, state: woven < Number(id) ? 'weaving' : 'done', woven, until: Number(id), reason: '' };
+    return { id, state: woven < Number(id) ? 'weaving' : 'done', woven, until: Number(id), exclusions: 0, reason: '' };
   }
 }
 
