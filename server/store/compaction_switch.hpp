@@ -19,7 +19,7 @@ public:
         : database_(database), pause_below_(reserve_bytes + std::max(reserve_bytes, kRoom)) {}
 
     /// What one compaction of a store of up to a gigabyte may write. Scans go on meanwhile, down to the reserve.
-    static constexpr std::uint64_t kRoom = std::uint64_t{128} << 20;
+    static constexpr std::uint64_t kRoom = std::uint64_t{256} << 20;
 
     /// Pauses compactions, or resumes them once an eighth more than that is free.
     /// @param free_bytes  of the store's disk, now
