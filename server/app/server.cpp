@@ -263,9 +263,9 @@ void Server::tidy_up() {
 
 /// Once for each failure: where no robot sends, no session learns of it.
 void Server::tell_of_failed_store() {
-    auto failure = log_->stats().last_error;
-    if (failure && failure != store_failure_) spdlog::error("{}", *failure);
-    store_failure_ = std::move(failure);
+    const auto failure = log_->stats().last_error;
+    const bool was_known = store_has_failed_.exchange(failure.has_value());
+    if (failure && !was_known) spdlog::error("{}", *failure);
 }
 
 void Server::wait_for_hangup() {

@@ -21,6 +21,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -116,7 +117,7 @@ private:
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
     boost::asio::steady_timer tidying_;
-    std::optional<std::string> store_failure_; // that was logged; of the reading pool, one at a time
+    std::atomic<bool> store_has_failed_ = false; // and the log says why
 };
 
 } // namespace scanloom::app
