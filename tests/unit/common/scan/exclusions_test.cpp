@@ -23,6 +23,7 @@ TEST(Exclusions, CoverEarlierScansOfTheRobotInTheRangeOnly) {
     EXPECT_TRUE(exclusions.cover(11, scan_of(1, 3, 0.0)));
     EXPECT_TRUE(exclusions.cover(11, scan_of(1, 4, 0.0)));
     EXPECT_FALSE(exclusions.cover(11, scan_of(1, 5, 0.0)));
+    EXPECT_FALSE(exclusions.cover(11, scan_of(0, 1, 6.0))) << "after the first exclusion";
 }
 
 TEST(Exclusions, HaveNoEffectOnceLifted) {
