@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-/// Beams closer than this point the same way: the last beam of a full turn may repeat the first.
+/// Beams closer together than this have the same direction: the last beam of a full turn may repeat the first.
 constexpr double kSameDirection = 1e-9;
 
-/// A gap to the neighbour that is wider than the aperture by less than this is none: with the aperture
-/// equal to the spacing, rounding must not open one between two beams.
+/// Tolerance for comparing a gap with the aperture: if the aperture equals the spacing, rounding must not open a gap
+/// between two beams.
 constexpr double kSharedEdge = 1e-9;
 
-/// Gaps between beams at explicit angles that are more than this times the median gap are blind.
+/// Gaps between beams at explicit angles are blind if they exceed this multiple of the median gap.
 constexpr double kBlindGaps = 4.0;
 
 struct Beam {
@@ -48,14 +48,14 @@ std::vector<Beam> sorted_beams(const BeamAngles& angles) {
 
 Direction direction_of(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// One side of a sector. Two sectors that meet hold the very same direction, so that no cell falls
-/// between them or into both.
+/// One side of a sector. Two sectors that meet hold exactly the same direction, so that each cell between them falls
+/// into exactly one of them.
 struct Edge {
     double angle;
     Direction direction;
 };
 
-/// From each beam to the next counter-clockwise; a full turn for a single beam.
+/// Returns the gap from each beam to the next counter-clockwise; a full turn for a single beam.
 std::vector<double> gaps_of(const std::vector<Beam>& beams) {
     std::vector<double> gaps(beams.size());
     for (std::size_t k = 0; k + 1 < beams.size(); ++k) gaps[k] = beams[k + 1].angle - beams[k].angle;
@@ -63,7 +63,7 @@ std::vector<double> gaps_of(const std::vector<Beam>& beams) {
     return gaps;
 }
 
-/// How far beams are apart, and up to which gap they see all that is between them.
+/// The usual gap between beams, and the widest gap that they cover completely. Radians.
 struct Spacing {
     double usual = 0.0;
     double widest = 0.0;
@@ -76,7 +76,7 @@ Spacing spacing_of(const BeamAngles& angles, std::vector<double> gaps) {
         return {increment, increment};
     }
     std::sort(gaps.begin(), gaps.end());
-    const double median = gaps[(gaps.size() - 2) / 2]; // of all but the widest
+    const double median = gaps[(gaps.size() - 2) / 2]; // of all gaps except the widest
     return {median, kBlindGaps * median};
 }
 
@@ -105,7 +105,7 @@ BeamFan make_beam_fan(const BeamAngles& angles, double aperture) {
 
     std::vector<Direction> bisectors(count);
     for (std::size_t k = 0; k < count; ++k) bisectors[k] = direction_of(beams[k].angle + gaps[k] / 2.0);
-    /// A beam without a near neighbour sees to half its width. `side` is +1 for the counter-clockwise edge.
+    /// A beam without a near neighbour covers half its width on that side. `side` is +1 for the counter-clockwise edge.
     const auto edge_of = [&](std::size_t beam, std::size_t gap, double side) -> Edge {
         if (gaps[gap] - gap_max <= kSharedEdge) return {beams[beam].angle + side * gaps[gap] / 2.0, bisectors[gap]};
         const double limit = beams[beam].angle + side * half_width;

@@ -12,40 +12,41 @@
 
 namespace scanloom::mapping {
 
-/// The chunks of some layers, written scan by scan; those put back from a checkpoint know which scans they hold.
+/// The chunks of one or more layers, written scan by scan.
 ///
-/// A chunk of a checkpoint holds everything up to its revision already, so that scans up to that one leave it as it is
-/// when they are woven again.
-/// Source  the page LSN of Mohan et al., ARIES (1992), section 6.
-/// Thread  one writer; snapshots may be read by anyone.
+/// A chunk restored from a checkpoint already contains all entries up to its revision. Entries up to that revision do
+/// not change it when they are applied again.
+/// Source: the page LSN of Mohan et al., ARIES (1992), section 6.
+/// Threads: one writer; any number of threads may read snapshots.
 template <class ChunkType>
 class ChunkGrid {
 public:
     explicit ChunkGrid(std::shared_ptr<const ChunkType> blank) : tree_(std::move(blank)) {}
 
-    /// To be called before the entry of that revision is woven. Pre: revisions rise.
+    /// Starts the log entry `revision`. Call it before the entry's changes are written.
+    /// Precondition: revisions increase.
     void begin(Revision revision) {
         revision_ = revision;
         current_ = nullptr;
         if (revision > newest_restored_) restored_.clear();
     }
 
-    /// The chunk, to be written by the entry begun last; nullptr where it holds that entry already.
-    /// Valid until the next snapshot().
+    /// Returns the chunk for writing by the current entry, or nullptr if the chunk already contains that entry.
+    /// The pointer is valid until the next snapshot().
     [[nodiscard]] ChunkType* write(grid::ChunkKey key) {
         if (holds_already(key)) return nullptr;
-        if (current_ == nullptr || key != current_key_) { // neighbouring runs mostly fall into the same chunk
+        if (current_ == nullptr || key != current_key_) { // neighbouring runs are mostly in the same chunk
             current_ = &tree_.write(key, revision_);
             current_key_ = key;
         }
         return current_;
     }
 
-    /// The chunk as it is now, or nullptr where nothing was ever written. Valid until the next write.
+    /// Returns the current chunk, or nullptr if it was never written. The pointer is valid until the next write.
     [[nodiscard]] const ChunkType* find(grid::ChunkKey key) const noexcept { return tree_.find(key); }
 
-    /// Calls change(chunk, i, count) for each piece, cells i..i + count - 1, of the cells i_begin..i_end - 1 of row j
-    /// that lies in one chunk. Leaves out chunks that hold the entry already.
+    /// Splits the cells i_begin..i_end - 1 of row j at chunk borders and calls change(chunk, i, count) for each part:
+    /// the cells i..i + count - 1. Skips chunks that already contain the current entry.
     template <class Change>
     void write_row(std::int32_t j, std::int32_t i_begin, std::int32_t i_end, Change&& change) {
         for (std::int32_t i = i_begin; i < i_end;) {
@@ -58,17 +59,18 @@ public:
         }
     }
 
-    /// Puts back a chunk of a checkpoint and returns it to be filled in.
+    /// Restores a chunk of a checkpoint and returns it; the caller fills in its cells.
     [[nodiscard]] ChunkType& restore(grid::ChunkKey key, Revision revision) {
         restored_[key] = revision;
         newest_restored_ = std::max(newest_restored_, revision);
         return tree_.write(key, revision);
     }
 
-    /// The newest revision of any chunk put back.
+    /// Returns the newest revision of all restored chunks; 0 if none was restored.
     [[nodiscard]] Revision newest_restored() const noexcept { return newest_restored_; }
 
-    /// The keys of the chunks that the entry begun last has changed, all of them lying in the box.
+    /// Returns the keys of the chunks that the current entry changed.
+    /// @param box  contains all of these chunks
     [[nodiscard]] std::vector<grid::ChunkKey> changed_in(const grid::CellBox& box) const {
         std::vector<grid::ChunkKey> keys;
         tree_.peek().visit(grid::chunks_of(box), revision_ - 1, [&](grid::ChunkKey key, const ChunkType&) {
@@ -108,7 +110,7 @@ private:
     Revision revision_ = 0;
     grid::ChunkKey current_key_;
     ChunkType* current_ = nullptr;
-    std::map<grid::ChunkKey, Revision> restored_; // dropped once all of them are overtaken
+    std::map<grid::ChunkKey, Revision> restored_; // dropped once revision_ is greater than all of them
     Revision newest_restored_ = 0;
 };
 

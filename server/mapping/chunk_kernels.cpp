@@ -16,7 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kSide = grid::kChunkSide;
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-/// The lanes of cells n, n + 1, ... of a row that are set in its bits.
+/// Returns the lanes for cells n, n + 1, ... of a row whose bits are set.
 template <class D>
 HWY_INLINE hn::Mask<D> LanesOf(D d, const std::uint64_t& row, std::size_t n) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(&row);
@@ -25,7 +25,8 @@ HWY_INLINE hn::Mask<D> LanesOf(D d, const std::uint64_t& row, std::size_t n) {
     return hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits));
 }
 
-/// The reverse. Pre: these bits of the row are 0.
+/// Sets the bits of a row for the lanes that are set; the inverse of LanesOf().
+/// Precondition: these bits of the row are 0.
 template <class D>
 HWY_INLINE void KeepLanes(D d, hn::Mask<D> lanes, std::uint64_t& row, std::size_t n) {
     if constexpr (hn::MaxLanes(D()) >= 8) {
@@ -37,7 +38,7 @@ HWY_INLINE void KeepLanes(D d, hn::Mask<D> lanes, std::uint64_t& row, std::size_
     }
 }
 
-/// Rows in which the verdicts may change a cell, a bit a row.
+/// Returns the rows in which the verdicts may change a cell, one bit per row.
 HWY_INLINE std::uint64_t RowsWithNews(const ChunkVerdicts& verdicts, const grid::BitPlane& settled) {
     const hn::ScalableTag<std::uint64_t> d;
     std::uint64_t rows = verdicts.occupied_rows;
@@ -56,8 +57,8 @@ HWY_INLINE void ForEachRow(std::uint64_t rows, Row&& row) {
     for (; rows != 0; rows &= rows - 1) row(hwy::Num0BitsBelowLS1Bit_Nonzero64(rows));
 }
 
-/// Steps as what one saturating addition can take, and the rest of it, 0 mostly: from one end of the clamp to the other
-/// it may be more.
+/// A step split into the part that one saturating addition can add and the rest, which is usually 0: a step from one
+/// end of the clamp to the other may exceed the range of LogOdds.
 struct Step {
     explicit Step(int whole)
         : first(static_cast<LogOdds>(std::clamp(whole, -32767, 32767))), rest(static_cast<LogOdds>(whole - first)) {}
@@ -131,7 +132,7 @@ void CountHits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule&
     });
 }
 
-/// Which cells of a chunk's rows are as high or low as a type's limits.
+/// Masks of the cells that reach the limits of a type.
 struct Limits {
     grid::BitPlane occupied{};
     grid::BitPlane free{};

@@ -5,11 +5,15 @@
 #include "server/mapping/laser_chunk.hpp"
 #include "server/mapping/occupancy.hpp"
 
-/// What a scan says of a chunk, put into it: 64 cells at a time, for every instruction set that the program was built
-/// for, chosen when it runs. Whole numbers throughout: all of them give the same cells.
+/// Kernels that apply the verdicts of a scan to a chunk, 64 cells at a time. They are compiled for several instruction
+/// sets; the one to use is selected at run time. The arithmetic uses integers only, so that all instruction sets give
+/// the same cells.
 namespace scanloom::mapping::simd {
 
-/// Whether the verdicts would change nothing, as all they say is that settled cells are free.
+/// Returns whether the verdicts change nothing, because they only report free space in cells that are already saturated
+/// as free.
+/// @param evidence  verdicts for the occupancy layer
+/// @param counted  verdicts for the HIMM layer
 [[nodiscard]] constexpr bool is_settled(const LaserChunk& chunk, const ChunkVerdicts& evidence,
                                         const ChunkVerdicts& counted) noexcept {
     std::uint64_t news = evidence.occupied_rows | counted.occupied_rows;
@@ -20,13 +24,14 @@ namespace scanloom::mapping::simd {
     return news == 0;
 }
 
-/// l = clamp(l + model(cell) - l0, l_min, l_max) for the cells with a verdict.
+/// Adds the evidence of a scan to the occupancy layer: l = clamp(l + model(cell) - l0, l_min, l_max) for each cell with
+/// a verdict.
 void add_evidence(LaserChunk& chunk, const ChunkVerdicts& verdicts, const OccupancyRule& rule);
 
-/// Counts up where a hit is, down before it.
+/// Updates the HIMM layer: increments the counters of occupied cells and decrements those of free cells.
 void count_hits(LaserChunk& chunk, const ChunkVerdicts& verdicts, const HimmRule& rule);
 
-/// Brings the types of the cells in `touched` up to date; those without a value stay as they are.
+/// Updates the types of the cells in `touched` from their values. Cells without a value keep their type.
 void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<LogOdds>& by_occupancy);
 void fold_types(LaserChunk& chunk, const grid::BitPlane& touched, const classify::Hysteresis<HimmCount>& by_himm);
 

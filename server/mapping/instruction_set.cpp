@@ -8,7 +8,7 @@
 namespace scanloom::mapping::simd {
 namespace {
 
-/// From the best one, which has the lowest bit.
+/// From the fastest set, which has the lowest bit.
 std::vector<std::int64_t> targets() {
     std::vector<std::int64_t> found;
     for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) {

@@ -15,7 +15,7 @@ namespace scanloom::mapping {
 
 enum class Verdict : std::uint8_t { kFree, kOccupied };
 
-/// What the model must know of a sensor and a map. Metres.
+/// The properties of a sensor and a map that the model uses. Lengths are in metres.
 struct ModelGeometry {
     ReadingRules readings;
     double thickness = 0.1; ///< alpha; at least one cell is used
@@ -24,21 +24,25 @@ struct ModelGeometry {
     [[nodiscard]] double half_band() const noexcept { return std::max(thickness, cell_size) / 2.0; }
 };
 
-/// Tells which cells one scan shows to be free or occupied: the inverse sensor model, cell by cell
-/// exact. Calls emit(Verdict, j, i_begin, i_end) for runs of cells of row j; no cell comes twice.
+/// Evaluates the inverse sensor model of one scan for each cell, without approximation.
 ///
-/// A cell whose centre lies at distance r in the sector of beam k (its nearest, within half the
-/// aperture), with reading z:
+/// Calls emit(Verdict, j, i_begin, i_end) for the cells i_begin..i_end - 1 of row j. No cell is emitted twice.
+///
+/// The verdict for a cell depends on the distance r of its centre, on the beam k whose sector contains the centre (the
+/// nearest beam, within half the aperture), and on the reading z of that beam:
 ///   occupied  z < range_max and |r - z| < alpha / 2
 ///   free      r <= z, r <= range_max, and not occupied
-///   (nothing) otherwise, and where reading_of() says that the beam shows nothing.
+///   (none)    otherwise, and if reading_of() returns no reading for the beam
 ///
-/// Shapes  sectors are those of a BeamFan, or some of them: what they show is theirs alone; ranges holds one
-///         reading for each beam that the fan was made from.
-/// Frames  T_map_sensor takes sensor points to the map frame.
-/// Cost    the rows and cells of the area the scan sees; never the map's size.
-/// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. (A printed variant compares
-///         r with z_max in the occupied test: a misprint.)
+/// @param sectors  the sectors of a BeamFan or a subset of them; the verdicts of different sectors are for different
+///                 cells
+/// @param ranges  one reading for each beam of the fan
+/// @param T_map_sensor  transform from sensor to map coordinates
+/// @param geometry  reading limits, obstacle thickness and cell size
+/// @param emit  receives the runs of cells
+/// Cost: the rows and cells of the area that the scan sees; independent of the map's size.
+/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. A printed variant compares r with z_max in
+///         the occupied test, which is a misprint.
 template <class Emit>
 void inverse_sensor_model(std::span<const Sector> sectors, std::span<const RangeMm> ranges, const Pose2& T_map_sensor,
                           const ModelGeometry& geometry, Emit&& emit) {
@@ -64,7 +68,7 @@ void inverse_sensor_model(std::span<const Sector> sectors, std::span<const Range
         const double outer = std::min(geometry.readings.range_max, reading->metres + half_band) * cells_per_metre;
         const double inner = std::max(0.0, reading->metres - half_band) * cells_per_metre;
         scan_convert(sector, x0, y0, outer, [&](std::int32_t j, double dy, std::int32_t begin, std::int32_t end) {
-            // The row runs through the free disc from -half to +half, if at all.
+            // The row intersects the free disc from -half to +half, if at all.
             const double square = inner * inner - dy * dy;
             std::int32_t free_begin = end;
             std::int32_t free_end = end;

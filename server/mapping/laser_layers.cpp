@@ -26,7 +26,8 @@ const std::shared_ptr<const LaserChunk>& blank_laser_chunk() {
     return blank;
 }
 
-/// Rounded as evidence is, so that evidence of exactly a threshold's probability, and a clamp there, reach it.
+/// Thresholds are rounded in the same way as evidence, so that evidence or a clamp of exactly a threshold's probability
+/// reaches the threshold.
 classify::Hysteresis<LogOdds> hysteresis_of_occupancy(const MapConfig& config) {
     const auto fixed = [](double p) {
         return static_cast<LogOdds>(std::lround(std::clamp(log_odds_of(p) * kLogOddsScale, -32766.0, 32767.0)));
@@ -36,8 +37,8 @@ classify::Hysteresis<LogOdds> hysteresis_of_occupancy(const MapConfig& config) {
     return {occupied, free, free, kUnknownLogOdds};
 }
 
-/// An unexplored cell is free when it is counted down to 0: a first hit leaves it at less than what a free cell may
-/// have.
+/// An unexplored cell becomes free when its counter reaches 0. class_himm_free is no suitable limit for it, because the
+/// counter after a first hit may be below it.
 classify::Hysteresis<HimmCount> hysteresis_of_himm(const MapConfig& config) {
     return {static_cast<HimmCount>(config.class_himm_occupied), static_cast<HimmCount>(config.class_himm_free), 0,
             kUnseenHimm};
@@ -57,7 +58,7 @@ grid::BitPlane touched_by(const ChunkVerdicts& verdicts) {
     return touched;
 }
 
-/// Grows a box to hold the cells of a chunk that have a verdict.
+/// Extends a box to contain the cells of a chunk that have a verdict.
 void include(grid::CellBox& box, grid::ChunkKey key, const ChunkVerdicts& verdicts) {
     const std::int32_t left = key.ci * grid::kChunkSide;
     const std::int32_t bottom = key.cj * grid::kChunkSide;
@@ -103,7 +104,7 @@ LaserLayers::LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid)
     : config_(config), occupancy_(config), himm_(config), by_occupancy_(hysteresis_of_occupancy(config)),
       by_himm_(hysteresis_of_himm(config)), grid_(std::move(grid)), stage_(first_stage(config)) {}
 
-/// Evidence comes with the sweep, or beam by beam before it.
+/// The inverse sensor model adds evidence in the sweep; the other models trace beams before it.
 LaserLayers::Stage LaserLayers::first_stage(const MapConfig& config) {
     return is_swept(config) ? Stage::kSweep : Stage::kBeams;
 }
@@ -156,7 +157,7 @@ void LaserLayers::set(grid::Cell cell, MapCell to) {
     });
 }
 
-/// The models that trace rays: cells are marked first, as a hit beats all passes of a scan, or of a beam.
+/// Models that trace rays mark cells first, because a hit takes precedence over all passes of a scan, or of a beam.
 bool LaserLayers::trace_beams(const LaserScan& scan, double& work) {
     const RayGeometry geometry{scan.readings, config_.ray_model, config_.hit_radius, config_.cell_size};
     const SensorOnGrid sensor(scan.T_map_sensor, config_.cell_size);
@@ -188,7 +189,8 @@ void LaserLayers::add_first_marks() {
     if (LaserChunk* chunk = grid_.write(key)) simd::add_evidence(*chunk, verdicts, occupancy_);
 }
 
-/// Counts of any model; and the evidence of the inverse sensor model, with the classes that follow from both.
+/// Updates the HIMM counters for every model and, for the inverse sensor model, also the evidence and the classes that
+/// follow from both.
 bool LaserLayers::sweep(const LaserScan& scan, double& work) {
     std::array<Sweep::Band, Sweep::kBandsMax> bands;
     std::size_t count = 0;
@@ -208,7 +210,7 @@ bool LaserLayers::sweep(const LaserScan& scan, double& work) {
 void LaserLayers::weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdicts) {
     const ChunkVerdicts& counted = verdicts.back();
     include(bounds_.himm, key, counted);
-    if (verdicts.size() == 1) { // beams were traced before
+    if (verdicts.size() == 1) { // the evidence was added by trace_beams()
         include(touched_, key, counted);
         if (LaserChunk* chunk = grid_.write(key)) simd::count_hits(*chunk, counted, himm_);
         return;
@@ -225,8 +227,10 @@ void LaserLayers::weave(grid::ChunkKey key, std::span<const ChunkVerdicts> verdi
     fold_types(*chunk, undecided(chunk->occ_types, by_occupancy ? seen : counted));
 }
 
-/// The cells whose type the verdicts might change. Evidence for what a cell is leaves it so, where evidence goes the
-/// way it says: HIMM's does, that of log-odds unless the prior lies beyond what the model says.
+/// Returns the cells whose type the verdicts may change.
+///
+/// A verdict that equals the current type does not change it if evidence moves the value in the verdict's direction.
+/// HIMM evidence always does; log-odds evidence does unless the prior lies beyond the model's value.
 grid::BitPlane LaserLayers::undecided(const classify::OccPlanes& types, const ChunkVerdicts& verdicts) const {
     grid::BitPlane cells = touched_by(verdicts);
     if (config_.class_source == ClassSource::kOccupancy && (occupancy_.free > 0 || occupancy_.occupied < 0))
@@ -245,7 +249,7 @@ void LaserLayers::fold_types(LaserChunk& chunk, const grid::BitPlane& touched) c
     }
 }
 
-/// Of the models that trace rays, which may touch a chunk more than once in a scan.
+/// Updates the classes for models that trace rays, which may change a chunk more than once per scan.
 bool LaserLayers::fold_classes(double& work) {
     static constexpr grid::BitPlane kAllCells = all_cells();
     for (bool first = true; done_ < changed_.size() && (first || work > 0.0); ++done_, first = false) {

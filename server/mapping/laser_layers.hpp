@@ -19,43 +19,49 @@ namespace scanloom::mapping {
 
 using LaserView = grid::ChunkView<LaserChunk>;
 
-/// The directions of a sensor's beams, as each model wants them. Made once, used by many scans.
+/// The directions of a sensor's beams, in the form that each ray model needs. Made once and used for many scans.
 struct LaserFan {
     std::shared_ptr<const FanRing> occupancy; ///< for the inverse sensor model
-    std::shared_ptr<const FanRing> himm;      ///< the same one where the apertures are alike
-    std::vector<Direction> beams;             ///< for the models that trace rays; empty for the inverse sensor model
+    std::shared_ptr<const FanRing> himm; ///< for the HIMM layer; shared with `occupancy` if the apertures are equal
+    std::vector<Direction> beams;        ///< for the models that trace rays; empty for the inverse sensor model
 };
 
-/// `aperture` is the sensor's own, 0 where it states none.
+/// Prepares the beam directions of a sensor for integration.
+/// @param aperture  beam width that the sensor states, in radians; 0 if it states none
 [[nodiscard]] LaserFan make_laser_fan(const MapConfig& config, const BeamAngles& angles, double aperture);
 
-/// One sweep of a laser.
+/// One laser scan.
 struct LaserScan {
     const LaserFan& fan;
-    std::span<const RangeMm> ranges; ///< one for each beam that the fan was made from
+    std::span<const RangeMm> ranges; ///< one for each beam of the fan
     Pose2 T_map_sensor;
     ReadingRules readings;
 };
 
-/// The layers that lasers make, updated scan by scan: occupancy, HIMM, and the hysteresis of the classes.
-/// Thread  one writer; views may be read by anyone.
-/// Source  each layer's: occupancy.hpp, himm.hpp, classify/hysteresis.hpp.
+/// The layers derived from laser scans: occupancy, HIMM, and the hysteresis of the classes. Updated scan by scan.
+/// Threads: one writer; any number of threads may read views.
+/// Source: see occupancy.hpp, himm.hpp and classify/hysteresis.hpp.
 class LaserLayers {
 public:
     explicit LaserLayers(const MapConfig& config);
 
-    /// Adds the evidence of one scan, the log's entry `revision`, as far as `work` (as Reach::work) allows; what was
-    /// used is taken from it.
-    /// @return whether all of the scan is in; until then nothing but the same call may follow.
+    /// Integrates one scan, or a part of it as large as `work` allows.
+    /// @param revision  revision of the scan's log entry
+    /// @param work  budget in the unit of Reach::work; reduced by the work that was done
+    /// @return whether the scan is completely integrated; if false, repeat the call with the same scan before any other
+    ///         change
     [[nodiscard]] bool integrate(const LaserScan& scan, Revision revision, double& work);
 
-    /// Takes over what a map that was made elsewhere says, the log's entry `revision`, as certain as cells can be.
-    /// Where its cells are no larger than ours, one of ours is occupied when any of those whose centres it holds is,
-    /// else free when any is; where they are larger, it is as the one that holds its centre.
-    /// Pre  no scan has been integrated: what is free does not erase what is occupied.
+    /// Imports a part of an existing map, setting its cells to the clamps.
+    ///
+    /// If the patch's cells are no larger than the cells of this map, a cell of this map is occupied if any patch cell
+    /// whose centre it contains is occupied; otherwise, it is free if any of them is free. If the patch's cells are
+    /// larger, a cell takes the value of the patch cell that contains its centre.
+    /// Precondition: no scan has been integrated. A free patch cell does not overwrite an occupied one.
+    /// @param revision  revision of the patch's log entry
     void import(const MapPatch& patch, Revision revision);
 
-    /// The cells that any scan changed.
+    /// Boxes around the cells that scans or imported maps changed.
     struct Bounds {
         grid::CellBox occupancy;
         grid::CellBox himm;
@@ -64,7 +70,7 @@ public:
     };
     [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
 
-    /// Puts back what a checkpoint holds.
+    /// Restores the state of a checkpoint.
     void restore(const Bounds& bounds) { bounds_ = bounds; }
     [[nodiscard]] LaserChunk& restore(grid::ChunkKey key, Revision revision) { return grid_.restore(key, revision); }
     [[nodiscard]] Revision newest_restored() const noexcept { return grid_.newest_restored(); }
@@ -74,7 +80,8 @@ public:
 
     [[nodiscard]] LaserView snapshot() { return grid_.snapshot(); }
 
-    /// See grid::ChunkTree::branch(). Pre: not within a scan.
+    /// Returns a copy that has its own writer; see grid::ChunkTree::branch().
+    /// Precondition: no scan is partially integrated.
     [[nodiscard]] LaserLayers branch() {
         LaserLayers other(config_, grid_.branch());
         other.bounds_ = bounds_;
@@ -84,7 +91,7 @@ public:
 private:
     LaserLayers(const MapConfig& config, ChunkGrid<LaserChunk> grid);
 
-    /// What comes after what within a scan. The inverse sensor model does all in one.
+    /// The stages of integrating a scan, in order. With the inverse sensor model, kSweep does the work of all stages.
     enum class Stage { kBeams, kMarks, kSweep, kClasses };
 
     [[nodiscard]] static Stage first_stage(const MapConfig& config);
@@ -107,10 +114,10 @@ private:
     ChunkGrid<LaserChunk> grid_;
     Bounds bounds_;
 
-    // Of the scan that is being integrated.
+    // State of the scan that is being integrated.
     Stage stage_;
-    std::size_t done_ = 0;  // of the stage: beams, strips, chunks
-    grid::CellBox touched_; // by what folds its classes later
+    std::size_t done_ = 0;  // beams, strips or chunks that the stage has completed
+    grid::CellBox touched_; // cells whose classes kClasses updates
     ScanMarks marks_;
     std::vector<grid::ChunkKey> changed_;
 };

@@ -7,7 +7,7 @@
 
 namespace scanloom::mapping {
 
-/// What can be looked at of a session's maps.
+/// A layer of a session's maps.
 enum class Layer : std::uint8_t {
     kOccupancy,      ///< probability of occupation, from lasers
     kHimm,           ///< counters 0..15, from lasers
@@ -17,12 +17,13 @@ enum class Layer : std::uint8_t {
 
 inline constexpr std::array kLayers = {Layer::kOccupancy, Layer::kHimm, Layer::kSonar, Layer::kClassification};
 
-/// As it stands in addresses: "occupancy".
+/// Returns the layer's name in URLs, e.g. "occupancy".
 [[nodiscard]] constexpr std::string_view name_of(Layer layer) noexcept {
     constexpr std::array<std::string_view, 4> kNames = {"occupancy", "himm", "sonar", "classification"};
     return kNames[static_cast<std::size_t>(layer)];
 }
 
+/// Returns the layer with a name in URLs, or nullopt if there is none.
 [[nodiscard]] constexpr std::optional<Layer> layer_of(std::string_view name) noexcept {
     for (const Layer layer : kLayers) {
         if (name_of(layer) == name) return layer;

@@ -12,15 +12,17 @@ namespace scanloom::mapping {
 template <class Value>
 using ChunkCells = std::array<Value, std::size_t{grid::kChunkSide} * grid::kChunkSide>;
 
-/// Whether any sensor told anything of a cell.
+/// Returns whether any sensor has observed the cell.
 [[nodiscard]] constexpr bool is_known(LogOdds cell) noexcept { return cell != kUnknownLogOdds; }
 [[nodiscard]] constexpr bool is_known(HimmCount cell) noexcept { return cell != kUnseenHimm; }
 [[nodiscard]] constexpr bool is_known(classify::CellClass cell) noexcept {
     return cell != classify::CellClass::kUnexplored;
 }
 
-/// Calls use(view, cells_of) with the ChunkView that holds the layer, and with what gives the ChunkCells of a chunk in
-/// it.
+/// Calls use(view, cells_of) and returns its result.
+///
+/// `view` is the ChunkView that contains the layer; cells_of(chunk) returns the layer's ChunkCells of one of its
+/// chunks.
 template <class Use>
 decltype(auto) with_layer(const Snapshot& snapshot, Layer layer, Use&& use) {
     switch (layer) {

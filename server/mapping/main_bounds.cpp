@@ -31,7 +31,7 @@ std::optional<grid::ChunkKey> chunk_at(const Pose2& pose, double cell_size) {
     return grid::ChunkKey{.cj = static_cast<std::int32_t>(cj), .ci = static_cast<std::int32_t>(ci)};
 }
 
-/// The box of its cells that show anything, which is smaller than that of whole chunks.
+/// Clips a box to the cells that show anything, which is smaller than a box of whole chunks.
 grid::CellBox clipped(const grid::CellBox& box, const grid::CellBox& to) {
     return {std::max(box.i_begin, to.i_begin), std::max(box.j_begin, to.j_begin), std::min(box.i_end, to.i_end),
             std::min(box.j_end, to.j_end)};
@@ -47,7 +47,7 @@ grid::CellBox main_bounds_of(const Snapshot& snapshot) {
         if (!robot.pose) continue;
         if (const auto chunk = chunk_at(*robot.pose, snapshot.config.cell_size)) areas.take_around(*chunk, with_robots);
     }
-    std::int64_t largest_count = areas.taken_count(); // an area that is smaller than these says nothing
+    std::int64_t largest_count = areas.taken_count(); // a smaller area than these is not the largest
     grid::CellBox largest;
     for (const grid::ChunkKey key : areas.chunks()) {
         grid::CellBox area;

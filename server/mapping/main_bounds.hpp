@@ -4,13 +4,14 @@
 
 namespace scanloom::mapping {
 
-/// Maps of more chunks have no main bounds: looking for them would take longer than a few milliseconds.
+/// The largest map, in chunks, for which main_bounds_of() searches. Larger maps would take more than a few
+/// milliseconds.
 inline constexpr std::size_t kMainBoundsChunksMax = 65'536;
 
-/// Where most of a map is, for who wants to look at it: the box of the largest explored area (chunks that touch or have
-/// one between them) and of those around the robots' newest places. What one scan with a wrong pose left far away
-/// does not count.
-/// @return empty: nothing is explored, or there are more than kMainBoundsChunksMax chunks
+/// Returns the part of a map to show first: the box of the largest explored area and of the areas around the robots'
+/// newest positions. Chunks that touch, or have one chunk between them, belong to the same area. Cells far away that
+/// result from a single scan with a wrong pose do not count.
+/// @return the box in cells; empty if nothing is explored or the map has more than kMainBoundsChunksMax chunks
 [[nodiscard]] grid::CellBox main_bounds_of(const Snapshot& snapshot);
 
 } // namespace scanloom::mapping

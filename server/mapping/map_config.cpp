@@ -58,7 +58,7 @@ const std::array kFields = {
 
 constexpr std::int32_t kDangerCellsMax = classify::ClassLayer::kDangerCellsMax;
 
-/// The names of an enumeration's values, in their order.
+/// The names of an enumeration's values, in the order of the values.
 template <class Choice>
 constexpr std::array<std::string_view, 0> kNames;
 template <>
@@ -89,7 +89,7 @@ Result<Value> as(const char* name, const ConfigValue& value) {
     }
 }
 
-/// The number that a whole text is.
+/// Returns the number if the whole text is one.
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
     Number number{};
@@ -98,7 +98,7 @@ std::optional<Number> parse(std::string_view text) {
     return number;
 }
 
-/// The value that a text stands for, of whatever kind it looks like.
+/// Converts text to a value of the type that the text looks like.
 ConfigValue value_in(std::string_view text) {
     if (text == "true" || text == "false") return text == "true";
     if (const auto whole = parse<std::int32_t>(text)) return *whole;
@@ -234,7 +234,7 @@ Result<> check(const MapConfig& c) {
 
 std::int32_t danger_reach(const MapConfig& config) noexcept {
     if (config.danger_radius == 0.0) return config.danger_cells;
-    constexpr double kSnap = 1e-9; // 0.15 m are three cells of 0.05 m, whatever rounding says
+    constexpr double kSnap = 1e-9; // 0.15 m are three cells of 0.05 m despite rounding
     return std::max(1, static_cast<std::int32_t>(std::ceil(config.danger_radius / config.cell_size - kSnap)));
 }
 

@@ -9,7 +9,8 @@
 
 namespace scanloom::mapping {
 
-/// The cells of this size that a patch says something of.
+/// Returns the box of cells that a patch covers.
+/// @param cell_size  metres; of the returned cells, not of the patch
 [[nodiscard]] inline grid::CellBox cells_of(const MapPatch& patch, double cell_size) noexcept {
     if (patch.cells.empty()) return {};
     const double per_metre = 1.0 / cell_size;
@@ -19,12 +20,14 @@ namespace scanloom::mapping {
     return {floor_cell(patch.min_x), floor_cell(patch.min_y), floor_cell(max_x) + 1, floor_cell(max_y) + 1};
 }
 
-/// Calls visit(Cell, MapCell) for our cells that a patch says something of, unknown ones too. Where the patch's cells
-/// are no larger than ours, once for each of them: the one of ours that holds its centre. Else once for each of ours
-/// whose centre lies in the patch.
+/// Calls visit(Cell, MapCell) for the cells of a map that a patch covers, including cells that the patch does not know.
+///
+/// If the patch's cells are no larger than the map's, there is one call for each patch cell, with the map cell that
+/// contains its centre. Otherwise, there is one call for each map cell whose centre lies in the patch.
+/// @param cell_size  metres; of the map's cells
 template <class Visit>
 void for_each_cell_of(const MapPatch& patch, double cell_size, Visit&& visit) {
-    constexpr double kSnap = 1e-9; // cells of the same size are, whatever rounding says
+    constexpr double kSnap = 1e-9; // treats sizes that differ by rounding alone as equal
     const double per_metre = 1.0 / cell_size;
     const auto ours = [&](double metres) { return static_cast<std::int32_t>(std::floor(metres * per_metre)); };
     if (patch.cell_size <= cell_size * (1.0 + kSnap)) {

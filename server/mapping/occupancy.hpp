@@ -5,9 +5,9 @@
 
 namespace scanloom::mapping {
 
-/// How evidence is added to log-odds: l = clamp(l + model(cell) - l0, l_min, l_max), unseen cells starting from the
+/// The rule for adding evidence to log-odds: l = clamp(l + model(cell) - l0, l_min, l_max). Unseen cells start at the
 /// prior l0.
-/// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.1.
+/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.1.
 struct OccupancyRule {
     explicit OccupancyRule(const MapConfig& config) noexcept
         : prior(to_fixed(log_odds_of(config.p_prior))), l_min(to_fixed(log_odds_of(config.p_min))),
@@ -17,7 +17,7 @@ struct OccupancyRule {
     LogOdds prior; ///< l0
     LogOdds l_min;
     LogOdds l_max;
-    int occupied; ///< model(cell) - l0; may exceed what a cell can hold: from one end of the clamp to the other
+    int occupied; ///< model(cell) - l0; may exceed the range of LogOdds: from one end of the clamp to the other
     int free;     ///< likewise
 };
 

@@ -48,7 +48,7 @@ Result<bool> Projection::fold(const LogEntry& entry, double& work) {
     return is_in;
 }
 
-// Pre, below: rules_ accepts the entry. @return whether all of it is in.
+// Each integrate_entry() requires an entry that rules_ accepts and returns whether it is completely applied.
 
 bool Projection::integrate_entry(const RobotJoined& joined, double&) {
     if (joined.robot == robots_.size()) robots_.emplace_back();
@@ -82,12 +82,12 @@ bool Projection::integrate_entry(const MapPatch& patch, double& work) {
     return true;
 }
 
-/// Its scans were left out when their turn came.
+/// Does nothing: the excluded scans were left out when they were reached.
 bool Projection::integrate_entry(const ScansExcluded&, double&) { return true; }
 
 bool Projection::integrate_entry(const ExclusionLifted&, double&) { return true; }
 
-/// @return whether all of the scan is in.
+/// @return whether the scan is completely integrated
 bool Projection::integrate(Robot& robot, const Sensor& sensor, const Scan& scan, double& work) {
     const auto& fan = fan_of(robot, sensor, scan).fan;
     const Pose2 T_map_sensor = compose(scan.pose, sensor.mount);
@@ -150,7 +150,7 @@ Snapshot Projection::snapshot() {
     return snapshot;
 }
 
-/// Cost  the chunks that changed since the last time, and their neighbours.
+/// Cost: the chunks that changed since the last call, and their neighbours.
 void Projection::bring_classes_up_to(const LaserView& laser) {
     std::vector<grid::ChunkKey> changed;
     const Revision newest =
@@ -175,7 +175,7 @@ Projection Projection::branch() {
     return other;
 }
 
-/// Without the fans, which are made again when they are needed.
+/// Leaves out the fans, which are recomputed when needed.
 Projection::Robot Projection::Robot::branch() const { return {scan_count, excluded, newest, trajectory.branch(), {}}; }
 
 ProjectionState Projection::state() const {
@@ -184,7 +184,7 @@ ProjectionState Projection::state() const {
         const Robot& robot = robots_[index];
         state.robots.push_back(
             {robots()[index], robot.scan_count, robot.newest, filter_.jumps().state(index), robot.excluded});
-        if (robot.newest) state.pages += 1; // what restore() keeps of its path
+        if (robot.newest) state.pages += 1; // what restore() keeps of its trajectory
     }
     return state;
 }
@@ -200,7 +200,7 @@ void Projection::restore(const ProjectionState& state) {
         robot.scan_count = saved.scan_count;
         robot.excluded = saved.excluded;
         robot.newest = saved.newest;
-        const bool has_point = saved.newest && saved.scan_count > 0; // the newest one; those before are in the log
+        const bool has_point = saved.newest && saved.scan_count > 0; // the newest point; earlier ones are in the log
         robot.trajectory = Trajectory(saved.scan_count - (has_point ? 1 : 0));
         if (has_point) robot.trajectory.append(*saved.newest);
         auto& jumps = filter_.jumps();

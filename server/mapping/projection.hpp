@@ -15,63 +15,66 @@
 
 namespace scanloom::mapping {
 
-/// Rises when the same log would give another map; checkpoints of another version are woven anew.
+/// Version of the mapping algorithms. Increased when the same log would give another map; a checkpoint of another
+/// version is discarded, and its log replayed.
 inline constexpr std::uint32_t kWeavingVersion = 4;
 
-/// Everything but the chunks of a projection, and its trajectories, which the log has: what a checkpoint keeps besides
-/// the chunks.
+/// The state of a projection without its chunks and without its trajectories, which the log contains. A checkpoint
+/// stores it with the chunks.
 struct ProjectionState {
     struct Robot : LoggedRobot {
-        std::uint64_t scan_count = 0;          ///< integrated
-        std::optional<TrajectoryPoint> newest; ///< of those
+        std::uint64_t scan_count = 0;          ///< integrated scans
+        std::optional<TrajectoryPoint> newest; ///< of the integrated scans
         JumpFilter::Robot jumps;               ///< only with max_jump
-        std::uint64_t excluded = 0;            ///< scans
+        std::uint64_t excluded = 0;            ///< scans that exclusions left out
     };
 
     Revision revision = 0;
     LayerBounds bounds;
-    std::size_t pages = 0; ///< Projection::page_count() of what is read back
+    std::size_t pages = 0; ///< Projection::page_count() after restore()
     std::vector<Robot> robots;
     SharedExclusions exclusions = no_exclusions();
 };
 
-/// What a page of a projection takes in memory, about: a chunk with its classes and its share of the trees, or a block
-/// of a trajectory.
+/// Approximate memory of one page of a projection: a chunk with its classes and its share of the trees, or a block of a
+/// trajectory.
 inline constexpr std::size_t kPageBytes = 20 << 10;
 
-/// The maps of one session: a deterministic fold of its log.
+/// The maps of one session, derived deterministically from its log.
 ///
-/// Whatever way the entries were batched, replayed or interrupted, the same entries under the same
-/// configuration give the same cells.
-/// Thread  one writer; snapshots are for everybody.
+/// The same entries with the same configuration give the same cells, however the entries were batched, replayed or
+/// interrupted.
+/// Threads: one writer; any number of threads may read snapshots.
 class Projection {
 public:
-    /// @param exclusions  of the whole log that will be folded: they leave out scans that are before them
+    /// @param config  the session's settings
+    /// @param exclusions  exclusions of the whole log that will be applied; they leave out earlier scans
     explicit Projection(const MapConfig& config, SharedExclusions exclusions = no_exclusions());
 
     [[nodiscard]] const MapConfig& config() const noexcept { return config_; }
     [[nodiscard]] Revision revision() const noexcept { return rules_.revision(); }
 
-    /// The cells that any scan changed.
+    /// Boxes around the cells that any scan changed.
     [[nodiscard]] LayerBounds bounds() const noexcept { return {laser_.bounds(), sonar_.bounds()}; }
 
-    /// Of lasers and sonars.
+    /// Returns the number of chunks of laser and sonar layers.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return laser_.chunk_count() + sonar_.chunk_count(); }
 
-    /// What it takes of memory, in pages: each chunk and each block of a trajectory is one.
+    /// Returns the memory use in pages: one for each chunk and for each block of a trajectory. See kPageBytes.
     [[nodiscard]] std::size_t page_count() const noexcept;
 
-    /// Of the chunks of the last snapshot, those that have been copied since, to be written: as long as that snapshot
-    /// is held, there are so many more than chunk_count().
+    /// Returns how many chunks of the last snapshot have been copied for writing. While that snapshot is held, that
+    /// many chunks exist in addition to chunk_count().
     [[nodiscard]] std::size_t copied_count() const noexcept { return laser_.copied() + sonar_.copied(); }
 
-    /// The robots as the log describes them, by RobotIndex. Valid until the next fold().
+    /// Returns the robots that the log describes, by RobotIndex. Valid until the next fold().
     [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return rules_.robots(); }
 
-    /// Null: no such robot has joined, or it has described no such sensor.
+    /// Returns a sensor's description, or nullptr if the robot has not joined or has not described the sensor.
     [[nodiscard]] std::shared_ptr<const Sensor> sensor_of(RobotIndex robot, std::uint32_t id) const;
 
-    /// Whether the newest entry was not integrated. Pre  it is a scan of that robot.
+    /// Returns whether the newest entry was not integrated.
+    /// Precondition: the newest entry is a scan of that robot.
     [[nodiscard]] bool has_left_out_newest(RobotIndex robot) const noexcept {
         const auto& newest = robots_[robot].newest;
         return !newest || newest->revision != revision();
@@ -79,50 +82,60 @@ public:
 
     [[nodiscard]] const SharedExclusions& exclusions() const noexcept { return filter_.exclusions(); }
 
-    /// Whether the next entry excludes scans that may be in these maps, or brings some back: then the log is to be
-    /// folded from its beginning, with its exclusions. fold() refuses such an entry with kConflict.
+    /// Returns whether the next entry excludes scans that these maps may contain, or brings excluded scans back. The
+    /// log must then be replayed from its beginning with its exclusions; fold() rejects the entry.
     [[nodiscard]] bool is_outdated_by(const LogEntry& entry) const noexcept;
 
-    /// Adds the next entry of the log.
-    /// Errors  kMalformed: an entry that cannot follow the earlier ones (an unknown robot or sensor,
-    ///         a seq out of order); the projection is unchanged. Only a damaged log has such entries.
+    /// Applies the next entry of the log to the maps.
+    /// Errors: kMalformed if the entry cannot follow the earlier ones (an unknown robot or sensor, a seq out of order),
+    ///         which occurs in damaged logs only; kConflict if is_outdated_by(entry). After an error, the projection is
+    ///         unchanged.
     [[nodiscard]] Result<> fold(const LogEntry& entry);
 
-    /// The same, but gives way within a large scan: when `work` (as Reach::work) is used up, what was used being
-    /// taken from it.
-    /// @return whether the entry is in; until then nothing but the same call may follow.
+    /// Applies the next entry of the log, or a part of a large scan: returns early when `work` is used up.
+    /// @param entry  the entry that follows revision()
+    /// @param work  budget in the unit of Reach::work; reduced by the work that was done
+    /// @return whether the entry is completely applied; if false, repeat the call with the same entry before any other
+    ///         change
+    /// Errors: kMalformed if the entry cannot follow the earlier ones; kConflict if is_outdated_by(entry). After an
+    ///         error, the projection is unchanged.
     [[nodiscard]] Result<bool> fold(const LogEntry& entry, double& work);
 
-    /// What has been woven so far. Cheap; the next writes copy the chunks they touch.
+    /// Returns the maps up to revision(). Cheap; later writes copy the chunks that they change.
     [[nodiscard]] Snapshot snapshot();
 
-    /// A second projection that goes on from here by itself, with a writer of its own. Cheap: both share what there is,
-    /// and copy the chunks that they touch next.
-    /// Pre  not within a scan.
+    /// Returns a second, independent projection with the same contents and its own writer. Cheap: both share their
+    /// chunks, and each copies those that it changes.
+    /// Precondition: no entry is partially applied.
     [[nodiscard]] Projection branch();
 
+    /// Returns the state to store in a checkpoint.
     [[nodiscard]] ProjectionState state() const;
 
-    /// Rebuilds a projection from a checkpoint. Call on a fresh projection: first the state, then every chunk (whose
-    /// cells the caller fills in). Chunks may be newer than the state (a checkpoint cut short): folding the log's
-    /// entries after the state's revision then gives the same maps. Its trajectories begin behind the state.
+    /// Restores a projection from a checkpoint.
+    ///
+    /// Call it on a new projection: first restore() with the state, then restore_laser_chunk() or restore_sonar_chunk()
+    /// for every chunk, whose cells the caller fills in. Chunks may be newer than the state if writing the checkpoint
+    /// was interrupted. Applying the log's entries after the state's revision then gives the same maps. The restored
+    /// trajectories start with each robot's newest point; earlier points are only in the log.
     void restore(const ProjectionState& state);
     [[nodiscard]] LaserChunk& restore_laser_chunk(grid::ChunkKey key, Revision revision);
     [[nodiscard]] SonarChunk& restore_sonar_chunk(grid::ChunkKey key, Revision revision);
 
-    /// The log has at least this many entries, or the chunks put back were of another log.
+    /// Returns the newest revision of the restored chunks. If the log has fewer entries, the chunks belong to another
+    /// log.
     [[nodiscard]] Revision newest_restored() const noexcept {
         return std::max(laser_.newest_restored(), sonar_.newest_restored());
     }
 
 private:
-    /// The fan of a sensor's own angles, kept from scan to scan of the same beam count.
+    /// The beam directions of a sensor's own angles, reused for scans with the same number of beams.
     struct KnownFan {
         std::size_t beams = 0;
         std::variant<LaserFan, SonarFan> fan;
     };
 
-    /// What the maps hold of a robot.
+    /// The state of one robot.
     struct Robot {
         [[nodiscard]] Robot branch() const;
 
@@ -152,10 +165,10 @@ private:
     LaserLayers laser_;
     SonarLayer sonar_;
     classify::ClassLayer classes_;
-    Revision classes_at_ = 0;   // the classes are those of the laser chunks at this revision
+    Revision classes_at_ = 0;   // the classes match the laser chunks at this revision
     std::vector<Robot> robots_; // by RobotIndex, as many as in rules_
     ScanFilter filter_;
-    bool is_folding_ = false; // a scan, of which a part is in
+    bool is_folding_ = false; // a scan is partially integrated
 };
 
 } // namespace scanloom::mapping

@@ -6,7 +6,7 @@
 namespace scanloom::mapping {
 namespace {
 
-/// All cells whose centres lie in the disc. Lengths in cells.
+/// Marks all cells whose centres lie in the disc. Lengths are in cells.
 void hit_disc(ScanMarks& marks, GridPoint centre, double radius) {
     const auto first_row = static_cast<std::int32_t>(std::ceil(centre.y - radius - 0.5));
     const auto last_row = static_cast<std::int32_t>(std::floor(centre.y + radius - 0.5));

@@ -11,15 +11,15 @@
 
 namespace scanloom::mapping {
 
-/// What tracing the beams of a sensor must know of it and of the map. Metres.
+/// The properties of a sensor and a map that beam tracing uses. Lengths are in metres.
 struct RayGeometry {
     ReadingRules readings;
     RayModel model = RayModel::kBresenham; ///< or kTraversal
-    double hit_radius = 0.0;               ///< cells whose centres are as near as this to a hit count as hit
+    double hit_radius = 0.0;               ///< cells whose centres are within this distance of a hit count as hit
     double cell_size = 0.05;
 };
 
-/// Where a sensor stands on the grid, and how it is turned.
+/// A sensor's position and orientation on the grid.
 struct SensorOnGrid {
     SensorOnGrid(const Pose2& T_map_sensor, double cell_size) noexcept
         : at{T_map_sensor.x * (1.0 / cell_size), T_map_sensor.y * (1.0 / cell_size)},
@@ -34,9 +34,14 @@ struct SensorOnGrid {
     double sine;
 };
 
-/// Marks the cells that one beam passes, and those that it hits. Without a return it passes all up to range_max, the
-/// cell there included. `beam` is a direction in the sensor frame.
-/// Source  the cells: ray_tracing.hpp; the radius: section 3 of the design models.
+/// Marks the cells that one beam passes and the cells that it hits. A beam without a return passes all cells up to and
+/// including the one at range_max.
+/// @param marks  receives the cells
+/// @param beam  direction in the sensor frame
+/// @param reading  the beam's reading
+/// @param sensor  the sensor's pose on the grid
+/// @param geometry  ray model, hit radius and cell size
+/// Source: the cells: ray_tracing.hpp; the radius: section 3 of the design models.
 void trace_beam(ScanMarks& marks, const Direction& beam, const Reading& reading, const SensorOnGrid& sensor,
                 const RayGeometry& geometry);
 

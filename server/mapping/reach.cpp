@@ -17,21 +17,21 @@ ReadingRules rules_of(const MapConfig& config, const Sensor& sensor) {
     return {sensor.range_min, sensor.range_max, config.drop_no_return};
 }
 
-/// An upper bound of a sector's width, which for explicit angles would cost a sort to know better.
+/// Returns an upper bound of a sector's width. For explicit angles, a closer bound would need a sort.
 double sector_width(double aperture, const Sensor& sensor, const Scan& scan) {
     const auto& angles = scan.angles ? *scan.angles : sensor.angles;
     const auto* uniform = std::get_if<UniformAngles>(&angles);
     return uniform != nullptr ? std::max(aperture, std::abs(uniform->increment)) : 2.0 * std::numbers::pi;
 }
 
-/// The shortest reading that is not below so many metres, by the very comparison of reading_of().
+/// Returns the shortest reading of at least `metres`, with the same comparison as reading_of().
 RangeMm first_from(double metres) {
     auto range = static_cast<RangeMm>(std::max(std::floor(metres * 1000.0) - 1.0, 0.0));
     while (range * 0.001 < metres) ++range;
     return range;
 }
 
-/// What the readings of a scan are, in whole millimetres: one pass of integers, for all layers.
+/// Sums over the readings of a scan in whole millimetres, computed in one pass of integers for all layers.
 struct Readings {
     RangeMm longest_hit = 0;
     std::uint64_t hits = 0;
@@ -42,7 +42,7 @@ struct Readings {
 
 Readings readings_of(const Scan& scan, const ReadingRules& rules) {
     const RangeMm least = std::max<RangeMm>(first_from(rules.range_min), 1);
-    const RangeMm most = first_from(rules.range_max); // and beyond: no return
+    const RangeMm most = first_from(rules.range_max); // this range and beyond: no return
     Readings readings;
     std::uint64_t valid = 0;
     for (const RangeMm range : scan.ranges) {
@@ -57,14 +57,15 @@ Readings readings_of(const Scan& scan, const ReadingRules& rules) {
     return readings;
 }
 
-/// How far the readings show something, metres.
+/// The lengths that the readings show, in metres.
 struct Extent {
     double longest = 0.0;
     double sum = 0.0;
     double sum_of_squares = 0.0;
 };
 
-/// As if range_max cut off nothing of the band behind a hit but of the longest: never too little.
+/// Applies range_max only to the longest hit, not to the bands behind the other hits; therefore the result is never too
+/// small.
 Extent extent_of(const Readings& readings, const ModelGeometry& geometry) {
     const double band = geometry.half_band();
     const double range_max = geometry.readings.range_max;
@@ -80,7 +81,7 @@ Extent extent_of(const Readings& readings, const ModelGeometry& geometry) {
     return extent;
 }
 
-/// Of sectors that overlap nowhere.
+/// Returns the work of sectors that do not overlap.
 double work_of_sectors(const Extent& extent, double width, double per_metre) {
     const double disc = std::numbers::pi * extent.longest * extent.longest;
     return std::min(disc, 0.5 * width * extent.sum_of_squares) * per_metre * per_metre + 2.0 * extent.sum * per_metre;

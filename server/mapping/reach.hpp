@@ -10,34 +10,36 @@
 
 namespace scanloom::mapping {
 
-/// What weaving a scan may touch, told beforehand, so that memory and work can be bounded.
+/// Upper bounds of what integrating a scan may change, computed beforehand to limit memory and work.
 struct Reach {
-    SensorKind kind = SensorKind::kLaser; ///< the layers of lasers and those of sonars have chunks of their own
-    grid::CellBox cells;                  ///< whatever the scan can change lies in here; empty when it shows nothing
-    double work = 0.0;                    ///< as work.hpp counts it; never far too little
+    SensorKind kind = SensorKind::kLaser; ///< laser and sonar layers have separate chunks
+    grid::CellBox cells;                  ///< contains every cell that the scan can change; empty if it shows nothing
+    double work = 0.0;                    ///< in the unit of work.hpp; never much too low
 };
 
-/// Cost  the number of beams; no beam is traced.
+/// Returns the reach of a scan.
+/// Cost: proportional to the number of beams; no beam is traced.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const Sensor& sensor, const Scan& scan);
 
-/// Of taking over a part of an imported map.
+/// Returns the reach of importing a part of a map.
 [[nodiscard]] Reach reach_of(const MapConfig& config, const MapPatch& patch);
 
-/// How many chunks hold any cell of the box.
+/// Returns the number of chunks that contain any cell of the box.
 [[nodiscard]] std::int64_t chunk_count_of(const grid::CellBox& box) noexcept;
 
-/// The most work that one scan may make: more than any laser's.
+/// Limit of the work of one scan, greater than that of any laser scan.
 inline constexpr double kScanWorkMax = 1e9;
 
-/// How far a sensor may reach at most, cells.
+/// Limit of a sensor's range, in cells.
 inline constexpr double kReachCellsMax = 8192.0;
 
-/// Whether a sensor's reach is possible at this cell size.
-/// Errors  kInvalidField: range_max spans more than kReachCellsMax.
+/// Checks a sensor's range against the cell size.
+/// Errors: kInvalidField if range_max spans more than kReachCellsMax cells.
 [[nodiscard]] Result<> check_reach(const MapConfig& config, const Sensor& sensor);
 
-/// Errors  kInvalidField: so many cones, so wide, so far (or such a map), at such small cells, that weaving would
-///         take seconds.
+/// Checks the work of integrating a scan or importing a part of a map.
+/// Errors: kInvalidField if the work exceeds kScanWorkMax and would take seconds: too many, too wide or too long cones,
+///         or too large a map, for the cell size.
 [[nodiscard]] Result<> check_work(const Reach& reach);
 
 } // namespace scanloom::mapping

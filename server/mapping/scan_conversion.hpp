@@ -11,15 +11,15 @@ namespace scanloom::mapping {
 
 namespace detail {
 
-/// The cell centres x_low <= x < x_high of a row, relative to the sensor, in cells.
+/// The range of cell centres x_low <= x < x_high in a row, relative to the sensor, in cells.
 struct RowSpan {
     double x_low = -HUGE_VAL;
     double x_high = HUGE_VAL;
 };
 
-/// A sector seen in the half-plane above the sensor, between its clockwise edge `right` and `left`.
-/// An edge that is not in the half-plane bounds nothing: as a sector spans at most a quarter turn,
-/// it then reaches the horizon on that side.
+/// The part of a sector in the half-plane above the sensor, between its clockwise edge `right` and `left`. An edge
+/// outside the half-plane sets no limit: a sector spans at most a quarter turn and therefore reaches the horizon on
+/// that side.
 struct UpperSector {
     Direction right;
     Direction left;
@@ -28,14 +28,15 @@ struct UpperSector {
     [[nodiscard]] bool left_above() const noexcept { return left.y > 0.0; }
     [[nodiscard]] bool empty() const noexcept { return !right_above() && !left_above(); }
 
-    /// How far up a disc sector of this radius reaches.
+    /// Returns the height of the highest point of the disc sector with this radius.
     [[nodiscard]] double top(double radius) const noexcept {
         const bool starts_right = !right_above() || right.x >= 0.0;
         const bool ends_left = !left_above() || left.x <= 0.0;
         return starts_right && ends_left ? radius : radius * std::max(right.y, left.y);
     }
 
-    /// What it covers of the row at height y. Pre: !empty() and y > 0.
+    /// Returns the part of the row at height y that the sector covers.
+    /// Precondition: !empty() and y > 0.
     [[nodiscard]] RowSpan at(double y) const noexcept {
         RowSpan span;
         if (right_above()) span.x_high = right.x / right.y * y;
@@ -44,20 +45,25 @@ struct UpperSector {
     }
 };
 
-/// First column whose centre lies at x or beyond, for a sensor at x0.
+/// Returns the first column whose centre lies at x or beyond.
+/// @param x  position relative to the sensor, in cells
+/// @param x0  the sensor's position, in cells
 [[nodiscard]] inline std::int32_t column_from(double x, double x0) noexcept {
     return static_cast<std::int32_t>(std::ceil(x + x0 - 0.5));
 }
 
 } // namespace detail
 
-/// Calls row(j, dy, i_begin, i_end) for each row of cells, i_begin < i_end, whose centres lie in a
-/// sector of a disc. Together the sectors of a fan visit every centre at most once.
+/// Calls row(j, dy, i_begin, i_end) for each row of cells, i_begin < i_end, whose centres lie in a sector of a disc.
 ///
-/// Units   cells: the sensor at (x0, y0), the radius too; cell (i, j) has its centre at
-///         (i + 0.5, j + 0.5); dy is the height of the row's centres over the sensor.
-/// Pre     the sector's directions are in the map frame; radius >= 0.
-/// Cost    the rows that the sector crosses.
+/// Together, the sectors of a fan visit each centre at most once. Cell (i, j) has its centre at (i + 0.5, j + 0.5); dy
+/// is the height of the row's centres above the sensor. All lengths are in cells.
+/// @param sector  directions in the map frame
+/// @param x0  the sensor's x, in cells
+/// @param y0  the sensor's y, in cells
+/// @param radius  of the disc, in cells; >= 0
+/// @param row  receives the rows
+/// Cost: the rows that the sector crosses.
 template <class Row>
 void scan_convert(const Sector& sector, double x0, double y0, double radius, Row&& row) {
     const auto clipped = [&](std::int32_t j, double dy, const detail::RowSpan& span) {
@@ -89,7 +95,7 @@ void scan_convert(const Sector& sector, double x0, double y0, double radius, Row
     }
 
     if (first_above - first_below < 2) return;
-    // A row of centres exactly level with the sensor lies in directions 0 and pi.
+    // A row of centres exactly at the sensor's height lies in the directions 0 and pi.
     const std::int32_t level = first_below + 1;
     const Direction& low = sector.low;
     const Direction& high = sector.high;

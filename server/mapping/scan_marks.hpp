@@ -8,14 +8,15 @@
 
 namespace scanloom::mapping {
 
-/// What rays say of the cells of one chunk,
+/// The cells of one chunk that rays passed or hit.
 struct ChunkMarks {
     grid::BitPlane passed{}; ///< by a ray, before its hit
     grid::BitPlane hit{};
 };
 
-/// The cells that the rays of a scan pass and hit, each once however many rays say so; a hit beats a pass.
-/// Memory  two bits a cell of the chunks that were touched.
+/// The cells that the rays of a scan pass and hit. A cell counts once, however many rays cross it, and a hit takes
+/// precedence over a pass.
+/// Memory: two bits per cell of the chunks that rays touch.
 class ScanMarks {
 public:
     void pass(grid::Cell cell) { mark(cell, &ChunkMarks::passed); }
@@ -23,7 +24,8 @@ public:
 
     [[nodiscard]] const std::map<grid::ChunkKey, ChunkMarks>& chunks() const noexcept { return chunks_; }
 
-    /// Takes out the marks of the first chunk. Pre: there is one.
+    /// Removes and returns the marks of the first chunk.
+    /// Precondition: chunks() is not empty.
     [[nodiscard]] auto take_first() {
         current_ = nullptr;
         return chunks_.extract(chunks_.begin());
@@ -45,7 +47,7 @@ private:
     ChunkMarks* current_ = nullptr;
 };
 
-/// A hit beats a pass.
+/// Returns the verdicts of a chunk's marks; a hit takes precedence over a pass.
 [[nodiscard]] inline ChunkVerdicts verdicts_of(const ChunkMarks& marks) noexcept {
     ChunkVerdicts verdicts{.occupied = marks.hit};
     for (std::size_t j = 0; j < marks.passed.size(); ++j) {

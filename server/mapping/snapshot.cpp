@@ -12,7 +12,7 @@ grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept {
     }
     grid::CellBox seen = snapshot.config.class_source == ClassSource::kHimm ? laser.himm : laser.occupancy;
     if (seen.empty()) return seen;
-    return {seen.i_begin - 1, seen.j_begin - 1, seen.i_end + 1, seen.j_end + 1}; // frontiers lie around what is free
+    return {seen.i_begin - 1, seen.j_begin - 1, seen.i_end + 1, seen.j_end + 1}; // frontiers surround free cells
 }
 
 grid::CellBox bounds_of(const LayerBounds& bounds) noexcept {

@@ -17,17 +17,17 @@
 
 namespace scanloom::mapping {
 
-/// A scan as it was folded, with the description that its sensor had then.
+/// A scan that was applied, with its sensor's description at that time.
 struct FoldedScan {
-    Revision revision = 0; ///< of its log entry
+    Revision revision = 0; ///< of the scan's log entry
     std::shared_ptr<const Sensor> sensor;
     Scan scan;
 };
 
-/// What a session knows of one robot. Its place in Snapshot::robots is its RobotIndex.
+/// The state of one robot. Its index in Snapshot::robots is its RobotIndex.
 struct RobotState {
     std::string name;
-    std::optional<double> body_radius; ///< metres, as it stated when it joined last
+    std::optional<double> body_radius; ///< metres, as stated when the robot last joined
     std::uint64_t last_seq = 0;
     std::uint64_t scan_count = 0; ///< integrated
     std::uint64_t jumps = 0;      ///< scans that max_jump left out
@@ -36,12 +36,12 @@ struct RobotState {
     std::optional<Pose2> pose;    ///< T_map_robot of the newest integrated scan
     TrajectoryView trajectory;
 
-    /// To be looked at, no part of the maps: only a session that takes scans has it, of scans taken since it was
-    /// loaded.
+    /// For display only, not part of the maps. Set only in a session that accepts scans, to a scan received since the
+    /// session was loaded.
     std::shared_ptr<const FoldedScan> newest_scan;
 };
 
-/// The cells of each layer that any scan changed.
+/// Boxes around the cells of each layer that any scan changed.
 struct LayerBounds {
     LaserLayers::Bounds laser;
     grid::CellBox sonar;
@@ -49,24 +49,24 @@ struct LayerBounds {
     friend bool operator==(const LayerBounds&, const LayerBounds&) = default;
 };
 
-/// The cells in which any layer shows what a sensor saw.
+/// Returns the box of cells that any layer has observed.
 [[nodiscard]] grid::CellBox bounds_of(const LayerBounds& bounds) noexcept;
 
-/// Everything a session has woven from its log up to one revision: what all readers read.
-/// Immutable; hold it by shared_ptr<const Snapshot> as long as needed.
+/// The maps of a session at one revision, shared by all readers. Immutable; hold it by shared_ptr<const Snapshot> as
+/// long as needed.
 struct Snapshot {
     Revision revision = 0;
     MapConfig config;
-    SharedExclusions exclusions = no_exclusions(); ///< of its log
+    SharedExclusions exclusions = no_exclusions(); ///< of the session's log
     LayerBounds bounds;
-    std::size_t chunk_count = 0; ///< of lasers and sonars
+    std::size_t chunk_count = 0; ///< of laser and sonar layers
     LaserView laser;
     SonarView sonar;
     classify::ClassView classes;
     std::vector<RobotState> robots;
 };
 
-/// The cells in which a layer shows anything.
+/// Returns the box of cells that a layer shows.
 [[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
 
 [[nodiscard]] inline grid::CellBox bounds_of(const Snapshot& snapshot) noexcept { return bounds_of(snapshot.bounds); }

@@ -80,7 +80,7 @@ void SonarLayer::add(const SonarScan& scan, std::size_t cone) {
 
 int SonarLayer::step_of(Verdict region, double r, double range_max, double a, double half_aperture) const noexcept {
     const double p = std::min(sonar_probability(region, r, range_max, a, half_aperture), config_.sonar_p_occupied_max);
-    // An echo may be certain that a cell is free, p = 0: as far as a cell can go then.
+    // An echo may report certainty that a cell is free, p = 0; the step is then the largest that a cell can take.
     const int furthest = l_max_ - l_min_;
     if (p <= 0.0) return -furthest;
     return static_cast<int>(std::clamp(std::round(log_odds_of(p) * kLogOddsScale), -1.0 * furthest, 1.0 * furthest));

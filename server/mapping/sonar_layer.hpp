@@ -14,27 +14,32 @@ namespace scanloom::mapping {
 using SonarChunk = grid::Chunk<LogOdds>;
 using SonarView = grid::ChunkView<SonarChunk>;
 
-/// The cone of one beam, divided into sectors.
+/// The cone of one sonar beam, divided into sectors.
 struct SonarCone {
     double angle = 0.0; ///< of its axis, radians in the sensor frame
     BeamFan sectors;
 };
 
-/// Every beam of a ring; cones may overlap. `aperture` is the full width of each, radians.
+/// The cones of all beams of a sonar ring. Cones may overlap.
 struct SonarFan {
     double aperture = 0.0;
     std::vector<SonarCone> cones;
 };
 
-/// `aperture` is the sensor's own, 0 where it states none.
+/// Prepares the cones of a sonar ring for integration.
+/// @param aperture  beam width that the sensor states, in radians; 0 if it states none
 [[nodiscard]] SonarFan make_sonar_fan(const MapConfig& config, const BeamAngles& angles, double aperture);
 
-/// What an echo says of a cell, before it is limited: the probability of occupation, with
-///   w = ((R - r) / R + (h - a) / h) / 2
-/// 0.5 + 0.5 w in region I, the band around the echo, and 0.5 (1 - w) in region II, before it.
-/// Units   metres: r, the cell's distance, and R, range_max; radians: a, its angle off the axis, and h, half the
-///         aperture.
-/// Source  Murphy, Introduction to AI Robotics (2000), section 11.3.
+/// Returns the probability of occupation that an echo gives for a cell, before it is limited.
+///
+/// With w = ((R - r) / R + (h - a) / h) / 2, the probability is 0.5 + 0.5 w in region I, the band around the echo, and
+/// 0.5 (1 - w) in region II, before the band.
+/// @param region  kOccupied for region I, kFree for region II
+/// @param r  the cell's distance, metres
+/// @param range_max  R, metres
+/// @param a  the cell's angle from the cone's axis, radians
+/// @param half_aperture  h, radians
+/// Source: Murphy, Introduction to AI Robotics (2000), section 11.3.
 [[nodiscard]] double sonar_probability(Verdict region, double r, double range_max, double a,
                                        double half_aperture) noexcept;
 
@@ -46,21 +51,27 @@ struct SonarScan {
     ReadingRules readings;
 };
 
-/// The occupancy grid that sonars make, apart from that of lasers: fixed-point log-odds, as the product rule for
-/// probabilities is a sum of them. Each cone is a measurement of its own.
-/// Thread  one writer; views may be read by anyone.
-/// Source  Murphy (2000), section 11.4; Moravec, Elfes, High Resolution Maps from Wide Angle Sonar (1985).
+/// The occupancy grid derived from sonars, separate from that of lasers.
+///
+/// Cells are fixed-point log-odds, because the product rule for probabilities is a sum of log-odds. Each cone is a
+/// separate measurement.
+/// Threads: one writer; any number of threads may read views.
+/// Source: Murphy (2000), section 11.4; Moravec, Elfes, High Resolution Maps from Wide Angle Sonar (1985).
 class SonarLayer {
 public:
     explicit SonarLayer(const MapConfig& config);
 
-    /// As LaserLayers::integrate().
+    /// Integrates one scan, or a part of it as large as `work` allows.
+    /// @param revision  revision of the scan's log entry
+    /// @param work  budget in the unit of Reach::work; reduced by the work that was done
+    /// @return whether the scan is completely integrated; if false, repeat the call with the same scan before any other
+    ///         change
     [[nodiscard]] bool integrate(const SonarScan& scan, Revision revision, double& work);
 
-    /// The cells that any scan changed.
+    /// Box around the cells that any scan changed.
     [[nodiscard]] const grid::CellBox& bounds() const noexcept { return bounds_; }
 
-    /// Puts back what a checkpoint holds.
+    /// Restores the state of a checkpoint.
     void restore(const grid::CellBox& bounds) { bounds_ = bounds; }
     [[nodiscard]] SonarChunk& restore(grid::ChunkKey key, Revision revision) { return grid_.restore(key, revision); }
     [[nodiscard]] Revision newest_restored() const noexcept { return grid_.newest_restored(); }
@@ -70,7 +81,8 @@ public:
 
     [[nodiscard]] SonarView snapshot() { return grid_.snapshot(); }
 
-    /// As LaserLayers::branch().
+    /// Returns a copy that has its own writer; see grid::ChunkTree::branch().
+    /// Precondition: no scan is partially integrated.
     [[nodiscard]] SonarLayer branch() {
         SonarLayer other(config_, grid_.branch());
         other.bounds_ = bounds_;
@@ -89,7 +101,7 @@ private:
     const LogOdds l_max_;
     ChunkGrid<SonarChunk> grid_;
     grid::CellBox bounds_;
-    std::size_t done_ = 0; // cones of the scan that is being integrated
+    std::size_t done_ = 0; // completed cones of the scan that is being integrated
 };
 
 } // namespace scanloom::mapping

@@ -12,10 +12,10 @@
 
 namespace scanloom::mapping {
 
-/// Where a robot was when it took a scan.
+/// A robot's pose at one of its scans.
 struct TrajectoryPoint {
     Revision revision = 0; ///< of the scan's log entry
-    double stamp = 0.0;    ///< seconds, the scan's
+    double stamp = 0.0;    ///< seconds, of the scan
     Pose2 pose;            ///< T_map_robot
 
     friend bool operator==(const TrajectoryPoint&, const TrajectoryPoint&) = default;
@@ -23,8 +23,8 @@ struct TrajectoryPoint {
 
 inline constexpr std::size_t kTrajectoryBlock = 512; ///< points
 
-/// Points that a trajectory keeps at least, if it was given so many: minutes of a robot that scans at 10 Hz. The log
-/// has all of them, so that what is kept does not grow for as long as a robot lives.
+/// The number of newest points that a trajectory keeps at least: minutes of a robot that scans at 10 Hz. Limits the
+/// memory of a robot that runs for long; the log contains all points.
 inline constexpr std::size_t kTrajectoryKept = 16 * kTrajectoryBlock;
 
 namespace detail {
@@ -32,19 +32,20 @@ using TrajectoryBlock = std::array<TrajectoryPoint, kTrajectoryBlock>;
 using TrajectoryBlocks = std::vector<std::shared_ptr<TrajectoryBlock>>;
 } // namespace detail
 
-/// The points a trajectory had at one moment, by rising revision. Immutable, cheap to copy.
-/// Point n is that of a robot's scan n, from 0; those before begin() are only in the log.
-/// Thread  any number of readers, while the writer appends behind what they see.
+/// The points of a trajectory at one moment, by increasing revision. Immutable, cheap to copy.
+///
+/// Point n belongs to the robot's scan n, counted from 0. Points before begin() are only in the log.
+/// Threads: any number of readers, while the writer appends points after those in the view.
 class TrajectoryView {
 public:
     TrajectoryView() = default;
     TrajectoryView(std::shared_ptr<const detail::TrajectoryBlocks> blocks, std::size_t begin, std::size_t size)
         : blocks_(std::move(blocks)), begin_(begin), size_(size) {}
 
-    /// Index of the first point that is kept; size() when none is.
+    /// Returns the index of the first point that is kept; size() if none is.
     [[nodiscard]] std::size_t begin() const noexcept { return begin_; }
 
-    /// How many points there have been.
+    /// Returns the number of points, including those no longer kept.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
     /// Pre: begin() <= index < size().
@@ -52,7 +53,7 @@ public:
         return (*(*blocks_)[(index - begin_) / kTrajectoryBlock])[(index - begin_) % kTrajectoryBlock];
     }
 
-    /// Index of the first point that is kept and newer than `since`; size() when there is none.
+    /// Returns the index of the first point that is kept and newer than `since`; size() if there is none.
     [[nodiscard]] std::size_t first_after(Revision since) const noexcept {
         std::size_t low = begin_;
         std::size_t high = size_;
@@ -73,15 +74,16 @@ private:
     std::size_t size_ = 0;
 };
 
-/// The newest of a growing list of poses, with cheap snapshots: points never move once written, views hold those they
-/// were taken with. Branches share their blocks, too; the last one is copied by whoever goes on from it without having
-/// begun it.
-/// Thread  one writer.
+/// The newest points of a growing list of poses, with cheap snapshots.
+///
+/// Points never move once written, and views hold the blocks that they were taken with. Branches share their blocks. A
+/// branch copies the last block before it appends to it.
+/// Threads: one writer.
 class Trajectory {
 public:
     Trajectory() = default;
 
-    /// One that goes on behind so many points, of which it keeps none.
+    /// Starts a trajectory after `before` points that it does not keep.
     explicit Trajectory(std::size_t before) : begin_(before), size_(before) {}
 
     Trajectory(Trajectory&&) noexcept = default;
@@ -99,7 +101,7 @@ public:
 
     [[nodiscard]] TrajectoryView snapshot() const { return {blocks_, begin_, size_}; }
 
-    /// A second one that goes on from here. Each has a writer of its own.
+    /// Returns a second trajectory with the same points and its own writer.
     [[nodiscard]] Trajectory branch() const {
         Trajectory other(*this);
         other.owns_last_ = false;
@@ -109,10 +111,10 @@ public:
 private:
     Trajectory(const Trajectory&) = default; // for branch() alone
 
-    /// Points in the last block; 0 as well where that is full.
+    /// Returns the number of points in the last block; 0 also if that block is full.
     [[nodiscard]] std::size_t in_last() const noexcept { return (size_ - begin_) % kTrajectoryBlock; }
 
-    /// Leaves the first one where there are enough without it.
+    /// Starts a new block. Drops the first block if enough points remain without it.
     void begin_block() {
         const bool enough = size_ - begin_ > kTrajectoryKept;
         auto blocks = std::make_shared<detail::TrajectoryBlocks>(blocks_->begin() + (enough ? 1 : 0), blocks_->end());
@@ -121,7 +123,7 @@ private:
         if (enough) begin_ += kTrajectoryBlock;
     }
 
-    /// Reads no further than size_: behind it another may write.
+    /// Copies the last block up to size_; another trajectory may be writing after it.
     void own_last() {
         owns_last_ = true;
         const std::size_t count = in_last();
@@ -134,9 +136,9 @@ private:
     }
 
     std::shared_ptr<detail::TrajectoryBlocks> blocks_ = std::make_shared<detail::TrajectoryBlocks>();
-    std::size_t begin_ = 0; // the first block's first point
+    std::size_t begin_ = 0; // index of the first block's first point
     std::size_t size_ = 0;
-    bool owns_last_ = true; // of the blocks
+    bool owns_last_ = true; // whether this trajectory alone writes to the last block
 };
 
 } // namespace scanloom::mapping

@@ -7,22 +7,23 @@
 #include <cstddef>
 #include <span>
 
-/// How much there is to do, so that a scan can be woven in slices: about the cells and rows of cells that are visited.
+/// Estimates of work, used to integrate a scan in slices. The unit is about one visited cell or row of cells.
 namespace scanloom::mapping {
 
-/// Of what is done for each chunk that a scan touched, whatever it did there.
+/// Fixed work for each chunk that a scan changes.
 inline constexpr double kWorkPerChunk = 512.0;
 
-/// Of a chunk in which a sweep has a verdict, all layers of lasers together.
+/// Work for a chunk in which a sweep has a verdict, for all laser layers together.
 inline constexpr double kWorkPerSweptChunk = 2048.0;
 
-/// Of tracing one beam.
+/// Returns the work of tracing one beam.
 [[nodiscard]] double work_of_beam(const Reading& reading, const RayGeometry& geometry) noexcept;
 
-/// Of one cone of a sonar, where each cell costs more than a laser's.
+/// Returns the work of one sonar cone, where each cell costs more than with a laser.
+/// @param aperture  full width of the cone, radians
 [[nodiscard]] double work_of_cone(double aperture, RangeMm range, const ModelGeometry& geometry) noexcept;
 
-/// How far a reading shows anything; metres, 0 when it shows nothing.
+/// Returns the distance up to which a reading shows anything, in metres; 0 if it shows nothing.
 [[nodiscard]] double reached(RangeMm range, const ModelGeometry& geometry) noexcept;
 
 } // namespace scanloom::mapping

@@ -71,7 +71,7 @@ Box BoxOf(const Contours& contours) {
         const V ey1 = hn::LoadU(d, contours.edges.y + n + 1);
         include(hn::Mul(r, ex0), hn::Mul(r, ey0));
         include(hn::Mul(r, ex1), hn::Mul(r, ey1));
-        const M through_x = hn::Xor(hn::Lt(ey0, zero), hn::Lt(ey1, zero)); // the arc's end on the axis is its farthest
+        const M through_x = hn::Xor(hn::Lt(ey0, zero), hn::Lt(ey1, zero)); // the arc's extreme point
         const M through_y = hn::Xor(hn::Lt(ex0, zero), hn::Lt(ex1, zero));
         if (hn::AllFalse(d, hn::Or(through_x, through_y))) continue;
         include(hn::IfThenElseZero(through_x, hn::CopySign(r, ex0)),

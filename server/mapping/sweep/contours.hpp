@@ -6,21 +6,23 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The arithmetic of a sweep, eight or four or two sectors at a time: each function for every instruction set that the
-/// program was built for, chosen when it runs. All of them give the same bits: nothing but +, -, *, /, square roots
-/// and rounding up is used, none of it fused, and each sector's operations are those of every other.
+/// Vectorised arithmetic of a sweep, for two, four or eight sectors at a time. Each function is compiled for several
+/// instruction sets; the one to use is selected at run time. All of them give the same bits: they use only +, -, *, /,
+/// square roots and rounding up, without fused operations, and process all sectors with the same operations.
 namespace scanloom::mapping::simd {
 
-/// The edges of a ring, turned into the map frame. Room for sectors + 1 + kRingPadding values each.
+/// The edges of a ring in map directions. Each array has room for sectors + 1 + kRingPadding values.
 struct Edges {
     double* x;
     double* y;
 };
 
-/// Turns the ring's edges by an angle's cosine and sine.
+/// Rotates the ring's edges by an angle.
+/// @param cosine  of the angle
+/// @param sine  of the angle
 void turn_edges(const FanRing& ring, double cosine, double sine, const Edges& turned);
 
-/// How long what a reading shows is, in cells.
+/// The rule that converts a reading to radii in cells.
 struct RadiusRule {
     double range_min = 0.0; ///< metres, and the same below
     double range_max = 0.0;
@@ -29,21 +31,27 @@ struct RadiusRule {
     bool drop_no_return = false;
 };
 
-/// Of each sector, up to where it is free, and up to where it is free or occupied; 0 where it shows nothing.
-/// @param millimetres  one a sector, and kRingPadding more; 0: invalid; what exceeds range_max: no return.
-/// Source  section 3 of the design models, model 1.
+/// Computes for each sector the radius of the free area and the radius of the free and occupied area; both are 0 if the
+/// reading shows nothing.
+/// @param millimetres  one reading per sector, followed by kRingPadding values; 0: invalid; greater than range_max: no
+///                     return
+/// @param sectors  number of sectors
+/// @param rule  sensor limits and cell size
+/// @param inner  receives the radius of the free area, in cells
+/// @param outer  receives the radius of the free and occupied area, in cells
+/// Source: section 3 of the design models, model 1.
 void radii_of(const std::int32_t* millimetres, std::size_t sectors, const RadiusRule& rule, double* inner,
               double* outer);
 
 inline constexpr std::size_t kContoursMax = 4;
 
-/// Areas that a scan sees, each within the next: of each sector of a ring, all that is nearer than a radius.
+/// Nested areas that a scan sees: for each sector of a ring, everything nearer than a radius.
 ///
-/// The border of each is one closed line of arcs and of straight pieces along the edges between sectors.
-/// Units   cells
-/// Frames  x and y along the map's axes; the sensor at the origin.
-/// Shapes  sectors + 1 edges, then kRingPadding that do not count; radii likewise, sectors of them, where
-///         radius[k][-1] is the last one, and no radius[k] is more than that of k + 1.
+/// The border of each area is one closed line of arcs and of straight pieces along the edges between sectors. Lengths
+/// are in cells; x and y are parallel to the map's axes, with the sensor at the origin.
+///
+/// The edges are sectors + 1 values followed by kRingPadding unused values. The radii are `sectors` values with the
+/// same padding; radius[k][-1] equals the last one, and no value of radius[k] is greater than that of radius[k + 1].
 struct Contours {
     Edges edges;
     std::size_t sectors = 0;
@@ -58,7 +66,7 @@ struct Box {
     double y_max = 0.0;
 };
 
-/// What holds the outermost contour and the sensor.
+/// Returns the bounding box of the outermost contour and the sensor.
 [[nodiscard]] Box box_of(const Contours& contours);
 
 } // namespace scanloom::mapping::simd

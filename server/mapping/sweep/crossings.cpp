@@ -19,7 +19,7 @@ using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-/// The lanes that are set, moved to the front.
+/// Moves the lanes that are set to the front.
 HWY_INLINE V Packed(V values, M lanes) {
 #if HWY_TARGET == HWY_AVX3
     return V{_mm512_maskz_compress_pd(lanes.raw, values.raw)}; // Highway 1.0 copies a table of 2 KiB each time
@@ -28,10 +28,10 @@ HWY_INLINE V Packed(V values, M lanes) {
 #endif
 }
 
-/// Appends those of a vector of pieces that cross any row.
+/// Appends the pieces of a vector that cross any row.
 template <std::size_t numbers>
 HWY_INLINE void Append(D d, Pieces<numbers>& pieces, M crossing, const std::array<V, numbers>& values) {
-    if (hn::AllFalse(d, crossing)) return; // as mostly where cells are large
+    if (hn::AllFalse(d, crossing)) return; // the usual case with large cells
     for (std::size_t k = 0; k < numbers; ++k) {
         hn::StoreU(Packed(values[k], crossing), d, pieces.of[k] + pieces.count);
     }
@@ -47,7 +47,7 @@ inline void AppendArc(Pieces<kArcNumbers>& arcs, double from, double to, double 
     ++arcs.count;
 }
 
-/// An arc over the top, or through the bottom: it goes up on one side and down on the other.
+/// Appends an arc that passes the highest or lowest point of its circle: it rises on one side and falls on the other.
 inline void AppendBentArc(Pieces<kArcNumbers>& arcs, const Edges& edges, double r, std::size_t n, const Strip& strip) {
     const double first = strip.row;
     const double end = first + strip.rows;
@@ -60,8 +60,8 @@ inline void AppendBentArc(Pieces<kArcNumbers>& arcs, const Edges& edges, double 
     append(row_of(r * edges.y[n + 1]), turning, edges.x[n + 1]);
 }
 
-/// A point of a contour on an edge: how far out it is, and the first row of cells whose centres are at its height or
-/// higher.
+/// A point of a contour on an edge: its distance from the sensor, and the first row whose cell centres are at its
+/// height or above.
 struct Corner {
     HWY_INLINE Corner() {}
     HWY_INLINE Corner(V distance, V first_row) : radius(distance), row(first_row) {}
@@ -70,13 +70,13 @@ struct Corner {
     V row;
 };
 
-/// The sectors of a vector: their edges, and the rows of the strip.
+/// The edges of the sectors in one vector, and the rows of the strip.
 struct Sectors {
     V x0, y0, x1, y1;
     M are_sectors;
     V first_row, end_row;
 
-    /// The part of some sectors' edges between two of their points, where it crosses any row.
+    /// Appends the part of each selected sector's edge between two of its points, if it crosses any row.
     HWY_INLINE void AppendSpoke(Pieces<kSpokeNumbers>& spokes, M which, const Corner& one, const Corner& other) const {
         const V from = hn::Max(hn::Min(one.row, other.row), first_row);
         const V to = hn::Min(hn::Max(one.row, other.row), end_row);
@@ -84,8 +84,9 @@ struct Sectors {
                               {from, to, x0, y0, hn::Mul(one.radius, x0), hn::Mul(other.radius, x0)});
     }
 
-    /// Two contours along an edge, each from the sector before to this one: what is between them borders on the edge
-    /// where they differ, in whichever two parts are shorter.
+    /// Appends the border of the area between two contours along an edge, each contour given by its points in the
+    /// sector before the edge and in the sector after it. The border consists of the parts where the contours differ,
+    /// paired so that the parts are shorter.
     HWY_INLINE void AppendSteps(Pieces<kSpokeNumbers>& spokes, M which, const Corner& inner_before,
                                 const Corner& inner_here, const Corner& outer_before, const Corner& outer_here) const {
         const auto rows = [](const Corner& a, const Corner& b) HWY_ATTR { return hn::Abs(hn::Sub(a.row, b.row)); };
@@ -110,17 +111,18 @@ struct Sectors {
             {from, to, hn::Mul(start.radius, start.radius), hn::IfThenElseZero(on_the_left, hn::Set(d, -0.0))});
     }
 
-    /// Those that pass the y axis.
+    /// Selects the arcs that cross the y axis.
     [[nodiscard]] HWY_INLINE M AreBent() const {
         const V zero = hn::Zero(D());
         return hn::Xor(hn::Lt(x0, zero), hn::Lt(x1, zero));
     }
 };
 
-/// Rows from which a step is followed in one plane only; below, that would cost more than it saves.
+/// A step that rises by more rows than this is traced in one plane only; for smaller steps, that would cost more than
+/// it saves.
 constexpr double kSteep = 4.0;
 
-/// The pieces of each plane's border that cross rows of the strip.
+/// Finds the pieces of each plane's border that cross rows of the strip.
 template <std::size_t count>
 HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
                            std::array<Crossings, kContoursMax>& crossings) {
@@ -147,8 +149,8 @@ HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
             has_spokes = hn::Or(has_spokes, hn::Ne(before[k].row, start[k].row));
             has_arcs = hn::Or(has_arcs, hn::Ne(start[k].row, end[k]));
         }
-        if (!hn::AllFalse(d, has_spokes)) { // rarely where cells are large
-            // Each sector for itself: which way it goes decides how a crossing is rounded, and must not depend on how
+        if (!hn::AllFalse(d, has_spokes)) { // rare with large cells
+            // Decided for each sector alone: the choice determines how a crossing is rounded and must not depend on how
             // many sectors a vector holds.
             const V rise = hn::Abs(hn::Sub(before[0].row, start[0].row));
             const M is_steep = hn::And(sectors.are_sectors, hn::Gt(rise, hn::Set(d, kSteep)));
@@ -176,7 +178,7 @@ HWY_INLINE void FindPieces(const Contours& contours, const Strip& strip,
     }
 }
 
-/// Flips bits of some planes of a strip, some crossings at a time.
+/// Flips bits of the given planes of a strip, several crossings at a time.
 template <std::size_t plane_count>
 class Flipper {
 public:
@@ -184,10 +186,10 @@ public:
         : planes_(planes), rows_(strip.rows), to_centre_(0.5 - strip.sensor_y), x_offset_(strip.sensor_x - 0.5),
           column_(strip.column), row_(strip.row), column_max_(strip.columns - 1) {}
 
-    /// The height of rows' centres over the sensor.
+    /// Returns the height of the rows' centres above the sensor.
     [[nodiscard]] HWY_INLINE V HeightOf(V row) const { return hn::Add(row, hn::Set(D(), to_centre_)); }
 
-    /// At x in each of these rows.
+    /// Flips the bit at x in each of these rows.
     HWY_INLINE void Flip(V row, V x, std::size_t count) const {
         const D d;
         const hn::Rebind<std::int32_t, D> d32;
@@ -221,9 +223,9 @@ private:
     double column_max_;
 };
 
-/// Flips a bit for each row of each piece: the first row of all pieces, then the second of those that have one, and
-/// so on; each of the last few pieces by itself.
-/// @param x_at  x_at(load, height), load(k) being the pieces' k-th number
+/// Flips a bit for each row of each piece: first the first row of all pieces, then the second row of those that have
+/// one, and so on. The last few pieces are processed one at a time.
+/// @param x_at  x_at(load, height) returns the crossings' x; load(k) returns the pieces' k-th number
 template <std::size_t numbers, class Flipper, class XAt>
 HWY_INLINE void FlipPieces(Pieces<numbers>& pieces, const Flipper& flipper, XAt&& x_at) {
     const D d;
@@ -256,7 +258,7 @@ HWY_INLINE void FlipPieces(Pieces<numbers>& pieces, const Flipper& flipper, XAt&
     }
 }
 
-/// What the crossings of a spoke need, for those that have any.
+/// Computes the slope and the limits of each spoke.
 HWY_INLINE void MeasureSpokes(Pieces<kSpokeNumbers>& spokes) {
     const D d;
     for (std::size_t n = 0; n < spokes.count; n += hn::Lanes(d)) {
@@ -269,13 +271,14 @@ HWY_INLINE void MeasureSpokes(Pieces<kSpokeNumbers>& spokes) {
     }
 }
 
-/// A contour's pieces, which end one plane and begin the next where there is one, and those of the plane alone.
+/// Flips the crossings of a contour in the plane within it and in the next plane, if there is one; then the crossings
+/// of the steps in the plane within it.
 template <std::size_t plane_count>
 HWY_INLINE void FlipContour(Crossings& crossings, const Strip& strip,
                             const std::array<std::uint64_t*, plane_count>& planes) {
     const D d;
     const auto x_of_spoke = [](const auto& load, V height) HWY_ATTR {
-        return hn::Min(hn::Max(hn::Mul(load(kSlope), height), load(kLeft)), load(kRight)); // never beyond its ends
+        return hn::Min(hn::Max(hn::Mul(load(kSlope), height), load(kLeft)), load(kRight)); // within the spoke
     };
     const auto x_of_arc = [d](const auto& load, V height) HWY_ATTR {
         const V square = hn::Max(hn::Zero(d), hn::Sub(load(kSquare), hn::Mul(height, height)));

@@ -3,7 +3,7 @@
 namespace scanloom::mapping {
 namespace {
 
-/// Sectors that meet hold the very same direction.
+/// Sectors that meet hold exactly the same direction.
 bool meet(const Direction& high, const Direction& low) { return high.x == low.x && high.y == low.y; }
 
 void append(FanRing& ring, std::uint32_t beam, const Direction& low) {

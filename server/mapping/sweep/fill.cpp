@@ -12,14 +12,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D64 = hn::ScalableTag<std::uint64_t>;
 using V64 = hn::Vec<D64>;
 
-/// All ones where the highest bit is set.
+/// Returns all ones where the highest bit is set, zeros elsewhere.
 HWY_INLINE V64 Spread(V64 word) {
     const D64 d;
     const hn::RebindToSigned<D64> ds;
     return hn::BitCast(d, hn::BroadcastSignBit(hn::BitCast(ds, word)));
 }
 
-/// The parity of the bits up to each.
+/// Returns for each bit the parity of the bits up to and including it.
 HWY_INLINE V64 Parity(V64 word) {
     word = hn::Xor(word, hn::ShiftLeft<1>(word));
     word = hn::Xor(word, hn::ShiftLeft<2>(word));
@@ -36,7 +36,7 @@ HWY_INLINE bool AnySet(const std::uint64_t* words) {
     return !hn::AllFalse(d, hn::Ne(all, hn::Zero(d)));
 }
 
-/// Leaves the cells inside in `words`' place of `inside`.
+/// Writes the cells inside to `inside`, clears `words` and updates `carry`.
 HWY_INLINE void Fill(std::uint64_t* words, std::uint64_t* carry, std::uint64_t* inside) {
     const D64 d;
     for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) {
@@ -53,7 +53,7 @@ HWY_INLINE void FillOrCarry(std::uint64_t* words, std::uint64_t* carry, std::uin
     for (std::size_t n = 0; n < 64; n += hn::Lanes(d)) hn::StoreU(hn::LoadU(d, carry + n), d, inside + n);
 }
 
-/// Which of the words have any bit set, a bit a word.
+/// Sets in `rows` one bit for each word that is not 0.
 HWY_INLINE void KeepRows(V64 words, std::size_t n, std::uint64_t& rows) {
     const D64 d;
     std::uint64_t bits = 0;
@@ -61,7 +61,7 @@ HWY_INLINE void KeepRows(V64 words, std::size_t n, std::uint64_t& rows) {
     rows |= bits << n;
 }
 
-/// What is free and what is occupied of 64 rows, and which of the rows have any.
+/// Stores the free and the occupied cells of 64 rows, and which of the rows have any.
 template <class Free, class Occupied>
 HWY_INLINE void Keep(ChunkVerdicts& verdicts, Free&& free_at, Occupied&& occupied_at) {
     const D64 d;

@@ -7,15 +7,18 @@
 
 namespace scanloom::mapping::simd {
 
-/// One chunk's bits in each plane, and what they inherit.
+/// The bits of one chunk in each plane, and the state carried from the chunk to its left.
 struct ChunkWords {
     Planes flipped; ///< 64 words
-    Planes carry;   ///< a word a row, all ones where the chunk to the left ended inside; 0 before the first
+    Planes carry;   ///< one word per row, all ones if the chunk to the left ended inside; 0 for the first chunk
 };
 
-/// Turns flipped bits into cells. Clears them, and carries on.
-/// Of 2 contours: the cells within both are free, those between them occupied. Of 4 so those of the inner two, and in
-/// `wide` those of the outermost and the innermost.
+/// Converts flipped bits to verdicts. Clears the flipped bits and updates the carry.
+/// @param words  bits and carry of each plane
+/// @param contours  2 or 4
+/// @param narrow  with 2 contours: cells within both are free, cells between them occupied; with 4, the same for the
+///                two middle ones
+/// @param wide  with 4 contours: the same for the innermost and the outermost; unused with 2
 void fill_bands(const ChunkWords& words, std::size_t contours, ChunkVerdicts& narrow, ChunkVerdicts* wide);
 
 } // namespace scanloom::mapping::simd

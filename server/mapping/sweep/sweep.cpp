@@ -10,9 +10,9 @@
 namespace scanloom::mapping {
 namespace {
 
-constexpr std::int32_t kStripChunks = 512; ///< so that the words of all contours stay in a core's cache
+constexpr std::int32_t kStripChunks = 512; ///< keeps the words of all contours in a core's cache
 
-/// Nearer than this to the edge of a box, a crossing might be rounded out of it. Cells.
+/// Margin around a box, in cells. Rounding could move a crossing nearer to the edge out of the box.
 constexpr double kMargin = 1.0;
 
 void grow(std::vector<double>& values, std::size_t size) {
@@ -23,23 +23,23 @@ std::int32_t floor_cell(double cells) { return static_cast<std::int32_t>(std::fl
 
 } // namespace
 
-/// The bands of one ring: one, or a wide one around a narrow one.
+/// The bands of one ring: one band, or a wide band around a narrow one.
 struct RingRoom {
     simd::Contours contours;
-    std::size_t narrow = 0; ///< of the bands that were asked for
-    std::size_t wide = 0;   ///< the same one where there is one
+    std::size_t narrow = 0; ///< index of the narrow band
+    std::size_t wide = 0;   ///< index of the wide band; equal to `narrow` if there is one band
 
     std::vector<double> x, y;
-    std::array<std::vector<double>, simd::kContoursMax> radius; ///< from the second element
+    std::array<std::vector<double>, simd::kContoursMax> radius; ///< values start at the second element
     std::array<std::vector<std::uint64_t>, simd::kContoursMax> words;
-    std::array<grid::BitPlane, simd::kContoursMax> carry; ///< of the row of chunks
+    std::array<grid::BitPlane, simd::kContoursMax> carry; ///< of the current row of chunks
 };
 
 struct Sweep::Room {
     std::vector<std::int32_t> millimetres;
     std::array<RingRoom, kBandsMax> rings;
     std::size_t ring_count = 0;
-    bool is_clear = true; ///< no bit of the words is set
+    bool is_clear = true; ///< no bit of `words` is set
 };
 
 namespace {
@@ -49,7 +49,7 @@ Sweep::Room& room_of_this_thread() {
     return room;
 }
 
-/// One a sector; longer than any sensor's range are no-returns, as those are.
+/// Collects one reading per sector. Readings that exceed int32 are limited to its maximum, which is also a no-return.
 void gather(std::span<const RangeMm> ranges, const FanRing& ring, std::vector<std::int32_t>& millimetres) {
     constexpr auto kLongest = static_cast<RangeMm>(std::numeric_limits<std::int32_t>::max());
     if (millimetres.size() < ring.sectors + kRingPadding) millimetres.resize(ring.sectors + kRingPadding);
@@ -62,7 +62,7 @@ void gather(std::span<const RangeMm> ranges, const FanRing& ring, std::vector<st
     }
 }
 
-/// The two contours of a band, as the k-th and the l-th of its ring.
+/// Adds the two contours of a band as the k-th and the l-th of its ring.
 void add_contours(RingRoom& room, const FanRing& ring, const Sweep::Scene& scene, double thickness,
                   const std::vector<std::int32_t>& millimetres, std::size_t k, std::size_t l) {
     for (const std::size_t contour : {k, l}) grow(room.radius[contour], ring.sectors + 1 + kRingPadding);
@@ -84,7 +84,7 @@ Sweep::Sweep(const Scene& scene, std::span<const Band> bands) : room_(room_of_th
     lay_out(scene);
 }
 
-/// Turns the edges of each ring, and works out its radii.
+/// Rotates the edges of each ring and computes its radii.
 void Sweep::take_in(const Scene& scene, std::span<const Band> bands) {
     const bool is_one_ring = bands_ == 2 && bands[0].ring == bands[1].ring;
     room_.ring_count = is_one_ring ? 1 : bands_;
@@ -104,7 +104,7 @@ void Sweep::take_in(const Scene& scene, std::span<const Band> bands) {
     }
 }
 
-/// Finds the chunks that hold the contours, and cuts them into strips.
+/// Finds the chunks that contain the contours and divides them into strips.
 void Sweep::lay_out(const Scene& scene) {
     simd::Box box;
     for (std::size_t n = 0; n < room_.ring_count; ++n) {
@@ -112,7 +112,7 @@ void Sweep::lay_out(const Scene& scene) {
         box = {std::min(box.x_min, other.x_min), std::min(box.y_min, other.y_min), std::max(box.x_max, other.x_max),
                std::max(box.y_max, other.y_max)};
     }
-    if (box.x_min == box.x_max && box.y_min == box.y_max) return; // nothing is seen
+    if (box.x_min == box.x_max && box.y_min == box.y_max) return; // the scan shows nothing
     const double x = scene.T_map_sensor.x * (1.0 / scene.cell_size);
     const double y = scene.T_map_sensor.y * (1.0 / scene.cell_size);
     cell_ = {floor_cell(x), floor_cell(y)};
@@ -137,7 +137,7 @@ void Sweep::begin(std::size_t strip) {
                             columns_ * grid::kChunkSide,
                             strip_rows_ * grid::kChunkSide};
     const auto size = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(words.rows);
-    if (!room_.is_clear) clear(); // the last visit was broken off
+    if (!room_.is_clear) clear(); // the last visit did not finish
     room_.is_clear = false;
     for (RingRoom& room : std::span(room_.rings).first(room_.ring_count)) {
         simd::Planes planes{};
@@ -172,7 +172,7 @@ bool Sweep::fill(std::int32_t row, std::int32_t column) {
         }
         simd::fill_bands(words, room.contours.count, verdicts_[room.narrow], &verdicts_[room.wide]);
         rows |=
-            verdicts_[room.wide].free_rows | verdicts_[room.wide].occupied_rows; // the wide one holds the narrow one
+            verdicts_[room.wide].free_rows | verdicts_[room.wide].occupied_rows; // the wide band contains the narrow
     }
     return rows != 0;
 }

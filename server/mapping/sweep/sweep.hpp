@@ -13,23 +13,25 @@
 
 namespace scanloom::mapping {
 
-/// Tells which cells one scan shows to be free or occupied, chunk by chunk: the inverse sensor model, cell by cell
-/// exact.
+/// Evaluates the inverse sensor model of one scan for each cell, without approximation, chunk by chunk.
 ///
-/// A cell whose centre lies at distance r in the sector of beam k (its nearest, within half the aperture), with reading
-/// z:
+/// The verdict for a cell depends on the distance r of its centre, on the beam k whose sector contains the centre (the
+/// nearest beam, within half the aperture), and on the reading z of that beam:
 ///   occupied  z < range_max and |r - z| < alpha / 2
 ///   free      r <= z, r <= range_max, and not occupied
-///   (nothing) otherwise, and where reading_of() says that the beam shows nothing.
-/// What is free, and what is free or occupied, is the area within a closed line of arcs and of straight pieces between
-/// beams; each line is crossed with the rows of cells once, whatever the number of cells inside.
+///   (none)    otherwise, and if reading_of() returns no reading for the beam
 ///
-/// Two bands may be asked for at once, of the same scan: evidence and counts have an alpha and an aperture each.
-/// Cost    sectors, crossings of rows, chunks of the area that the scan sees; never the map's size.
-/// Memory  kept by each thread from scan to scan: 256 bytes a sector and contour, of four at most, for the pieces that
-///         cross rows; tens of bytes a sector for the rest; and 256 KiB a contour, or what one row of chunks needs.
-/// Source  Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. (A printed variant compares r with z_max in the
-///         occupied test: a misprint.)
+/// The free area, and the free and occupied area, are each bounded by a closed line of arcs and of straight pieces
+/// between beams. Each line is intersected with the rows of cells once, whatever the number of cells inside.
+///
+/// A sweep can evaluate two bands of the same scan at once, because evidence and HIMM counters have different alphas
+/// and apertures.
+/// Cost: sectors, crossings of rows, chunks of the area that the scan sees; independent of the map's size.
+/// Memory: kept by each thread from scan to scan: 256 bytes per sector and contour (at most four) for the pieces that
+///         cross rows, tens of bytes per sector for the rest, and 256 KiB per contour or as much as one row of chunks
+///         needs.
+/// Source: Thrun, Burgard, Fox, Probabilistic Robotics (2005), Table 9.2. A printed variant compares r with z_max in
+///         the occupied test, which is a misprint.
 class Sweep {
 public:
     struct Band {
@@ -37,9 +39,9 @@ public:
         double thickness; ///< alpha, metres; at least one cell is used
     };
 
-    /// What every band shares.
+    /// The inputs common to all bands.
     struct Scene {
-        std::span<const RangeMm> ranges; ///< one for each beam that the rings were made from
+        std::span<const RangeMm> ranges; ///< one for each beam of the fans
         Pose2 T_map_sensor;
         ReadingRules readings;
         double cell_size; ///< metres
@@ -47,15 +49,19 @@ public:
 
     static constexpr std::size_t kBandsMax = 2;
 
-    /// Pre  one or two bands; until it is gone, the thread makes no other.
+    /// Prepares the sweep of a scan. The arguments need not outlive the constructor.
+    /// @param scene  the scan and the map's cell size
+    /// @param bands  one or two
+    /// Threads: a thread may have only one sweep at a time.
     Sweep(const Scene& scene, std::span<const Band> bands);
 
-    /// The area is visited strip by strip, so that who has other things to do may give way in between, and go on with
-    /// an equal sweep.
+    /// Returns the number of strips to visit. The caller may stop after any strip and continue later with an equal
+    /// sweep.
     [[nodiscard]] std::size_t strips() const noexcept { return strips_; }
 
-    /// Calls chunk(grid::ChunkKey, std::span<const ChunkVerdicts>), with the verdicts of each band, for every chunk of
-    /// the strip in which any band has any. Pre: strip < strips().
+    /// Calls chunk(grid::ChunkKey, std::span<const ChunkVerdicts>) with the verdicts of each band, for every chunk of
+    /// the strip in which any band has a verdict.
+    /// Precondition: strip < strips().
     template <class Chunk>
     void visit(std::size_t strip, Chunk&& chunk) {
         begin(strip);
@@ -70,7 +76,7 @@ public:
         end();
     }
 
-    /// What the thread keeps from sweep to sweep.
+    /// Working memory that each thread keeps from sweep to sweep.
     struct Room;
 
 private:
@@ -85,16 +91,16 @@ private:
     Room& room_;
     std::size_t bands_;
     std::size_t strips_ = 0;
-    grid::ChunkKey first_;            ///< lower left one of all
+    grid::ChunkKey first_;            ///< lower left chunk of all strips
     std::int32_t columns_ = 0;        ///< chunks
     std::int32_t rows_ = 0;           ///< chunks
     std::int32_t strip_rows_max_ = 0; ///< chunks
-    double x_ = 0.0;                  ///< the sensor's place within its cell
+    double x_ = 0.0;                  ///< the sensor's position within its cell
     double y_ = 0.0;
-    grid::Cell cell_; ///< the sensor's
+    grid::Cell cell_; ///< the sensor's cell
 
-    // Of the strip that is being visited.
-    std::int32_t first_row_ = 0;  ///< of chunks
+    // The strip that is being visited.
+    std::int32_t first_row_ = 0;  ///< in chunks
     std::int32_t strip_rows_ = 0; ///< chunks
     std::array<ChunkVerdicts, kBandsMax> verdicts_;
 };
