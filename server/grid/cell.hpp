@@ -6,8 +6,8 @@
 
 namespace scanloom::grid {
 
-/// A cell of the unbounded, signed grid. Cell (0, 0) has its lower-left corner at the world origin;
-/// i grows with x, j with y.
+/// A cell of the unbounded grid, which has negative indices too. Cell (0, 0) has its lower-left corner at the world
+/// origin; i increases with x, j with y.
 struct Cell {
     std::int32_t i = 0;
     std::int32_t j = 0;
@@ -26,7 +26,7 @@ struct CellBox {
     [[nodiscard]] std::int64_t width() const noexcept { return empty() ? 0 : std::int64_t{i_end} - i_begin; }
     [[nodiscard]] std::int64_t height() const noexcept { return empty() ? 0 : std::int64_t{j_end} - j_begin; }
 
-    /// Grows to hold the cells i_begin..i_end - 1 of row j.
+    /// Extends the box to contain the cells row_i_begin..row_i_end - 1 of row j.
     void include_row(std::int32_t j, std::int32_t row_i_begin, std::int32_t row_i_end) noexcept {
         i_begin = std::min(i_begin, row_i_begin);
         i_end = std::max(i_end, row_i_end);
@@ -34,6 +34,7 @@ struct CellBox {
         j_end = std::max(j_end, j + 1);
     }
 
+    /// Extends the box to contain `other`.
     void include(const CellBox& other) noexcept {
         i_begin = std::min(i_begin, other.i_begin);
         j_begin = std::min(j_begin, other.j_begin);

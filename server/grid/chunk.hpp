@@ -13,8 +13,8 @@ namespace scanloom::grid {
 inline constexpr std::int32_t kChunkBits = 6;
 inline constexpr std::int32_t kChunkSide = 1 << kChunkBits; ///< cells
 
-/// Which chunk: chunk (ci, cj) holds cells i in [64 ci, 64 ci + 64), j likewise.
-/// Ordered by rows from the bottom, then from the left.
+/// The key of a chunk. Chunk (ci, cj) contains the cells with i in [64 ci, 64 ci + 64) and j in [64 cj, 64 cj + 64).
+/// Keys are ordered by rows from the bottom, then from the left.
 struct ChunkKey {
     std::int32_t cj = 0;
     std::int32_t ci = 0;
@@ -22,16 +22,17 @@ struct ChunkKey {
     friend auto operator<=>(const ChunkKey&, const ChunkKey&) = default;
 };
 
+/// Returns the chunk that contains a cell.
 [[nodiscard]] constexpr ChunkKey chunk_of(Cell cell) noexcept {
     return {.cj = cell.j >> kChunkBits, .ci = cell.i >> kChunkBits};
 }
 
-/// Where a cell lies among the 4096 of its chunk: row by row, the bottom one first.
+/// Returns a cell's index among the 4096 of its chunk: row by row, the bottom row first.
 [[nodiscard]] constexpr std::size_t index_in_chunk(Cell cell) noexcept {
     return static_cast<std::size_t>((cell.j & (kChunkSide - 1)) << kChunkBits | (cell.i & (kChunkSide - 1)));
 }
 
-/// 64 x 64 cells of one layer, row j at the bottom first.
+/// 64 x 64 cells of one layer, the bottom row first.
 template <class CellValue>
 struct Chunk : TreeItem {
     std::array<CellValue, std::size_t{kChunkSide} * kChunkSide> cells;
@@ -40,7 +41,7 @@ struct Chunk : TreeItem {
     [[nodiscard]] const CellValue& at(Cell cell) const noexcept { return cells[index_in_chunk(cell)]; }
 };
 
-/// Chunks with ci_begin <= ci < ci_end and cj_begin <= cj < cj_end.
+/// The chunks with ci_begin <= ci < ci_end and cj_begin <= cj < cj_end; all chunks by default.
 struct ChunkBox {
     std::int64_t ci_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
     std::int64_t cj_begin = std::int64_t{std::numeric_limits<std::int32_t>::min()};
@@ -56,7 +57,7 @@ struct ChunkBox {
     }
 };
 
-/// The chunks that hold any cell of the box.
+/// Returns the box of chunks that contain any cell of a box.
 [[nodiscard]] inline ChunkBox chunks_of(const CellBox& box) noexcept {
     if (box.empty()) return {0, 0, 0, 0};
     const auto begin = chunk_of({box.i_begin, box.j_begin});

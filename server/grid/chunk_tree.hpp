@@ -21,9 +21,11 @@ struct Node : TreeItem {
     std::array<ItemRef<TreeItem>, std::size_t{kFan} * kFan> children;
 };
 
-/// One of the four trees around the origin. Along each axis it counts chunks away from the origin
-/// (0, 1, 2, ... or -1, -2, -3, ... as 0, 1, 2), so that it can grow outwards for ever: a new root
-/// takes the old one as its first child. `height` levels of nodes reach 8^height chunks.
+/// One of the four trees around the origin.
+///
+/// Along each axis, chunks are counted away from the origin (0, 1, 2, ... or -1, -2, -3, ... as 0, 1, 2), so that the
+/// tree can grow outwards without limit: a new root takes the old one as its first child. `height` levels of nodes
+/// cover 8^height chunks along each axis.
 struct Quadrant {
     ItemRef<Node> root;
     int height = 0;
@@ -31,6 +33,7 @@ struct Quadrant {
 
 using Quadrants = std::array<Quadrant, 4>; ///< by (cj < 0) * 2 + (ci < 0)
 
+/// Returns the distance of a chunk index from the origin: 0, 1, 2, ... or -1, -2, -3, ... as 0, 1, 2, ...
 [[nodiscard]] constexpr std::uint32_t away_from_origin(std::int32_t c) noexcept {
     return static_cast<std::uint32_t>(c < 0 ? ~c : c);
 }
@@ -39,11 +42,12 @@ using Quadrants = std::array<Quadrant, 4>; ///< by (cj < 0) * 2 + (ci < 0)
     return static_cast<std::size_t>((key.cj < 0 ? 2 : 0) + (key.ci < 0 ? 1 : 0));
 }
 
+/// Returns whether a tree of this height contains index u, counted away from the origin.
 [[nodiscard]] constexpr bool reaches(int height, std::uint32_t u) noexcept {
     return height * kFanBits >= 32 || (u >> (height * kFanBits)) == 0;
 }
 
-/// Child slot of chunk (u, v) in a node of `level` (1 = its children are chunks).
+/// Returns the child slot of chunk (u, v) in a node of `level`. The children of level 1 are chunks.
 [[nodiscard]] constexpr std::size_t slot_of(std::uint32_t u, std::uint32_t v, int level) noexcept {
     const int shift = (level - 1) * kFanBits;
     return ((v >> shift) & (kFan - 1)) << kFanBits | ((u >> shift) & (kFan - 1));
@@ -64,8 +68,8 @@ using Quadrants = std::array<Quadrant, 4>; ///< by (cj < 0) * 2 + (ci < 0)
 
 } // namespace tree
 
-/// What a ChunkTree held at one moment: immutable, shared, cheap to copy.
-/// Thread  any number of readers.
+/// The contents of a ChunkTree at one moment: immutable, shared, cheap to copy.
+/// Threads: any number of readers.
 template <class ChunkType>
 class ChunkView {
 public:
@@ -77,14 +81,15 @@ public:
         return static_cast<const ChunkType*>(tree::find(quadrants_, key));
     }
 
-    /// Calls visit(ChunkKey, const ChunkType&) for every chunk in the box changed after `since`.
-    /// Cost follows what is visited, not what the tree holds. No particular order.
+    /// Calls visit(ChunkKey, const ChunkType&) for every chunk in the box that changed after revision `since`, in no
+    /// particular order.
+    /// Cost: proportional to the chunks visited, independent of the size of the tree.
     template <class Visit>
     void visit(const ChunkBox& box, Revision since, Visit&& visit) const {
         for_each_root(box, [&](const Walk& walk) { descend(walk, box, since, visit); });
     }
 
-    /// The newest revision of any chunk in the box, 0 when there is none.
+    /// Returns the newest revision of any chunk in the box; 0 if there is none.
     [[nodiscard]] Revision newest(const ChunkBox& box) const {
         Revision newest = 0;
         for_each_root(box, [&](const Walk& walk) { newest_below(walk, box, newest); });
@@ -92,7 +97,7 @@ public:
     }
 
 private:
-    /// A node and the block of chunks it stands for: (u0, v0) counted away from the origin, of a quadrant.
+    /// A node and the block of chunks that it covers, starting at (u0, v0), counted away from the origin in a quadrant.
     struct Walk {
         const TreeItem* item;
         int level;
@@ -157,23 +162,23 @@ private:
 };
 
 /// An unbounded map from ChunkKey to chunks with cheap immutable snapshots: a persistent radix tree.
-/// Chunks and nodes are shared with the snapshots that hold them. What is written is copied first if it is shared: if
-/// anything on the path from the root to it has another holder. So a snapshot costs four pointers, a write after it one
-/// copy per chunk touched, and none any more when that snapshot is gone.
 ///
-/// Thread  one writer; snapshots may be read, copied and let go of by anyone at the same time.
-/// Source  Driscoll, Sarnak, Sleator, Tarjan, Making Data Structures Persistent (1989): path copying.
+/// Chunks and nodes are shared with the snapshots that hold them. An item is copied before it is written if it is
+/// shared, i.e. if anything on the path from the root to it has another holder. A snapshot therefore costs four
+/// pointers, and a write after it one copy per changed chunk; once the snapshot is released, writes copy nothing.
+/// Threads: one writer; any number of threads may read, copy and release snapshots at the same time.
+/// Source: Driscoll, Sarnak, Sleator, Tarjan, Making Data Structures Persistent (1989): path copying.
 template <class ChunkType>
 class ChunkTree {
 public:
-    /// `blank` is what a chunk holds before its first write; trees of the same kind share it.
+    /// @param blank  the contents of a chunk before its first write; trees of the same kind share it
     explicit ChunkTree(std::shared_ptr<const ChunkType> blank) : blank_(std::move(blank)) {}
     ChunkTree(ChunkTree&&) noexcept = default;
     ChunkTree& operator=(ChunkTree&&) noexcept = default;
     ~ChunkTree() = default;
 
-    /// The chunk, to be written at `revision`; made if it was not there.
-    /// Valid until the next snapshot() or branch().
+    /// Returns the chunk for writing at `revision`; creates it if it does not exist.
+    /// The reference is valid until the next snapshot() or branch().
     [[nodiscard]] ChunkType& write(ChunkKey key, Revision revision) {
         auto& quadrant = quadrants_[tree::quadrant_of(key)];
         const std::uint32_t u = tree::away_from_origin(key.ci);
@@ -186,29 +191,30 @@ public:
         return *own_as<ChunkType>(node->children[tree::slot_of(u, v, 1)], revision);
     }
 
-    /// The chunk as it is now, or nullptr where nothing was ever written. Valid until the next write.
+    /// Returns the current chunk, or nullptr if it was never written. The pointer is valid until the next write.
     [[nodiscard]] const ChunkType* find(ChunkKey key) const noexcept {
         return static_cast<const ChunkType*>(tree::find(quadrants_, key));
     }
 
-    /// A second tree that holds the same. Either then copies what it writes, so that both have writers of their own.
+    /// Returns a second tree with the same contents and its own writer. Each tree copies shared chunks before it writes
+    /// them.
     [[nodiscard]] ChunkTree branch() {
-        ChunkTree other(*this); // and copied_ stays: it may count too many, but never too few
+        ChunkTree other(*this); // copied_ is kept: it may be too high, but never too low
         other.copied_ = 0;
         return other;
     }
 
-    /// How many chunks it holds.
+    /// Returns the number of chunks.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-    /// How many chunks of the last snapshot it has copied since, or a few more if it was branched: so many more there
-    /// are at most while that one is held.
+    /// Returns how many chunks of the last snapshot have been copied since, or a few more if the tree was branched.
+    /// While that snapshot is held, at most that many chunks exist in addition to size().
     [[nodiscard]] std::size_t copied() const noexcept { return copied_; }
 
-    /// What the tree holds now, for the writer to look at until its next write.
+    /// Returns the current contents for the writer to read until its next write.
     [[nodiscard]] ChunkView<ChunkType> peek() const { return ChunkView<ChunkType>(quadrants_); }
 
-    /// What the tree holds now. Later writes do not show in it.
+    /// Returns the current contents. Later writes do not change the snapshot.
     [[nodiscard]] ChunkView<ChunkType> snapshot() {
         copied_ = 0;
         return ChunkView<ChunkType>(quadrants_);
@@ -231,7 +237,9 @@ private:
         }
     }
 
-    /// Pre, here and below: nobody else holds what the reference is in, so that a sole holder is the only way there.
+    /// Returns the node for writing, copied first if it is shared.
+    /// Precondition, also of own_as(): whatever contains the reference has one holder only. A sole holder of the item
+    /// then is the only access to it.
     tree::Node* own(ItemRef<tree::Node>& node, Revision revision) {
         if (node.is_shared()) node = ItemRef<tree::Node>::of_new(new tree::Node(*node.get()));
         node->revision = std::max(node->revision, revision);

@@ -11,7 +11,7 @@ namespace scanloom::grid {
 template <class Item>
 class ItemRef;
 
-/// A node or a leaf of a ChunkTree. It counts who holds it: trees, snapshots and the nodes above it.
+/// A node or a leaf of a ChunkTree. Counts its holders: trees, snapshots and the nodes above it.
 struct TreeItem {
     Revision revision = 0; ///< the newest change in it or below it
 
@@ -30,11 +30,11 @@ private:
     std::atomic<std::uint32_t> holders_ = 0;
 };
 
-/// One holder of an item, which goes with its last one.
+/// A reference that holds an item. The item is deleted with its last holder.
 ///
-/// Beside std::shared_ptr it takes half the room in a node, and can tell a writer that nobody else looks any more, in
-/// such a way that whatever others read before happened before what it writes then.
-/// Thread  as std::shared_ptr: the count may be changed by anyone, one ItemRef by one at a time.
+/// Compared with std::shared_ptr, it takes half the space in a node, and is_shared() tells the writer that it is the
+/// sole holder, with a guarantee: what other holders read happened before what the writer writes then.
+/// Threads: as std::shared_ptr: any thread may change the count; only one thread at a time may use one ItemRef.
 template <class Item>
 class ItemRef {
 public:
@@ -47,7 +47,7 @@ public:
     }
     ~ItemRef() { let_go(); }
 
-    /// The only holder of an item that was just made.
+    /// Returns the only holder of a new item and takes ownership of it.
     [[nodiscard]] static ItemRef of_new(Item* item) noexcept {
         ItemRef ref;
         ref.item_ = item;
@@ -55,7 +55,7 @@ public:
         return ref;
     }
 
-    /// The same holder of an item that is known as something more general.
+    /// Converts to a holder of the base type.
     template <class Base>
     operator ItemRef<Base>() && noexcept { // NOLINT(google-explicit-constructor): as of pointers
         ItemRef<Base> ref;
@@ -67,8 +67,8 @@ public:
     [[nodiscard]] Item* operator->() const noexcept { return item_; }
     [[nodiscard]] explicit operator bool() const noexcept { return item_ != nullptr; }
 
-    /// Whether somebody else holds the item, too. Once this is false it stays so, until this holder is copied.
-    /// Pre  it holds one.
+    /// Returns whether the item has another holder. Once false, it remains false until this holder is copied.
+    /// Precondition: this reference is not empty.
     [[nodiscard]] bool is_shared() const noexcept { return holders().load(std::memory_order_acquire) != 1; }
 
 private:

@@ -13,26 +13,27 @@
 namespace scanloom::grid {
 namespace {
 
-/// Walking along a side of a cell with the cell on the left: right along its bottom, up, left, down.
+/// Directions of a walk along the sides of a cell, with the cell on the left: right along its bottom, up, left, down.
 constexpr std::array<Cell, 4> kWays = {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}};
 
 Cell beside(Cell cell, std::size_t way) { return {cell.i + kWays[way].i, cell.j + kWays[way].j}; }
 std::size_t left_of(std::size_t way) { return (way + 1) % 4; }
 std::size_t right_of(std::size_t way) { return (way + 3) % 4; }
 
-/// Where the walk along a side begins.
+/// Returns the corner where the walk along a side begins.
 Cell first_corner(Cell cell, std::size_t side) {
     return {cell.i + (side == 1 || side == 2 ? 1 : 0), cell.j + (side >= 2 ? 1 : 0)};
 }
 
 bool by_rows(Cell a, Cell b) { return std::tie(a.j, a.i) < std::tie(b.j, b.i); }
 
-/// A walk that comes to a corner twice goes around two rings that touch there. The one where it began is the first.
-/// @param corners  each where the walk turned, the first not repeated
+/// Splits a walk into rings: a walk that reaches a corner twice goes around two rings that touch there. The first ring
+/// is the one where the walk began.
+/// @param corners  the corners where the walk turned, the first one not repeated
 std::vector<Ring> rings_of(const std::vector<Cell>& corners) {
     std::vector<Ring> rings(1);
     Ring walked;
-    std::map<Cell, std::size_t, decltype(&by_rows)> places(&by_rows); // in what was walked
+    std::map<Cell, std::size_t, decltype(&by_rows)> places(&by_rows); // indices into `walked`
     for (const Cell corner : corners) {
         const auto [place, is_new] = places.emplace(corner, walked.size());
         if (is_new) {
@@ -64,7 +65,7 @@ public:
             for (std::size_t side = 0; side < 4; ++side) {
                 if (walked_[at][side] || find(beside(cells_[at], right_of(side)))) continue;
                 auto& outline = outlines_[area_[at]];
-                std::ranges::move(rings_of(walk(at, side)), std::back_inserter(outline)); // its first cell: the outer
+                std::ranges::move(rings_of(walk(at, side)), std::back_inserter(outline)); // first the outer ring
             }
         }
         return std::move(outlines_);
@@ -79,7 +80,7 @@ private:
         return static_cast<std::size_t>(found - cells_.begin());
     }
 
-    /// A new area: all that hangs together with a cell.
+    /// Starts a new area with all cells connected to a cell.
     void flood(std::size_t seed) {
         const std::size_t area = outlines_.size();
         outlines_.emplace_back();
@@ -96,8 +97,8 @@ private:
         }
     }
 
-    /// The corners around what is on the left of a cell's side. Where two cells touch in a corner only, the walk turns
-    /// left and stays with its own.
+    /// Returns the corners of the walk that keeps a cell's side on its left. Where two cells touch at a corner only,
+    /// the walk turns left and stays with its own cell.
     [[nodiscard]] std::vector<Cell> walk(std::size_t at, std::size_t side) {
         std::vector<Cell> corners;
         for (std::size_t before = right_of(side); !walked_[at][side];) {
