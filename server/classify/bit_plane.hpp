@@ -18,23 +18,25 @@ namespace bits {
 inline constexpr std::uint64_t kOnes = 0x0101010101010101; ///< a one in each of 8 bytes
 inline constexpr std::uint64_t kLowSevenBits = 0x7f7f7f7f7f7f7f7f;
 
-/// Bits 0..7: the lowest bits of 8 bytes, that of the lowest byte first. Pre: the other bits of the bytes are 0.
+/// Packs the lowest bits of 8 bytes into bits 0..7, that of the lowest byte first.
+/// Precondition: the other bits of the bytes are 0.
 [[nodiscard]] constexpr std::uint64_t pack8(std::uint64_t bytes) noexcept { return (bytes * 0x0102040810204080) >> 56; }
 
-/// The reverse of pack8(): 8 bytes of 0 or 1.
+/// Unpacks bits 0..7 into 8 bytes of 0 or 1; the inverse of pack8().
 [[nodiscard]] constexpr std::uint64_t unpack8(std::uint64_t byte) noexcept {
     const std::uint64_t one_bit_each = (byte * kOnes) & 0x8040201008040201;
     return ((one_bit_each + kLowSevenBits) >> 7) & kOnes;
 }
 
-/// 0x01 in each byte of `bytes` that is 0. Pre: no byte exceeds 0x80.
+/// Returns 0x01 in each byte of `bytes` that is 0, and 0 in the others.
+/// Precondition: no byte exceeds 0x80.
 [[nodiscard]] constexpr std::uint64_t zero_bytes(std::uint64_t bytes) noexcept {
     return (~(bytes + kLowSevenBits) >> 7) & kOnes;
 }
 
 } // namespace bits
 
-/// Which of 64 cells in a row have the value.
+/// Returns a bit for each of the 64 cells of a row, set if the cell has the value.
 template <class ByteEnum>
 [[nodiscard]] inline std::uint64_t row_bits(const ByteEnum* cells, ByteEnum value) noexcept {
     static_assert(sizeof(ByteEnum) == 1);
@@ -48,7 +50,8 @@ template <class ByteEnum>
     return row;
 }
 
-/// Which cells of a chunk have the value. The enumeration's values are at most 0x7f.
+/// Returns the cells of a chunk that have the value.
+/// Precondition: the enumeration's values are at most 0x7f.
 template <class ByteEnum>
 [[nodiscard]] inline BitPlane bits_where(const std::array<ByteEnum, 64 * 64>& cells, ByteEnum value) noexcept {
     BitPlane plane;

@@ -7,7 +7,7 @@
 
 namespace scanloom::classify {
 
-/// What the evidence so far says of a cell. Depends on the order of the evidence: see Hysteresis.
+/// The type of a cell according to the evidence so far. Depends on the order of the evidence: see Hysteresis.
 enum class OccType : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2 };
 
 /// The OccTypes of one chunk's cells. No cell is both free and occupied.
@@ -26,7 +26,7 @@ struct OccPlanes {
     }
 };
 
-/// What a cell means to whoever drives: its OccType, told apart by its neighbours. The numbers are those of tiles.
+/// The meaning of a cell for navigation: its OccType, refined by its neighbours. Tiles use the same numbers.
 ///   frontier  unexplored, and one of the 8 cells around it is free
 ///   danger    free, and an occupied cell is near: see ClassLayer
 enum class CellClass : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2, kFrontier = 3, kDanger = 4 };
@@ -34,6 +34,7 @@ enum class CellClass : std::uint8_t { kUnexplored = 0, kFree = 1, kOccupied = 2,
 using ClassChunk = grid::Chunk<CellClass>;
 using ClassView = grid::ChunkView<ClassChunk>;
 
+/// Returns the class of a cell; kUnexplored if its chunk does not exist.
 [[nodiscard]] inline CellClass class_at(const ClassView& view, grid::Cell cell) noexcept {
     const auto* chunk = view.find(grid::chunk_of(cell));
     return chunk == nullptr ? CellClass::kUnexplored : chunk->at(cell);

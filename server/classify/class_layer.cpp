@@ -19,7 +19,7 @@ const std::shared_ptr<const ClassChunk>& blank_chunk() {
     return blank;
 }
 
-/// The chunk `di` to the right and `dj` above, unless chunks cannot be numbered there.
+/// Returns the chunk `di` to the right and `dj` above, unless its index is out of range.
 std::optional<grid::ChunkKey> neighbour(grid::ChunkKey key, std::int32_t di, std::int32_t dj) {
     const std::int64_t ci = std::int64_t{key.ci} + di;
     const std::int64_t cj = std::int64_t{key.cj} + dj;
@@ -34,7 +34,7 @@ bool any(const BitPlane& plane) {
     return std::ranges::any_of(plane, [](std::uint64_t row) { return row != 0; });
 }
 
-/// Whether a cell of the plane is within `reach` cells of the neighbouring chunk at (di, dj).
+/// Returns whether a cell of the plane is within `reach` cells of the neighbouring chunk at (di, dj).
 bool touches(const BitPlane& plane, std::int32_t reach, std::int32_t di, std::int32_t dj) {
     const std::uint64_t lowest = ~std::uint64_t{0} >> (kSide - reach);
     const std::uint64_t columns = di < 0 ? lowest : di > 0 ? lowest << (kSide - reach) : ~std::uint64_t{0};
@@ -44,10 +44,11 @@ bool touches(const BitPlane& plane, std::int32_t reach, std::int32_t di, std::in
                        [columns](std::uint64_t row) { return (row & columns) != 0; });
 }
 
-/// The step by which a window that covers `covered` cells more than its own grows next, up to `reach`: doubling.
+/// Returns the next step of a window that grows by doubling up to `reach` cells and already covers `covered` cells more
+/// than its own.
 std::int32_t next_step(std::int32_t covered, std::int32_t reach) { return std::min(covered + 1, reach - covered); }
 
-/// The middle one of three rows of 64 cells side by side, each of its cells set that has a set one within `reach`
+/// Returns the middle one of three adjacent rows of 64 cells, with each cell set that has a set cell within `reach`
 /// columns, 1 .. 64.
 std::uint64_t widened(std::uint64_t west, std::uint64_t here, std::uint64_t east, std::int32_t reach) {
     if ((west | here | east) == 0) return 0;
@@ -74,7 +75,8 @@ struct ClassLayer::Around {
         return planes == nullptr ? 0 : (planes->*plane)[static_cast<std::size_t>(j)];
     }
 
-    /// The cells of the chunk in the middle that have a cell of the plane within `reach` cells (Chebyshev), 1 .. 64.
+    /// Returns the cells of the middle chunk that have a cell of the plane within `reach` cells (Chebyshev distance), 1
+    /// .. 64.
     [[nodiscard]] BitPlane dilated(BitPlane Planes::*plane, std::int32_t reach) const {
         std::array<std::uint64_t, std::size_t{3} * kSide> rows;
         const std::int32_t end = 2 * kSide + reach;
@@ -84,7 +86,7 @@ struct ClassLayer::Around {
             rows[static_cast<std::size_t>(r)] =
                 widened(row(plane, west, j), row(plane, west + 1, j), row(plane, west + 2, j), reach);
         }
-        for (std::int32_t covered = 0; covered < 2 * reach;) { // each row grows to hold the 2 reach above it
+        for (std::int32_t covered = 0; covered < 2 * reach;) { // combines each row with the 2 reach rows above it
             const std::int32_t step = next_step(covered, 2 * reach);
             for (std::int32_t r = kSide - reach; r < end - step; ++r) {
                 rows[static_cast<std::size_t>(r)] |= rows[static_cast<std::size_t>(r + step)];
@@ -121,15 +123,15 @@ void ClassLayer::update(std::span<const grid::ChunkKey> changed, const FindPlane
     for (const auto& [key, retyped] : stale) classify(key, retyped, revision);
 }
 
-/// Notes which chunks need their classes worked out again: this one, and the neighbours near enough to a change.
+/// Records which chunks must be classified again: this one, and the neighbours near enough to a change.
 void ClassLayer::take_in(grid::ChunkKey key, const OccPlanes* types, Revision revision, StaleChunks& stale) {
     static constexpr Planes kUnwritten;
     const auto* known = planes_.find(key);
     if (types == nullptr && known == nullptr) return;
     const Planes& before = known == nullptr ? kUnwritten : known->planes;
     const OccPlanes now = types == nullptr ? OccPlanes{} : *types;
-    BitPlane freed{};      // or no longer free
-    BitPlane obstructed{}; // or no longer occupied
+    BitPlane freed{};      // cells that became free or are no longer free
+    BitPlane obstructed{}; // cells that became occupied or are no longer occupied
     for (std::size_t j = 0; j < freed.size(); ++j) {
         freed[j] = now.free[j] ^ before.free[j];
         obstructed[j] = now.occupied[j] ^ before.occupied[j];
@@ -190,7 +192,7 @@ void ClassLayer::write(grid::ChunkKey key, const Planes& planes, const BitPlane&
             const auto eight = [i, j](const BitPlane& plane, CellClass value) {
                 return bits::unpack8(plane[j] >> i & 0xff) * static_cast<std::uint64_t>(value);
             };
-            // A danger cell is free, too; no other two planes share a cell.
+            // A danger cell is also free; no other two planes share a cell.
             const std::uint64_t bytes =
                 eight(planes.free, CellClass::kFree) + eight(planes.occupied, CellClass::kOccupied) +
                 eight(planes.frontier, CellClass::kFrontier) +

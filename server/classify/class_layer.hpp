@@ -14,34 +14,37 @@ namespace scanloom::classify {
 
 /// The CellClass of every cell, kept up to date from the OccTypes.
 ///
-/// FRONTIER  an UNEXPLORED cell with a FREE cell among the 8 around it; also in a chunk without OccTypes of its own.
-/// DANGER    a FREE cell with an OCCUPIED cell at Chebyshev distance 1 .. danger_cells.
-/// Else a cell's class is its OccType. The classes depend on nothing but the newest OccTypes: any sequence of updates
+///   frontier  an unexplored cell with a free cell among the 8 around it, also in a chunk without OccTypes of its own
+///   danger    a free cell with an occupied cell at a Chebyshev distance of 1..danger_cells
+/// The class of any other cell is its OccType. The classes depend only on the current OccTypes: any sequence of updates
 /// that ends with the same OccTypes gives the same classes.
-/// A chunk's revision is that of the update in which one of its cells last got another class.
-/// Thread  one writer; snapshots may be read by anyone.
+///
+/// A chunk's revision is that of the update that last changed the class of one of its cells.
+/// Threads: one writer; any number of threads may read snapshots.
 class ClassLayer {
 public:
     static constexpr std::int32_t kDangerCellsMax = grid::kChunkSide;
 
-    /// The OccTypes of a chunk as they are now; nullptr where nothing was ever written: all unexplored.
+    /// Returns the current OccTypes of a chunk, or nullptr if it was never written, i.e. all its cells are unexplored.
     using FindPlanes = std::function<const OccPlanes*(grid::ChunkKey)>;
 
-    /// Pre  1 <= danger_cells <= kDangerCellsMax.
+    /// @param danger_cells  reach of the danger class in cells, 1..kDangerCellsMax
     explicit ClassLayer(std::int32_t danger_cells);
 
-    /// Takes in the OccTypes of the chunks that may have changed since the last update. find_planes is asked for those
-    /// alone. Cost follows them, and those of their neighbours that a change at their border concerns; a chunk named
-    /// without need costs a microsecond.
-    /// Pre  revision >= that of every earlier update.
+    /// Updates the classes from the OccTypes of changed chunks.
+    /// @param changed  all chunks that may have changed since the last update; naming a chunk that did not change costs
+    ///                 a microsecond
+    /// @param find_planes  called for the chunks in `changed` only
+    /// @param revision  of this update; not less than that of any earlier update
+    /// Cost: proportional to the changed chunks and to those of their neighbours that a change near the border affects.
     void update(std::span<const grid::ChunkKey> changed, const FindPlanes& find_planes, Revision revision);
 
-    /// How many chunks have a cell that is, or was once, not plainly UNEXPLORED.
+    /// Returns the number of chunks with a cell whose class is, or once was, other than unexplored.
     [[nodiscard]] std::size_t chunk_count() const noexcept { return tree_.size(); }
 
     [[nodiscard]] ClassView snapshot() { return tree_.snapshot(); }
 
-    /// See grid::ChunkTree::branch().
+    /// Returns a copy that has its own writer; see grid::ChunkTree::branch().
     [[nodiscard]] ClassLayer branch() { return {danger_cells_, planes_.branch(), tree_.branch()}; }
 
 private:
@@ -59,7 +62,8 @@ private:
     struct KeyHash {
         [[nodiscard]] std::size_t operator()(grid::ChunkKey key) const noexcept;
     };
-    using StaleChunks = std::unordered_map<grid::ChunkKey, BitPlane, KeyHash>; // with the cells of another OccType
+    /// Chunks to classify again, with the cells whose OccType changed.
+    using StaleChunks = std::unordered_map<grid::ChunkKey, BitPlane, KeyHash>;
 
     [[nodiscard]] static const std::shared_ptr<const PlanesChunk>& blank_planes();
 
@@ -76,7 +80,7 @@ private:
     grid::ChunkTree<ClassChunk> tree_;
 
 public:
-    /// What is kept of a chunk beside its OccTypes.
+    /// Memory kept for a chunk in addition to its OccTypes, in bytes.
     static constexpr std::size_t kChunkBytes = sizeof(PlanesChunk) + sizeof(ClassChunk);
 };
 

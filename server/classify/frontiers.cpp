@@ -12,7 +12,7 @@
 namespace scanloom::classify {
 namespace {
 
-/// Neighbouring frontier cells of one row.
+/// Adjacent frontier cells of one row.
 struct Run {
     std::int32_t j;
     std::int32_t i_begin;
@@ -21,7 +21,7 @@ struct Run {
     friend auto operator<=>(const Run&, const Run&) = default;
 };
 
-/// The chunks whose cells, and the cells beside them, have int32 numbers.
+/// The chunks whose cells, and the adjacent cells, have int32 indices.
 constexpr grid::ChunkBox numbered_chunks() {
     constexpr std::int64_t kEnd = std::int64_t{std::numeric_limits<std::int32_t>::max()} / grid::kChunkSide;
     return {-kEnd, -kEnd, kEnd, kEnd};
@@ -41,7 +41,7 @@ void append_runs(std::uint64_t row, std::int32_t i0, std::int32_t j, std::vector
     }
 }
 
-/// All runs of the map, by rows; those that a chunk's border parts are joined.
+/// Returns all runs of the map, by rows. Runs that the border of a chunk divides are joined.
 std::vector<Run> frontier_runs(const ClassView& classes) {
     std::vector<Run> runs;
     classes.visit(numbered_chunks(), 0, [&](grid::ChunkKey key, const ClassChunk& chunk) {
@@ -65,10 +65,10 @@ std::vector<Run> frontier_runs(const ClassView& classes) {
     return runs;
 }
 
-/// The runs without some cells: what is left of each.
+/// Removes cells from the runs and returns the rest.
 std::vector<Run> cut_out(const std::vector<Run>& runs, std::span<const grid::Cell> without) {
     if (without.empty()) return runs;
-    std::vector<Run> cuts; // a cell each
+    std::vector<Run> cuts; // one cell each
     for (const grid::Cell cell : without) cuts.push_back({cell.j, cell.i, cell.i + 1});
     std::ranges::sort(cuts);
     std::vector<Run> left;
@@ -88,7 +88,8 @@ std::vector<Run> cut_out(const std::vector<Run>& runs, std::span<const grid::Cel
     return left;
 }
 
-/// Which runs hang together. Source: Tarjan, Efficiency of a Good But Not Linear Set Union Algorithm (1975).
+/// Disjoint sets of connected runs.
+/// Source: Tarjan, Efficiency of a Good But Not Linear Set Union Algorithm (1975).
 class Sets {
 public:
     explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
@@ -98,7 +99,7 @@ public:
         return item;
     }
 
-    /// The smaller one stands for both.
+    /// Joins two sets; the smaller index represents the result.
     void join(std::size_t a, std::size_t b) {
         a = find(a);
         b = find(b);
@@ -109,7 +110,7 @@ private:
     std::vector<std::size_t> parent_;
 };
 
-/// Joins each run with those of the row below that it touches, corners included.
+/// Joins each run with the runs of the row below that it touches, at a corner or along a side.
 Sets connect(const std::vector<Run>& runs) {
     Sets sets(runs.size());
     std::size_t below = 0;
@@ -149,7 +150,7 @@ std::vector<Frontier> find_frontiers(const ClassView& classes, std::size_t size_
                                      std::span<const grid::Cell> without) {
     const std::vector<Run> runs = cut_out(frontier_runs(classes), without);
     Sets sets = connect(runs);
-    std::vector<std::vector<Run>> groups(runs.size()); // by the first run, which stands for its set
+    std::vector<std::vector<Run>> groups(runs.size()); // indexed by the first run, which represents its set
     std::vector<std::size_t> sizes(runs.size());
     for (std::size_t run = 0; run < runs.size(); ++run) {
         const std::size_t group = sets.find(run);

@@ -2,18 +2,18 @@
 
 namespace scanloom::classify {
 
-/// Decides from a cell's value whether it is free or occupied, without flickering: between two limits it stays what
-/// it was. Folded scan by scan, as what it was counts.
+/// Limits that decide from a cell's value whether it is free or occupied, without flickering: between the two limits a
+/// cell keeps its type. Must be applied scan by scan, because the result depends on the previous type.
 ///
-/// Value  what a layer holds for a cell: the greater, the more it is occupied.
-/// Pre    free < occupied, first_free <= free.
-/// Source  section 6 of the design models.
+/// `Value` is the type of a layer's cells; a greater value means more evidence that a cell is occupied.
+/// Precondition: free < occupied, first_free <= free.
+/// Source: section 6 of the design models.
 template <class Value>
 struct Hysteresis {
-    Value occupied;   ///< from here it is occupied
-    Value free;       ///< down from here it is free
-    Value first_free; ///< the same for a cell that is unexplored yet: as clear evidence as that is needed
-    Value unseen;     ///< marks a cell without a value: it stays what it is
+    Value occupied;   ///< a cell is occupied at this value or above
+    Value free;       ///< a cell is free at this value or below
+    Value first_free; ///< like `free`, for an unexplored cell, which needs clearer evidence
+    Value unseen;     ///< marks a cell without a value; its type does not change
 };
 
 } // namespace scanloom::classify
