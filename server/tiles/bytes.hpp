@@ -8,7 +8,7 @@ namespace scanloom::tiles {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Bytes ready to be served, which several answers may share.
+/// Immutable bytes that several responses may share.
 using SharedBytes = std::shared_ptr<const Bytes>;
 
 } // namespace scanloom::tiles

@@ -9,7 +9,7 @@
 namespace scanloom::tiles {
 namespace {
 
-/// One entry for each tile, of the newest of its revisions, by y, then x.
+/// Keeps one entry for each tile, with its newest revision, ordered by y, then x.
 void merge_equal_tiles(std::vector<ChangedTile>& tiles) {
     std::sort(tiles.begin(), tiles.end(), [](const ChangedTile& a, const ChangedTile& b) {
         return std::tie(a.key.y, a.key.x, b.revision) < std::tie(b.key.y, b.key.x, a.revision);

@@ -8,16 +8,16 @@ namespace {
 using grid::kChunkSide;
 using mapping::LogOdds;
 
-// Salience falls with p up to even odds and rises beyond, so that of a block's cells only the highest and the
-// lowest known one matter. Both are found by plain integer minima and maxima, which compilers vectorise.
+// Salience decreases with p up to even odds and increases beyond, so that only the highest and the lowest known cell of
+// a block matter. Both are computed with integer minima and maxima, which compilers vectorise.
 
-/// Numbers that order like log-odds, but with the unknown cell last instead of first.
+/// Returns numbers that order like log-odds, but with the unknown cell last instead of first.
 constexpr std::uint16_t unknown_last(LogOdds cell) noexcept {
     return static_cast<std::uint16_t>(static_cast<std::uint16_t>(cell) + 0x7FFFU);
 }
 static_assert(unknown_last(mapping::kUnknownLogOdds) == 0xFFFF && unknown_last(-32767) == 0);
 
-/// What a column of some rows of a chunk holds at most and at least.
+/// The highest and the lowest value of each column over some rows of a chunk.
 struct ColumnRange {
     std::array<LogOdds, kChunkSide> high;
     std::array<std::uint16_t, kChunkSide> low; // as unknown_last()
@@ -36,7 +36,8 @@ ColumnRange fold_rows(const LogOdds* cells, std::int32_t rows) noexcept {
     return range;
 }
 
-// The saliences of cells that are their own codes, as compilers vectorise them; equal to LayerStyle::salience.
+// Returns the saliences of cells that are their own codes, in a form that compilers vectorise; equal to
+// LayerStyle::salience.
 
 constexpr Salience salience_of_cell(mapping::HimmCount count) noexcept { return static_cast<Salience>(count + 1); }
 static_assert(salience_of_cell(mapping::kUnseenHimm) == kUnknownSalience && salience_of_cell(0) == 1);
@@ -69,7 +70,7 @@ ReducedChunk reduce_codes(const mapping::ChunkCells<Value>& cells, std::int32_t 
     return reduced;
 }
 
-/// Of a block of one cell.
+/// Reduces blocks of one cell.
 ReducedChunk saliences_of(const mapping::ChunkCells<LogOdds>& cells) {
     const auto& salience = salience_table();
     ReducedChunk reduced;

@@ -8,7 +8,7 @@
 
 namespace scanloom::tiles {
 
-/// A chunk at a coarser scale, bottom row first: side * side saliences are in use.
+/// A chunk at a coarser scale. The first side * side saliences are in use, bottom row first.
 struct ReducedChunk {
     std::array<Salience, std::size_t{grid::kChunkSide} * grid::kChunkSide> pixels;
     std::int32_t side = 0; ///< pixels, 64 .. 1
@@ -18,8 +18,8 @@ struct ReducedChunk {
     }
 };
 
-/// The greatest salience of each block of cells.
-/// Pre: block, the cells along its side, is a power of two from 1 to 64.
+/// Reduces a chunk to the greatest salience of each block of cells.
+/// @param block  side of a block in cells; a power of two, 1..64
 [[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<mapping::LogOdds>& cells, std::int32_t block);
 [[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<mapping::HimmCount>& cells, std::int32_t block);
 [[nodiscard]] ReducedChunk reduce(const mapping::ChunkCells<classify::CellClass>& cells, std::int32_t block);

@@ -12,7 +12,7 @@
 namespace scanloom::tiles {
 namespace {
 
-/// What any layer holds for a cell, so that one table serves all of them.
+/// A cell value of any layer, so that one table type serves all layers.
 using Value = std::int16_t;
 constexpr Value kNoValue = mapping::kUnknownLogOdds;
 constexpr std::size_t kValues = 65536;
@@ -26,7 +26,7 @@ Value value_of(classify::CellClass cell) noexcept {
 
 enum class Verdict : std::uint8_t { kUnknown, kFree, kOccupied, kUndecided };
 
-/// From `occupied` on a value is occupied, down from `free` it is free.
+/// A value is occupied at `occupied` or above and free at `free` or below.
 struct Thresholds {
     int free;
     int occupied;
@@ -44,7 +44,7 @@ Thresholds thresholds_of(mapping::Layer layer, const mapping::MapConfig& config)
     case mapping::Layer::kSonar: return {fixed(config.class_p_free), fixed(config.class_p_occupied)};
     case mapping::Layer::kClassification: break;
     }
-    return {}; // it has none
+    return {}; // has no thresholds
 }
 
 Verdict verdict_of(mapping::Layer layer, Value value, const Thresholds& thresholds) {
@@ -62,7 +62,7 @@ Cell at(const std::vector<Cell>& table, Value value) noexcept {
     return table[static_cast<std::uint16_t>(value)];
 }
 
-/// Of every value, indexed by its bits as uint16.
+/// Returns the verdict of every value, indexed by the value's bits as uint16.
 std::vector<Verdict> verdicts_of(mapping::Layer layer, const mapping::MapConfig& config) {
     const auto thresholds = thresholds_of(layer, config);
     std::vector<Verdict> verdicts(kValues);
@@ -72,7 +72,7 @@ std::vector<Verdict> verdicts_of(mapping::Layer layer, const mapping::MapConfig&
     return verdicts;
 }
 
-/// The same: probabilities, 0 for layers that have none.
+/// Returns the probability of every value, indexed by the value's bits as uint16; 0 for layers without probabilities.
 std::vector<double> probabilities_of(mapping::Layer layer) {
     std::vector<double> probabilities(kValues, 0.0);
     if (layer != mapping::Layer::kOccupancy && layer != mapping::Layer::kSonar) return probabilities;
@@ -90,7 +90,7 @@ Difference difference_of(Verdict a, Verdict b) {
     return a == Verdict::kFree ? Difference::kFreeOccupied : Difference::kOccupiedFree;
 }
 
-/// The rows of a map as they lie under the places of a frame, whose cells are no larger than the map's.
+/// The rows of a map sampled at the places of a frame whose cells are no larger than the map's.
 class RowsUnder {
 public:
     RowsUnder(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame)
@@ -101,7 +101,7 @@ public:
         }
     }
 
-    /// Valid until the next call.
+    /// Returns the values of a frame's row. Valid until the next call.
     [[nodiscard]] std::span<const Value> row(std::int32_t j) {
         const std::int32_t own = own_index(j);
         if (row_j_ != own) {
@@ -113,9 +113,9 @@ public:
     }
 
 private:
-    /// The cell that holds the centre of a place.
+    /// Returns the index of the map's cell that contains the centre of a place.
     [[nodiscard]] std::int32_t own_index(std::int32_t index) const {
-        constexpr double kSnapCells = 1e-6; // a centre on a border is in the cell beyond it
+        constexpr double kSnapCells = 1e-6; // a centre on a border belongs to the cell after it
         if (snapshot_.config.cell_size == frame_cell_) return index;
         return static_cast<std::int32_t>(
             std::floor((index + 0.5) * (frame_cell_ / snapshot_.config.cell_size) + kSnapCells));
@@ -136,12 +136,12 @@ private:
     const mapping::Snapshot& snapshot_;
     mapping::Layer layer_;
     double frame_cell_;
-    std::vector<std::int32_t> columns_; // the map's own, of each place in a row
+    std::vector<std::int32_t> columns_; // the map's column for each place of a row
     std::vector<Value> row_;
-    std::optional<std::int32_t> row_j_; // the map's own
+    std::optional<std::int32_t> row_j_; // the map's row in row_
 };
 
-/// Pre: the cells of neither map are smaller.
+/// Precondition: the cells of neither map are smaller than cell_size.
 Result<grid::CellBox> places_of(const mapping::Snapshot& snapshot, mapping::Layer layer, double cell_size) {
     const auto cells = mapping::bounds_of(snapshot, layer);
     if (cells.empty() || snapshot.config.cell_size == cell_size) return cells;
@@ -149,13 +149,13 @@ Result<grid::CellBox> places_of(const mapping::Snapshot& snapshot, mapping::Laye
 }
 
 constexpr std::array<PaletteEntry, kDifferenceNames.size()> kDifferencePalette = {{
-    {{255, 255, 255}, 0}, // neither
-    {{166, 206, 235}},    // only A
-    {{252, 214, 148}},    // only B
+    {{255, 255, 255}, 0}, // unknown in both
+    {{166, 206, 235}},    // known in A only
+    {{252, 214, 148}},    // known in B only
     {{240, 240, 240}},    // both free
     {{140, 140, 140}},    // both occupied
-    {{213, 94, 0}},       // B's obstacle
-    {{0, 114, 178}},      // A's obstacle
+    {{213, 94, 0}},       // obstacle in B
+    {{0, 114, 178}},      // obstacle in A
     {{205, 205, 205}},    // undecided
 }};
 

@@ -14,58 +14,66 @@
 
 namespace scanloom::tiles {
 
-/// What two maps, A and B, say of a place.
+/// The comparison of two maps, A and B, at one place.
 enum class Difference : std::uint8_t {
-    kNeither,      ///< neither knows it
-    kOnlyA,        ///< only A knows it, whatever it says
-    kOnlyB,        ///< only B does
-    kBothFree,     ///< they agree
-    kBothOccupied, ///< they agree
-    kFreeOccupied, ///< A says free, B says occupied
-    kOccupiedFree, ///< A says occupied, B says free
-    kUndecided,    ///< both know it, and at least one says neither free nor occupied
+    kNeither,      ///< unknown in both
+    kOnlyA,        ///< known in A only
+    kOnlyB,        ///< known in B only
+    kBothFree,     ///< free in both
+    kBothOccupied, ///< occupied in both
+    kFreeOccupied, ///< free in A, occupied in B
+    kOccupiedFree, ///< occupied in A, free in B
+    kUndecided,    ///< known in both, but in at least one neither free nor occupied
 };
 
-/// As they stand in answers, by Difference.
+/// The names in API responses, by Difference.
 inline constexpr std::array<std::string_view, 8> kDifferenceNames = {
     "neither", "only_a", "only_b", "both_free", "both_occupied", "free_occupied", "occupied_free", "undecided"};
 
-/// Two maps of one layer, laid upon each other on the grid of the finer one: a place is the centre of a finer cell, and
-/// a cell of the coarser map stands for all centres inside it (those on its lower and left borders included).
+/// Two maps of one layer, compared on the grid of the map with the smaller cells. A place is the centre of a cell of
+/// that grid. A cell of the coarser map represents all centres inside it, including those on its lower and left
+/// borders.
 ///
-/// Free, occupied or undecided is what each map says by the class thresholds of its own settings, from the cell's
-/// value alone:
+/// Each map's cell is free, occupied or undecided according to its value and the class thresholds of that map's
+/// settings:
 ///   occupancy, sonar  probability >= class_p_occupied is occupied, <= class_p_free is free
 ///   himm              counter >= class_himm_occupied is occupied, <= class_himm_free is free
-///   classification    the class underneath: danger is free, and a frontier is as unknown as unexplored ground
+///   classification    danger is free; a frontier is unknown, like an unexplored cell
 struct ComparedMaps {
     const mapping::Snapshot& a;
     const mapping::Snapshot& b;
     mapping::Layer layer = mapping::Layer::kOccupancy;
 };
 
-/// What a comparison comes to.
+/// The totals of a comparison.
 struct DifferenceSums {
     std::array<std::uint64_t, kDifferenceNames.size()> cells{}; ///< by Difference
-    std::uint64_t known = 0;                                    ///< by both
-    std::uint64_t agreeing = 0;                                 ///< of them: both free, both occupied or both undecided
-    double difference = 0.0; ///< of probability, absolute, summed over `known`; 0 for layers that have none
+    std::uint64_t known = 0;                                    ///< known in both maps
+    std::uint64_t agreeing = 0; ///< of `known`: both free, both occupied or both undecided
+    double difference = 0.0;    ///< sum of |p_A - p_B| over `known`; 0 for layers without probabilities
 };
 
-/// The places to compare: all that either map shows anything in, or those of a bbox.
-/// @param bytes_per_pixel  as of map_frame()
-/// Errors  those of map_frame(); kNotFound only when neither map has seen anything.
+/// Returns the places to compare: all places where either map shows anything, or those of a bbox.
+/// @param bbox  map frame, metres
+/// @param bytes_per_pixel  see map_frame()
+/// Errors: kNotFound if there is no bbox and both maps are empty; kTooLarge if the frame exceeds the pixel limits of
+///         map_frame(); kInvalidField if the bbox is invalid.
 [[nodiscard]] Result<MapFrame> difference_frame(const ComparedMaps& maps, const std::optional<Extent>& bbox,
                                                 std::int64_t bytes_per_pixel = 1);
 
-/// Called with each row from the top.
+/// Receives each row of a comparison, from the top.
 using UseDifferences = std::function<void(std::span<const Difference>)>;
 
-/// Cost: the places. Memory: some rows of them.
+/// Compares two maps.
+/// @param frame  from difference_frame()
+/// @param use  if set, receives the differences row by row
+/// Cost: proportional to the number of places.
+/// Memory: a few rows of places.
 DifferenceSums compare(const ComparedMaps& maps, const MapFrame& frame, const UseDifferences& use = {});
 
-/// Indexed by Difference, in colours that colour-blind eyes tell apart: clear where neither knows, greys where they
-/// agree, blue where A alone knows or sees an obstacle, orange for B.
+/// Returns a comparison as a PNG with palette indices equal to Difference. The colours can be distinguished with colour
+/// blindness: transparent where neither map knows the place, greys where they agree, blue where only A knows it or sees
+/// an obstacle, orange for B.
 [[nodiscard]] Bytes difference_png(const ComparedMaps& maps, const MapFrame& frame);
 
 } // namespace scanloom::tiles

@@ -8,7 +8,8 @@
 
 namespace scanloom::tiles {
 
-/// Writes what `convert` makes of each cell into the pixels of a frame, top row first. Pixels without a chunk stay.
+/// Converts each cell of a frame with `convert` and writes the results to the frame's pixels, top row first. Pixels
+/// without a chunk remain unchanged.
 template <class Pixel, class Convert>
 void draw_cells(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame, std::span<Pixel> pixels,
                 Convert&& convert) {

@@ -10,7 +10,7 @@ namespace scanloom::tiles {
 namespace {
 
 constexpr double kSnapCells = 1e-6;
-constexpr double kCellIndexMax = 1 << 30; // leaves room for widths and chunk borders in 32 bits
+constexpr double kCellIndexMax = 1 << 30; // widths and chunk borders still fit in 32 bits
 
 } // namespace
 
@@ -24,7 +24,7 @@ Extent tiled_extent(double cell_size_m) noexcept { return extent_of(kTiledCells,
 Result<grid::CellBox> cells_in(const Extent& extent, double cell_size_m) {
     const double cells_per_metre = 1.0 / cell_size_m;
     for (const double edge : {extent.min_x, extent.min_y, extent.max_x, extent.max_y}) {
-        if (!(std::abs(edge * cells_per_metre) <= kCellIndexMax)) { // also when it is NaN
+        if (!(std::abs(edge * cells_per_metre) <= kCellIndexMax)) { // true for NaN too
             return Error{Errc::kInvalidField,
                          fmt::format("bbox holds {}; at this cell size its edges must be finite metres within +-{:.0f}",
                                      edge, kCellIndexMax * cell_size_m)};

@@ -15,15 +15,16 @@ struct Extent {
     friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// What a box of cells covers. Pre: the box is not empty.
+/// Returns the rectangle that a box of cells covers.
+/// Precondition: the box is not empty.
 [[nodiscard]] Extent extent_of(const grid::CellBox& cells, double cell_size_m) noexcept;
 
-/// What the tiles of a session cover: the square S of the tile pyramid.
+/// Returns the rectangle that the tiles of a session cover: the square at zoom 0 of the tile pyramid.
 [[nodiscard]] Extent tiled_extent(double cell_size_m) noexcept;
 
-/// The cells that a rectangle overlaps. An edge within a millionth of a cell of a cell border lies on it, so that
-/// decimal metres name the cells that they seem to.
-/// Errors  kInvalidField: not finite, empty, or beyond where cells can be numbered.
+/// Returns the cells that a rectangle overlaps. An edge within a millionth of a cell of a cell border counts as on the
+/// border, so that rounding of decimal metres does not add a cell.
+/// Errors: kInvalidField if the rectangle is not finite, is empty, or lies outside the range of cell indices.
 [[nodiscard]] Result<grid::CellBox> cells_in(const Extent& extent, double cell_size_m);
 
 } // namespace scanloom::tiles

@@ -12,7 +12,7 @@ using classify::CellClass;
 
 constexpr Colour grey(std::uint8_t value) noexcept { return {value, value, value}; }
 
-/// Of a layer whose codes salience_of() orders. Codes that no cell has count and look like unknown.
+/// Returns the style of a layer whose codes are ordered by salience_of(). Codes that no cell has look like unknown.
 template <class SalienceOf, class ColourOf>
 LayerStyle make_style(Code unknown, Code code_max, SalienceOf&& salience_of_code, ColourOf&& colour_of_code) {
     LayerStyle style{};

@@ -8,7 +8,7 @@
 
 namespace scanloom::tiles {
 
-/// What a tile or a map image holds for a cell, one byte:
+/// The value of a cell in a tile or a map image, one byte:
 ///   occupancy, sonar  the probability of occupation in percent, 0..100; 255 unknown
 ///   himm              the counter, 0..15; 255 unseen
 ///   classification    classify::CellClass: 0 unexplored, 1 free, 2 occupied, 3 frontier, 4 danger
@@ -22,21 +22,23 @@ struct Colour {
     friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// How a layer is shown.
+/// The display of a layer.
 struct LayerStyle {
-    Code unknown;                       ///< of a cell that nobody saw
-    std::array<Salience, 256> salience; ///< of each code: which of the cells that share a pixel it shows
-    std::array<Code, 256> code;         ///< of each salience
-    std::array<Colour, 256> palette;    ///< of each code
-    bool is_grey;                       ///< all colours of the palette are
+    Code unknown;                       ///< of a cell that no sensor has observed
+    std::array<Salience, 256> salience; ///< by code; a pixel shows the most salient of its cells
+    std::array<Code, 256> code;         ///< by salience
+    std::array<Colour, 256> palette;    ///< by code
+    bool is_grey;                       ///< whether all colours of the palette are grey
 };
 
+/// Returns the style of a layer.
+///
 /// Saliences, greatest first:
 ///   occupancy, sonar  the furthest above 50 %, then the lowest known one, then unknown
 ///   himm              the highest counter, then unseen
 ///   classification    occupied, danger, frontier, free, unexplored
-/// Colours: white is free and black occupied, mid-grey unknown; of classes, unexplored grey, free pale yellow, occupied
-/// dark brown, frontier green, danger red.
+/// Colours: white is free, black is occupied, mid-grey is unknown. For classes: unexplored is grey, free is pale
+/// yellow, occupied is dark brown, frontier is green, danger is red.
 [[nodiscard]] const LayerStyle& style_of(mapping::Layer layer);
 
 } // namespace scanloom::tiles

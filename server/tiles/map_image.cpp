@@ -10,7 +10,7 @@
 namespace scanloom::tiles {
 namespace {
 
-/// What tiles and images hold for a cell.
+/// Returns the code of a cell in tiles and images.
 struct CodeOf {
     const PercentTable& percent = percent_table();
 

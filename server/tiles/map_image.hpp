@@ -8,11 +8,12 @@
 
 namespace scanloom::tiles {
 
-/// 400 m by 400 m at 5 cm; a byte each, and some copies on the way to a file.
+/// The largest map image, in pixels: 400 m by 400 m at 5 cm. A pixel takes one byte, and making a file takes a few
+/// copies.
 inline constexpr std::int64_t kMapPixelsMax = 64'000'000;
-inline constexpr std::int64_t kMapSideMax = 1'000'000; ///< pixels; what libpng writes
+inline constexpr std::int64_t kMapSideMax = 1'000'000; ///< pixels; limit of libpng
 
-/// Which cells a map image shows, one for each pixel.
+/// The cells that a map image shows, one per pixel.
 struct MapFrame {
     grid::CellBox cells;
     double cell_size = 0.05; ///< metres
@@ -24,34 +25,37 @@ struct MapFrame {
         return static_cast<std::size_t>(cells.width() * cells.height());
     }
 
-    /// The lower-left corner of the lower-left pixel, metres.
+    /// Returns the lower-left corner of the lower-left pixel, map frame, metres.
     [[nodiscard]] Point2 origin() const noexcept { return {cells.i_begin * cell_size, cells.j_begin * cell_size}; }
 };
 
-/// A layer of a map or of a part of it, at any distance from the origin.
+/// An image of a layer, of the whole map or of a part at any distance from the origin.
 struct MapImage {
     MapFrame frame;
     mapping::Layer layer = mapping::Layer::kOccupancy;
     Bytes codes; ///< width * height (see Code), top row first
 };
 
-/// The frame of what was asked for: all cells in which the layer shows anything, or the cells a bbox overlaps, whether
-/// seen or not. A bbox is not clipped to what was seen: its image and its description, fetched one after the other
-/// while the map grows, have to fit each other.
-/// @param bytes_per_pixel  of the file to be made: what takes more may have fewer pixels
-/// Errors  kNotFound: no bbox, and nothing was seen yet; kTooLarge: more pixels than the limits;
-///         kInvalidField: a bad bbox.
+/// Returns the frame for a request: all cells in which the layer shows anything, or the cells that a bbox overlaps.
+///
+/// A bbox is not clipped to the observed cells. Its image and its description may be fetched one after the other while
+/// the map grows, and must match.
+/// @param bbox  map frame, metres
+/// @param bytes_per_pixel  of the file to be made; larger pixels reduce the number of pixels allowed
+/// Errors: kNotFound if there is no bbox and the layer is empty; kTooLarge if the frame exceeds the pixel limits;
+///         kInvalidField if the bbox is invalid.
 [[nodiscard]] Result<MapFrame> map_frame(const mapping::Snapshot& snapshot, mapping::Layer layer,
                                          const std::optional<Extent>& bbox, std::int64_t bytes_per_pixel = 1);
 
-/// The frame, if it can be made an image of.
-/// Errors  kNotFound: it is empty; kTooLarge: see map_frame().
+/// Returns the frame if an image of it can be made.
+/// Errors: kNotFound if the frame is empty; kTooLarge if it exceeds the pixel limits of map_frame().
 [[nodiscard]] Result<MapFrame> checked_frame(const MapFrame& frame, std::int64_t bytes_per_pixel = 1);
 
-/// Cost: the pixels.
+/// Renders the cells of a frame.
+/// Cost: proportional to the number of pixels.
 [[nodiscard]] MapImage render_map(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame);
 
-/// A PNG in the colours of the tiles: 8-bit grey where all of them are, else with a palette.
+/// Encodes an image as a PNG in the colours of the tiles: 8-bit grey if all colours are grey, otherwise with a palette.
 [[nodiscard]] Bytes map_png(const MapImage& image);
 
 } // namespace scanloom::tiles

@@ -20,7 +20,7 @@ bool is_probability(mapping::Layer layer) noexcept {
     return layer == mapping::Layer::kOccupancy || layer == mapping::Layer::kSonar;
 }
 
-/// Magic, version 1.0, and a description padded so that the data begin at a multiple of 64 bytes.
+/// Returns the header: magic, version 1.0, and a description padded so that the data start at a multiple of 64 bytes.
 std::string npy_header(mapping::Layer layer, const MapFrame& frame) {
     constexpr std::size_t kAlignment = 64;
     constexpr std::size_t kBeforeText = 10; // magic, version, length of the text
@@ -42,7 +42,7 @@ struct ProbabilityOf {
         return mapping::is_known(cell) ? static_cast<float>(mapping::probability_of(cell))
                                        : std::numeric_limits<float>::quiet_NaN();
     }
-    float operator()(auto) const noexcept { return 0.0F; } // of other layers: never asked
+    float operator()(auto) const noexcept { return 0.0F; } // other layers: not called
 };
 
 } // namespace

@@ -6,18 +6,18 @@
 
 namespace scanloom::tiles {
 
-/// A map for spreadsheets and programs: one line a row of cells, top row first, values separated by commas.
-/// Values are the codes of the layer, with -1 in place of 255 for what nobody saw, as in nav_msgs/OccupancyGrid.
+/// Returns a map as CSV: one line per row of cells, top row first. The values are the codes of the layer, with -1 in
+/// place of 255 for unknown cells, as in nav_msgs/OccupancyGrid.
 [[nodiscard]] std::string map_csv(const MapImage& image);
 
-/// Bytes that a cell takes in map_npy().
+/// Returns the bytes per cell in map_npy().
 [[nodiscard]] std::int64_t npy_bytes_per_cell(mapping::Layer layer) noexcept;
 
-/// A map as NumPy loads it: an array of shape (height, width), top row first.
+/// Returns a map as a NumPy file: an array of shape (height, width), top row first.
 ///   occupancy, sonar  float32, the probability of occupation; NaN unknown
 ///   himm              uint8, the counter; 255 unseen
 ///   classification    uint8, the classes
-/// Source  NumPy Enhancement Proposal 1, format version 1.0.
+/// Source: NumPy Enhancement Proposal 1, format version 1.0.
 [[nodiscard]] Bytes map_npy(const mapping::Snapshot& snapshot, mapping::Layer layer, const MapFrame& frame);
 
 } // namespace scanloom::tiles

@@ -7,40 +7,44 @@
 
 namespace scanloom::tiles {
 
-/// How tiles and map images show a cell: the probability of occupation in whole percent, 0..100.
+/// The value of a cell in tiles and map images: the probability of occupation in whole percent, 0..100.
 using Percent = std::uint8_t;
 
 inline constexpr Percent kUnknownPercent = 255;
 inline constexpr std::uint8_t kUnknownGrey = 128;
 
-/// How much a percentage counts among others that share a pixel: the furthest above 50 counts most, then the
-/// lowest known one, unknown least. A coarse pixel is the greatest salience below it, so that walls survive
-/// every zoom, and tiles made from finer tiles or from the cells are the same bytes.
+/// The weight of a percentage among the cells that share a pixel: the furthest above 50 has the greatest salience, then
+/// the lowest known one; unknown has the least.
+///
+/// A coarse pixel shows the greatest salience of its cells, so that walls remain visible at every zoom, and tiles made
+/// from finer tiles or from the cells have the same bytes.
 using Salience = std::uint8_t;
 
 inline constexpr Salience kUnknownSalience = 0;
 
+/// Returns the salience of a percentage.
 [[nodiscard]] constexpr Salience salience_of(Percent percent) noexcept {
     if (percent > 100) return kUnknownSalience;
     return static_cast<Salience>(percent > 50 ? percent + 1 : 51 - percent);
 }
 
+/// Returns the percentage of a salience; the inverse of salience_of().
 [[nodiscard]] constexpr Percent percent_of_salience(Salience salience) noexcept {
     if (salience == kUnknownSalience) return kUnknownPercent;
     return static_cast<Percent>(salience > 51 ? salience - 1 : 51 - salience);
 }
 
-/// White is free, black occupied: 255 (1 - p), rounded; a half rounds down, which keeps a known cell at
-/// even odds (127) apart from an unknown one (128).
+/// Returns the grey of a percentage: 255 (1 - p), rounded. White is free, black is occupied. A half rounds down, which
+/// keeps a known cell at even odds (127) distinct from an unknown one (128).
 [[nodiscard]] constexpr std::uint8_t grey_of(Percent percent) noexcept {
     return percent > 100 ? kUnknownGrey : static_cast<std::uint8_t>((255 * (100 - percent) + 49) / 100);
 }
 
-/// Percent of every fixed-point log-odds, indexed by its bits as uint16.
+/// The percentage of every fixed-point log-odds, indexed by its bits as uint16.
 using PercentTable = std::array<Percent, 65536>;
 [[nodiscard]] const PercentTable& percent_table();
 
-/// Salience of every fixed-point log-odds, likewise.
+/// The salience of every fixed-point log-odds, indexed by its bits as uint16.
 using SalienceTable = std::array<Salience, 65536>;
 [[nodiscard]] const SalienceTable& salience_table();
 

@@ -12,7 +12,7 @@
 namespace scanloom::tiles {
 namespace {
 
-constexpr int kWindowBits = 15; // a smaller window makes zlib slower: it moves more often
+constexpr int kWindowBits = 15; // a smaller window makes zlib slower because it moves more often
 constexpr int kMemoryLevel = 8;
 constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
@@ -33,7 +33,7 @@ void append_chunk(Bytes& png, std::string_view type, std::span<const std::uint8_
     append_number(png, static_cast<std::uint32_t>(check));
 }
 
-/// Signature and IHDR.
+/// Starts the file: signature and IHDR.
 Bytes beginning_of(std::int32_t width, std::int32_t height, int bits, std::uint8_t colour_type) {
     Bytes header;
     append_number(header, static_cast<std::uint32_t>(width));
@@ -64,7 +64,7 @@ int bits_for(std::size_t colours) noexcept {
     return 8;
 }
 
-/// Puts pixels of so many bits into bytes, the leftmost highest; what the last byte lacks is 0.
+/// Packs pixels into bytes, the leftmost pixel in the highest bits; unused bits of the last byte are 0.
 template <int kBits>
 void pack(std::span<const std::uint8_t> pixels, std::uint8_t* to) noexcept {
     constexpr std::size_t kEach = 8 / kBits;
@@ -86,7 +86,7 @@ std::size_t packed_size(std::int32_t width, int bits) noexcept {
 
 } // namespace
 
-/// The pixels' stream, in IDAT chunks.
+/// The compressed pixels, in IDAT chunks.
 struct PngWriter::Deflate {
     explicit Deflate(Bytes& to) : png(to) {
         const int result = deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWindowBits, kMemoryLevel, Z_RLE);
@@ -97,7 +97,7 @@ struct PngWriter::Deflate {
     Deflate& operator=(const Deflate&) = delete;
 
     void add(std::span<const std::uint8_t> bytes, int flush) {
-        stream.next_in = const_cast<Bytef*>(bytes.data()); // which zlib does not write to
+        stream.next_in = const_cast<Bytef*>(bytes.data()); // zlib does not write to it
         stream.avail_in = static_cast<uInt>(bytes.size());
         int result = Z_OK;
         do {
@@ -153,7 +153,7 @@ Bytes PngWriter::finish() {
 
 namespace {
 
-/// Codes as the writer wants pixels.
+/// Converts codes to the writer's pixels.
 using PixelOfCode = std::array<std::uint8_t, 256>;
 
 Bytes written(PngWriter& png, std::span<const Code> codes, std::size_t width, const PixelOfCode& pixel_of) {

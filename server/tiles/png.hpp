@@ -12,32 +12,39 @@ namespace scanloom::tiles {
 
 struct PaletteEntry {
     Colour colour;
-    std::uint8_t opacity = 255; ///< 0 is clear
+    std::uint8_t opacity = 255; ///< 0 is transparent
 };
 
-/// A PNG written row by row from the top: no more of it is held than the file. The same rows are the same bytes.
+/// Writes a PNG row by row from the top. Memory holds only the compressed file and the current row. The same rows give
+/// the same bytes.
 ///
-/// Compressed as runs alone: maps are runs of equal cells and noise in between, in which longer matches are rare. That
-/// is both faster and smaller here than the general search of zlib's lower levels.
-/// Source  ISO/IEC 15948:2004 (PNG), colour types 0 and 3; zlib's Z_RLE.
+/// Compression finds runs only: maps consist of runs of equal cells with noise in between, in which longer matches are
+/// rare. For maps, this is both faster and smaller than the general search of zlib's lower levels.
+/// Source: ISO/IEC 15948:2004 (PNG), colour types 0 and 3; zlib's Z_RLE.
 class PngWriter {
 public:
-    /// 8-bit grey: a pixel is its grey.
-    /// Pre  here and below: 0 < width, height <= 1,000,000, as readers may refuse more.
+    /// Starts an 8-bit grey image; a pixel is a grey level.
+    /// @param width  pixels, 1..1,000,000; readers may reject more
+    /// @param height  pixels, 1..1,000,000
     PngWriter(std::int32_t width, std::int32_t height);
 
-    /// Pixels are places in a palette, of 1, 2, 4 or 8 bits: as few as its size needs.
-    /// Pre  0 < palette.size() <= 256.
+    /// Starts an image with a palette; a pixel is an index into it, stored in 1, 2, 4 or 8 bits, as few as the
+    /// palette's size needs.
+    /// @param width  pixels, 1..1,000,000; readers may reject more
+    /// @param height  pixels, 1..1,000,000
+    /// @param palette  1..256 entries
     PngWriter(std::int32_t width, std::int32_t height, std::span<const PaletteEntry> palette);
 
     ~PngWriter();
     PngWriter(const PngWriter&) = delete;
     PngWriter& operator=(const PngWriter&) = delete;
 
-    /// Pre  `width` pixels, with a palette each below its size.
+    /// Adds the next row.
+    /// @param pixels  `width` pixels; with a palette, each less than the palette's size
     void add_row(std::span<const std::uint8_t> pixels);
 
-    /// Pre  all rows were added. Once.
+    /// Completes the file and returns it. Call once.
+    /// Precondition: all rows have been added.
     [[nodiscard]] Bytes finish();
 
 private:
@@ -45,18 +52,23 @@ private:
 
     Bytes png_;
     int bits_;     // of a pixel
-    Bytes packed_; // the row under way, its filter first
+    Bytes packed_; // the current row, filter type first
     std::unique_ptr<Deflate> deflate_;
 };
 
-/// A PNG with a palette of the colours of those codes that occur, and so with few bits a pixel.
-/// Shapes  width * height codes, top row first.
-/// Pre     0 < width, height <= 1,000,000.
+/// Encodes codes as a PNG. The palette contains only the codes that occur, so that a pixel takes few bits.
+/// @param codes  width * height codes, top row first
+/// @param width  pixels, 1..1,000,000
+/// @param height  pixels, 1..1,000,000
+/// @param style  colours of the codes
 [[nodiscard]] Bytes palette_png(std::span<const Code> codes, std::int32_t width, std::int32_t height,
                                 const LayerStyle& style);
 
-/// 8-bit grey, which means something also to programs that read samples and look at no palette. As above.
-/// Pre  style.is_grey.
+/// Encodes codes as an 8-bit grey PNG, for programs that read samples and ignore palettes.
+/// @param codes  width * height codes, top row first
+/// @param width  pixels, 1..1,000,000
+/// @param height  pixels, 1..1,000,000
+/// @param style  colours of the codes; style.is_grey
 [[nodiscard]] Bytes grey_png(std::span<const Code> codes, std::int32_t width, std::int32_t height,
                              const LayerStyle& style);
 

@@ -13,7 +13,7 @@ namespace scanloom::tiles {
 namespace {
 
 std::uint8_t grey_of_percent(Percent percent, const mapping::MapConfig& config) noexcept {
-    constexpr double kRounding = 1e-9; // 100 * 0.29 is less than 29
+    constexpr double kRounding = 1e-9; // 100 * 0.29 is less than 29 in floating point
     if (percent > 100) return kRosGreyUnknown;
     if (percent <= 100.0 * config.class_p_free + kRounding) return kRosGreyFree;
     return percent >= 100.0 * config.class_p_occupied - kRounding ? kRosGreyOccupied : kRosGreyUnknown;

@@ -20,7 +20,7 @@ bool is_png(std::span<const std::uint8_t> image) {
     return image.size() > kPngSizeAt + 8 && std::equal(kPngMark.begin(), kPngMark.end(), image.begin());
 }
 
-/// Width and height stand before anything that takes memory.
+/// Reads width and height, which precede anything that takes memory.
 Result<> check_png_size(std::span<const std::uint8_t> image) {
     const auto big_endian = [&](std::size_t at) {
         std::int64_t value = 0;
@@ -36,7 +36,7 @@ Result<cv::Mat> decode_png(std::span<const std::uint8_t> image) {
         const cv::Mat bytes(1, static_cast<int>(image.size()), CV_8UC1, const_cast<std::uint8_t*>(image.data()));
         const cv::Mat grey = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
         if (!grey.empty()) return grey;
-    } catch (const cv::Exception&) { // as if it were empty
+    } catch (const cv::Exception&) { // treated as an empty image
     }
     return Error{Errc::kMalformed, "the map's image is damaged: it cannot be decoded to its end"};
 }

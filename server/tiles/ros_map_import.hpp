@@ -10,9 +10,10 @@
 
 namespace scanloom::tiles {
 
-/// Reads the image of a ROS map, PGM (see read_ros_pgm()) or PNG of at most kRosImagePixelsMax pixels, into patches of
-/// a map, from its bottom row on.
-/// Errors  kMalformed: no such image, or a damaged one; kTooLarge.
+/// Converts the image of a ROS map to patches of a map, from its bottom row up.
+/// @param description  the map's YAML file
+/// @param image  PGM (see read_ros_pgm()) or PNG of at most kRosImagePixelsMax pixels
+/// Errors: kMalformed if the image is damaged or has another format; kTooLarge if it has too many pixels.
 [[nodiscard]] Result<std::vector<MapPatch>> read_ros_image(const RosMapDescription& description,
                                                            std::span<const std::uint8_t> image);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kTilePixels = std::size_t{kTileSide} * kTileSide;
 
-/// The tile of a layer that nothing has touched.
+/// The tile of a layer at places that never changed.
 struct Untouched {
     SharedBytes codes;
     SharedBytes png;
@@ -37,19 +37,19 @@ const Untouched& untouched(mapping::Layer layer) {
     return all[static_cast<std::size_t>(layer)];
 }
 
-/// A tile's codes, on which chunks are drawn.
+/// A tile's codes while chunks are drawn on them.
 class Canvas {
 public:
     Canvas(Bytes codes, TileKey key, const LayerStyle& style)
         : codes_(std::move(codes)), cells_(cells_of(key)), scale_(cells_per_pixel(key.zoom)), style_(style) {}
 
-    /// Draws all of the tile.
+    /// Draws the whole tile.
     template <class View, class CellsOf>
     void draw(const View& view, CellsOf&& cells_of_chunk) {
         draw_region(view, cells_of_chunk, grid::chunks_of(cells_));
     }
 
-    /// Draws what changed after `since`.
+    /// Draws the chunks that changed after `since`.
     template <class View, class CellsOf>
     void draw_changes(const View& view, CellsOf&& cells_of_chunk, Revision since) {
         const std::int32_t shared = std::max(1, scale_ / grid::kChunkSide); // chunks along a pixel's side, a power of 2
@@ -67,8 +67,8 @@ public:
     [[nodiscard]] Bytes take() { return std::move(codes_); }
 
 private:
-    /// Draws anew the chunks of a region, with which no other chunk shares a pixel. Meanwhile the region's pixels are
-    /// saliences.
+    /// Draws the chunks of a region again. No chunk outside the region may share a pixel with it. The region's pixels
+    /// hold saliences until all chunks are drawn.
     template <class View, class CellsOf>
     void draw_region(const View& view, CellsOf&& cells_of_chunk, const grid::ChunkBox& region) {
         const auto left = static_cast<std::int32_t>(region.ci_begin * grid::kChunkSide - cells_.i_begin) / scale_;

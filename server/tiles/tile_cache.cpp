@@ -7,7 +7,7 @@
 namespace scanloom::tiles {
 namespace {
 
-constexpr std::size_t kAdministrationBytes = 320; // of a tile: its place, two nodes, its control block
+constexpr std::size_t kAdministrationBytes = 320; // per tile: its place, two nodes, its control block
 
 std::size_t size_of(const TilePlace& place, const KeptTile& tile) {
     return tile.bytes->capacity() + place.maps.capacity() + kAdministrationBytes;
@@ -20,7 +20,7 @@ bool is_of(std::string_view tag, std::string_view maps) {
 } // namespace
 
 std::size_t TileCache::PlaceHash::operator()(const TilePlace& place) const noexcept {
-    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15; // 2^64 over the golden ratio
+    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15; // 2^64 / golden ratio
     const auto& [zoom, x, y] = place.key;
     const std::uint64_t where = std::uint64_t{x} << 32 | std::uint64_t{y} << 16 | std::uint64_t{zoom} << 8 |
                                 static_cast<std::uint64_t>(place.layer) << 4 | static_cast<std::uint64_t>(place.format);
@@ -123,9 +123,9 @@ void TileCache::keep_locked(const TilePlace& place, KeptTile tile) {
         added.push_back({nullptr, std::move(tile)});
         const auto [entry, inserted] = entries_.try_emplace(place, added.begin());
         added.front().place = &entry->first;
-        used_.splice(used_.begin(), added); // from here on nothing throws
+        used_.splice(used_.begin(), added); // no exceptions from here on
         stats_.bytes += size_of(entry->first, entry->second->tile);
-    } catch (const std::bad_alloc&) { // both lists are as they were; whoever asked for the tile has it all the same
+    } catch (const std::bad_alloc&) { // both lists are unchanged; the caller still gets the tile
     }
 }
 

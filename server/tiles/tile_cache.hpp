@@ -20,9 +20,9 @@ namespace scanloom::tiles {
 
 enum class TileFormat : std::uint8_t { kCodes, kPng };
 
-/// Which tile of which maps, in which form. What it shows depends on its revision besides, and on nothing else.
+/// Identifies a tile, its maps and its format. The bytes of a tile depend on its place and its revision only.
 struct TilePlace {
-    std::string maps; ///< a tag that no other maps have
+    std::string maps; ///< a tag unique to these maps
     mapping::Layer layer = mapping::Layer::kOccupancy;
     TileKey key;
     TileFormat format = TileFormat::kPng;
@@ -30,44 +30,46 @@ struct TilePlace {
     friend bool operator==(const TilePlace&, const TilePlace&) = default;
 };
 
-/// A tile as it is, or was.
+/// A cached tile at one revision.
 struct KeptTile {
-    SharedBytes bytes; ///< null: there is none
+    SharedBytes bytes; ///< null: no tile
     Revision revision = 0;
-    std::weak_ptr<const void> origin{}; ///< what made the maps it is of
+    std::weak_ptr<const void> origin{}; ///< the session or replay job that produced the maps
 };
 
-/// Tiles that were made, each in the newest revision that was asked for; the least recently used go when others need
-/// their room.
+/// A cache of tiles with the newest requested revision of each. Evicts the least recently used tiles when it is full.
 ///
-/// Memory  bytes_max for what is kept, its administration included; besides, what is being made or sent.
-/// Thread  any. A lock is held to look and to note, never while a tile is made.
+/// Memory: bytes_max for cached tiles, including bookkeeping; tiles that are being made or sent are not counted.
+/// Threads: any thread. The lock is held for lookup and insertion, not while a tile is made.
 class TileCache {
 public:
     struct Stats {
-        std::uint64_t hits = 0;   ///< asked for and there, or being made for somebody else
-        std::uint64_t misses = 0; ///< made
+        std::uint64_t hits = 0;   ///< requests for a tile that was cached or already being made
+        std::uint64_t misses = 0; ///< tiles made
         std::size_t tiles = 0;
         std::size_t bytes = 0;
     };
 
     explicit TileCache(std::size_t bytes_max) : bytes_max_(bytes_max) {}
 
-    /// The tile in that revision; null when it is not there.
+    /// Returns the tile at that revision, or null if it is not cached.
     [[nodiscard]] SharedBytes find(const TilePlace& place, Revision revision);
 
-    /// The same, made when it is not there. Of those who ask at the same time one makes it and the others wait for it;
-    /// what `make` throws, all of them throw.
+    /// Returns the tile at that revision; makes it with `make` if it is not cached. Of simultaneous requests for the
+    /// same tile, one makes it and the others wait for it.
+    ///
+    /// If `make` throws, all of these requests throw the same exception.
     [[nodiscard]] SharedBytes get(const TilePlace& place, Revision revision, const std::function<KeptTile()>& make);
 
-    /// The tile in whatever revision is there, to be used for another; this counts as no request.
+    /// Returns the newest cached revision of the tile, as a basis for drawing another; KeptTile{} if there is none.
+    /// Does not count as a request.
     [[nodiscard]] KeptTile newest(const TilePlace& place);
 
-    /// Keeps a tile unless a newer revision is there, or memory is short.
+    /// Adds a tile to the cache, unless the cache has the same or a newer revision or memory is short.
     void keep(const TilePlace& place, KeptTile tile);
 
-    /// Drops the tiles of these maps, and of those whose tags are theirs with "-" and more. One that is being made is
-    /// not kept.
+    /// Removes the tiles of these maps, and of maps whose tags consist of this tag, "-" and more. A tile of theirs that
+    /// is being made is not cached.
     void forget(std::string_view maps);
 
     [[nodiscard]] Stats stats() const;
@@ -92,7 +94,7 @@ private:
         bool is_forgotten = false;
     };
 
-    // With the lock held.
+    // Called with the lock held.
     [[nodiscard]] Entry* touch(const TilePlace& place);
     [[nodiscard]] SharedBytes find_locked(const TilePlace& place, Revision revision);
     void keep_locked(const TilePlace& place, KeptTile tile);
@@ -100,7 +102,7 @@ private:
 
     const std::size_t bytes_max_;
     mutable std::mutex mutex_;
-    std::list<Entry> used_; // the newest use first
+    std::list<Entry> used_; // most recently used first
     Entries entries_;
     std::list<Flight> flights_;
     Stats stats_;

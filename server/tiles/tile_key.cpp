@@ -9,7 +9,7 @@
 namespace scanloom::tiles {
 namespace {
 
-/// "0", "12", "-3", but not "", "-", "-0", "+1", "01", "1.0" or " 1".
+/// Accepts "0", "12", "-3", but not "", "-", "-0", "+1", "01", "1.0" or " 1".
 bool is_whole_number(std::string_view text) noexcept {
     const bool negative = text.starts_with('-');
     const auto digits = text.substr(negative ? 1 : 0);
@@ -25,10 +25,10 @@ Result<> check_written(std::string_view name, std::string_view text) {
                                                   name)};
 }
 
-/// Pre: is_whole_number(text).
+/// Precondition: is_whole_number(text).
 Result<std::uint32_t> parse_up_to(std::uint32_t last, std::string_view name, std::string_view text) {
     std::uint32_t value = 0;
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value); // refuses a sign, too
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value); // rejects a sign too
     if (parsed.ec == std::errc{} && value <= last) return value;
     return Error{Errc::kNotFound, fmt::format("there is no such tile: {} reaches from 0 to {} here", name, last)};
 }
@@ -36,7 +36,7 @@ Result<std::uint32_t> parse_up_to(std::uint32_t last, std::string_view name, std
 } // namespace
 
 Result<TileKey> parse_tile_key(std::string_view zoom, std::string_view x, std::string_view y) {
-    // Text that is no number is a bad request even where another coordinate is out of range.
+    // Text that is not a number is a bad request even if another coordinate is out of range.
     for (const auto& [name, text] : {std::pair{"z", zoom}, {"x", x}, {"y", y}}) {
         if (const auto written = check_written(name, text); !written) return written.error();
     }

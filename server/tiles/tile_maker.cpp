@@ -7,13 +7,15 @@
 namespace scanloom::tiles {
 namespace {
 
-/// A tile of it shows 256 chunks. Finer ones are drawn from nothing about as fast as they are encoded.
+/// The finest zoom whose drawings are kept. A tile of it shows 256 chunks; a tile of a finer zoom is drawn from its
+/// cells about as fast as it is encoded.
 constexpr std::uint32_t kKeptDrawingZoomMax = 7;
 
-/// A tile of a coarser zoom shows more than a thousand native ones.
+/// The coarsest zoom whose tiles count as a part of a map. A tile of a coarser zoom shows more than a thousand native
+/// ones.
 constexpr std::uint32_t kPartZoomMin = 5;
 
-/// Also when another has the address of one that is gone.
+/// Compares owners, so that a new object at the address of a deleted one is different.
 bool is_same(const std::weak_ptr<const void>& a, const std::shared_ptr<const void>& b) {
     return !a.owner_before(b) && !b.owner_before(a);
 }
@@ -47,9 +49,10 @@ SharedBytes TileMaker::make(const TileSource& maps, const TilePlace& place, Revi
     });
 }
 
-/// Without bytes where there is none that can be gone on from. It has to be of the same origin: a weave that is made
-/// once more has taken its snapshots at other times, and so tells the times of changes otherwise where they were taken
-/// back.
+/// Returns an earlier drawing to start from, without bytes if there is none.
+///
+/// The drawing must have the same origin. A replay job that runs again takes its snapshots at other moments, and the
+/// revision of a change that was reverted later depends on whether a snapshot was taken in between.
 KeptTile TileMaker::earlier_drawing(const std::shared_ptr<const void>& origin, const TilePlace& codes,
                                     Revision revision) {
     auto earlier = cache_.newest(codes);

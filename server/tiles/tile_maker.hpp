@@ -9,35 +9,40 @@
 
 namespace scanloom::tiles {
 
-/// Maps whose tiles are made.
+/// The maps whose tiles are made.
 struct TileSource {
     const mapping::Snapshot& snapshot;
-    std::shared_ptr<const void> origin; ///< whatever makes them, a session or a weave: its snapshots follow each other
+    std::shared_ptr<const void> origin; ///< session or replay job of the maps; its snapshots follow each other
 };
 
-/// The tiles of all maps: each drawn and encoded once for each of its revisions, as long as there is room.
+/// Makes and caches the tiles of all maps. Each revision of a tile is drawn and encoded once, as long as the cache has
+/// space.
 ///
-/// Of tiles that show many chunks also the drawing is kept, from which the next revision differs by the chunks that
-/// changed: so the whole pyramid follows a growing map at the cost of the change, whatever the extent.
-/// Memory  see TileCache.
-/// Thread  any.
+/// For tiles that show many chunks, the cache also keeps the drawing. The next revision is drawn from it by drawing the
+/// chunks that changed. The tiles of all zooms therefore follow a growing map at a cost proportional to the change,
+/// independent of the map's size.
+/// Memory: see TileCache.
+/// Threads: any thread.
 class TileMaker {
 public:
-    /// In a map that grows in view of somebody, the tiles in view of the coarser zooms take 1 MiB.
+    /// Default size of the cache. For one viewer of a growing map, the visible tiles of the coarser zooms take 1 MiB.
     static constexpr std::size_t kBytesMax = std::size_t{64} << 20;
 
     explicit TileMaker(std::size_t bytes_max = kBytesMax) : cache_(bytes_max) {}
 
-    /// The tile if it is there, in microseconds; else null.
-    /// Pre  here and below: `revision` is the tile's tile_revision() in its maps.
+    /// Returns the tile if it is cached, or null. Takes microseconds.
+    /// @param revision  the tile's tile_revision() in its maps
     [[nodiscard]] SharedBytes find(const TilePlace& place, Revision revision);
 
-    /// Whether making it takes no look at a whole map: it shows no more than a part of one, or an earlier drawing is
-    /// there to go on from. `origin` as in TileSource; a later revision than the tile's does for it.
+    /// Returns whether the tile can be made without reading a whole map: it shows only a part of one, or an earlier
+    /// drawing is cached to start from.
+    /// @param origin  see TileSource
+    /// @param revision  the tile's tile_revision() in its maps, or a later revision
     [[nodiscard]] bool is_quick(const std::shared_ptr<const void>& origin, const TilePlace& place, Revision revision);
 
-    /// The tile, made if it is not there; who asks for one that is being made waits for it.
-    /// Pre  the maps are those that place.maps names.
+    /// Returns the tile; makes it if it is not cached. If the tile is already being made, waits for it.
+    /// @param maps  the maps that place.maps names
+    /// @param revision  the tile's tile_revision() in these maps
     [[nodiscard]] SharedBytes make(const TileSource& maps, const TilePlace& place, Revision revision);
 
     /// See TileCache::forget().

@@ -9,17 +9,17 @@
 
 namespace scanloom::tiles {
 
-/// How snapshots become the bytes of tiles and map files: raise it when the same snapshot gives others, so that no
-/// cache keeps what an older program drew.
+/// Version of the rendering of tiles and map files. Increase it when the same snapshot gives other bytes, so that
+/// caches discard what an older program drew.
 inline constexpr std::uint32_t kRenderingVersion = 4;
 
-/// The newest change of any of the tile's cells in the layer; 0 when it was never touched. Changes elsewhere leave it
-/// as it is.
+/// Returns the revision of the newest change of any of the tile's cells in the layer; 0 if none ever changed. Changes
+/// elsewhere do not affect it.
 [[nodiscard]] Revision tile_revision(const mapping::Snapshot& snapshot, mapping::Layer layer, TileKey key);
 
-/// A strong entity tag, quoted: while it stays, so do the tile's bytes.
-/// Pre  the tag tells a session from every other one, also from an earlier one of the same name, and from itself as
-///      another version of the program weaves or draws it.
+/// Returns a strong entity tag, quoted: equal tags mean equal bytes.
+/// @param session_tag  differs between any two sessions, even if they have the same name one after the other, and
+///                     between program versions that map or draw differently
 [[nodiscard]] std::string etag_of(std::string_view session_tag, std::string_view layer, TileKey key,
                                   Revision tile_revision);
 
