@@ -13,10 +13,10 @@
 namespace scanloom::exchange {
 namespace {
 
-/// Replay takes longer readings of a CARMEN log for no return unless it is told otherwise.
+/// By default, replay treats longer readings of a CARMEN log as no return.
 constexpr double kBelievedRange = 50.0; // metres
 
-/// Replay keeps the order of lines whose stamps go back by no more.
+/// Replay keeps the order of lines whose stamps go back by no more than this.
 constexpr double kStampJitter = 2.0; // seconds
 
 Error beyond_carmen(const std::string& robot, const Sensor& sensor, std::string_view what) {
@@ -34,7 +34,7 @@ Result<> check_sayable(const std::string& robot, const Sensor& sensor, const Bea
     return {};
 }
 
-/// As the one who replays the line will read it.
+/// Appends a range so that replay reads it back as the same reading.
 void append_range(std::string& line, RangeMm range, const Sensor& sensor) {
     const double metres = range * 0.001;
     if (range == kInvalidRange || (range != kNoReturn && metres < sensor.range_min)) {

@@ -14,28 +14,30 @@
 
 namespace scanloom::exchange {
 
-/// A session's log as a CARMEN log: a comment at its head, then a ROBOTLASER1 line for each scan, in the order of the
-/// log. Replayed into a session of the same settings it gives the same maps, bit for bit.
+/// Converts a session's log to a CARMEN log: a comment at the head, then a ROBOTLASER1 line for each scan, in the order
+/// of the log. Replaying it into a session with the same settings gives the same maps, bit for bit.
 ///
-/// Both poses of a line are the sensor's in the map, from which maps are woven; the robot's would have to be got back
-/// from it by way of the mount, and rounding would move cells. Numbers have as many digits as it takes to read the same
-/// value again; ranges are metres with three decimals. No return is written as the sensor's range_max, no valid reading
-/// as 0. The host name is the robot's name, both stamps are the scan's; but readers put lines into the order of their
-/// stamps, so a scan that would go back further than they allow (robots with unlike clocks) has the latest stamp before
-/// it, and a comment says so.
-/// Source  CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
+/// Both poses of a line are the sensor's pose in the map, which the maps are made from. The robot's pose is not used
+/// because the sensor's pose would have to be recomputed from it through the mount, and rounding would move cells.
+/// Numbers have as many digits as reading the same value again needs; ranges are in metres with three decimals. A beam
+/// without a return is written as the sensor's range_max, an invalid reading as 0.
+///
+/// The host name is the robot's name; both stamps are those of the scan. Readers sort lines by stamp. A scan whose
+/// stamp goes back further than readers allow (robots whose clocks differ) therefore gets the latest stamp before it,
+/// and a comment with its own stamp.
+/// Source: CARMEN's logger format: ROBOTLASER1 of log_writer.c, with its remission count and turn_axis.
 class CarmenText {
 public:
-    /// @param filter  which scans are integrated in the session's maps; no others become lines
+    /// @param filter  decides which scans are integrated in the session's maps; other scans are not written
     explicit CarmenText(ScanFilter filter = ScanFilter()) : filter_(std::move(filter)) {}
 
-    /// The lines at the head of the file.
+    /// Returns the lines at the head of the file.
     [[nodiscard]] static std::string head(const std::string& session);
 
-    /// The lines that an entry becomes; robots and sensors become none, but for a comment where a sensor reaches
-    /// further than a reader may believe. Entries come in the order of the log.
-    /// Errors  kConflict: what the format cannot say: an imported map, a scan of sonars, of beams that are not evenly
-    ///         spaced, or of an aperture of its own. kMalformed: a scan of nothing known.
+    /// Converts the next entry of the log to lines. Robots and sensors give no lines, except a comment if a sensor's
+    /// range exceeds what a reader accepts by default.
+    /// Errors: kConflict if the format cannot represent the entry: an imported map, a sonar scan, beams that are not
+    ///         evenly spaced, or a sensor with its own aperture; kMalformed if a scan's robot or sensor is unknown.
     [[nodiscard]] Result<std::string> lines(const LogEntry& entry);
 
 private:
@@ -50,7 +52,7 @@ private:
     Revision revision_ = 0; ///< of the newest entry
     std::vector<std::string> robots_;
     std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_;
-    double latest_ = std::numeric_limits<double>::lowest(); ///< stamp written
+    double latest_ = std::numeric_limits<double>::lowest(); ///< newest stamp written
 };
 
 } // namespace scanloom::exchange

@@ -6,19 +6,21 @@
 #include <string>
 #include <vector>
 
-/// A session's fused cloud as files. Metres to a tenth of a millimetre, map frame.
+/// Writes a session's fused point cloud as files. Coordinates are in metres, in the map frame, with a resolution of a
+/// tenth of a millimetre.
 namespace scanloom::exchange {
 
-/// About how much text a point takes, in either file: bytes.
+/// Approximate size of a point's text in either file, in bytes.
 inline constexpr std::size_t kPointTextBytes = 64;
 
-/// A line for each point, after one with the names: angle,distance,x,y,seen,robot,revision. Angle in radians and
-/// distance are the fused point's, from the robot that saw it first.
+/// Returns the points as CSV: a line with the column names angle,distance,x,y,seen,robot,revision, then one line per
+/// point. Angle (radians) and distance are those of the fused point, from the robot that saw it first.
 /// @param robots  names by RobotIndex; they need no quotes
 [[nodiscard]] std::string points_csv(std::span<const landmarks::CloudPoint> points,
                                      std::span<const std::string> robots);
 
-/// Polygon File Format 1.0, ASCII: vertices with x, y, z, which is 0, and by how many captures each was seen.
+/// Returns the points as an ASCII file in the Polygon File Format 1.0. A vertex has x, y, z = 0, and the number of
+/// captures in which the point was seen.
 [[nodiscard]] std::string points_ply(std::span<const landmarks::CloudPoint> points);
 
 } // namespace scanloom::exchange
