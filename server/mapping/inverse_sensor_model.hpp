@@ -13,6 +13,7 @@
 
 namespace scanloom::mapping {
 
+/// The evidence of a scan for a cell.
 enum class Verdict : std::uint8_t { kFree, kOccupied };
 
 /// The properties of a sensor and a map that the model uses. Lengths are in metres.
@@ -21,6 +22,7 @@ struct ModelGeometry {
     double thickness = 0.1; ///< alpha; at least one cell is used
     double cell_size = 0.05;
 
+    /// Returns half the width of the occupied band around a hit, in metres.
     [[nodiscard]] double half_band() const noexcept { return std::max(thickness, cell_size) / 2.0; }
 };
 

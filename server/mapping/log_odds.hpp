@@ -17,6 +17,7 @@ inline constexpr double kLogOddsScale = 2048.0;
 /// Marks a cell that no scan has reached. Arithmetic never produces this value.
 inline constexpr LogOdds kUnknownLogOdds = std::numeric_limits<LogOdds>::min();
 
+/// Returns ln(p / (1 - p)); 0 < p < 1 for a finite result.
 [[nodiscard]] inline double log_odds_of(double probability) noexcept {
     return std::log(probability / (1.0 - probability));
 }

@@ -25,6 +25,7 @@ struct SensorOnGrid {
         : at{T_map_sensor.x * (1.0 / cell_size), T_map_sensor.y * (1.0 / cell_size)},
           cosine(std::cos(T_map_sensor.yaw)), sine(std::sin(T_map_sensor.yaw)) {}
 
+    /// Rotates a direction from the sensor frame to the map frame.
     [[nodiscard]] Direction to_map(const Direction& d) const noexcept {
         return {cosine * d.x - sine * d.y, sine * d.x + cosine * d.y};
     }

@@ -22,6 +22,7 @@ public:
     void pass(grid::Cell cell) { mark(cell, &ChunkMarks::passed); }
     void hit(grid::Cell cell) { mark(cell, &ChunkMarks::hit); }
 
+    /// Returns the marks of all chunks that have any.
     [[nodiscard]] const std::map<grid::ChunkKey, ChunkMarks>& chunks() const noexcept { return chunks_; }
 
     /// Removes and returns the marks of the first chunk.

@@ -69,6 +69,7 @@ struct Snapshot {
 /// Returns the box of cells that a layer shows.
 [[nodiscard]] grid::CellBox bounds_of(const Snapshot& snapshot, Layer layer) noexcept;
 
+/// Returns the box of cells that any layer has observed.
 [[nodiscard]] inline grid::CellBox bounds_of(const Snapshot& snapshot) noexcept { return bounds_of(snapshot.bounds); }
 
 } // namespace scanloom::mapping

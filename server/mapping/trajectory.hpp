@@ -48,7 +48,7 @@ public:
     /// Returns the number of points, including those no longer kept.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-    /// Pre: begin() <= index < size().
+    /// Precondition: begin() <= index < size().
     [[nodiscard]] const TrajectoryPoint& operator[](std::size_t index) const noexcept {
         return (*(*blocks_)[(index - begin_) / kTrajectoryBlock])[(index - begin_) % kTrajectoryBlock];
     }

@@ -59,6 +59,7 @@ struct Contours {
     std::array<const double*, kContoursMax> radius{};
 };
 
+/// A rectangle in cells, relative to the sensor.
 struct Box {
     double x_min = 0.0;
     double y_min = 0.0;
