@@ -75,8 +75,8 @@ struct ClassLayer::Around {
         return planes == nullptr ? 0 : (planes->*plane)[static_cast<std::size_t>(j)];
     }
 
-    /// Returns the cells of the middle chunk that have a cell of the plane within `reach` cells (Chebyshev distance), 1
-    /// .. 64.
+    /// Returns the cells of the middle chunk that have a cell of the plane within `reach` cells (Chebyshev distance,
+    /// 1..64).
     [[nodiscard]] BitPlane dilated(BitPlane Planes::*plane, std::int32_t reach) const {
         std::array<std::uint64_t, std::size_t{3} * kSide> rows;
         const std::int32_t end = 2 * kSide + reach;

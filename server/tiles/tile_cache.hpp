@@ -18,6 +18,7 @@
 
 namespace scanloom::tiles {
 
+/// The form of a cached tile: its codes (see Code) or a PNG.
 enum class TileFormat : std::uint8_t { kCodes, kPng };
 
 /// Identifies a tile, its maps and its format. The bytes of a tile depend on its place and its revision only.
