@@ -23,12 +23,13 @@ namespace fs = std::filesystem;
 rocksdb::Options options_to_read(const StoreOptions& options, bool has_unfinished_write) {
     auto rocksdb = rocksdb_options(options, std::make_shared<CompactionWatch>());
     rocksdb.create_if_missing = false;
-    // All before an unfinished write has been found whole, so that reading just ends there, as if it had been cut off.
+    // Everything before an unfinished write is known to be intact, so reading just ends there, as after
+    // mend_after_crash().
     if (has_unfinished_write) rocksdb.wal_recovery_mode = rocksdb::WALRecoveryMode::kPointInTimeRecovery;
     return rocksdb;
 }
 
-/// Sessions whose record is gone. Whatever cannot be read is told when the sessions are.
+/// Returns the sessions without a record. Unreadable data is reported when the sessions are read.
 std::vector<SessionId> owners_without_record(rocksdb::DB& database, const LogEnds& ends) {
     std::set<SessionId> found;
     const std::unique_ptr<rocksdb::Iterator> iterator(database.NewIterator({}));

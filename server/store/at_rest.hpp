@@ -10,18 +10,18 @@
 
 namespace scanloom::store {
 
-/// A store that no server has open, as it lies on the disk.
+/// A store on disk that no server has open.
 struct AtRest {
-    std::unique_ptr<ScanLog> log;          ///< to be read: every change fails
-    std::uint64_t unfinished_bytes = 0;    ///< of a write that a crash cut short, which the next start drops: no damage
-    std::vector<SessionId> without_record; ///< of which there are entries or parts alone
+    std::unique_ptr<ScanLog> log;          ///< read-only: every change fails
+    std::uint64_t unfinished_bytes = 0;    ///< of a write that a crash cut short; not damage: the next start drops it
+    std::vector<SessionId> without_record; ///< sessions with entries or checkpoint parts but without a record
 };
 
-/// Opens a store to look at it, and changes not a byte of it; not even a lock or a line of a log is left behind. Reads
+/// Opens a store for reading and changes no byte of it: neither a lock file nor a log line is left behind. Reads
 /// manifest and write-ahead log as a start does.
 ///
-/// Errors  kNotFound: there is none; kConflict: a server has it open; kStoreFailed: it cannot be read, or is damaged
-///         so that a start would refuse it, too; kUnsupportedVersion.
+/// Errors: kNotFound: there is no store; kConflict: a server has it open; kStoreFailed, kDataLoss: it cannot be read,
+///         or is so damaged that a start would refuse it as well; kUnsupportedVersion: a newer program wrote it.
 [[nodiscard]] Result<AtRest> open_at_rest(const std::filesystem::path& directory, const StoreOptions& options = {});
 
 } // namespace scanloom::store

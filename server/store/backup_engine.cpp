@@ -10,7 +10,7 @@ rocksdb::BackupEngineOptions engine_options(const std::filesystem::path& directo
     rocksdb::BackupEngineOptions options(directory.native());
     options.sync = true;
     options.share_table_files = true;
-    options.share_files_with_checksum = true; // two stores may have tables of one name
+    options.share_files_with_checksum = true; // tables of two stores may have the same name
     options.backup_rate_limit = Backups::kBytesPerSecond;
     return options;
 }

@@ -11,21 +11,21 @@
 
 namespace scanloom::store {
 
-/// RocksDB's backups as Scanloom uses them.
+/// RocksDB's backup engine with Scanloom's options and metadata.
 
 [[nodiscard]] rocksdb::BackupEngineOptions engine_options(const std::filesystem::path& directory);
 
-/// Kept beside each backup; those of earlier versions lack the store.
+/// Stored with each backup; backups of earlier versions lack `store`.
 struct BackupMetadata {
     std::size_t sessions = 0;
-    std::string store; ///< its identity; empty: not known
+    std::string store; ///< identity of the store; empty: unknown
 };
 
 [[nodiscard]] BackupMetadata metadata_of(const rocksdb::BackupInfo& info);
 
 [[nodiscard]] Backup backup_of(const rocksdb::BackupInfo& info);
 
-/// By rising id, as the next; without those that are damaged.
+/// Returns the intact backups by ascending id; damaged ones are omitted.
 [[nodiscard]] std::vector<rocksdb::BackupInfo> infos_of(const rocksdb::BackupEngineReadOnlyBase& engine);
 [[nodiscard]] std::vector<Backup> backups_of(const rocksdb::BackupEngineReadOnlyBase& engine);
 

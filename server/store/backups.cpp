@@ -38,7 +38,7 @@ Result<std::string> identity_of(ScanLog& log) {
     return identity;
 }
 
-/// Or `--restore newest` would give the other store's.
+/// Otherwise `--restore newest` would restore another store.
 Result<> check_owner(const rocksdb::BackupEngine& engine, const fs::path& directory, const std::string& identity) {
     for (const auto& info : infos_of(engine)) {
         const auto owner = metadata_of(info).store;
@@ -62,7 +62,8 @@ Result<std::unique_ptr<Backups>> Backups::open(const fs::path& directory, std::s
     const auto engine = backups->open_engine();
     if (!engine) return engine.error();
     if (auto owned = check_owner(**engine, directory, *identity); !owned) return owned.error();
-    (*engine)->GarbageCollect().PermitUncheckedError(); // what a crash left of one; if it stays, it takes disk alone
+    // Removes what a crash left of a backup. If it stays, it only uses disk space.
+    (*engine)->GarbageCollect().PermitUncheckedError();
     backups->last_ = backups_of(**engine);
     return backups;
 }
@@ -78,7 +79,7 @@ std::optional<Backups::FileId> Backups::id_of(const fs::path& file) {
     return FileId{found.st_dev, found.st_ino};
 }
 
-/// On which it is, or would be made.
+/// Returns the device that holds the directory, or that would hold it if it were created.
 std::uint64_t Backups::disk_of(const fs::path& directory) {
     std::error_code none;
     auto place = fs::absolute(directory, none);
@@ -87,7 +88,7 @@ std::uint64_t Backups::disk_of(const fs::path& directory) {
     return found ? found->disk : 0;
 }
 
-/// A lock whose file was removed keeps nobody out.
+/// Locks the directory again if the lock file was removed: such a lock excludes no other server.
 Result<> Backups::take_directory() {
     std::error_code problem;
     fs::create_directories(directory_, problem);
@@ -107,8 +108,8 @@ Result<> Backups::take_directory() {
     return {};
 }
 
-/// What is made below a mount point would fill the wrong disk, and be out of sight when the right one is back. A disk
-/// may have another number when it is back, but has backups.
+/// A backup in the mount point's own directory would fill the wrong disk and be hidden once the right one is mounted
+/// again. A disk may have another device number after it is mounted again, but then it holds backups.
 Result<> Backups::check_disk() const {
     std::error_code none;
     if (disk_of(directory_) == disk_ || fs::is_directory(directory_ / "meta", none)) return {};
@@ -143,7 +144,7 @@ Result<Backup> Backups::make(ScanLog& log) {
 
 void Backups::begin_with(std::shared_ptr<rocksdb::BackupEngine> engine) {
     const std::lock_guard lock(state_mutex_);
-    tell_lost(backups_of(*engine)); // before make() drops any
+    tell_lost(backups_of(*engine)); // before make() deletes any
     engine_ = std::move(engine);
     ++changes_;
     if (stopped_) engine_->StopBackup();
@@ -163,7 +164,7 @@ Result<Backup> Backups::make_with(rocksdb::BackupEngine& engine, ScanLog& log, s
         if (!identity) return identity.error();
         if (auto owned = check_owner(engine, directory_, *identity); !owned) return owned;
         rocksdb::CreateBackupOptions options;
-        options.flush_before_backup = true; // what is only in the write-ahead log would be copied again each time
+        options.flush_before_backup = true; // otherwise each backup would copy entries of the write-ahead log again
         auto status =
             engine.CreateNewBackupWithMetadata(options, &database, fmt::format("{} {}", sessions, *identity), &id);
         if (status.ok()) status = engine.VerifyBackup(id, true);
@@ -173,7 +174,8 @@ Result<Backup> Backups::make_with(rocksdb::BackupEngine& engine, ScanLog& log, s
         return failure("no backup could be made in {}: {}", directory_.native(), status.ToString());
     });
     if (!made) return made.error();
-    engine.PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError(); // again with the next one
+    // If it fails, the next backup retries.
+    engine.PurgeOldBackups(static_cast<std::uint32_t>(kept_)).PermitUncheckedError();
     return backups_of(engine).back();
 }
 
@@ -190,7 +192,7 @@ void Backups::tell_lost(const std::vector<Backup>& found) const {
 
 namespace {
 
-/// As whoever restores sees them.
+/// Lists the backups that restore_backup() would find.
 Result<std::vector<Backup>> read_backups(const fs::path& directory) {
     std::error_code none;
     if (!fs::exists(directory / "meta", none)) return std::vector<Backup>{};
@@ -215,7 +217,7 @@ Result<std::vector<Backup>> Backups::list() {
     auto found = read_backups(directory_);
     if (!found) return found;
     const std::lock_guard lock(state_mutex_);
-    if (changes != changes_) return last_; // one was made meanwhile, or is being made
+    if (changes != changes_) return last_; // a backup was made meanwhile, or is being made
     tell_lost(*found);
     last_ = *found;
     return found;

@@ -19,59 +19,63 @@ class BackupEngine;
 
 namespace scanloom::store {
 
-/// One state of a store, to go back to.
+/// One saved state of a store.
 struct Backup {
-    std::uint32_t id = 0;     ///< from 1, rising
+    std::uint32_t id = 0;     ///< from 1, ascending
     double time = 0.0;        ///< seconds since the epoch
-    std::uint64_t bytes = 0;  ///< of the store; tables are shared with other backups
-    std::size_t sessions = 0; ///< in it
+    std::uint64_t bytes = 0;  ///< size of the store; tables are shared with other backups
+    std::size_t sessions = 0; ///< sessions in the store
 
     friend bool operator==(const Backup&, const Backup&) = default;
 };
 
-/// Backups of a store that is in use, in a directory of their own.
+/// Makes and lists backups of a store that is in use, in a separate directory.
 ///
-/// A backup is a moment of the store: everything acknowledged before it began is in it. Tables never change, so each is
-/// copied once and shared by the backups that have it. Every file is synced, and read again against its checksum.
-/// What is in the directory is looked at each time: a disk comes and goes under a server that runs.
-/// Thread  any; stop() waits for nothing.
-/// Source  RocksDB 7.8, utilities/backup_engine.h.
+/// Each backup captures the store at one moment and contains everything acknowledged before the backup began. Tables
+/// never change, so each table is copied once and shared by all backups that contain it. Every file is synced, then
+/// read back and compared with its checksum. Every call reads the directory again, because its disk may be unmounted
+/// and mounted while the server runs.
+/// Threads: any; stop() does not block.
+/// Source: RocksDB 7.8, utilities/backup_engine.h.
 class Backups {
 public:
-    static constexpr std::uint64_t kBytesPerSecond = std::uint64_t{100} << 20; ///< copied, so that robots do not wait
+    /// Limit of the copy rate, so that robots need not wait for the disk.
+    static constexpr std::uint64_t kBytesPerSecond = std::uint64_t{100} << 20;
 
-    /// A sentence for whoever runs the server.
+    /// Receives a message for the operator.
     using Tell = std::function<void(const std::string&)>;
 
-    /// Creates the directory if need be; keeps the newest `kept` backups, at least 1. No other server can use it for
-    /// as long as this lives; whoever restores can.
-    /// @param tell  what became of backups that were there and are no more; called by list() and make().
-    /// Errors  kConflict: another server uses the directory, or it has backups of another store than `log`;
-    ///         kStoreFailed: it cannot be used; kInvalidField: the log is not kept on a disk.
+    /// Opens the directory, creates it if needed, and locks it against other servers during the object's lifetime. The
+    /// lock does not keep restore_backup() out.
+    /// @param kept  number of newest backups to keep; less than 1 counts as 1
+    /// @param tell  called by list() and make() with the backups that no longer exist; may be null
+    /// Errors: kConflict: another server uses the directory, or it has backups of another store than `log`;
+    ///         kStoreFailed: the directory cannot be used; kInvalidField: the log is not kept on a disk.
     [[nodiscard]] static Result<std::unique_ptr<Backups>> open(const std::filesystem::path& directory, std::size_t kept,
                                                                ScanLog& log, Tell tell = {});
     ~Backups();
     Backups(const Backups&) = delete;
     Backups& operator=(const Backups&) = delete;
 
-    /// Makes one, and drops the oldest ones. Copies what is new: waits for both disks. Where the directory has been
-    /// removed or emptied it is made again.
-    /// Errors  kConflict: another is being made, another server uses the directory meanwhile, or it has backups of
+    /// Makes a backup of `log` and deletes the oldest backups until kept() remain. Copies only new files and waits for
+    /// both disks. Creates the directory again if it was removed or emptied.
+    /// Errors: kConflict: another make() is running, another server has taken the directory, or it has backups of
     ///         another store; kShuttingDown: stop() was called; kInvalidField: the log is not kept on a disk;
-    ///         kStoreFailed: another disk is there than at first, or it fails; nothing is left of the backup.
+    ///         kStoreFailed: the directory is on another disk than at open(), or a disk fails. A failed backup leaves
+    ///         no files.
     [[nodiscard]] Result<Backup> make(ScanLog& log);
 
-    /// By rising id, as they are there now; while one is made, as they were before.
-    /// Errors  kStoreFailed: another disk is there than at first, or it fails.
+    /// Returns the backups in the directory by ascending id. While make() runs, returns the list from before it began.
+    /// Errors: kStoreFailed: the directory is on another disk than at open(), or the disk fails.
     [[nodiscard]] Result<std::vector<Backup>> list();
 
     [[nodiscard]] std::size_t kept() const noexcept { return kept_; }
 
-    /// Has make() end soon, for good.
+    /// Makes the current make() and every later one end soon with kShuttingDown.
     void stop();
 
 private:
-    /// Of whatever name.
+    /// Identifies a file independently of its name.
     struct FileId {
         std::uint64_t disk = 0;
         std::uint64_t inode = 0;
@@ -93,21 +97,23 @@ private:
     const std::filesystem::path directory_;
     const std::size_t kept_;
     const Tell tell_;
-    std::uint64_t disk_ = 0;                        // on which the directory was at first
-    std::optional<FileLock> lock_;                  // guarded by making_, as the next
-    std::optional<FileId> locked_;                  // the file of the lock
-    std::mutex making_;                             // held by who makes one
-    std::mutex state_mutex_;                        // guards what follows
-    std::vector<Backup> last_;                      // when they were looked at last
-    std::shared_ptr<rocksdb::BackupEngine> engine_; // null: none is being made
-    std::uint64_t changes_ = 0;                     // beginnings and ends of make()
+    std::uint64_t disk_ = 0;                        // of the directory when it was opened
+    std::optional<FileLock> lock_;                  // guarded by making_, like locked_
+    std::optional<FileId> locked_;                  // the lock file
+    std::mutex making_;                             // held during make()
+    std::mutex state_mutex_;                        // guards the members below
+    std::vector<Backup> last_;                      // as last listed
+    std::shared_ptr<rocksdb::BackupEngine> engine_; // null: make() is not running
+    std::uint64_t changes_ = 0;                     // counts starts and ends of make()
     bool stopped_ = false;
 };
 
-/// Writes the store as a backup has it, checking each file's checksum, and opens it once.
-/// @param id  nothing: the newest.
-/// Errors  kNotFound: no such backup; kConflict: `store` is not empty; kStoreFailed: a file of the backup is damaged,
-///         or the disk cannot take it; what there is of the new store is to be deleted.
+/// Restores a backup into a new store, verifies each file's checksum, and opens the store once.
+/// @param directory  directory of the backups
+/// @param id         nullopt: the newest
+/// @param store      directory of the new store; must be empty or not exist
+/// Errors: kNotFound: no such backup; kConflict: `store` is not empty; kStoreFailed: a file of the backup is damaged,
+///         or the disk has no room. After a failure the caller has to delete the partial store.
 [[nodiscard]] Result<Backup> restore_backup(const std::filesystem::path& directory, std::optional<std::uint32_t> id,
                                             const std::filesystem::path& store, const StoreOptions& options = {});
 

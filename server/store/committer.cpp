@@ -9,7 +9,7 @@
 namespace scanloom::store {
 namespace {
 
-// More would make a write's first change wait longer without saving a noticeable part of an fsync.
+// A larger group would delay a write's first change without saving a noticeable part of an fsync.
 constexpr std::uint64_t kGroupBytesMax = std::uint64_t{8} << 20;
 
 } // namespace
@@ -26,7 +26,7 @@ Committer::~Committer() {
     }
     waiting_.notify_one();
     thread_.join();
-    check_files(); // a database that is closed deletes files
+    check_files(); // closing a database deletes files
 }
 
 void Committer::submit(Change change) {
@@ -40,7 +40,7 @@ void Committer::submit(Change change) {
 
 Result<> Committer::submit_and_wait(Change change) {
     assert(std::this_thread::get_id() != thread_.get_id());
-    // Shared: set_value() may still be returning when the waiter goes on.
+    // Shared, because set_value() may still be returning when the waiting thread continues.
     const auto outcome = std::make_shared<std::promise<Result<>>>();
     auto result_of_change = outcome->get_future();
     change.done = [outcome](Result<> result) { outcome->set_value(std::move(result)); };
@@ -56,12 +56,12 @@ StoreStats Committer::stats() const {
         if (const auto in_place = files_->check(); !in_place) stats.last_error = in_place.error().message;
     }
     if (!stats.no_room) return stats;
-    const auto no_room = want_of_room(free_bytes()); // as it is by now
+    const auto no_room = want_of_room(free_bytes()); // as of now
     stats.no_room = no_room ? std::optional(no_room->message) : std::nullopt;
     return stats;
 }
 
-/// Costs a microsecond.
+/// Takes about a microsecond.
 std::optional<std::uint64_t> Committer::free_bytes() const {
     std::uint64_t free = 0;
     if (!database_.GetEnv()->GetFreeSpace(name_, &free).ok()) return std::nullopt;
@@ -80,7 +80,7 @@ void Committer::run() {
     for (Group group = next_group(); !group.empty(); group = next_group()) commit(std::move(group));
 }
 
-/// Waits for work; empty when there will be none any more.
+/// Waits for changes. Returns an empty group when the committer stops.
 Committer::Group Committer::next_group() {
     std::unique_lock lock(mutex_);
     waiting_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
@@ -98,7 +98,7 @@ Committer::Group Committer::next_group() {
 void Committer::commit(Group group) {
     std::uint64_t bytes = 0;
     for (const Change& change : group) bytes += change.bytes;
-    rocksdb::WriteBatch batch(static_cast<std::size_t>(bytes)); // so that it need not grow
+    rocksdb::WriteBatch batch(static_cast<std::size_t>(bytes)); // reserved, so that it need not grow
     std::vector<Result<>> results;
     results.reserve(group.size());
     check_files();
@@ -140,7 +140,7 @@ Result<> Committer::write(rocksdb::WriteBatch& batch) {
                           "which the server does as soon as its disk can be written",
                           name_, status.ToString())});
     }
-    check_files(); // so that nothing is acknowledged that went to deleted files
+    check_files(); // acknowledges nothing that went to deleted files
     if (failed_) return *failed_;
     const std::lock_guard lock(mutex_);
     ++stats_.synced_writes;

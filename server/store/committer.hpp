@@ -19,34 +19,35 @@ namespace scanloom::store {
 
 /// One change of the store.
 struct Change {
-    std::uint64_t bytes = 0;   ///< about what it adds to the write
-    std::uint64_t appends = 0; ///< what to count when it is durable
+    std::uint64_t bytes = 0;   ///< approximate size in the write
+    std::uint64_t appends = 0; ///< added to the statistics when the change is durable
     std::uint64_t entries = 0;
-    bool frees_disk = false; ///< made also where the disk is as good as full
+    bool frees_disk = false; ///< accepted even when less than the reserve is free
 
-    /// Adds the change to the write, or refuses it and adds nothing. Called on the committer's thread, in order.
+    /// Adds the change to the write, or returns an error and adds nothing. Called on the committer's thread, in order
+    /// of submission.
     std::function<Result<>(rocksdb::WriteBatch&)> add_to;
 
-    /// Called once, on the committer's thread.
+    /// Called exactly once, on the committer's thread.
     ScanLog::Done done;
 };
 
-/// The only writer of the database: one thread, one queue, one synced write after another.
+/// The only writer of the database: one thread with one queue issues one synced write after another.
 ///
-/// As each write is synced before the next one begins, only the last write in RocksDB's log can be
-/// torn by a crash, which is what mend_after_crash() relies on; and RocksDB fills its memtable
-/// only after the sync, so nothing reaches a table file before it is durable in the log.
-/// A failed write leaves the disk unknown: from then on every change fails.
-/// Thread  any.
+/// Each write is synced before the next one begins, so a crash can tear only the last write in RocksDB's log;
+/// mend_after_crash() relies on this. RocksDB fills its memtable only after the sync, so nothing reaches a table file
+/// before it is durable in the log. A failed write leaves the disk in an unknown state: every later change fails.
+/// Threads: any.
 class Committer {
 public:
-    /// Changes that do not free disk are refused while it has less than `disk_reserve_bytes` free.
+    /// Refuses changes that do not free disk while less than `disk_reserve_bytes` are free.
+    /// @param name         directory of the store, for messages and to find its disk
     /// @param compactions  updated before each write
-    /// @param files        checked before each write, after it, and by stats(); null for a database that is only read
+    /// @param files        checked before and after each write and by stats(); null for a read-only database
     Committer(rocksdb::DB& database, std::string name, std::uint64_t disk_reserve_bytes, CompactionSwitch& compactions,
               FilesWatch* files);
 
-    /// Writes what waits, then stops.
+    /// Writes the queued changes, then stops.
     ~Committer();
 
     Committer(const Committer&) = delete;
@@ -54,10 +55,11 @@ public:
 
     void submit(Change change);
 
-    /// The same, returning when it is durable or has failed. Not from within a `done`.
+    /// Submits a change and waits until it is durable or has failed; replaces its `done`. Not called from within a
+    /// `done`.
     [[nodiscard]] Result<> submit_and_wait(Change change);
 
-    /// All but what is on disk.
+    /// Returns the committer's counts and errors; torn_bytes_dropped and damage stay unset.
     [[nodiscard]] StoreStats stats() const;
 
 private:
@@ -74,17 +76,17 @@ private:
     void count(const Change& change);
 
     rocksdb::DB& database_;
-    const std::string name_; // for messages, and where the disk is
+    const std::string name_; // directory of the store
     const std::uint64_t disk_reserve_bytes_;
     CompactionSwitch& compactions_;
-    FilesWatch* const files_;     // or null
-    std::optional<Error> failed_; // committer's thread only; stats_.last_error is its public copy
-    mutable std::mutex mutex_;    // guards what follows
+    FilesWatch* const files_;     // may be null
+    std::optional<Error> failed_; // used on the committer's thread only; stats_.last_error is its public copy
+    mutable std::mutex mutex_;    // guards the members below
     std::condition_variable waiting_;
     std::deque<Change> queue_;
     bool stopping_ = false;
     StoreStats stats_;
-    std::thread thread_; // last: everything it uses exists
+    std::thread thread_; // last: starts after everything that it uses
 };
 
 } // namespace scanloom::store

@@ -15,7 +15,7 @@ void CompactionSwitch::stop() {
 
 void CompactionSwitch::set(bool paused) {
     const auto status = database_.SetOptions({{"disable_auto_compactions", paused ? "true" : "false"}});
-    if (status.ok()) is_paused_ = paused; // else the next update tries again
+    if (status.ok()) is_paused_ = paused; // otherwise the next update retries
 }
 
 } // namespace scanloom::store

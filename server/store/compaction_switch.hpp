@@ -7,25 +7,25 @@
 
 namespace scanloom::store {
 
-/// Pauses RocksDB's merging of tables while the disk has little room: the merged tables exist next to the old ones for
-/// a while, and would take the room that scans and removals need.
-/// SetOptions() writes to the disk and waits for writes that are under way.
-/// Thread  that of the committer.
+/// Pauses RocksDB's compactions while the disk has little room. Merged tables exist next to the old ones for a while
+/// and would take the room that scans and removals need.
+/// Cost: a change of state calls SetOptions(), which writes to the disk and waits for writes in progress.
+/// Threads: the committer's.
 class CompactionSwitch {
 public:
-    /// @param reserve_bytes  what the store leaves free: compactions pause below twice of it, and below kRoom more than
-    /// it
+    /// @param reserve_bytes  what the store leaves free. Compactions pause below twice this value, and below kRoom more
+    ///                       than it.
     CompactionSwitch(rocksdb::DB& database, std::uint64_t reserve_bytes)
         : database_(database), pause_below_(reserve_bytes + std::max(reserve_bytes, kRoom)) {}
 
-    /// What one compaction of a store of up to a gigabyte may write. Scans go on meanwhile, down to the reserve.
+    /// What one compaction of a store of up to 1 GB may write. Scans are still stored meanwhile, down to the reserve.
     static constexpr std::uint64_t kRoom = std::uint64_t{256} << 20;
 
-    /// Pauses compactions, or resumes them once an eighth more than that is free.
+    /// Pauses compactions, or resumes them once an eighth more than the limit is free.
     /// @param free_bytes  of the store's disk, now
     void update(std::uint64_t free_bytes);
 
-    /// Stops compactions for good.
+    /// Stops compactions permanently.
     void stop();
 
 private:

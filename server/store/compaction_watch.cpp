@@ -18,7 +18,7 @@ void CompactionWatch::OnBackgroundError(rocksdb::BackgroundErrorReason reason, r
         failed_ = *error;
         if (tell_) tell_(*failed_);
     }
-    *error = rocksdb::Status::OK(); // writes go on
+    *error = rocksdb::Status::OK(); // writes continue
 }
 
 } // namespace scanloom::store

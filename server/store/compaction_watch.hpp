@@ -12,19 +12,19 @@ namespace scanloom::store {
 
 /// Keeps one damaged table from stopping the whole store.
 ///
-/// RocksDB merges its tables in the background, and takes no more writes once that has failed. But new
-/// entries go to new files, which old damage does not touch: so a table that cannot be read is reported
-/// to the store, and RocksDB goes on writing. A full disk is no damage: writes go on as far as there is room, and
-/// CompactionSwitch pauses the merging.
+/// RocksDB compacts its tables in the background and accepts no more writes after a compaction failed. New entries go
+/// to new files, which old damage does not affect. This listener therefore reports an unreadable table to the store and
+/// lets RocksDB continue writing. A full disk is not damage: writes continue while there is room, and CompactionSwitch
+/// pauses compactions.
 ///
-/// Thread  any.
-/// Source  RocksDB 7.8, listener.h, EventListener::OnBackgroundError.
+/// Threads: any.
+/// Source: RocksDB 7.8, listener.h, EventListener::OnBackgroundError.
 class CompactionWatch final : public rocksdb::EventListener {
 public:
     using Tell = std::function<void(const rocksdb::Status&)>;
 
-    /// Calls `tell` once, from a thread of RocksDB, when tables can be merged no more; at once if that is
-    /// known already. Null: tells nobody any longer, also not at this moment.
+    /// Sets the function that is called once, from a RocksDB thread, when tables can no longer be compacted; calls it
+    /// immediately if that is already known. Null removes the function and waits for a call in progress.
     void set_tell(Tell tell);
 
     void OnBackgroundError(rocksdb::BackgroundErrorReason reason, rocksdb::Status* error) override;

@@ -49,7 +49,7 @@ Result<LogFileCheck> checked(const fs::path& file) {
 
 using Logs = std::map<std::uint64_t, fs::path>;
 
-/// Of what follows "MANIFEST-", or stands before ".log".
+/// Parses what follows "MANIFEST-" or precedes ".log".
 std::optional<std::uint64_t> number_in(std::string_view digits) {
     std::uint64_t number = 0;
     const auto [end, unread] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
@@ -57,8 +57,8 @@ std::optional<std::uint64_t> number_in(std::string_view digits) {
     return number;
 }
 
-/// By rising number: the last was written last. The others were synced as a whole, and RocksDB recorded their sizes in
-/// its manifest.
+/// Returns the logs by ascending number, so the last one is the newest. The others were synced completely, and RocksDB
+/// recorded their sizes in its manifest.
 Logs write_ahead_logs(const fs::path& directory) {
     Logs logs;
     for (const auto& file : regular_files(directory, ".log")) {

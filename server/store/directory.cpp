@@ -25,7 +25,8 @@ Error not_locked(const fs::path& directory, const Error& why) {
     return failure("the store {} cannot be used: {}", directory.native(), why.message);
 }
 
-/// Whether a program without a lock of ours has RocksDB open here: its files must not be mended below it.
+/// Whether a program that does not take Scanloom's lock has RocksDB open here. The files of an open database must not
+/// be changed.
 bool rocksdb_is_open(const fs::path& directory) {
     const int file = ::open((directory / "LOCK").c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return false;
@@ -40,7 +41,7 @@ bool rocksdb_is_open(const fs::path& directory) {
 
 Result<LockedDirectory> LockedDirectory::open(const fs::path& directory, Files files) {
     if (auto created = create_store_directory(directory); !created) return created.error();
-    std::error_code ignored; // of another owner, or on a file system without permissions
+    std::error_code ignored; // fails for another owner, or without permissions in the file system
     fs::permissions(directory, fs::perms::group_all | fs::perms::others_all, fs::perm_options::remove, ignored);
     auto lock = FileLock::alone(directory / kLockFile);
     if (!lock) return not_locked(directory, lock.error());
@@ -62,7 +63,7 @@ Result<LockedDirectory> LockedDirectory::open_to_read(const fs::path& directory,
     if (!fs::is_directory(directory, problem)) {
         return Error{Errc::kNotFound, fmt::format("there is no store {}; name its directory", directory.native())};
     }
-    auto lock = FileLock::beside_others(directory / kLockFile); // a copy of a store may come without
+    auto lock = FileLock::beside_others(directory / kLockFile); // a copy of a store may have no lock file
     if (!lock) return not_locked(directory, lock.error());
     return checked({directory, *std::move(lock)}, files);
 }
@@ -83,7 +84,7 @@ Result<LockedDirectory> LockedDirectory::checked(LockedDirectory directory, File
 
 std::uint64_t bytes_in(const fs::path& directory) {
     std::uint64_t bytes = 0;
-    std::error_code problem; // files come and go meanwhile: those are not counted
+    std::error_code problem; // files that appear or disappear meanwhile are not counted
     fs::directory_iterator file(directory, problem);
     for (; !problem && file != fs::directory_iterator(); file.increment(problem)) {
         std::error_code gone;

@@ -9,29 +9,33 @@
 
 namespace scanloom::store {
 
-/// The store's directory, held by this process alone for as long as this lives.
-/// A lock of our own beside RocksDB's, as the directory is looked at and mended before RocksDB opens it.
+/// The store's directory, locked by this process during the object's lifetime. The lock is separate from RocksDB's,
+/// because the directory is checked and an unfinished write is cut off before RocksDB opens it.
 class LockedDirectory {
 public:
-    /// What its files have to be.
+    /// Which files open() and open_to_read() accept.
     enum class Files {
-        kAll,       ///< those of a store that lost none
-        kAny,       ///< of a store that is finished, whatever it lost
-        kBeingMade, ///< whatever is there: for whoever makes an UnfinishedStore
+        kAll,       ///< a store that lost no files
+        kAny,       ///< a finished store, even if it lost files
+        kBeingMade, ///< any files; for UnfinishedStore
     };
 
-    /// Creates the directory if need be. A new one is marked as such until holds_store(), so that what a kill leaves of
-    /// it is not taken for a store that lost its files.
-    /// Errors  kConflict: in use by another server or program; kStoreFailed: it cannot be created, is no directory,
-    ///         cannot be written, holds other files than a store, or a store that lost files or is unfinished.
+    /// Locks the directory and creates it if needed. A new directory is marked until holds_store(), so that the files
+    /// left by a killed process are not taken for a store that lost files.
+    /// Errors: kConflict: another server or program uses it; kNotFound: it holds other files and no store;
+    ///         kStoreFailed: it cannot be created or written, is not a directory, or holds a store that lost files or
+    ///         is unfinished.
     [[nodiscard]] static Result<LockedDirectory> open(const std::filesystem::path& directory,
                                                       Files files = Files::kAll);
 
-    /// Says that a store has been opened in it. Errors  kStoreFailed: it cannot be written.
+    /// Removes the mark of a new directory, because a store has been opened in it.
+    /// Errors: kStoreFailed: the disk cannot be written.
     [[nodiscard]] Result<> holds_store() const;
 
-    /// The same for who only reads: makes and changes nothing, and keeps no other reader out.
-    /// Errors  kNotFound: there is no such directory; else as above.
+    /// Locks the directory for reading. Creates and changes nothing, and admits other readers.
+    /// Errors: kNotFound: there is no such directory, or it holds other files and no store; kConflict: a server or
+    ///         another program uses it; kStoreFailed: it cannot be read, or holds a store that lost files or is
+    ///         unfinished.
     [[nodiscard]] static Result<LockedDirectory> open_to_read(const std::filesystem::path& directory,
                                                               Files files = Files::kAll);
 
@@ -46,7 +50,7 @@ private:
     FileLock lock_;
 };
 
-/// Bytes of all files in a directory.
+/// Returns the total size of the files in a directory, in bytes.
 [[nodiscard]] std::uint64_t bytes_in(const std::filesystem::path& directory);
 
 } // namespace scanloom::store

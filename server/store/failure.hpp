@@ -8,7 +8,7 @@
 
 namespace scanloom::store {
 
-/// kStoreFailed, in these words.
+/// Returns a kStoreFailed error with the formatted message.
 template <class... Args>
 [[nodiscard]] Error failure(fmt::format_string<Args...> text, Args&&... args) {
     return {Errc::kStoreFailed, fmt::format(text, std::forward<Args>(args)...)};

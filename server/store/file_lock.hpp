@@ -7,17 +7,17 @@
 
 namespace scanloom::store {
 
-/// A file that says, by being locked, that a directory is in use: for as long as this lives, and no longer than the
-/// process, however it ends.
-/// Source  flock(2).
+/// A locked file that marks a directory as in use. The lock ends with this object, or with the process, however it
+/// ends.
+/// Source: flock(2).
 class FileLock {
 public:
-    /// For one process alone. Creates the file if need be.
-    /// Errors  kConflict: another holds it; kStoreFailed: the file cannot be written or locked.
+    /// Locks the file exclusively; creates it if needed.
+    /// Errors: kConflict: another process holds it; kStoreFailed: the file cannot be written or locked.
     [[nodiscard]] static Result<FileLock> alone(const std::filesystem::path& file);
 
-    /// Beside others that do the same. Where there is no such file there is nothing to hold.
-    /// Errors  as above, for reading.
+    /// Takes a shared lock. Succeeds without a lock if there is no such file.
+    /// Errors: kConflict: another process holds it exclusively; kStoreFailed: the file cannot be read or locked.
     [[nodiscard]] static Result<FileLock> beside_others(const std::filesystem::path& file);
 
     FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the path does not lead to the file that is held. Holds it if none is held yet.
+/// Whether the path no longer leads to the held file. Holds the file if none is held yet.
 bool is_lost(std::optional<HeldFile>& file, const fs::path& path) {
     if (!file) {
         auto opened = HeldFile::open(path);
@@ -28,7 +28,7 @@ bool is_lost(std::optional<HeldFile>& file, const fs::path& path) {
 
 FilesWatch::FilesWatch(rocksdb::DB& database, fs::path directory)
     : database_(database), directory_(std::move(directory)) {
-    static_cast<void>(check()); // holds the files
+    static_cast<void>(check()); // opens the files to hold
 }
 
 Result<> FilesWatch::check() {
@@ -39,16 +39,17 @@ Result<> FilesWatch::check() {
     return {};
 }
 
-/// A removed session is flushed, which begins a log and deletes the one before: also between two calls here.
+/// Removing a session flushes the memtable, which starts a new log and deletes the previous one. This may also happen
+/// between the two calls below.
 bool FilesWatch::has_its_log() {
     for (;;) {
         std::unique_ptr<rocksdb::LogFile> current;
         const auto status = database_.GetCurrentWalFile(&current);
-        if (!status.ok() && !status.IsPathNotFound()) return true; // it cannot be looked at
+        if (!status.ok() && !status.IsPathNotFound()) return true; // cannot be examined
         if (status.ok()) {
             if (current->LogNumber() != log_number_) log_.reset();
             log_number_ = current->LogNumber();
-            if (!is_lost(log_, directory_ / current->PathName().substr(1))) return true; // it begins with a slash
+            if (!is_lost(log_, directory_ / current->PathName().substr(1))) return true; // the path begins with a slash
         }
         std::unique_ptr<rocksdb::LogFile> next;
         const bool has_begun_another = database_.GetCurrentWalFile(&next).ok() && next->LogNumber() != log_number_;

@@ -7,14 +7,14 @@
 
 namespace scanloom::store {
 
-/// A file that is kept open to notice that its path no longer leads to it: it was deleted, moved or replaced.
+/// Keeps a file open to detect that its path no longer leads to it: the file was deleted, moved or replaced.
 ///
 /// The file system does not reuse the inode of an open file, so equal device and inode mean the same file.
-/// Thread  any, at the same time.
+/// Threads: any, concurrently.
 class HeldFile {
 public:
     /// @param path  of a file or a directory; must stay valid relative to the working directory
-    /// Errors  kNotFound: the path leads to no file; kStoreFailed: it cannot be opened.
+    /// Errors: kNotFound: the path leads to no file; kStoreFailed: the file cannot be opened.
     [[nodiscard]] static Result<HeldFile> open(std::filesystem::path path);
 
     HeldFile(HeldFile&& other) noexcept
@@ -29,7 +29,7 @@ private:
     HeldFile(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
 
     std::filesystem::path path_;
-    int descriptor_; // or -1, after a move
+    int descriptor_; // -1 after a move
 };
 
 } // namespace scanloom::store

@@ -14,12 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Says nothing about whether there is a store: who looks whether the disk can be written leaves *.dbtmp.
+/// Files that do not show whether there is a store. *.dbtmp is left by checks of whether the disk can be written.
 bool is_neutral(const std::string& name) {
     return name == kLockFile || name == "lost+found" || name == "LOCK" || name.ends_with(".dbtmp");
 }
 
-/// RocksDB makes these before CURRENT, or beside it.
+/// Files that RocksDB creates before CURRENT, or in addition to it.
 bool is_trace(const std::string& name) {
     return name == "IDENTITY" || name.starts_with("LOG") || name.starts_with("MANIFEST-") ||
            name.starts_with("OPTIONS-");

@@ -9,9 +9,9 @@
 
 namespace scanloom::store {
 
-/// The revision of a session's last entry, found by its key alone; 0 for an empty log.
-/// @param store  its name, for the message.
-/// Errors  kDataLoss: the place cannot be read.
+/// Returns the revision of a session's last entry, 0 for an empty log. Reads only its key.
+/// @param store  name of the store, for messages
+/// Errors: kDataLoss: that part of the database cannot be read.
 [[nodiscard]] Result<Revision> end_of_log(rocksdb::DB& database, const std::string& store, SessionId session);
 
 } // namespace scanloom::store

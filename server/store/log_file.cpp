@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::size_t kBlockBytes = 32768;
 constexpr std::size_t kHeaderBytes = 7;
-constexpr std::size_t kSectorBytes = 512; // the least a disk writes at once
+constexpr std::size_t kSectorBytes = 512; // smallest unit that a disk writes
 
 enum RecordType : unsigned char { kFull = 1, kFirst = 2, kMiddle = 3, kLast = 4 };
 
 bool is_start(unsigned char type) { return type == kFull || type == kFirst; }
 bool is_end(unsigned char type) { return type == kFull || type == kLast; }
 
-/// What a record's header says, believed or not.
+/// A record's header as read, valid or not.
 struct Header {
     std::uint32_t checksum;
     std::size_t length;
@@ -34,18 +34,18 @@ std::optional<Header> header_at(std::string_view bytes, std::size_t at) {
     return Header{boost::endian::load_little_u32(raw), boost::endian::load_little_u16(raw + 4), raw[6]};
 }
 
-/// The file stores checksums rotated, so that the checksum of bytes that hold checksums stays useful.
+/// The file stores checksums rotated, because checksums of data that contains checksums would be weak.
 std::uint32_t unmasked(std::uint32_t masked) {
     const std::uint32_t rotated = masked - 0xa282ead8U;
     return (rotated >> 17) | (rotated << 15);
 }
 
-/// Whether `length` bytes of payload match the header's checksum, which covers the type, too.
+/// Whether `length` bytes of payload match the header's checksum, which also covers the type.
 bool matches(const Header& header, std::string_view bytes, std::size_t at, std::size_t length) {
     return unmasked(header.checksum) == crc32c(bytes.substr(at + kHeaderBytes - 1, 1 + length));
 }
 
-/// The header of an intact record that begins here.
+/// Returns the header of an intact record at `at`.
 std::optional<Header> record_at(std::string_view bytes, std::size_t at) {
     const auto header = header_at(bytes, at);
     if (!header || header->type < kFull || header->type > kLast) return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<Header> record_at(std::string_view bytes, std::size_t at) {
     return header;
 }
 
-/// Whether another write begins anywhere from here. Looks at each byte: a damaged length hides the next record.
+/// Whether another write begins at or after `at`. Checks every byte, because a damaged length hides the next record.
 bool write_begins_after(std::string_view bytes, std::size_t at) {
     for (; at + kHeaderBytes <= bytes.size(); ++at) {
         if (!is_start(static_cast<unsigned char>(bytes[at + kHeaderBytes - 1]))) continue;
@@ -63,7 +63,7 @@ bool write_begins_after(std::string_view bytes, std::size_t at) {
     return false;
 }
 
-/// Whether a sector from here on was never written, or the rest of the first one.
+/// Whether any sector from `at` on was never written; of the first sector, only the rest counts.
 bool has_unwritten_sector(std::string_view bytes, std::size_t at) {
     while (at < bytes.size()) {
         const std::size_t left_in_sector = kSectorBytes - at % kSectorBytes;
@@ -73,14 +73,14 @@ bool has_unwritten_sector(std::string_view bytes, std::size_t at) {
     return false;
 }
 
-/// Whether the record that begins here was cut off by the end of the file.
+/// Whether the end of the file cuts off the record at `at`.
 bool is_cut_off(std::string_view bytes, std::size_t at) {
     const auto header = header_at(bytes, at);
     if (!header) return true;
-    if (header->type > kLast) return false; // what a crash leaves of a header is the header, or zeros
+    if (header->type > kLast) return false; // a crash leaves either the header or zeros
     const std::size_t present = bytes.size() - at - kHeaderBytes;
     if (header->length <= present || kHeaderBytes + header->length > left_in_block(at)) return false;
-    return !matches(*header, bytes, at, present); // all of it is there: only its length is wrong
+    return !matches(*header, bytes, at, present); // if they match, the payload is complete and only its length is wrong
 }
 
 } // namespace
@@ -90,7 +90,7 @@ LogFileCheck check_log_file(std::string_view bytes) {
     bool inside_write = false;
     std::size_t at = 0;
     while (at < bytes.size()) {
-        if (left_in_block(at) < kHeaderBytes) { // too short for a header: filled up
+        if (left_in_block(at) < kHeaderBytes) { // too short for a header: padding
             at += left_in_block(at);
             continue;
         }
@@ -110,7 +110,7 @@ LogFileCheck check_log_file(std::string_view bytes) {
 
 std::vector<std::string> whole_writes_of(std::string_view bytes) {
     std::vector<std::string> writes;
-    std::string write; // of which the first records are in
+    std::string write; // the first records of the current write
     bool inside_write = false;
     std::size_t at = 0;
     while (at < bytes.size()) {

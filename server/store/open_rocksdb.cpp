@@ -57,7 +57,7 @@ Result<std::unique_ptr<ScanLog>> open_rocksdb(const fs::path& directory, const S
 
 Result<std::unique_ptr<ScanLog>> UnfinishedStore::open_log() const {
     StoreOptions options;
-    options.disk_reserve_bytes = 0; // nothing else writes it: it fits, or it does not
+    options.disk_reserve_bytes = 0; // no other writer: the store either fits or does not
     return open_locked(LockedDirectory::open(directory_, LockedDirectory::Files::kBeingMade), options);
 }
 

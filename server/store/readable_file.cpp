@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLargePiece = std::size_t{1} << 20;
-constexpr std::size_t kSmallPiece = std::size_t{4} << 10; // a page, and the least that most disks lose at once
+constexpr std::size_t kSmallPiece = std::size_t{4} << 10; // a page, and the smallest unit that most disks lose
 
 Error unreadable(const fs::path& file, const rocksdb::Status& why) {
     return {Errc::kStoreFailed, fmt::format("cannot read {}: {}; see to its rights, or copy the store to another disk "
@@ -23,12 +23,12 @@ Error unreadable(const fs::path& file, const rocksdb::Status& why) {
                                             file.native(), why.ToString())};
 }
 
-/// Reads what it can of a piece.
+/// Reads the readable parts of a piece.
 class PieceReader {
 public:
     explicit PieceReader(const rocksdb::RandomAccessFile& file) : file_(file) {}
 
-    /// @return how many bytes cannot be read; they are left as they are.
+    /// @return number of unreadable bytes, which are set to zero
     std::uint64_t read(std::uint64_t at, char* to, std::size_t bytes) {
         rocksdb::Slice read;
         const bool is_read = file_.Read(at, bytes, &read, to).ok() && read.size() == bytes;
@@ -47,8 +47,8 @@ private:
     const rocksdb::RandomAccessFile& file_;
 };
 
-/// Hands on a file piece by piece.
-/// @return how many bytes cannot be read.
+/// Passes a file to `take` piece by piece.
+/// @return number of unreadable bytes
 template <typename Take>
 Result<std::uint64_t> for_each_piece(const fs::path& path, rocksdb::Env& env, const Take& take) {
     std::uint64_t size = 0;

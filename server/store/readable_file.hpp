@@ -10,21 +10,23 @@ namespace rocksdb {
 class Env;
 }
 
-/// Files of a disk that cannot read all of them any more.
+/// Reads files from a disk on which parts of them are unreadable.
 namespace scanloom::store {
 
 struct ReadableBytes {
-    std::string bytes;            ///< as many as the file has; zeros in place of those that cannot be read
-    std::uint64_t unreadable = 0; ///< so many of them, in pieces of 4 KiB
+    std::string bytes;            ///< as many as the file has; zeros replace unreadable ones
+    std::uint64_t unreadable = 0; ///< number of unreadable bytes, in pieces of 4 KiB
 };
 
-/// Errors  kStoreFailed: the file cannot be opened, or its size not be told. One that cannot be opened is not one without
-///         anything in it: what it has would be lost without a word.
+/// Reads what is readable of a file.
+/// Errors: kStoreFailed: the file cannot be opened, or its size is unknown. Such a file is not treated as empty,
+///         because its contents would be lost silently.
 [[nodiscard]] Result<ReadableBytes> read_readable(const std::filesystem::path& file, rocksdb::Env& env);
 
-/// @param to  does not exist.
-/// @return how many bytes cannot be read, and are zeros in the copy.
-/// Errors  as above; kStoreFailed: the copy cannot be written.
+/// Copies what is readable of a file.
+/// @param to  must not exist
+/// @return number of unreadable bytes, which are zeros in the copy
+/// Errors: kStoreFailed: the file cannot be opened, its size is unknown, or the copy cannot be written.
 [[nodiscard]] Result<std::uint64_t> copy_readable(const std::filesystem::path& file, const std::filesystem::path& to,
                                                   rocksdb::Env& env);
 

@@ -20,9 +20,9 @@
 /// The checksum is the CRC-32C of key and value, little-endian.
 ///
 /// Version 2 added packed ranges of scans (ScanTaken of log.proto); version 3 added exclusions (ScansExcluded,
-/// ExclusionLifted) and the session setting max_jump. A program refuses stores of a later version than it knows, as it
-/// could not read their entries or would compute other maps from them. A store of an earlier version becomes one of
-/// this version when it is opened; its entries stay as they are.
+/// ExclusionLifted) and the session setting max_jump. A program refuses stores of a later version than it knows,
+/// because it could not read their entries or would compute other maps from them. Opening a store of an earlier version
+/// upgrades it to this version; its entries stay as they are.
 namespace scanloom::store {
 
 inline constexpr std::uint64_t kFormatVersion = 3;
@@ -38,7 +38,7 @@ inline constexpr std::string_view kSessionsEnd = "t";
 [[nodiscard]] std::string entry_key(SessionId session, Revision revision);
 [[nodiscard]] std::string part_key(SessionId session, std::string_view part);
 
-/// First key of a session's entries or parts, and one past the last.
+/// First key of a session's entries or parts, and the key after the last.
 struct KeyRange {
     std::string begin;
     std::string end;
@@ -46,18 +46,18 @@ struct KeyRange {
 [[nodiscard]] KeyRange entries_of(SessionId session);
 [[nodiscard]] KeyRange parts_of(SessionId session);
 
-/// What a key names; nothing for a key of another kind or length.
+/// Returns what a key names; nullopt for a key of another kind or length.
 [[nodiscard]] std::optional<SessionId> session_of(std::string_view session_key);
 [[nodiscard]] std::optional<Revision> revision_of(std::string_view entry_key);
 [[nodiscard]] std::optional<std::string_view> part_of(std::string_view part_key);
 
-/// The session that a record, an entry or a part belongs to.
+/// Returns the session that a record, an entry or a part belongs to; nullopt for a key of another kind.
 [[nodiscard]] std::optional<SessionId> owner_of(std::string_view key);
 
-/// A value with its checksum behind it.
+/// Returns a value followed by its checksum.
 [[nodiscard]] std::string sealed(std::string_view key, std::string value);
 
-/// The value again; nothing if it or its key is not what was sealed.
+/// Returns the value without its checksum; nullopt if the checksum does not match key and value.
 [[nodiscard]] std::optional<std::string_view> unsealed(std::string_view key, std::string_view sealed_value);
 
 } // namespace scanloom::store

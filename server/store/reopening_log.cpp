@@ -25,7 +25,7 @@ void add(StoreStats& to, const StoreStats& from) {
     to.torn_bytes_dropped += from.torn_bytes_dropped;
 }
 
-/// Whether a file can be written and synced in the directory, with more room than `bytes_free`.
+/// Checks that a file can be written and synced in the directory, and that `bytes_free` bytes are free.
 Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t bytes_free) {
     const auto why_not = [&](std::string_view reason) {
         return Error{Errc::kStoreFailed,
@@ -36,7 +36,7 @@ Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t by
     if (failed) return why_not(failed.message());
     if (space.available < bytes_free) return why_not(fmt::format("{} MiB are free", space.available >> 20));
 
-    const auto path = directory / "probe.dbtmp"; // an ending of which the directory knows that it means nothing
+    const auto path = directory / "probe.dbtmp"; // the listing of a store ignores this extension
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) return why_not(std::system_category().message(errno));
     const std::string page(4096, 'p');
@@ -49,7 +49,7 @@ Result<> can_be_written(const std::filesystem::path& directory, std::uint64_t by
     return {};
 }
 
-/// Opening writes the entries of the write-ahead logs to tables, and then deletes the logs.
+/// Returns the room needed to open: it writes the entries of the write-ahead logs to tables before it deletes the logs.
 std::uint64_t bytes_to_open(const std::filesystem::path& directory) {
     std::uint64_t bytes = 1 << 20;
     for (const auto& log : regular_files(directory, ".log")) {
@@ -76,7 +76,7 @@ bool ReopeningLog::try_again() {
         const auto last = log_->stats();
         add(before_, last);
         before_.last_error = last.last_error;
-        log_.reset(); // before it is opened again: it has the directory to itself
+        log_.reset(); // first, because opening needs the directory's lock
     }
     auto opened = open_();
     if (!opened) {
@@ -161,7 +161,7 @@ std::uint64_t ReopeningLog::bytes_on_disk() const {
 
 Result<std::unique_ptr<ReopeningLog>> open_reopening(const std::filesystem::path& directory,
                                                      const StoreOptions& options, const OpenStore& open) {
-    const auto lock = std::make_shared<std::optional<HeldFile>>(); // of the store that was opened first
+    const auto lock = std::make_shared<std::optional<HeldFile>>(); // lock file of the store that was opened first
     auto log = ReopeningLog::open([=] { return open(directory, options); },
                                   [=]() -> Result<> {
                                       if (!(*lock)->is_in_place()) return failure("another store is in its place");

@@ -10,30 +10,31 @@
 
 namespace scanloom::store {
 
-/// Opens the scan log in a directory; open_rocksdb() has the errors.
+/// Opens the scan log in a directory; open_rocksdb() lists the errors.
 using OpenStore = std::function<Result<std::unique_ptr<ScanLog>>(const std::filesystem::path&, const StoreOptions&)>;
 
-/// A scan log that is closed and opened again after it has failed.
+/// A scan log that is closed and opened again after a failure.
 ///
-/// What the disk holds after a failed write or sync is unknown, so that nothing is ever tried again on the same files:
-/// opening reads what is there, as after a crash, and writes it to new ones. Until then every change fails, and reading
-/// goes on. While it is being opened, both fail.
-/// Thread  as ScanLog; append() does not wait for that either.
+/// After a failed write or sync the disk is in an unknown state, so nothing is retried on the same files: opening reads
+/// what is there, as after a crash, and writes it to new files. Until then every change fails and reading continues.
+/// While the log is being opened, both fail.
+/// Threads: as for ScanLog; append() does not wait for the opening either.
 class ReopeningLog final : public ScanLog {
 public:
     using Open = std::function<Result<std::unique_ptr<ScanLog>>()>;
     using Check = std::function<Result<>()>;
 
-    /// Opens it for the first time. `disk_is_well` tells whether it may be worth trying again; null: always.
-    /// Errors  those of `open`.
+    /// Opens the log for the first time.
+    /// @param disk_is_well  checked before the log is opened again; null: always succeeds
+    /// Errors: those of `open`.
     [[nodiscard]] static Result<std::unique_ptr<ReopeningLog>> open(Open open, Check disk_is_well = nullptr);
 
-    /// Who is told, by the reader's thread, of every log that could not be read to its end: kDataLoss or kStoreFailed.
-    /// Call before others use it.
+    /// Sets the function that is called, on the reader's thread, for every log that could not be read to its end, with
+    /// kDataLoss or kStoreFailed. Call it before other threads use this object.
     void on_unreadable(std::function<void(SessionId, const Error&)> told) { on_unreadable_ = std::move(told); }
 
-    /// Where it has failed and the disk is well again: opens it again. Waits for whoever reads.
-    /// @return whether it has been opened again: whoever appended has to look where its log ends now.
+    /// Opens the log again if it has failed and the disk is usable. Waits for readers in progress.
+    /// @return whether the log was opened again; if so, every caller of append() has to check where its log ends
     [[nodiscard]] bool try_again();
 
     [[nodiscard]] Result<SessionId> create_session(std::string_view record) override;
@@ -48,7 +49,7 @@ public:
 
     [[nodiscard]] Result<> copy_with(const CopyDatabase& copy) override;
 
-    /// Of all times that it was open.
+    /// Returns totals over every time that the log was open.
     [[nodiscard]] StoreStats stats() const override;
     [[nodiscard]] std::uint64_t bytes_on_disk() const override;
 
@@ -63,15 +64,15 @@ private:
     const Open open_;
     const Check disk_is_well_;
     std::function<void(SessionId, const Error&)> on_unreadable_ = [](SessionId, const Error&) {};
-    mutable std::shared_mutex mutex_; // held shared by whoever uses the log
+    mutable std::shared_mutex mutex_; // held shared during use of the log
     std::unique_ptr<ScanLog> log_;    // null: it could not be opened again yet
-    StoreStats before_;               // of the earlier ones; last_error says why there is none
+    StoreStats before_;               // of the earlier logs; last_error says why log_ is null
 };
 
-/// Opens the store in a directory with `open`, and again after it has failed: as soon as its disk can be written and
-/// has room to open it, and only if its lock file is still the one that was there at first. A
-/// store that was deleted or replaced is not opened again; that takes a restart.
-/// Errors  those of `open`.
+/// Opens the store in a directory with `open`. After a failure, opens it again as soon as its disk can be written and
+/// has room to open it, and only if its lock file is still the original one. A store that was deleted or replaced is
+/// not opened again; that requires a restart.
+/// Errors: those of `open`.
 [[nodiscard]] Result<std::unique_ptr<ReopeningLog>> open_reopening(const std::filesystem::path& directory,
                                                                    const StoreOptions& options,
                                                                    const OpenStore& open = open_rocksdb);

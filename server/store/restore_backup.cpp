@@ -33,8 +33,8 @@ Result<> check_empty(const fs::path& store) {
                  fmt::format("{} is not empty; name a directory that does not exist yet", store.native())};
 }
 
-/// A store that had written nothing since its last table has no write-ahead log to copy, and one without is taken for
-/// damaged.
+/// A store that has written nothing since its last table has no write-ahead log to copy, but a store without a log
+/// counts as damaged. Opening it creates one.
 Result<> complete(const fs::path& store, const StoreOptions& options) {
     for (const auto& file : fs::directory_iterator(store)) {
         if (file.path().extension() == ".log") return {};

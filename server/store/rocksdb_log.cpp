@@ -6,7 +6,7 @@
 namespace scanloom::store {
 namespace {
 
-constexpr std::size_t kLineBytesMax = 1024; // the rest of a longer line is cut off
+constexpr std::size_t kLineBytesMax = 1024; // longer lines are cut off
 
 } // namespace
 

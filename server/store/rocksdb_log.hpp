@@ -11,11 +11,11 @@ namespace scanloom::store {
 
 /// Passes RocksDB's log lines of level WARN and above to a function.
 ///
-/// RocksDB's own logger writes a file next to the tables, and aborts the process at the first line after one that the
-/// disk had no room for.
+/// RocksDB's own logger writes a file next to the tables, and aborts the process at the first line after one for which
+/// the disk had no room.
 ///
-/// Thread  any.
-/// Source  RocksDB 7.8, logging/env_logger.h; WritableFileWriter::AssertFalseAndGetStatusForPrevError().
+/// Threads: any.
+/// Source: RocksDB 7.8, logging/env_logger.h; WritableFileWriter::AssertFalseAndGetStatusForPrevError().
 class RocksdbLog final : public rocksdb::Logger {
 public:
     using Write = std::function<void(std::string_view line)>;

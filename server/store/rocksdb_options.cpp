@@ -13,48 +13,49 @@
 namespace scanloom::store {
 namespace {
 
-/// The order in which changes become durable, and what recovery accepts.
+/// Sets the order in which changes become durable, and what recovery accepts.
 void set_durability(rocksdb::Options& rocksdb) {
-    rocksdb.create_if_missing = true; // LockedDirectory refuses a store that lost its CURRENT before
+    rocksdb.create_if_missing = true; // LockedDirectory has already refused a store that lost its CURRENT
     rocksdb.paranoid_checks = true;
-    // mend_after_crash() has cut off what a crash left unfinished; anything else amiss is damage.
+    // mend_after_crash() has cut off what a crash left unfinished; any other inconsistency is damage.
     rocksdb.wal_recovery_mode = rocksdb::WALRecoveryMode::kAbsoluteConsistency;
-    rocksdb.track_and_verify_wals_in_manifest = true;  // notices a lost or shortened older write-ahead log
+    rocksdb.track_and_verify_wals_in_manifest = true;  // detects a lost or shortened older write-ahead log
     rocksdb.recycle_log_file_num = 0;                  // stale records behind the end would look like later writes
     rocksdb.wal_compression = rocksdb::kNoCompression; // check_log_file() reads plain records only
-    // Recovered entries go to a synced table file before anyone reads them: after a failed fsync, the
-    // write-ahead log may be whole in the system's cache only.
+    // Recovered entries are written to a synced table before they are read: after a failed fsync, the write-ahead log
+    // may be complete in the system's cache only.
     rocksdb.avoid_flush_during_recovery = false;
     rocksdb.enable_pipelined_write = false; // the memtable is filled after the sync, see Committer
     rocksdb.unordered_write = false;
-    rocksdb.write_dbid_to_manifest = true; // a backup has no file IDENTITY, and what it restores is the same store
+    rocksdb.write_dbid_to_manifest = true; // a backup has no file IDENTITY; a restored store keeps its identity
     rocksdb.max_bgerror_resume_count = 0;  // a failed store stays failed until it is opened again
 }
 
-/// One column family for everything: one memtable and one write-ahead log, so that whatever is
-/// flushed, the disk holds a prefix of the changes. Families flushed one by one would need atomic_flush for that.
+/// One column family for everything, hence one memtable and one write-ahead log: after any flush, the disk holds a
+/// prefix of the changes. Several families would need atomic_flush for that.
 void set_memory(rocksdb::Options& rocksdb, const StoreOptions& options) {
     rocksdb.write_buffer_size = std::max<std::size_t>(options.memory_bytes / 8, 64 << 10);
-    rocksdb.max_write_buffer_number = 4; // with the cache: memory_bytes
+    rocksdb.max_write_buffer_number = 4; // together with the cache: memory_bytes
     rocksdb.max_open_files = 256;        // the rest of the usual 1024 descriptors is for sockets
     rocksdb::BlockBasedTableOptions table;
     table.block_cache = rocksdb::NewLRUCache(options.memory_bytes / 2);
-    table.cache_index_and_filter_blocks = true; // or they would grow with the store, outside of any bound
+    table.cache_index_and_filter_blocks = true; // otherwise they would grow with the store, without a bound
     table.block_size = 32 << 10;                // entries are read in order; larger blocks compress better
     table.max_auto_readahead_size = 0; // the system reads ahead; RocksDB's own asserts that no file is cut short
     rocksdb.table_factory.reset(rocksdb::NewBlockBasedTableFactory(table));
 }
 
 void set_disk(rocksdb::Options& rocksdb, const StoreOptions& options) {
-    // The ranges of scans are packed and checkpoints compressed by who writes them. Trying it again, at each merge,
-    // took a fifth of the server's time.
+    // Ranges of scans are packed and checkpoints compressed before they are stored. Compressing them again at each
+    // merge took a fifth of the server's time.
     rocksdb.compression = rocksdb::kNoCompression;
     rocksdb.bottommost_compression = rocksdb::kNoCompression;
     rocksdb.level_compaction_dynamic_level_bytes = true;
     rocksdb.target_file_size_base = rocksdb.write_buffer_size;
     rocksdb.max_bytes_for_level_base = 4 * rocksdb.write_buffer_size;
     rocksdb.max_background_jobs = 2;
-    // Writes are slowed down when merging does not keep up, but never stopped: it may not go on, see CompactionWatch.
+    // Writes slow down when merging cannot keep up, but never stop: merging may have ended for good, see
+    // CompactionWatch.
     rocksdb.level0_stop_writes_trigger = std::numeric_limits<int>::max();
     rocksdb.hard_pending_compaction_bytes_limit = 0;
     rocksdb.bytes_per_sync = 1 << 20; // writes tables out steadily, not in one burst that delays the log's fsync

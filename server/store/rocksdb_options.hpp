@@ -9,10 +9,10 @@
 
 namespace scanloom::store {
 
-/// How RocksDB is run; each choice is explained where it is made.
+/// Returns the options for RocksDB; each choice is explained where it is made.
 [[nodiscard]] rocksdb::Options rocksdb_options(const StoreOptions& options, std::shared_ptr<CompactionWatch> watch);
 
-/// For a table file that is read by itself.
+/// Returns the options for reading one table file by itself.
 [[nodiscard]] rocksdb::Options options_of_table(const StoreOptions& options);
 
 } // namespace scanloom::store

@@ -16,7 +16,7 @@
 namespace scanloom::store {
 namespace {
 
-// What a change costs beside its own bytes; keeps a flood of empty ones within the bound of a group.
+// Cost of a change in addition to its own bytes; keeps a flood of empty changes within the bound of a group.
 constexpr std::uint64_t kChangeBytes = 64;
 
 struct SealedPair {
@@ -61,7 +61,7 @@ Error damaged(const std::string& store, SessionId session, std::string_view what
 
 std::string_view view(const rocksdb::Slice& slice) { return {slice.data(), slice.size()}; }
 
-/// A whole log is read once, front to end: nothing of it is worth keeping in the cache.
+/// A log is read once, front to end, so the cache need not keep any of it.
 struct Scan {
     explicit Scan(rocksdb::DB& database, const KeyRange& range)
         : end(range.end), iterator(database.NewIterator(options(&end))) {}
@@ -91,7 +91,7 @@ RocksdbScanLog::RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksd
 
 RocksdbScanLog::~RocksdbScanLog() { watch_->set_tell(nullptr); }
 
-/// RocksDB would try again each second, for ever.
+/// Stops compactions, which RocksDB would otherwise retry every second without end.
 void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
     Error damage{Errc::kDataLoss,
                  fmt::format("the store {} is damaged: {}; what is stored from now on is whole, but its files are no "
@@ -102,8 +102,8 @@ void RocksdbScanLog::go_on_without_compaction(const rocksdb::Status& reason) {
         const std::lock_guard lock(damage_mutex_);
         damage_ = std::move(damage);
     }
-    Change change;            // in its turn, as it must not meet a write that is held back
-    change.frees_disk = true; // or at least needs none
+    Change change;            // queued, because SetOptions() must not meet a write that is held back
+    change.frees_disk = true; // needs no disk space at least
     change.add_to = [this](rocksdb::WriteBatch&) -> Result<> {
         compactions_.stop();
         return {};
@@ -139,7 +139,7 @@ Result<std::vector<StoredSession>> RocksdbScanLog::sessions() {
         const auto session = session_of(view(scan.iterator->key()));
         if (!session) return damaged(name(), 0, "the name");
         const auto record = unsealed(view(scan.iterator->key()), view(scan.iterator->value()));
-        const auto damage = ends_.damaged.find(*session); // never changes after opening
+        const auto damage = ends_.damaged.find(*session); // constant after opening
         found.push_back({*session,
                          record ? Result<std::string>(std::string(*record)) : damaged(name(), *session, "the record"),
                          damage == ends_.damaged.end() ? std::nullopt : std::optional(damage->second)});
@@ -176,9 +176,9 @@ Result<> RocksdbScanLog::remove_session(SessionId session) {
     return {};
 }
 
-/// Drops the tables that hold nothing else at once; the rest goes as tables are merged, which drops nothing as long as
-/// the removal is in memory alone: so it is written to a table first, where there is room for one. A failure costs
-/// space and no more: whatever is left belongs to no session.
+/// Deletes tables that contain nothing else immediately. Compactions remove the rest, but only once the removal is in a
+/// table: so the memtable is flushed first if there is room. A failure only costs disk space, because the remaining
+/// entries belong to no session.
 void RocksdbScanLog::free_disk(SessionId session) {
     if (!committer_.stats().no_room) database_->Flush({}).PermitUncheckedError();
     for (const KeyRange& range : {entries_of(session), parts_of(session)}) {
@@ -191,7 +191,7 @@ void RocksdbScanLog::free_disk(SessionId session) {
 }
 
 void RocksdbScanLog::append(SessionId session, Revision first, std::vector<std::string> entries, Done done) {
-    // Sealed on the caller's thread: the committer is one for all sessions.
+    // Sealed on the caller's thread, because one committer serves all sessions.
     std::vector<SealedPair> pairs;
     pairs.reserve(entries.size());
     for (auto& entry : entries)
@@ -222,7 +222,7 @@ Result<> RocksdbScanLog::read(SessionId session, Revision after, const VisitEntr
     if (auto exists = check_session(session); !exists) return exists;
     const KeyRange range = entries_of(session);
     const Scan scan(*database_, range);
-    // Begins with the entry before, to see that the log reaches that far.
+    // Starts with the entry before, to check that the log reaches that far.
     Revision expected = after == 0 ? 1 : after;
     for (scan.iterator->Seek(entry_key(session, expected)); scan.iterator->Valid(); scan.iterator->Next()) {
         const auto key = view(scan.iterator->key());
@@ -302,7 +302,7 @@ StoreStats RocksdbScanLog::stats() const {
 
 std::uint64_t RocksdbScanLog::bytes_on_disk() const { return bytes_in(directory_.path()); }
 
-/// RocksDB opens tables by path, so that a store which took the place of this one would be read.
+/// RocksDB opens tables by path, so it would read a store that took the place of this one.
 Result<> RocksdbScanLog::check_files() { return files_ ? files_->check() : Result<>(); }
 
 Result<> RocksdbScanLog::check_session(SessionId session) {

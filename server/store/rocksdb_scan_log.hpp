@@ -16,17 +16,17 @@
 
 namespace scanloom::store {
 
-/// Where each log ends and what the next session is called: what the next change is checked against.
+/// The end of each session's log and the id of the next session. Changes are checked against them.
 struct LogEnds {
     SessionId next_session = 1;
     std::map<SessionId, Revision> revisions; ///< of each session's last entry, 0 for an empty log
     std::map<SessionId, Error> damaged;      ///< sessions whose last entry cannot be found; never changes
 };
 
-/// The scan log in RocksDB. Readers go to the database themselves; changes go through the committer.
+/// A scan log in RocksDB. Readers use the database directly; changes go through the committer.
 class RocksdbScanLog final : public ScanLog {
 public:
-    /// @param files  null for a database that is only read
+    /// @param files  null for a read-only database
     RocksdbScanLog(LockedDirectory directory, std::unique_ptr<rocksdb::DB> database, LogEnds ends,
                    std::uint64_t torn_bytes_dropped, std::shared_ptr<CompactionWatch> watch,
                    std::unique_ptr<FilesWatch> files, const StoreOptions& options);
@@ -54,15 +54,15 @@ private:
 
     LockedDirectory directory_;
     std::unique_ptr<rocksdb::DB> database_;
-    LogEnds ends_; // committer's thread only
+    LogEnds ends_; // used on the committer's thread only
     std::uint64_t torn_bytes_dropped_;
     std::shared_ptr<CompactionWatch> watch_;
     CompactionSwitch compactions_;
-    std::unique_ptr<FilesWatch> files_; // or null
+    std::unique_ptr<FilesWatch> files_; // may be null
     std::function<void(const Error&)> on_damage_;
     mutable std::mutex damage_mutex_;
     std::optional<Error> damage_; // guarded by damage_mutex_
-    Committer committer_;         // last: it is stopped before anything it uses goes
+    Committer committer_;         // last: stops before the members that it uses are destroyed
 };
 
 } // namespace scanloom::store

@@ -52,7 +52,7 @@ void Salvage::find_sessions() {
 
 void Salvage::find_records(const SalvagedTables::Table& table) {
     rocksdb::SstFileReader reader(options_);
-    if (!reader.Open(table.file.native()).ok()) return; // carved
+    if (!reader.Open(table.file.native()).ok()) return; // its entries were taken by carve_table()
     const auto iterator = iterator_of(reader);
     for (iterator->Seek(std::string(kSessionsBegin)); iterator->Valid(); iterator->Next()) {
         const auto key = iterator->key().ToStringView();
@@ -65,7 +65,7 @@ void Salvage::find_records(const SalvagedTables::Table& table) {
     }
 }
 
-/// Sessions of which there are entries alone.
+/// Adds the sessions that have entries but no record.
 void Salvage::find_owners(const SalvagedTables::Table& table) {
     rocksdb::SstFileReader reader(options_);
     if (!reader.Open(table.file.native()).ok()) return;

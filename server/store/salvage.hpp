@@ -17,25 +17,27 @@
 
 namespace scanloom::store {
 
-/// What can still be read of a store, however damaged: its sessions and the entries of their logs. Checkpoints are
-/// left: maps are woven anew.
+/// Reads the intact sessions and log entries of a damaged store. Checkpoints are ignored, because maps are computed
+/// again from the log.
 ///
-/// A session that was deleted shortly before may come back where tables are missing or cannot be opened.
-/// Thread  one.
+/// A session that was deleted shortly before the damage may reappear if tables are missing or cannot be opened.
+/// Threads: one.
 class Salvage {
 public:
-    /// @param copy  see SalvagedTables::open
-    /// Errors  kNotFound, kConflict (a server has it open), kStoreFailed: as SalvagedTables::open.
+    /// @param copy  see SalvagedTables::open()
+    /// Errors: kNotFound: there is no store; kConflict: a server has it open; kStoreFailed: as for
+    ///         SalvagedTables::open().
     [[nodiscard]] static Result<std::unique_ptr<Salvage>>
     open(const std::filesystem::path& store, const std::filesystem::path& copy, const StoreOptions& options = {});
 
-    /// By id; nothing: of this session there are entries, but no intact record.
+    /// Returns the records by session id; nullopt for a session that has entries but no intact record.
     [[nodiscard]] const std::map<SessionId, std::optional<std::string>>& sessions() const noexcept { return sessions_; }
 
     using VisitEntry = std::function<Result<>(Revision, std::string_view)>;
 
-    /// The intact entries of a session's log, by rising revision; those between them are lost. Stops at the visitor's
-    /// error. @return how many were found whose checksum does not hold.
+    /// Visits the intact entries of a session's log by ascending revision; entries between them are lost. Stops at the
+    /// visitor's error.
+    /// @return number of entries with a wrong checksum
     [[nodiscard]] Result<std::uint64_t> read(SessionId session, const VisitEntry& visit) const;
 
     [[nodiscard]] const SalvagedTables& tables() const noexcept { return *tables_; }
@@ -47,7 +49,7 @@ private:
     void find_owners(const SalvagedTables::Table& table);
 
     const std::unique_ptr<SalvagedTables> tables_;
-    const rocksdb::Options options_; // of a table that is read by itself
+    const rocksdb::Options options_; // for a table that is read by itself
     std::map<SessionId, std::optional<std::string>> sessions_;
 };
 

@@ -31,15 +31,15 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kTable = ".sst";
 constexpr std::string_view kLog = ".log";
-constexpr std::string_view kSetAside = "aside"; // tables that RocksDB does not have
+constexpr std::string_view kSetAside = "aside"; // holds tables that RocksDB does not know
 constexpr std::size_t kBatchHeaderBytes = 12;
 
-/// For a copy that nothing else uses: takes what there is.
+/// Options for a copy that only this object uses: they accept what is there.
 rocksdb::Options options_of_copy(const StoreOptions& options) {
     auto rocksdb = rocksdb_options(options, std::make_shared<CompactionWatch>());
     rocksdb.create_if_missing = false;
     rocksdb.track_and_verify_wals_in_manifest = false; // the logs are not copied
-    rocksdb.disable_auto_compactions = true;           // which a bad block would stop
+    rocksdb.disable_auto_compactions = true;           // a bad block would stop them
     return rocksdb;
 }
 
@@ -52,7 +52,7 @@ bool tells_of_tables(const fs::path& name) {
            name.native().starts_with("OPTIONS-");
 }
 
-/// Without the places of the copy, which is gone when somebody reads this.
+/// Returns RocksDB's message without the paths of the copy, which no longer exists when the message is read.
 std::string reason_of(const rocksdb::Status& status, const fs::path& copy) {
     auto text = status.ToString();
     for (auto at = text.find(copy.native()); at != std::string::npos; at = text.find(copy.native())) {
@@ -62,7 +62,7 @@ std::string reason_of(const rocksdb::Status& status, const fs::path& copy) {
     return text;
 }
 
-/// The first table that RocksDB did not find; it tells another ending.
+/// Returns the first table that RocksDB did not find. RocksDB may report it with another extension.
 std::optional<std::string> missing_table_in(const std::string& reason) {
     constexpr std::string_view kDigits = "0123456789";
     constexpr std::size_t kDigitsMin = 6;
@@ -76,7 +76,7 @@ std::optional<std::string> missing_table_in(const std::string& reason) {
     return std::nullopt;
 }
 
-/// The sessions that a write removes.
+/// Collects the sessions that a write removes.
 class Removals : public rocksdb::WriteBatch::Handler {
 public:
     explicit Removals(std::set<SessionId>& sessions) : sessions_(sessions) {}
@@ -114,7 +114,8 @@ SalvagedTables::~SalvagedTables() {
     fs::remove_all(copy_, ignored);
 }
 
-/// All but the write-ahead logs, which are read where they are. A table is shared where the disk allows it.
+/// Copies all files except the write-ahead logs, which are read in place. Tables are hard-linked where the disk allows
+/// it.
 Result<> SalvagedTables::copy_files() {
     std::error_code problem;
     if (!fs::create_directories(copy_, problem)) {
@@ -148,7 +149,8 @@ Result<> SalvagedTables::open_database() {
     return has_all_ ? set_unlisted_aside() : Result<>();
 }
 
-/// Tables that have been merged do not stand beside those that have not, where no manifest tells which are which.
+/// Without a manifest, merged tables cannot be distinguished from tables that are not merged yet, so RocksDB must not
+/// open them together.
 Result<> SalvagedTables::set_all_aside() {
     std::error_code problem;
     fs::create_directories(copy_ / kSetAside, problem);
@@ -163,7 +165,7 @@ Result<> SalvagedTables::set_all_aside() {
     return {};
 }
 
-/// RocksDB opens no store of which the manifest or a table is missing or not as it was.
+/// RocksDB does not open a store whose manifest or tables are missing or changed.
 void SalvagedTables::note_why_not(const std::string& reason) {
     notes_.push_back(fmt::format("RocksDB cannot open it as it is ({}); each of its tables is read by itself", reason));
     if (!fs::exists(store_ / "CURRENT")) is_damaged("CURRENT", "it is missing");
@@ -174,7 +176,7 @@ void SalvagedTables::note_why_not(const std::string& reason) {
     }
 }
 
-/// A manifest that ends early names only the first of the tables, and RocksDB removes the others.
+/// A manifest that ends early names only the first tables, and RocksDB removes the others.
 Result<> SalvagedTables::set_unlisted_aside() {
     std::vector<rocksdb::LiveFileMetaData> live;
     database_->GetLiveFilesMetaData(&live);
@@ -196,7 +198,7 @@ std::vector<fs::path> SalvagedTables::files() const {
     return tables;
 }
 
-/// Before the write-ahead logs: what these have was written later.
+/// Runs before the write-ahead logs are taken, because their writes are later ones.
 Result<> SalvagedTables::take_damaged() {
     std::vector<fs::path> damaged;
     for (const auto& table : files()) {
@@ -222,7 +224,7 @@ void SalvagedTables::is_damaged(const fs::path& file, std::string_view how) {
     notes_.push_back(fmt::format("{} is damaged: {}", file.filename().native(), how));
 }
 
-/// What the disk cannot read is told, and zeros.
+/// Unreadable bytes are noted and replaced by zeros.
 Result<std::string> SalvagedTables::read(const fs::path& file) {
     auto read = read_readable(file, env_of(options_));
     if (!read) return read.error();
@@ -237,7 +239,7 @@ Result<> SalvagedTables::copy(const fs::path& file, const fs::path& to) {
     return {};
 }
 
-/// @return how many entries were taken.
+/// @return number of entries taken
 Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
     rocksdb::WriteBatch batch;
     std::uint64_t taken = 0;
@@ -246,7 +248,7 @@ Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
     carve_table(*file, [&](std::string_view key, std::string_view sealed_value) {
         if (is_removed(*owner_of(key))) return;
         if (std::string newer; session_of(key) && database_->Get({}, key, &newer).ok() && unsealed(key, newer)) return;
-        batch.Put(key, sealed_value).PermitUncheckedError(); // fails where a batch is limited, which this is not
+        batch.Put(key, sealed_value).PermitUncheckedError(); // fails only for a limited batch, which this is not
         if (!session_of(key)) ++taken;
     });
     if (const auto status = database_->Write({}, &batch); !status.ok()) {
@@ -255,7 +257,7 @@ Result<std::uint64_t> SalvagedTables::carve(const fs::path& table) {
     return taken;
 }
 
-/// A write that is in a table, too, is the same once more.
+/// A write that is also in a table is applied again without effect.
 Result<> SalvagedTables::take_write_ahead_logs() {
     const auto newest = check_newest_log(store_);
     if (!newest || regular_files(store_, kLog).empty()) {
@@ -271,7 +273,7 @@ Result<> SalvagedTables::take_write_ahead_logs() {
             if (write.size() < kBatchHeaderBytes) continue;
             rocksdb::WriteBatch batch(std::move(write));
             Removals removals(removed_);
-            batch.Iterate(&removals).PermitUncheckedError(); // its checksum holds
+            batch.Iterate(&removals).PermitUncheckedError(); // cannot fail: the checksum of the write is valid
             if (const auto status = database_->Write({}, &batch); !status.ok()) {
                 return failure("a write of {} cannot be taken: {}", file.filename().native(), status.ToString());
             }
@@ -289,14 +291,15 @@ void SalvagedTables::list() {
     for (const auto& table : live) {
         all_.push_back({copy_ / table.relative_filename, table.smallestkey, table.largestkey});
     }
-    const auto last = std::string(1, '\xff'); // behind every key
+    const auto last = std::string(1, '\xff'); // greater than every key
     for (const auto& table : regular_files(copy_ / kSetAside, kTable)) all_.push_back({table, "", last});
 }
 
 bool SalvagedTables::is_removed(SessionId session) const {
-    if (!has_all_) return removed_.contains(session); // no id is used twice
+    if (!has_all_) return removed_.contains(session); // ids are never reused
     std::string record;
-    return database_->Get({}, session_key(session), &record).IsNotFound(); // each has one until it is removed
+    // Every session has a record until it is removed.
+    return database_->Get({}, session_key(session), &record).IsNotFound();
 }
 
 } // namespace scanloom::store

@@ -17,25 +17,26 @@ class DB;
 
 namespace scanloom::store {
 
-/// The tables of a damaged store, and in them whatever is intact of it, as well as its write-ahead logs.
+/// The tables and write-ahead logs of a damaged store, reduced to their intact content.
 ///
-/// Tables are read each by itself, as one with a bad block would hide what others have, and of one that is damaged
-/// every intact entry is taken (carve_table); of the write-ahead log every whole write is, also behind damage; a
-/// manifest that is damaged, or names tables that are missing, is made again from the tables that are there. What the
-/// disk cannot read is passed over, 4 KiB at a time.
-/// Thread  one.
+/// Each table is read by itself, because a bad block in one would hide what others contain. From a damaged table every
+/// intact entry is taken (carve_table()), from write-ahead logs every complete write, including those after damage. If
+/// the manifest is damaged or names tables that are missing, the existing tables are read without it. Parts that the
+/// disk cannot read are skipped, 4 KiB at a time.
+/// Threads: one.
 class SalvagedTables {
 public:
-    /// A table file and the keys it may have.
+    /// A table file and the range of its keys.
     struct Table {
         std::filesystem::path file;
         std::string smallest;
         std::string largest;
     };
 
-    /// @param copy  a directory that does not exist; it is gone with this. Tables are shared with the store where the
-    ///              disk allows it: what is never changed need not be copied.
-    /// Errors  kStoreFailed: the copy cannot be made, a file cannot be opened (rights), or nothing can be read at all.
+    /// Copies the store's tables and reads them.
+    /// @param copy  directory to create; must not exist; the destructor deletes it. Tables are hard-linked where the
+    ///              disk allows it: they never change, so they need not be copied.
+    /// Errors: kStoreFailed: the copy cannot be made, a file cannot be opened (permissions), or nothing is readable.
     [[nodiscard]] static Result<std::unique_ptr<SalvagedTables>>
     open(const std::filesystem::path& store, const std::filesystem::path& copy, const StoreOptions& options);
     ~SalvagedTables();
@@ -44,11 +45,11 @@ public:
 
     [[nodiscard]] const std::vector<Table>& all() const noexcept { return all_; }
 
-    /// Whether the session, of which a table has something, was removed later. Where tables are missing or damaged that
-    /// may not be known.
+    /// Whether a session that occurs in a table was removed later. May be unknown, and then false, if tables are
+    /// missing or damaged.
     [[nodiscard]] bool is_removed(SessionId session) const;
 
-    /// What was done to have them read: sentences.
+    /// Returns sentences that describe what is damaged and what was taken from it.
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
     [[nodiscard]] std::size_t damaged_files() const noexcept { return damaged_.size(); }
@@ -73,10 +74,10 @@ private:
     const std::filesystem::path copy_;
     const StoreOptions options_;
     std::unique_ptr<rocksdb::DB> database_; // of the copy
-    bool has_all_ = false;                  // those that its own manifest names
-    std::set<SessionId> removed_;           // where not all are there: what those that are tell
+    bool has_all_ = false;                  // whether it has every table that its manifest names
+    std::set<SessionId> removed_;           // without all tables: removals found in the existing tables and logs
     std::vector<Table> all_;
-    std::set<std::string> damaged_; // files of the store, by name
+    std::set<std::string> damaged_; // names of files of the store
     std::vector<std::string> notes_;
 };
 

@@ -20,13 +20,13 @@ class Env;
 
 namespace scanloom::store {
 
-/// A session's number in the store, from 1. Never reused, also not after deletion or restart.
+/// A session's number in the store, from 1. Never reused, even after deletion or restart.
 using SessionId = std::uint64_t;
 
 struct StoredSession {
     SessionId id = 0;
     Result<std::string> record;    ///< opaque bytes; kDataLoss: damaged
-    std::optional<Error> damage{}; ///< of the log's end: nothing can be appended
+    std::optional<Error> damage{}; ///< of the log's end; if set, nothing can be appended
 };
 
 /// One named part of a session's checkpoint, for example one chunk of its map. Opaque bytes.
@@ -37,29 +37,30 @@ struct CheckpointPart {
     friend bool operator==(const CheckpointPart&, const CheckpointPart&) = default;
 };
 
-/// What the store did since it was opened.
+/// Statistics since the store was opened.
 struct StoreStats {
     std::uint64_t appends = 0;             ///< calls of append() that became durable
     std::uint64_t entries = 0;             ///< log entries that became durable
     std::uint64_t synced_writes = 0;       ///< group commits, one fsync each
     std::uint64_t queued_bytes = 0;        ///< waiting for the committer
-    std::uint64_t torn_bytes_dropped = 0;  ///< of a write the last crash cut short, never acknowledged
-    std::optional<std::string> last_error; ///< why nothing is written any more
-    std::optional<std::string> no_room;    ///< why nothing more is stored until the disk has room again
-    std::optional<std::string> damage;     ///< found in the files while running; writing goes on
+    std::uint64_t torn_bytes_dropped = 0;  ///< of a write that the last crash cut short, never acknowledged
+    std::optional<std::string> last_error; ///< why the store accepts no more changes
+    std::optional<std::string> no_room;    ///< why nothing is stored until the disk has room again
+    std::optional<std::string> damage;     ///< found in the files at run time; writing continues
 };
 
-/// The truth: every session's append-only log of entries, and checkpoints of what was woven from them.
+/// The durable state of all sessions: an append-only log of entries for each, and checkpoints of the maps computed from
+/// it.
 ///
-/// Order   All changes (sessions, entries, checkpoints) take effect in the order in which they were
-///         handed over, and what a crash or power cut leaves is a prefix of them. So a checkpoint
-///         that survives is never ahead of the log, provided it was handed over after the entries
-///         it covers were; they need not be acknowledged yet.
-/// Errors  kNotFound: no such session, or it was removed. kConflict: an append that does not
-///         continue its session's log. kDataLoss: what was read is damaged. kStoreFailed:
-///         reading or writing failed. After one failed write or sync every change fails, until the
-///         store is opened again: what the disk holds is not known before that. Reading goes on.
-/// Thread  any, at the same time. Everything but append() and stats() may wait for the disk: keep
+/// Order: All changes (sessions, entries, checkpoints) take effect in the order of submission, and a crash or power
+///        loss leaves a prefix of them. A checkpoint that survives is therefore never ahead of the log, if it was
+///        submitted after the entries that it covers; they need not be acknowledged yet.
+/// Errors: kNotFound: there is no such session, or it was removed. kConflict: an append does not continue its session's
+///         log. kDataLoss: the data read is damaged. kStoreFailed: reading or writing failed. After one failed write or
+///         sync the state of the disk is unknown, so every change fails until the store is opened again; reading
+///         continues.
+/// Threads: any, concurrently. All functions except append() and stats() may wait for the disk: do not call them on
+///          threads that serve sockets. Within a `done`, only append() may be called.
 ///         it off the threads that serve sockets. From within `done` only append() may be called.
 class ScanLog {
 public:
@@ -72,91 +73,92 @@ public:
     ScanLog(const ScanLog&) = delete;
     ScanLog& operator=(const ScanLog&) = delete;
 
-    /// Writes what still waits, calls every `done`, and closes.
+    /// Writes queued changes, calls every `done`, and closes the log.
     virtual ~ScanLog() = default;
 
-    /// Durable when it returns.
+    /// Creates a session; durable on return.
     [[nodiscard]] virtual Result<SessionId> create_session(std::string_view record) = 0;
 
-    /// All sessions, by rising id; damage of one holds up no other.
+    /// Returns all sessions by ascending id. Damage of one does not affect the others.
     [[nodiscard]] virtual Result<std::vector<StoredSession>> sessions() = 0;
 
-    /// The revision of the session's last entry, 0 for an empty log.
-    /// Errors  kNotFound; kDataLoss.
+    /// Returns the revision of the session's last entry, 0 for an empty log.
+    /// Errors: kNotFound: no such session; kDataLoss: the end of its log cannot be read.
     [[nodiscard]] virtual Result<Revision> end_of(SessionId session) = 0;
 
-    /// Durable when it returns: record, entries and checkpoint are gone. The disk is freed in time.
+    /// Removes a session's record, entries and checkpoint; durable on return. Disk space is freed later.
     [[nodiscard]] virtual Result<> remove_session(SessionId session) = 0;
 
     /// Appends entries first, first + 1, ..., all or none of them.
     ///
-    /// Pre     `first` is one past the session's last entry, 1 for an empty log.
-    /// Post    `done` is called exactly once, from the committer's thread, when the entries survive
-    ///         kill -9 and power loss, or have failed. It should be quick and must not throw.
-    ///         Everything that waits, of all sessions, becomes durable with one synced write.
-    /// Errors  kOverloaded: the disk has no room; nothing was stored, and later there may be. kStoreFailed: it is not
-    ///         known what is stored until the log is opened again.
-    /// Queue   "commit queue". append() never waits and never refuses: the capacity is the sum of
-    ///         the robots' credits, as credit is given back only when `done` was called.
-    ///         Its size is stats().queued_bytes.
+    /// Pre: `first` is one past the session's last entry, 1 for an empty log.
+    /// Post: `done` is called exactly once, on the committer's thread, when the entries have failed or survive kill -9
+    ///       and power loss. It should be quick and must not throw. One synced write makes all queued changes of all
+    ///       sessions durable.
+    /// Errors: kOverloaded: the disk has no room; nothing was stored, and a later attempt may succeed. kStoreFailed: it
+    ///         is unknown what is stored until the log is opened again.
+    /// Queue: "commit queue". append() never waits and never refuses: the capacity is the sum of the robots' credits,
+    ///        because credit is returned only after `done` was called. Its size is stats().queued_bytes.
     virtual void append(SessionId session, Revision first, std::vector<std::string> entries, Done done) = 0;
 
-    /// Visits the entries after `after` in order, of the log as it is now; stops at the visitor's error.
+    /// Visits the entries after revision `after` in order, up to the end of the log at the time of the call. Stops at
+    /// the visitor's error.
     ///
-    /// Errors  kDataLoss, naming session and revision: a damaged entry; a missing one; a log that
-    ///         ends before `after`, as a checkpoint ahead of its log would have it.
+    /// Errors: kDataLoss, naming session and revision: an entry is damaged or missing, or the log ends before `after`,
+    ///         as after a checkpoint that is ahead of its log.
     [[nodiscard]] virtual Result<> read(SessionId session, Revision after, const VisitEntry& visit) = 0;
 
-    /// Removes all parts. Takes its turn in the commit queue and returns when written.
+    /// Removes all parts. Goes through the commit queue and returns when written.
     [[nodiscard]] virtual Result<> clear_checkpoint(SessionId session) = 0;
 
-    /// Replaces the named parts, all or none of them; parts not named stay.
-    /// Takes its turn in the commit queue and returns when written.
+    /// Replaces the named parts, all or none of them; other parts stay. Goes through the commit queue and returns when
+    /// written.
     [[nodiscard]] virtual Result<> write_checkpoint(SessionId session, std::vector<CheckpointPart> parts) = 0;
 
-    /// Visits all parts by rising key; none if no checkpoint was written. Stops at the visitor's error.
+    /// Visits all parts by ascending key; none if no checkpoint was written. Stops at the visitor's error.
     [[nodiscard]] virtual Result<> read_checkpoint(SessionId session, const VisitPart& visit) = 0;
 
     [[nodiscard]] virtual StoreStats stats() const = 0;
 
-    /// Lets `copy` make a copy of the database behind the log, as Backups does, while everything else goes on.
-    /// Errors  those of `copy`; kStoreFailed: the store has failed; kInvalidField: there is no database.
+    /// Calls `copy` with the database behind the log, as Backups does. Other operations continue meanwhile.
+    /// Errors: those of `copy`; kStoreFailed: the store has failed; kInvalidField: there is no database.
     [[nodiscard]] virtual Result<> copy_with(const CopyDatabase& copy);
 
-    /// All files of the store.
+    /// Returns the total size of the store's files, in bytes.
     [[nodiscard]] virtual std::uint64_t bytes_on_disk() const = 0;
 };
 
-/// append(), and waits until it is durable or has failed.
-/// Errors  as of ScanLog::append(). Thread  not the committer's.
+/// Appends entries and waits until they are durable or have failed.
+/// Errors: those of ScanLog::append().
+/// Threads: not the committer's.
 [[nodiscard]] Result<> append_and_wait(ScanLog& log, SessionId session, Revision first,
                                        std::vector<std::string> entries);
 
 struct StoreOptions {
-    /// Bound of write buffers and block cache together. The default suits 1 GB of memory and 24 GB:
-    /// the log is read in order, so more cache would hardly be used, and the system caches files.
+    /// Bound of write buffers and block cache together. The default suits both 1 GB and 24 GB of memory: the log is
+    /// read in order, so a larger cache would hardly be used, and the system caches files.
     std::size_t memory_bytes = std::size_t{128} << 20;
 
-    /// What is left free on the disk: with less, nothing is stored that adds to it, so that sessions can still be
-    /// removed and tables merged. Changes are refused then, with kOverloaded, and nothing of them is stored.
+    /// Disk space that is left free. With less, changes that add data are refused with kOverloaded and nothing of them
+    /// is stored, so that sessions can still be removed and tables merged.
     std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
 
-    /// Called once, from a thread of the store, when a file turns out to be damaged while running. New entries are
-    /// stored as before; what the file held is told when it is read.
+    /// Called once, from a thread of the store, when a file is found to be damaged at run time. New entries are stored
+    /// as before; reading the damaged data returns an error.
     std::function<void(const Error&)> on_damage;
 
-    /// Called with each line that RocksDB logs, from warnings on, from a thread of RocksDB. Null: they are dropped.
+    /// Called with each RocksDB log line of level WARN and above, from a RocksDB thread. Null: the lines are dropped.
     std::function<void(std::string_view)> on_rocksdb_log;
 
-    /// The file layer, for tests that fail it. Null: the system's.
+    /// The file layer; tests replace it to inject failures. Null: the system's.
     rocksdb::Env* env = nullptr;
 };
 
-/// Opens the store in a directory, creating both if there is nothing yet.
+/// Opens the store in a directory; creates both if they do not exist.
 ///
-/// Errors  kConflict: it is in use by another process; kStoreFailed: the directory cannot be used, holds something
-///         else, or the store in it is damaged; the message names the file. kUnsupportedVersion: it
-///         was written by a newer program. A write that a crash cut short is no damage: it was never
+/// Errors: kConflict: another process uses it; kNotFound: the directory holds other files and no store; kStoreFailed,
+///         kDataLoss: the directory cannot be used, or the store in it is damaged; the message names the file;
+///         kUnsupportedVersion: a newer program wrote it. A write that a crash cut short is not damage: it was never
 ///         acknowledged and is dropped.
 [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_rocksdb(const std::filesystem::path& directory,
                                                             const StoreOptions& options = {});

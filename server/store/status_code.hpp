@@ -6,8 +6,8 @@
 
 namespace scanloom::store {
 
-/// What a failure to read means: kDataLoss: bytes are wrong, or their file is gone; kStoreFailed: the disk could not be
-/// read, and later it may.
+/// Returns the error code of a failed read: kDataLoss if bytes are wrong or their file is missing; kStoreFailed if the
+/// disk could not be read, which may be temporary.
 [[nodiscard]] inline Errc code_of(const rocksdb::Status& status) {
     return status.IsCorruption() || status.IsPathNotFound() ? Errc::kDataLoss : Errc::kStoreFailed;
 }

@@ -18,7 +18,7 @@ Error facts_failure(const fs::path& directory, std::string_view what) {
     return {Errc::kStoreFailed, fmt::format("the store {} cannot be opened: {}", directory.native(), what)};
 }
 
-/// A number the store keeps about itself; nothing if it was never written.
+/// Reads a number that the store keeps about itself; nullopt if it was never written.
 Result<std::optional<std::uint64_t>> read_number(rocksdb::DB& database, const fs::path& directory,
                                                  std::string_view key) {
     std::string sealed_value;
@@ -77,7 +77,7 @@ Result<LogEnds> read_ends(rocksdb::DB& database, const fs::path& directory) {
         if (!session) break;
         if (*session >= ends.next_session)
             return facts_failure(directory, fmt::format("its count of sessions is damaged; {}", kBringBack));
-        const auto end = end_of_log(database, directory.native(), *session); // damage of one holds up no other
+        const auto end = end_of_log(database, directory.native(), *session); // damage of one does not affect the others
         ends.revisions.emplace(*session, end ? *end : 0);
         if (!end) ends.damaged.emplace(*session, end.error());
     }

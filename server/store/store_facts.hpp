@@ -7,17 +7,18 @@
 
 #include <filesystem>
 
-/// What a database must tell of itself before it is a scan log. `directory` is for the messages.
+/// Checks of a database before it becomes a scan log. `directory` is for messages.
 namespace scanloom::store {
 
-/// Why RocksDB does not open it.
+/// Returns the error for a database that RocksDB does not open.
 [[nodiscard]] Error cannot_open(const std::filesystem::path& directory, const rocksdb::Status& status);
 
-/// Whether the format record has to be written: the database is empty, or of an earlier format.
-/// Errors  kUnsupportedVersion: of a newer one; kStoreFailed: another program's, or damaged.
+/// Whether the format record has to be written: the database is empty or of an earlier format.
+/// Errors: kUnsupportedVersion: it is of a newer format; kStoreFailed: it belongs to another program or is damaged.
 [[nodiscard]] Result<bool> must_write_format(rocksdb::DB& database, const std::filesystem::path& directory);
 
-/// Errors  kStoreFailed: what is needed to number sessions is damaged. Damage of one session is in the answer.
+/// Reads the end of each session's log and the id of the next session. Damage of one session is part of the result.
+/// Errors: kStoreFailed: the record that numbers sessions is damaged.
 [[nodiscard]] Result<LogEnds> read_ends(rocksdb::DB& database, const std::filesystem::path& directory);
 
 } // namespace scanloom::store

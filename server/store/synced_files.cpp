@@ -46,7 +46,7 @@ Result<> create_store_directory(const fs::path& directory) {
     fs::create_directories(directory, problem);
     if (problem) return failure("cannot create the store {}: {}", directory.native(), problem.message());
     for (auto made = fs::absolute(directory).lexically_normal(); made.has_relative_path(); made = made.parent_path()) {
-        // All of them may be new; the upmost ones may be ones we cannot open, and those are not.
+        // All of these directories may be new, except those near the root that this process cannot open.
         if (::access(made.parent_path().c_str(), R_OK) != 0) break;
         if (auto synced = sync_directory(made.parent_path()); !synced) return synced;
     }
@@ -64,7 +64,7 @@ Result<> write_mark(const fs::path& file, std::string_view sentence) {
 
 Result<> remove_mark(const fs::path& file) {
     std::error_code problem;
-    if (!fs::remove(file, problem) && !problem) return {}; // it was not there
+    if (!fs::remove(file, problem) && !problem) return {}; // it did not exist
     if (problem) return failure("cannot remove {}: {}", file.native(), problem.message());
     return sync_directory(file.parent_path());
 }

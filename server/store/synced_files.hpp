@@ -7,18 +7,19 @@
 
 namespace scanloom::store {
 
-/// Files and directories that survive a power cut once these return. Errors  kStoreFailed, with the system's reason.
+/// Changes of files and directories that survive a power loss once the call has returned.
+/// Errors: kStoreFailed, with the system's reason.
 
-/// What was made, renamed or removed in a directory is so for good. Without it a power cut could take it back.
+/// Makes creations, renames and removals in a directory durable. Without it, a power loss may undo them.
 [[nodiscard]] Result<> sync_directory(const std::filesystem::path& directory);
 
-/// What was written to a file is there for good.
+/// Makes the contents of a file durable.
 [[nodiscard]] Result<> sync_file(const std::filesystem::path& file);
 
-/// Makes the store's directory, and those above it, unless it is there.
+/// Creates the store's directory and its parents as needed.
 [[nodiscard]] Result<> create_store_directory(const std::filesystem::path& directory);
 
-/// A small file that says something by being there, and a sentence to whoever reads it.
+/// Writes a small file that marks a state by its existence; the sentence in it explains it to a reader.
 [[nodiscard]] Result<> write_mark(const std::filesystem::path& file, std::string_view sentence);
 [[nodiscard]] Result<> remove_mark(const std::filesystem::path& file);
 

@@ -13,15 +13,15 @@
 namespace scanloom::store {
 namespace {
 
-constexpr std::size_t kTailBytes = 8; // type and sequence, behind a key
+constexpr std::size_t kTailBytes = 8; // type and sequence at the end of a key
 constexpr std::size_t kRecordKeyBytes = 9;
 constexpr std::size_t kEntryKeyBytes = 17;
-constexpr std::size_t kValueBytesMax = std::size_t{4} << 20; // a scan has 1 MiB at most, a part of an imported map less
+constexpr std::size_t kValueBytesMax = std::size_t{4} << 20; // a scan has at most 1 MiB, a part of an imported map less
 constexpr std::uint64_t kRow = 256;                          // keys that differ in their last byte only
 constexpr char kRemoval = 0;
 constexpr char kValue = 1;
 
-/// Takes a number off the front of bytes.
+/// Removes a number from the front of `bytes`.
 std::optional<std::uint32_t> varint32(std::string_view& bytes) {
     std::uint32_t number = 0;
     for (unsigned shift = 0; shift < 32 && !bytes.empty(); shift += 7) {
@@ -33,9 +33,9 @@ std::optional<std::uint32_t> varint32(std::string_view& bytes) {
     return std::nullopt;
 }
 
-/// What may be an entry of a table.
+/// A possible entry of a table.
 struct Found {
-    std::size_t shared = 0;    // bytes of the key that the one before has, too
+    std::size_t shared = 0;    // length of the prefix that its key shares with the previous key
     std::string_view key_rest; // with its tail
     std::string_view value;
 };
@@ -48,10 +48,10 @@ std::optional<Found> read_one(std::string_view bytes) {
     return Found{*shared, bytes.substr(0, *rest), bytes.substr(*rest, *length)};
 }
 
-/// Without its tail.
+/// Length of the key without its tail.
 std::size_t key_bytes_of(const Found& found) { return found.shared + found.key_rest.size() - kTailBytes; }
 
-/// The whole key, if it is one of the two kinds; without its tail.
+/// Returns the whole key without its tail if it is a record's or an entry's key.
 std::optional<std::string> key_of(const Found& found, std::string_view before) {
     if (found.shared > before.size()) return std::nullopt;
     std::string key(before.substr(0, found.shared));
@@ -60,8 +60,8 @@ std::optional<std::string> key_of(const Found& found, std::string_view before) {
     return key;
 }
 
-/// The first bytes that keys near this one have: in its row of 256, the rows beside it, the next session's entries, and
-/// the records.
+/// Returns keys whose prefixes occur near this one: in its row of 256 keys, the adjacent rows, the next session's
+/// entries, and the records.
 std::array<std::string, 5> keys_near(const std::string& key) {
     const auto revision = revision_of(key);
     if (!revision) {
@@ -77,9 +77,9 @@ class Carving {
 public:
     explicit Carving(const VisitCarved& visit) : visit_(visit) {}
 
-    /// @return whether it is intact; one whose key cannot be told yet may turn out to be later.
+    /// @return whether the entry is intact; an entry whose key is not known yet may be accepted later
     bool take(const Found& found) {
-        const auto key_bytes = key_bytes_of(found); // before anything is copied: noise may say that it is the rest
+        const auto key_bytes = key_bytes_of(found); // checked before copying: noise may claim any length
         if (key_bytes != kRecordKeyBytes && key_bytes != kEntryKeyBytes) return false;
         const char type = found.key_rest[found.key_rest.size() - kTailBytes];
         if (type == kRemoval && found.value.empty()) may_be_removal(found);
@@ -94,10 +94,10 @@ public:
     }
 
 private:
-    /// Nothing if the checksum holds with no key that it may have.
+    /// Returns nullopt if the checksum matches with no possible key.
     std::optional<std::string> intact_key(const Found& found) {
-        std::optional<std::string> shaped; // the likeliest
-        std::optional<std::string> tried;  // the last
+        std::optional<std::string> shaped; // the most likely key
+        std::optional<std::string> tried;  // the last key tried
         for (const auto* near : {&near_intact_, &near_uncertain_}) {
             for (const auto& before : *near) {
                 auto key = key_of(found, before);
@@ -107,11 +107,11 @@ private:
                 tried = std::move(key);
             }
         }
-        if (shaped) near_uncertain_ = keys_near(*shaped); // of a damaged value, if it is an entry
+        if (shaped) near_uncertain_ = keys_near(*shaped); // key of a damaged value, if this is an entry at all
         return std::nullopt;
     }
 
-    /// A removal has no checksum.
+    /// No checksum covers a removal.
     void may_be_removal(const Found& found) {
         for (const auto& before : near_intact_) {
             if (const auto key = key_of(found, before)) near_uncertain_ = keys_near(*key);
@@ -123,7 +123,7 @@ private:
         near_intact_ = keys_near(key);
     }
 
-    /// Those before an intact entry have keys that are near its own.
+    /// The entries before an intact one have keys near its own.
     void take_waiting() {
         const auto near_last = near_intact_;
         const auto waiting = std::exchange(waiting_, {});
@@ -134,12 +134,12 @@ private:
     }
 
     const VisitCarved& visit_;
-    std::array<std::string, 5> near_intact_ = keys_near(session_key(0)); // the last that was
+    std::array<std::string, 5> near_intact_ = keys_near(session_key(0)); // of the last intact entry
     std::array<std::string, 5> near_uncertain_;
-    std::vector<Found> waiting_; // since then
+    std::vector<Found> waiting_; // since the last intact entry
 };
 
-/// Whether a key may begin like this: see record.hpp.
+/// Whether a key may begin like this; see record.hpp.
 bool is_kind(std::string_view key) { return std::string_view("cflns").find(key.front()) != std::string_view::npos; }
 
 } // namespace
@@ -155,7 +155,7 @@ void carve_table(std::string_view table, const VisitCarved& visit) {
 
 std::set<SessionId> sessions_removed_in(std::string_view table) {
     std::set<SessionId> removed;
-    std::string before; // the key of the entry that ends where the next one begins; empty: none does
+    std::string before; // key of the entry that ends where the next one begins; empty: no such entry
     while (!table.empty()) {
         const auto found = read_one(table);
         if (!found || found->shared > before.size() || !is_kind(found->shared > 0 ? before : found->key_rest)) {

@@ -7,8 +7,9 @@
 
 namespace scanloom::store {
 
-/// Reads a table file of RocksDB and compares every block with its checksum, also what no session needs any more.
-/// Errors  kDataLoss, naming the file.
+/// Reads a RocksDB table file and compares every block with its checksum, including blocks that no session needs any
+/// more.
+/// Errors: kDataLoss, naming the file.
 [[nodiscard]] Result<> check_table(const std::filesystem::path& table, const StoreOptions& options = {});
 
 } // namespace scanloom::store

@@ -5,7 +5,7 @@
 namespace scanloom::store {
 namespace {
 
-/// So many numbers are asked for one by one, more than a block of 32 KiB has of common scans; then further and further.
+/// This many revisions are tried one by one, more than a block of 32 KiB holds of common scans; then in growing steps.
 constexpr Revision kOneByOne = 1024;
 constexpr Revision kFarthest = Revision{1} << 40; // no log is as long
 
@@ -32,12 +32,12 @@ void TableWalk::next() {
     settle(at);
 }
 
-/// Pre  `at` is the last revision that was read.
+/// Pre: `at` is the last revision that was read.
 void TableWalk::settle(Revision at) {
     if (!iterator_->Valid() && !iterator_->status().ok()) go_on_behind(at + 1);
 }
 
-/// @return whether what is there can be read, or nothing more is.
+/// @return whether the entry there can be read, or the table ends
 bool TableWalk::seek(Revision revision) {
     iterator_->Seek(entry_key(session_, revision));
     return iterator_->Valid() || iterator_->status().ok();
@@ -51,11 +51,11 @@ void TableWalk::go_on_behind(Revision unreadable) {
     Revision last_unreadable = unreadable + kOneByOne - 1;
     Revision readable = last_unreadable + kOneByOne;
     while (!seek(readable)) {
-        if (readable > kFarthest) return; // all the rest of the table
+        if (readable > kFarthest) return; // the rest of the table is unreadable
         last_unreadable = readable;
         readable *= 2;
     }
-    while (last_unreadable + 1 < readable) { // where the readable part begins
+    while (last_unreadable + 1 < readable) { // binary search for the start of the readable part
         const Revision middle = last_unreadable + (readable - last_unreadable) / 2;
         (seek(middle) ? readable : last_unreadable) = middle;
     }

@@ -10,10 +10,10 @@
 
 namespace scanloom::store {
 
-/// The log entries of one session in one table file, by rising revision, going on behind whatever cannot be read.
+/// Visits the log entries of one session in one table file by ascending revision and skips parts that cannot be read.
 ///
-/// A table is read block by block, and of a block that does not match its checksum nothing is known, not even what is
-/// in it. As keys are numbers, what comes behind it is found by asking for one number after another.
+/// A table is read block by block, and the content of a block with a wrong checksum is unknown. Because keys are
+/// numbers, the entries behind it are found by seeking one revision after another.
 class TableWalk {
 public:
     /// A table that cannot be opened has no entries.
@@ -21,13 +21,13 @@ public:
 
     [[nodiscard]] bool valid() const { return iterator_ != nullptr && iterator_->Valid(); }
 
-    /// Pre  valid().
+    /// Pre: valid().
     [[nodiscard]] Revision revision() const { return *revision_of(iterator_->key().ToStringView()); }
     [[nodiscard]] std::string_view key() const { return iterator_->key().ToStringView(); }
     [[nodiscard]] std::string_view sealed_value() const { return iterator_->value().ToStringView(); }
     void next();
 
-    /// Whether anything of the table could not be read so far.
+    /// Whether any part of the table could not be read so far.
     [[nodiscard]] bool met_damage() const noexcept { return met_damage_; }
 
 private:
@@ -39,7 +39,7 @@ private:
     const KeyRange range_;
     const rocksdb::Slice end_;
     std::unique_ptr<rocksdb::SstFileReader> reader_;
-    std::unique_ptr<rocksdb::Iterator> iterator_; // before its reader
+    std::unique_ptr<rocksdb::Iterator> iterator_; // destroyed before its reader
     bool met_damage_ = false;
 };
 

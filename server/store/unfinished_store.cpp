@@ -25,7 +25,7 @@ Error not_empty(const fs::path& directory, std::string_view file) {
                                          directory.native(), file)};
 }
 
-/// Whether a repair could have made it; the mark apart.
+/// Whether a repair may have created the file; false for the mark.
 bool is_ours(const fs::path& file) {
     const auto name = file.filename().native();
     std::error_code none;
@@ -38,7 +38,7 @@ bool is_lost_log(const fs::path& file) {
     return file.extension() == kLogEnding && fs::is_regular_file(fs::symlink_status(file, none));
 }
 
-/// What a killed repair may have left in a directory; nothing else may be there.
+/// Returns what a killed repair left in a directory. Other files are an error.
 Result<std::vector<fs::path>> leftovers_in(const fs::path& directory, bool (*may_be_left)(const fs::path&)) {
     std::vector<fs::path> found;
     std::error_code problem;
@@ -117,7 +117,8 @@ Result<UnfinishedStore> UnfinishedStore::begin(const fs::path& directory, const 
                                  directory.native())};
     }
     if (!lock) return lock.error();
-    // Only now nobody else writes or finishes it; and only the sentence says that what is there is a repair's.
+    // The lock excludes other repairs from here on. Only the sentence in the mark shows that a repair created the
+    // files.
     if (says_unfinished(mark)) {
         if (auto removed = remove_leftovers(directory, lost); !removed) return removed.error();
     } else if (auto empty = check_empty(directory, lost); !empty) {

@@ -10,27 +10,28 @@
 
 namespace scanloom::store {
 
-/// The directory of a store that is being repaired, which is none before all of it is there: a file in it says so, and
-/// whoever opens or checks it is told. What a killed repair left there is removed by the next into the same directory.
-/// Thread  one.
+/// The directory of a store that is being repaired. A mark file makes every attempt to open or check the store fail
+/// until it is complete. The next repair into the same directory removes what a killed repair left there.
+/// Threads: one.
 class UnfinishedStore {
 public:
-    /// Makes the directory, which is empty then but for the mark.
-    /// @param lost  where what cannot be woven is going to be; no other files are or come there meanwhile.
-    /// Errors  kConflict: there are other files than a killed repair's, in it or in `lost`, or another process repairs
-    ///         into it; kStoreFailed: the disk cannot take it.
+    /// Creates the directory, empty except for the mark.
+    /// @param lost  directory for the logs that cannot become maps; other programs put no files there meanwhile
+    /// Errors: kConflict: there are files that no killed repair left, in it or in `lost`, or another process repairs
+    ///         into it; kStoreFailed: the disk cannot be written.
     [[nodiscard]] static Result<UnfinishedStore> begin(const std::filesystem::path& directory,
                                                        const std::filesystem::path& lost);
 
-    /// For a copy of the old store, on the same disk. It is gone with the next repair, whatever becomes of this one.
+    /// Returns a path on the same disk for a copy of the old store. finish() or the next repair deletes it.
     [[nodiscard]] std::filesystem::path salvage() const;
 
-    /// To write it. Errors  as of open_rocksdb().
+    /// Opens the store for writing.
+    /// Errors: those of open_rocksdb().
     [[nodiscard]] Result<std::unique_ptr<ScanLog>> open_log() const;
 
-    /// Makes a store of it, durably.
-    /// Pre     nobody has it open.
-    /// Errors  kStoreFailed: it stays unfinished.
+    /// Turns the directory into a store, durably.
+    /// Pre: the store is not open.
+    /// Errors: kStoreFailed: the store stays unfinished.
     [[nodiscard]] Result<> finish();
 
 private:
@@ -39,7 +40,7 @@ private:
 
     std::filesystem::path directory_;
     std::filesystem::path lost_;
-    FileLock lock_; // of the mark
+    FileLock lock_; // of the mark file
 };
 
 } // namespace scanloom::store
