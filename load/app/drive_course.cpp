@@ -30,7 +30,7 @@ Result<robot::Simulator> make_simulator(const LoadOptions& options) {
 Result<> check_batch(const Course& course) {
     std::vector<wire::NumberedScan> batch;
     for (std::uint64_t i = 0; i < course.batch; ++i) {
-        batch.push_back({&course.scans.front(), RobotTalk::kEndless, 1.0}); // no number takes more bytes
+        batch.push_back({&course.scans.front(), RobotTalk::kEndless, 1.0}); // the longest encoding of a number
     }
     const std::size_t size = wire::batch_frame_size(batch);
     if (size <= wire::kFrameBytesMax) return {};

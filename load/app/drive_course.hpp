@@ -6,9 +6,9 @@
 
 namespace scanloom::load {
 
-/// Drives a simulated robot along the walls of the world and prepares its scans, options.course of them, or as many as
-/// each robot is going to send where these are fewer.
-/// Errors  those of load_world() and find_laser(); kTooLarge: --batch scans of this laser exceed a frame.
+/// Drives a simulated robot along the walls of the world and prepares its scans: options.course of them, or as many as
+/// each robot will send if these are fewer.
+/// Errors: those of load_world() and find_laser(); kTooLarge: a frame cannot hold --batch scans of this laser.
 [[nodiscard]] Result<Course> drive_course(const LoadOptions& options);
 
 } // namespace scanloom::load

@@ -20,7 +20,7 @@ void LiveDisplay::passing(std::string_view text) {
 }
 
 void LiveDisplay::clear() {
-    if (rows_ > 0) out_.write(fmt::format("\x1b[{}A\x1b[J", rows_)); // up, and erase to the end
+    if (rows_ > 0) out_.write(fmt::format("\x1b[{}A\x1b[J", rows_)); // moves the cursor up and erases to the end
     rows_ = 0;
 }
 

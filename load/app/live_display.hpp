@@ -8,25 +8,25 @@
 
 namespace scanloom::load {
 
-/// What is told while a run goes on: on a terminal rows that are written over, elsewhere plain lines. Nothing waits for
+/// Shows the progress of a run: rows that are overwritten on a terminal, plain lines elsewhere. Writing never waits for
 /// a reader.
 class LiveDisplay {
 public:
     explicit LiveDisplay(StandardError& out) : out_(out) {}
 
     [[nodiscard]] bool is_table() const { return out_.is_terminal(); }
-    /// In place of the rows before.
+    /// Replaces the previous rows.
     void show(const std::vector<std::string>& rows);
-    /// A line that stays.
+    /// Writes a line that stays.
     void note(std::string_view text);
-    /// A line that the next one takes the place of; nothing where lines cannot be written over.
+    /// Writes a line that the next output replaces; does nothing if the output is not a terminal.
     void passing(std::string_view text);
-    /// Takes away what is written over.
+    /// Removes the rows that would be overwritten.
     void clear();
 
 private:
     StandardError& out_;
-    std::size_t rows_ = 0; // that stand now, the cursor below them
+    std::size_t rows_ = 0; // currently on the screen, above the cursor
 };
 
 } // namespace scanloom::load

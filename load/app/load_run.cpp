@@ -19,8 +19,8 @@ namespace {
 
 constexpr Micros kPollPeriod = 100 * kMillisecond;
 constexpr Micros kShowPeriod = kSecond;
-constexpr Micros kHeadStart = 200 * kMillisecond; ///< from telling the robots when to begin until then
-constexpr std::chrono::seconds kPatience{60};     ///< with the server's HTTP, when it is not under load any more
+constexpr Micros kHeadStart = 200 * kMillisecond; ///< from notifying the robots until they start
+constexpr std::chrono::seconds kPatience{60};     ///< with the server's HTTP when it is no longer under load
 constexpr std::string_view kCalm = "calm";
 
 std::string prefix_of(const LoadOptions& options) { return fmt::format("load-{}-", options.seed); }
@@ -31,7 +31,7 @@ std::vector<std::string> session_names(const LoadOptions& options) {
     return names;
 }
 
-/// Whether this program gives such names: what else begins like them is somebody else's.
+/// Whether a run of this program creates such names. Other sessions with the same prefix are not its own.
 bool is_ours(std::string_view name, std::string_view prefix) {
     const auto rest = name.substr(prefix.size());
     return rest == kCalm || std::ranges::all_of(rest, [](char c) { return c >= '0' && c <= '9'; });
@@ -156,7 +156,7 @@ asio::awaitable<Result<>> LoadRun::make_room() {
     co_return Result<>();
 }
 
-/// @return false where a robot gave up, or none came any more.
+/// @return false if a robot gave up, or no more robots connected
 asio::awaitable<bool> LoadRun::connect_robots() {
     fleet_.connect();
     const auto patience = static_cast<Micros>(options_.give_up_after * static_cast<double>(kSecond));
@@ -212,7 +212,7 @@ asio::awaitable<void> LoadRun::wait_for_the_last_ack() {
 
 asio::awaitable<Moment> LoadRun::moment() {
     Moment now;
-    http_.set_patience(std::chrono::seconds(2)); // a server that is slow now is no reason to show nothing
+    http_.set_patience(std::chrono::seconds(2)); // a slow server must not stop the display
     const auto use = co_await server_use(http_);
     http_.set_patience(kPatience);
     if (use) now.server = *use;
@@ -252,7 +252,7 @@ std::vector<ExpectedSession> LoadRun::expected() const {
 asio::awaitable<void> LoadRun::verify() {
     Evidence& evidence = report_.evidence;
     const bool is_complete = evidence.failures.empty() && evidence.scans_acknowledged == evidence.scans_sent;
-    if (options_.verify == Verify::kNone || !is_complete) co_return; // what is under way may still arrive
+    if (options_.verify == Verify::kNone || !is_complete) co_return; // scans in flight may still arrive
     const auto tell = [this](const std::string& text) { display_.passing(text); };
     const auto sessions = expected();
     co_await verify_counts(http_, sessions, tell, evidence);

@@ -18,20 +18,20 @@
 
 namespace scanloom::load {
 
-/// One run from its first connection to its verdict: makes sure that its sessions are new, connects all robots, lets
-/// them stream, waits for the last acks, verifies, and deletes what it made.
-/// Thread  that of `io`, which is not run any more once this is destroyed.
+/// One run from the first connection to the verdict: checks that its sessions are new, connects all robots, streams,
+/// waits for the last acknowledgements, verifies, and deletes the sessions that it created.
+/// Threads: that of `io`, which must not run after this object is destroyed.
 class LoadRun {
 public:
-    /// The references stay until this is gone.
+    /// The references must outlive this object.
     LoadRun(boost::asio::io_context& io, const LoadOptions& options, const Course& course, const RobotLinkOptions& link,
             const HttpPlace& http, LiveDisplay& display);
 
-    /// Call once.
-    /// Errors  nothing was begun: kAlreadyExists: sessions of its names; those of HTTP.
+    /// Runs everything. Call once.
+    /// Errors: kAlreadyExists: there are sessions with the run's names; those of HTTP. Nothing was started then.
     [[nodiscard]] boost::asio::awaitable<Result<RunReport>> conduct();
 
-    /// No more scans; what was sent is waited for and verified.
+    /// Sends no more scans; waits for what was sent and verifies it.
     void interrupt();
 
 private:

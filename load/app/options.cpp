@@ -28,7 +28,7 @@ constexpr double kSecondsMax = 1e6;
 constexpr double kThreadsMax = 64;
 constexpr double kOnlookersMax = 1000;
 
-/// As the parser fills it, before it is sorted into LoadOptions.
+/// As filled by the parser, before conversion to LoadOptions.
 struct Raw {
     std::string server = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";

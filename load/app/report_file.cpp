@@ -35,7 +35,7 @@ Result<ReportFile> ReportFile::prepare(const fs::path& file) {
     if (fs::is_directory(file, unknown)) return cannot_write(file, EISDIR);
     const bool is_special = fs::exists(file, unknown) && !fs::is_regular_file(file, unknown);
     if (is_special) return ReportFile(file, file);
-    auto target = fs::is_symlink(file, unknown) ? fs::weakly_canonical(file, unknown) : file; // a link stays one
+    auto target = fs::is_symlink(file, unknown) ? fs::weakly_canonical(file, unknown) : file; // keeps a symbolic link
     auto part = fs::path(target.string() + ".part");
     const std::ofstream made(part, std::ios::binary);
     if (!made) return cannot_write(part, errno);

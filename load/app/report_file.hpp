@@ -7,26 +7,28 @@
 
 namespace scanloom::load {
 
-/// The file of --json. That it can be written is known before the run; until the report is whole, an earlier one stays.
+/// The file of --json. prepare() detects before the run whether it can be written; an earlier report stays until the
+/// new one is complete.
 class ReportFile {
 public:
-    /// Makes a file beside it, FILE.part, unless it is no regular file (a pipe, a device): that is written as it is.
-    /// Errors  kStoreFailed.
+    /// Creates FILE.part next to the file. A file that is not regular (a pipe, a device) is written directly.
+    /// Errors: kStoreFailed: the file cannot be written.
     [[nodiscard]] static Result<ReportFile> prepare(const std::filesystem::path& file);
 
     ReportFile(ReportFile&& other) noexcept;
     ReportFile& operator=(ReportFile&&) = delete;
-    /// Of a run without a report nothing is left.
+    /// Removes FILE.part if no report was written.
     ~ReportFile();
 
-    /// Call once. Errors  kStoreFailed: the disk is full.
+    /// Writes the report. Call once.
+    /// Errors: kStoreFailed: the disk is full.
     [[nodiscard]] Result<> write(std::string_view report);
 
 private:
     ReportFile(std::filesystem::path file, std::filesystem::path part);
 
     std::filesystem::path file_;
-    std::filesystem::path part_; // file_ itself where it is no regular file; empty: nothing is to be removed
+    std::filesystem::path part_; // file_ itself if it is not a regular file; empty: nothing to remove
 };
 
 } // namespace scanloom::load

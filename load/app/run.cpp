@@ -26,7 +26,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr std::uint64_t kDescriptorsBesides = 64; ///< of threads, files, and this program's own requests
+constexpr std::uint64_t kDescriptorsBesides = 64; ///< for threads, files and the program's own requests
 
 Result<std::vector<asio::ip::tcp::endpoint>> resolve(asio::io_context& io, const robot::ServerAddress& server) {
     asio::ip::tcp::resolver resolver(io);
@@ -83,7 +83,7 @@ Result<> check_descriptors(const LoadOptions& options) {
                              grouped(needed), grouped(allowed))};
 }
 
-/// The first signal ends the streaming, the second everything.
+/// The first signal ends the streaming, the second the program.
 asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDisplay& display) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
@@ -96,7 +96,7 @@ asio::awaitable<void> obey_signals(asio::io_context& io, LoadRun& run, LiveDispl
 
 bool goes_to_a_file(const std::string& json_file) { return !json_file.empty() && json_file != "-"; }
 
-/// @param file  that of --json; none where there is none, or it is standard output.
+/// @param file  of --json; absent if there is none or it is standard output
 Result<> write_report(const RunReport& report, const std::string& json_file, std::optional<ReportFile>& file) {
     const std::string shown = json_file == "-" ? to_json(report) : to_text(report);
     const bool is_shown =
@@ -138,7 +138,7 @@ ExitCode run(const LoadOptions& options) {
     if (!course) return fail(course.error());
 
     LoadRun run(io, options, *course, *link, *http, display);
-    std::optional<Result<RunReport>> outcome; // none where a second signal ends it
+    std::optional<Result<RunReport>> outcome; // absent if a second signal ended the run
     asio::co_spawn(io, obey_signals(io, run, display), asio::detached);
     asio::co_spawn(io, run.conduct(), [&](std::exception_ptr failed, Result<RunReport> result) {
         if (failed) std::rethrow_exception(failed);

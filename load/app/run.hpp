@@ -5,7 +5,7 @@
 
 namespace scanloom::load {
 
-/// The whole program: connects, streams, verifies, reports, cleans up.
+/// Runs the whole program: connects, streams, verifies, reports, cleans up.
 [[nodiscard]] ExitCode run(const LoadOptions& options);
 
 } // namespace scanloom::load

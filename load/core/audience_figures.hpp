@@ -7,22 +7,22 @@
 
 namespace scanloom::load {
 
-/// What those have seen who look on while robots stream.
+/// Statistics of the viewers and tile readers during a run.
 struct AudienceFigures {
-    std::uint32_t watching = 0;        ///< viewers that are connected at present
+    std::uint32_t watching = 0;        ///< viewers currently connected
     std::uint32_t viewers_let_in = 0;  ///< viewers that have ever watched
-    std::uint32_t viewers_refused = 0; ///< that never have, as the server answered otherwise than by letting them in
+    std::uint32_t viewers_refused = 0; ///< viewers that never watched because the server refused them
     std::uint64_t events = 0;
     std::uint64_t event_bytes = 0;
-    std::uint64_t viewer_ends = 0; ///< connections of viewers that watched, ended without their doing
+    std::uint64_t viewer_ends = 0; ///< connections of watching viewers that ended other than by stop()
 
     std::uint64_t tile_requests = 0;
     std::uint64_t tiles_unchanged = 0; ///< answered 304
-    std::uint64_t tiles_failed = 0;    ///< answered otherwise than 200 and 304, or not at all
+    std::uint64_t tiles_failed = 0;    ///< not answered with 200 or 304, or not at all
     std::uint64_t tile_bytes = 0;
-    LatencyHistogram tile_latency; ///< from when a tile was meant to be asked for until it was there
+    LatencyHistogram tile_latency; ///< from the intended time of a request until the tile had arrived
 
-    std::string trouble; ///< the newest; empty: none
+    std::string trouble; ///< the most recent one; empty: none
 };
 
 } // namespace scanloom::load

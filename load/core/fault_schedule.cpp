@@ -54,7 +54,7 @@ FaultSchedule::FaultSchedule(const FaultMeans& means, std::uint32_t robots, std:
     per_second_ = std::accumulate(rates_.begin(), rates_.end(), 0.0);
 }
 
-/// The library's distributions may differ from one to the next; these draws do not.
+/// The distributions of standard libraries may differ; these draws do not.
 double FaultSchedule::uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
 FaultSchedule::Event FaultSchedule::next() {
@@ -63,7 +63,7 @@ FaultSchedule::Event FaultSchedule::next() {
     event.robot = static_cast<std::uint32_t>(uniform() * robots_);
     double left = uniform() * per_second_;
     for (std::size_t i = 0; i < kFaultKinds; ++i) {
-        if (rates_[i] > 0.0) event.fault = static_cast<Fault>(i); // of rounding, the last one that there is
+        if (rates_[i] > 0.0) event.fault = static_cast<Fault>(i); // the last kind present, despite rounding
         if (left < rates_[i]) break;
         left -= rates_[i];
     }

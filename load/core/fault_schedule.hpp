@@ -11,44 +11,44 @@
 
 namespace scanloom::load {
 
-/// What happens to a robot's link.
+/// A fault of a robot's link.
 enum class Fault : std::uint8_t {
-    kCut,      ///< it is reset, whatever was under way
-    kHalfOpen, ///< the robot connects anew and leaves the old connection standing, as where its address changes
-    kStall,    ///< nothing is read from it nor written to it for kStallTime: a gap in the radio
+    kCut,      ///< the link is reset, whatever is in progress
+    kHalfOpen, ///< the robot reconnects and leaves the old connection open, as after a change of its address
+    kStall,    ///< nothing is read or written for kStallTime, as in a radio gap
 };
 inline constexpr std::size_t kFaultKinds = 3;
 inline constexpr std::array<std::string_view, kFaultKinds> kFaultNames{"cut", "half-open", "stall"};
 inline constexpr Micros kStallTime = 2 * kSecond;
 
-/// Seconds from one fault of a kind to the next on the same link, on average; 0: none.
+/// Mean seconds between two faults of a kind on the same link; 0: none.
 using FaultMeans = std::array<double, kFaultKinds>;
 
-/// "cut=20,half-open=60,stall=30".
-/// Errors  kInvalidField: what is wrong with it.
+/// Parses "cut=20,half-open=60,stall=30".
+/// Errors: kInvalidField: the message names the invalid part.
 [[nodiscard]] Result<FaultMeans> parse_faults(std::string_view text);
 
-/// When which robot's link fails and how: at random moments that know nothing of each other (a Poisson process), the
-/// same for the same seed.
+/// Which robot's link fails when and how: a Poisson process, so faults are independent of each other; equal seeds give
+/// equal faults.
 class FaultSchedule {
 public:
-    /// Pre  robots > 0
+    /// Pre: robots > 0.
     FaultSchedule(const FaultMeans& means, std::uint32_t robots, std::uint64_t seed);
 
     [[nodiscard]] bool is_empty() const noexcept { return per_second_ <= 0.0; }
 
     struct Event {
-        Micros after = 0; ///< since the event before
+        Micros after = 0; ///< since the previous event
         std::uint32_t robot = 0;
         Fault fault = Fault::kCut;
     };
-    /// Pre  !is_empty()
+    /// Pre: !is_empty().
     [[nodiscard]] Event next();
 
 private:
     [[nodiscard]] double uniform(); // [0, 1)
 
-    std::array<double, kFaultKinds> rates_{}; // a second, of all robots
+    std::array<double, kFaultKinds> rates_{}; // per second, of all robots
     double per_second_ = 0.0;
     std::uint32_t robots_;
     std::mt19937_64 random_;

@@ -9,11 +9,11 @@ namespace scanloom::load {
 
 std::size_t LatencyHistogram::bucket_of(Micros duration) noexcept {
     const auto value = static_cast<std::uint64_t>(duration);
-    const int doublings = std::max(0, static_cast<int>(std::bit_width(value)) - kLinearBits); // beyond the linear part
+    const int doublings = std::max(0, static_cast<int>(std::bit_width(value)) - kLinearBits); // above the linear part
     return static_cast<std::size_t>(doublings) * kHalf + static_cast<std::size_t>(value >> doublings);
 }
 
-/// The longest duration of a bucket.
+/// Returns the longest duration of a bucket.
 Micros LatencyHistogram::end_of(std::size_t bucket) noexcept {
     if (bucket < 2 * kHalf) return static_cast<Micros>(bucket);
     const std::size_t doublings = bucket / kHalf - 1;

@@ -8,13 +8,13 @@
 
 namespace scanloom::load {
 
-/// How often which duration occurred, in buckets that are as fine as three significant digits wherever one looks:
-/// below 2048 us each microsecond has one, and from there on each doubling is divided into 1024. So a percentile is
-/// never more than 0.1 % too large, the memory is fixed, and histograms of several threads add up.
+/// A histogram of durations with a resolution of three significant digits: below 2048 us each microsecond has its own
+/// bucket, above that each doubling is divided into 1024 buckets. A percentile is therefore at most 0.1 % too large,
+/// the memory is constant, and histograms of several threads can be added.
 ///
-/// Units   microseconds, 0 to kMax; what is less counts as 0, what is more as kMax.
-/// Thread  one at a time.
-/// Source  the layout of Gil Tene's HdrHistogram, http://hdrhistogram.org
+/// Units: microseconds, 0 to kMax; smaller values count as 0, larger ones as kMax.
+/// Threads: one at a time.
+/// Source: the layout of Gil Tene's HdrHistogram, http://hdrhistogram.org
 class LatencyHistogram {
 public:
     static constexpr Micros kMax = 3600 * kSecond; ///< an hour
@@ -22,19 +22,20 @@ public:
     void record(Micros duration, std::uint64_t times = 1) noexcept;
     void add(const LatencyHistogram& other) noexcept;
 
-    /// What was recorded since `earlier`, a copy of this made then. Of its largest the bucket is known.
+    /// Returns what was recorded since `earlier`, a copy of this histogram from that time. Its max() is known to the
+    /// bucket only.
     [[nodiscard]] LatencyHistogram since(const LatencyHistogram& earlier) const noexcept;
 
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-    [[nodiscard]] Micros max() const noexcept { return max_; } ///< exact; 0 of none
+    [[nodiscard]] Micros max() const noexcept { return max_; } ///< exact; 0 if empty
 
-    /// The least duration that at least `percent` of all do not exceed, rounded up to the end of its bucket, but never
-    /// beyond max(); 0 of none.
-    /// Pre  0 < percent <= 100
+    /// Returns the smallest duration that at least `percent` of all durations do not exceed, rounded up to the end of
+    /// its bucket but never beyond max(); 0 if empty.
+    /// Pre: 0 < percent <= 100.
     [[nodiscard]] Micros percentile(double percent) const noexcept;
 
 private:
-    static constexpr int kLinearBits = 11;                                    // 2048 buckets of a microsecond
+    static constexpr int kLinearBits = 11;                                    // 2048 buckets of one microsecond
     static constexpr std::size_t kHalf = std::size_t{1} << (kLinearBits - 1); // buckets of each further doubling
     static constexpr int kDoublings = 21;                                     // 2048 us << 21 exceeds an hour
     static constexpr std::size_t kBuckets = 2 * kHalf + kDoublings * kHalf;

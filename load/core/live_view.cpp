@@ -10,16 +10,16 @@
 namespace scanloom::load {
 namespace {
 
-/// What is shown of the time between two moments.
+/// Figures for the time between two moments.
 struct Lately {
     double seconds = 0.0;
-    double sent = 0.0; ///< scans a second
+    double sent = 0.0; ///< scans per second
     double acknowledged = 0.0;
     LatencyHistogram ack;
     LatencyHistogram own_delay;
     double own_cores = 0.0;
     std::optional<ServerUsed> server;
-    double events = 0.0; ///< a second
+    double events = 0.0; ///< per second
     double tiles = 0.0;
 };
 
@@ -66,7 +66,8 @@ std::uint64_t under_way(const FleetFigures& fleet) {
 }
 
 std::uint64_t without_link(const RunSettings& settings, const FleetFigures& fleet) {
-    const std::uint64_t accounted = std::uint64_t{fleet.linked} + fleet.finished; // the last one for a moment in both
+    // A robot that has just finished is briefly counted in both.
+    const std::uint64_t accounted = std::uint64_t{fleet.linked} + fleet.finished;
     return settings.robots - std::min<std::uint64_t>(accounted, settings.robots);
 }
 

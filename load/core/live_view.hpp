@@ -10,7 +10,7 @@
 
 namespace scanloom::load {
 
-/// How things stand at one moment of a run. Processes: what they have used so far.
+/// The state of a run at one moment. The use of processes counts from their start.
 struct Moment {
     Micros at = 0;
     FleetFigures fleet;
@@ -19,10 +19,11 @@ struct Moment {
     std::optional<ServerUse> server;
 };
 
-/// What happened between two moments, in one line for a log. `begun` is when the first scan was meant to be sent.
+/// Describes what happened between two moments, in one line for a log.
+/// @param begun  when the first scan was intended to be sent
 [[nodiscard]] std::string live_line(const RunSettings& settings, Micros begun, const Moment& before, const Moment& now);
 
-/// The same as a table for a terminal.
+/// Describes what happened between two moments, as a table for a terminal.
 [[nodiscard]] std::vector<std::string> live_table(const RunSettings& settings, Micros begun, const Moment& before,
                                                   const Moment& now);
 

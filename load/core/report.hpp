@@ -11,47 +11,47 @@
 
 namespace scanloom::load {
 
-/// What was asked of a run.
+/// The settings of a run.
 struct RunSettings {
     std::uint32_t robots = 0;
     std::uint32_t sessions = 0;
-    double rate = 0.0; ///< scans a second of each robot; 0: as fast as the credit allows
+    double rate = 0.0; ///< scans per second of each robot; 0: as fast as the credit allows
     std::uint32_t batch = 1;
     double duration = 0.0; ///< seconds
     std::string world;
     std::string laser;
     std::string noise;
-    std::size_t beams = 0;           ///< of a scan
+    std::size_t beams = 0;           ///< per scan
     std::optional<double> cell_size; ///< metres; absent: the server's default
     std::uint64_t seed = 0;
     std::uint32_t threads = 1;
     std::uint32_t viewers = 0;
     std::uint32_t tile_readers = 0;
     double tile_rate = 0.0;
-    std::string faults; ///< as they were given
+    std::string faults; ///< as given on the command line
 };
 
-/// All that a run tells.
+/// Everything that a run reports.
 struct RunReport {
     RunSettings settings;
-    double seconds = 0.0; ///< from when the first scan was meant to be sent until the last ack
+    double seconds = 0.0; ///< from the intended time of the first scan until the last acknowledgement
     FleetFigures fleet;
     AudienceFigures audience;
-    double watched_seconds = 0.0;     ///< for which the use of processors was watched: some more
-    ProcessUse own;                   ///< within that time, as that of the server
-    std::optional<ServerUsed> server; ///< absent: it did not say
+    double watched_seconds = 0.0;     ///< over which the use of processors was measured: somewhat longer
+    ProcessUse own;                   ///< within watched_seconds, like `server`
+    std::optional<ServerUsed> server; ///< absent: the server did not report it
     Evidence evidence;
     Verdict verdict;
 };
 
-/// 99 % of all scans were handed to their robots within this: then the generator kept its times, and what the latencies
-/// hold beyond it is the server's and the network's.
+/// The generator was punctual if 99 % of all scans were handed to their robots within this delay. Latencies beyond it
+/// are then caused by the server and the network.
 inline constexpr Micros kOwnDelayFine = 10 * kMillisecond;
 
-/// Lines for people; the verdict is the last.
+/// Formats a report for people; the last line is the verdict.
 [[nodiscard]] std::string to_text(const RunReport& report);
 
-/// The same for programs: one JSON object. docs/load.md lists its fields.
+/// Formats a report for programs: one JSON object. docs/load.md lists its fields.
 [[nodiscard]] std::string to_json(const RunReport& report);
 
 } // namespace scanloom::load

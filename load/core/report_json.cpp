@@ -16,7 +16,7 @@ namespace {
 
 double in_milliseconds(Micros time) { return static_cast<double>(time) / static_cast<double>(kMillisecond); }
 
-/// Six digits are more than any of these means.
+/// Six digits exceed the accuracy of all these values.
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
 json::object latency_json(const LatencyHistogram& latency) {
@@ -122,7 +122,7 @@ std::string to_json(const RunReport& report) {
                      {"audience", audience_json(report.audience)},
                      {"links", links_json(report.fleet)},
                      {"verdict", verdict_json(report)}};
-    if (report.settings.rate > 0.0) { // else no scan is meant to be sent at any time
+    if (report.settings.rate > 0.0) { // otherwise scans have no intended sending times
         all["ack_from_intended"] = latency_json(report.fleet.from_intended);
         all["sending_from_intended"] = latency_json(report.fleet.waiting_to_send);
         all["own_delay"] = latency_json(report.fleet.own_delay);

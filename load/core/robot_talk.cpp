@@ -32,7 +32,7 @@ void RobotTalk::end() noexcept {
     if (due_ == kEndless) due_ = sent_ever_;
 }
 
-// What comes ----------------------------------------------------------------------------------------------------------
+// Receiving -----------------------------------------------------------------------------------------------------------
 
 std::optional<wire::LinkError> RobotTalk::receive(const wire::Message& message, Micros now, FleetFigures& figures) {
     link_.waits_since = now;
@@ -50,7 +50,7 @@ std::optional<wire::LinkError> RobotTalk::receive(const wire::Message& message, 
     if (welcome && !link_.welcomed) return on_welcome(*welcome, now, figures);
     const auto* ack = std::get_if<wire::Ack>(&message);
     if (ack && link_.welcomed) return on_ack(*ack, now, figures);
-    if (std::holds_alternative<wire::Correction>(message)) return std::nullopt; // poses are sent as they are
+    if (std::holds_alternative<wire::Correction>(message)) return std::nullopt; // poses are sent uncorrected
     return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));
 }
 
@@ -106,7 +106,7 @@ void RobotTalk::acknowledge(std::uint64_t seq, Micros now, FleetFigures& figures
     }
 }
 
-// What goes -----------------------------------------------------------------------------------------------------------
+// Sending -------------------------------------------------------------------------------------------------------------
 
 void RobotTalk::write(std::string& out, Micros now, FleetFigures& figures) {
     if (!link_.is_open || link_.said_goodbye) return;
@@ -158,7 +158,7 @@ void RobotTalk::write_scans(std::string& out, Micros now, FleetFigures& figures)
     }
 }
 
-/// How many scans the next frame has; 0: it has to wait for more.
+/// Returns the number of scans in the next frame; 0: wait for more.
 std::uint64_t RobotTalk::next_batch() const noexcept {
     const std::uint64_t waiting = due_ > sent_ ? due_ - sent_ : 0;
     if (waiting >= course_->batch) return course_->batch;
@@ -189,7 +189,7 @@ std::optional<wire::LinkError> RobotTalk::check(Micros now) const {
 
 bool RobotTalk::is_owed_something() const noexcept { return link_.pinged || link_.said_goodbye || sent_ > durable_; }
 
-/// Pre  the course has a schedule.
+/// Pre: the course has a schedule.
 Micros RobotTalk::intended(std::uint64_t seq) const noexcept {
     return start_ + course_->schedule->due(plan_.index, seq);
 }

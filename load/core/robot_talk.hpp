@@ -20,46 +20,46 @@ struct RobotPlan {
     std::uint32_t index = 0; ///< among all robots
     std::string session;
     std::string name;           ///< within the session
-    std::size_t first_scan = 0; ///< where on the course it begins
+    std::size_t first_scan = 0; ///< where on the course it starts
 };
 
-/// The robot's side of the robot link for a robot that is one of thousands: without a socket, without a clock, and
-/// without memory of the scans that are under way, as each can be made again from its number.
+/// The robot's side of the robot link, for one of thousands of robots: without a socket, without a clock, and without
+/// keeping the scans in flight, because each can be generated again from its number.
 ///
-/// Usage   link up: open(); for every frame that came: receive(); after each event write() and send what it gave;
-///         link down: close(). As time goes on: due(). After the last scan: end().
-/// Thread  one at a time.
-/// Source  proto/scanloom/v1/frame.proto. It differs from robot::Conversation, which is for one robot, in what it does
-///         not know: sources, requests, compression, buffers.
+/// Usage: link up: open(); for every received frame: receive(); after each event write(), and send its output; link
+/// down: close(). As time passes: due(). After the last scan: end().
+/// Threads: one at a time.
+/// Source: proto/scanloom/v1/frame.proto. Unlike robot::Conversation, which serves a single robot, it has no sources,
+///         requests, compression or buffers.
 class RobotTalk {
 public:
     static constexpr std::size_t kWriteMax = std::size_t{64} << 10; ///< bytes of one write(), or one frame
-    static constexpr Micros kWelcomeMax = 60 * kSecond;             ///< from the hello on: sessions are made one by one
-    static constexpr Micros kPingAfter = 5 * kSecond;               ///< of saying nothing
-    static constexpr Micros kSilenceMax = 15 * kSecond;             ///< in which the server owes an answer
+    static constexpr Micros kWelcomeMax = 60 * kSecond; ///< since the hello: the server creates sessions one by one
+    static constexpr Micros kPingAfter = 5 * kSecond;   ///< without sending anything
+    static constexpr Micros kSilenceMax = 15 * kSecond; ///< while the server owes an answer
     static constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
 
-    /// `course` and `hello`, which lacks the names of session and robot, stay until this is gone.
+    /// `course` and `hello` must outlive this object. `hello` has no session and robot name yet.
     RobotTalk(RobotPlan plan, const Course& course, const wire::Hello& hello);
 
     void open(Micros now);
     void close(FleetFigures& figures) noexcept;
 
-    /// @return why the link has to end. Not retryable: why the robot gives up. Errors that are a loss are counted.
+    /// @return why the link has to end; if not retryable, why the robot gives up. Lost scans are counted in `figures`.
     [[nodiscard]] std::optional<wire::LinkError> receive(const wire::Message& message, Micros now,
                                                          FleetFigures& figures);
 
-    /// Its scans are due by the schedule since `start`.
+    /// The scans are due by the schedule, counted from `start`.
     void begin(Micros start) noexcept { start_ = start; }
-    /// The robot has this many scans by now; kEndless: always one more.
+    /// The robot has this many scans now; kEndless: always one more.
     void due(std::uint64_t scans) noexcept { due_ = scans; }
-    /// There will be no more than there are; of an endless number, than were sent.
+    /// No more scans follow: the total is what is due now, or what was sent if that is endless.
     void end() noexcept;
 
     /// Appends what may be sent now to `out`: at most kWriteMax bytes, or one frame.
     void write(std::string& out, Micros now, FleetFigures& figures);
 
-    /// What is wrong with the link by now, to be asked every second or so.
+    /// Returns what is wrong with the link at `now`; call it about once a second.
     [[nodiscard]] std::optional<wire::LinkError> check(Micros now) const;
 
     [[nodiscard]] const RobotPlan& plan() const noexcept { return plan_; }
@@ -76,11 +76,11 @@ private:
         bool welcomed = false;
         bool described = false;
         bool said_goodbye = false;
-        bool pinged = false; // and nothing was heard since
+        bool pinged = false; // and nothing was received since
         Micros opened = 0;
         Micros said = 0;
-        Micros waits_since = 0;                 // for what the server owes, with nothing heard since
-        std::optional<std::uint64_t> to_answer; // the newest ping
+        Micros waits_since = 0;                 // for what the server owes, with nothing received since
+        std::optional<std::uint64_t> to_answer; // nonce of the newest ping
     };
     struct Sending {
         std::uint64_t last_seq = 0;
@@ -103,7 +103,7 @@ private:
     const wire::Hello* hello_;
     Link link_;
     robot::CreditWindow credit_;
-    std::deque<Sending> sendings_; // on this link, not acknowledged
+    std::deque<Sending> sendings_; // on this link, not acknowledged yet
     std::vector<wire::NumberedScan> batch_;
     std::string session_id_;
     Micros start_ = 0;

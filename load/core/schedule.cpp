@@ -12,7 +12,7 @@ Schedule::Schedule(std::uint32_t robots, double rate)
 }
 
 std::uint64_t Schedule::scans_within(double duration_s, double rate) noexcept {
-    const double scans = std::ceil(duration_s * rate - 1e-6); // 0.3 s at 10 Hz are three, rounded as they are
+    const double scans = std::ceil(duration_s * rate - 1e-6); // 0.3 s at 10 Hz are three, despite rounding errors
     return static_cast<std::uint64_t>(std::max(scans, 1.0));
 }
 

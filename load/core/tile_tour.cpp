@@ -6,7 +6,7 @@
 namespace scanloom::load {
 namespace {
 
-constexpr std::array<const char*, 2> kLayers{"occupancy", "classification"}; ///< what the viewer shows first
+constexpr std::array<const char*, 2> kLayers{"occupancy", "classification"}; ///< the layers that the viewer shows first
 
 } // namespace
 

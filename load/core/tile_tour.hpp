@@ -15,25 +15,25 @@ struct TilePlace {
     std::uint32_t y = 0;
 };
 
-/// What a reader of tiles asks for, and when: which tiles of a layer there are, these one after the other, then the
-/// same of the next layer, round and round.
+/// What a tile reader requests and when: the list of a layer's tiles, each of these tiles, then the same for the next
+/// layer, again and again.
 ///
-/// Tiles alone take turns, `rate` a second. The list is asked for as soon as the last tile is there; only one without a
-/// tile takes a turn, so that nobody asks without end.
+/// Only tiles are paced, at `rate` per second. A list is requested as soon as the last tile has arrived; a list without
+/// tiles is paced like a tile, so that requests do not repeat without end.
 class TileTour {
 public:
     struct Step {
         std::string layer;
         bool is_list = false;
-        TilePlace tile; ///< unless it is the list
-        Micros at = 0;  ///< when it is meant to be asked for; a list's may be over
+        TilePlace tile; ///< unless is_list
+        Micros at = 0;  ///< intended time of the request; may be in the past for a list
     };
 
     TileTour(double rate, Micros first);
 
     [[nodiscard]] Step next();
 
-    /// What the list held that was asked for; none where it could not be had.
+    /// Sets the tiles of the requested list; none if the request failed.
     void listed(std::vector<TilePlace> tiles);
 
 private:
@@ -41,7 +41,7 @@ private:
     Micros turn_;
     std::size_t round_ = 0;
     std::vector<TilePlace> tiles_;
-    std::size_t asked_for_ = 0; // of them
+    std::size_t asked_for_ = 0; // number of tiles_ requested so far
 };
 
 } // namespace scanloom::load

@@ -9,7 +9,7 @@
 namespace scanloom::load {
 namespace {
 
-constexpr std::uint64_t kEntriesBesideScans = 2; ///< of each robot
+constexpr std::uint64_t kEntriesBesideScans = 2; ///< for each robot
 
 std::optional<std::string> contradiction(const std::string& session, const ExpectedRobot& expected,
                                          const FoundSession& found) {

@@ -7,7 +7,7 @@
 
 namespace scanloom::load {
 
-/// What the server has acknowledged to one robot.
+/// The scans of one robot that the server has acknowledged.
 struct ExpectedRobot {
     std::string name;
     std::uint64_t scans = 0;
@@ -18,7 +18,7 @@ struct ExpectedSession {
     std::vector<ExpectedRobot> robots;
 };
 
-/// What the server says of a session when it is asked afterwards.
+/// The server's own count for a robot, read after the run.
 struct FoundRobot {
     std::string name;
     std::uint64_t scans = 0;
@@ -31,27 +31,27 @@ struct FoundSession {
     std::vector<FoundRobot> robots;
 };
 
-/// What contradicts the acknowledgements, in a sentence; nothing where each scan is there exactly once. Every robot
-/// makes two entries beside its scans: it joined, and its laser was described.
+/// Returns a sentence that says what contradicts the acknowledgements; nullopt if every scan is stored exactly once.
+/// Every robot adds two entries to its scans: it joined, and its laser was described.
 [[nodiscard]] std::optional<std::string> contradiction(const ExpectedSession& expected, const FoundSession& found);
 
 enum class Verify { kNone, kCounts, kDigests };
 
-/// What a run came to.
+/// The results of a run that decide its verdict.
 struct Evidence {
     Verify asked = Verify::kDigests;
     std::uint64_t scans_sent = 0;
     std::uint64_t scans_acknowledged = 0;
-    std::uint64_t scans_lost = 0; ///< as robots found out by reconnecting
+    std::uint64_t scans_lost = 0; ///< as found out when robots reconnected
     std::uint64_t sessions = 0;
     std::uint64_t scans_in_sessions = 0;
-    std::uint64_t digests_equal = 0;         ///< sessions whose maps are those of a calm run
-    bool shares_sessions = false;            ///< several robots in one: their scans mix in another order each time
-    std::vector<std::string> contradictions; ///< of sessions that were asked, and of digests
-    std::vector<std::string> failures;       ///< robots that gave up, or what could not be asked
+    std::uint64_t digests_equal = 0; ///< sessions whose maps equal those of an undisturbed run
+    bool shares_sessions = false;    ///< several robots in a session: their scans mix in another order each time
+    std::vector<std::string> contradictions; ///< of sessions that were checked, and of digests
+    std::vector<std::string> failures;       ///< robots that gave up, and requests that failed
 };
 
-/// The plain last word.
+/// The final result in one sentence.
 struct Verdict {
     bool is_good = false;
     std::string sentence;

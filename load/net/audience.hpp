@@ -18,14 +18,14 @@ namespace scanloom::load {
 struct AudiencePlan {
     std::uint32_t viewers = 0;
     std::uint32_t tile_readers = 0;
-    double tile_rate = 0.0; ///< requests a second of each reader
+    double tile_rate = 0.0; ///< requests per second of each reader
     HttpPlace http;
-    std::vector<std::string> sessions; ///< the first viewer watches the first, and so on, round and round
+    std::vector<std::string> sessions; ///< the first viewer watches the first, and so on, cyclically
 };
 
-/// Those who look on, on a thread of their own: they do not delay the robots.
+/// Viewers and tile readers on their own thread, so that they do not delay the robots.
 ///
-/// Thread  begin() and look() from any.
+/// Threads: begin() and look() may be called from any.
 class Audience {
 public:
     Audience(const AudiencePlan& plan, const RunClock& clock);
@@ -34,7 +34,7 @@ public:
     Audience& operator=(const Audience&) = delete;
 
     void begin();
-    /// How things stand; waits for this thread to tell.
+    /// Returns the current statistics; waits for the audience's thread.
     [[nodiscard]] std::unique_ptr<AudienceFigures> look();
     void stop();
 

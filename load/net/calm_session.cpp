@@ -15,7 +15,7 @@ namespace {
 constexpr Micros kPatience = 60 * kSecond;
 constexpr std::chrono::milliseconds kLookPeriod{2};
 
-/// Each scan in a frame of its own: maps do not depend on how scans came.
+/// Sends each scan in its own frame: maps do not depend on how scans are grouped.
 Course in_peace(Course course) {
     course.schedule.reset();
     course.batch = 1;

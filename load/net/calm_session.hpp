@@ -11,17 +11,18 @@
 
 namespace scanloom::load {
 
-/// A session into which one robot streams the course in peace: nothing else happens, no link is cut. What the maps of
-/// other sessions should be is read from its own.
+/// A session into which one robot streams the course undisturbed, without faults. Its maps are what the maps of other
+/// sessions should be.
 class CalmSession {
 public:
-    /// The references stay until this is gone; `io` is not run after that.
+    /// The references must outlive this object; `io` must not run after its destruction.
     CalmSession(boost::asio::io_context& io, std::string name, const RunClock& clock, const Course& course,
                 const RobotLinkOptions& link);
     ~CalmSession();
 
-    /// Goes on until this many scans are acknowledged, as fast as the server takes them. Pre: not fewer than before.
-    /// Errors  why the robot gave up; kTimeout: nothing was acknowledged for a minute.
+    /// Streams as fast as the server accepts scans, until this many are acknowledged.
+    /// Pre: not fewer scans than before.
+    /// Errors: the reason why the robot gave up; kTimeout: no scan was acknowledged for a minute.
     [[nodiscard]] boost::asio::awaitable<Result<>> stream_to(std::uint64_t scans);
 
 private:

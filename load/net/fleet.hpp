@@ -9,15 +9,16 @@
 
 namespace scanloom::load {
 
-/// Robots that are spread over sessions, robot i in session i % sessions. Those of one session begin at places of the
-/// course that are evenly apart, so that every session gets the same as any other with as many robots.
+/// Spreads robots over sessions: robot i joins session i % sessions. The robots of a session start evenly spaced on the
+/// course, so that sessions with equally many robots receive the same scans.
 [[nodiscard]] std::vector<RobotPlan> spread_over(const std::vector<std::string>& sessions, std::uint32_t robots,
                                                  std::size_t course_scans);
 
-/// All robots, on as many threads as planned. Thread  one at a time.
+/// All robots, on as many threads as planned.
+/// Threads: one at a time.
 class Fleet {
 public:
-    /// The references stay until this is gone.
+    /// The references must outlive this object.
     Fleet(const FleetPlan& plan, const std::vector<RobotPlan>& robots, const RunClock& clock, const Course& course,
           const RobotLinkOptions& link);
 
@@ -29,7 +30,8 @@ public:
     [[nodiscard]] std::unique_ptr<Shard::Look> look();
     [[nodiscard]] Shard::Progress progress();
 
-    /// What was acknowledged to each robot. Pre  stop() was called.
+    /// Returns the number of acknowledged scans of each robot.
+    /// Pre: stop() was called.
     [[nodiscard]] std::vector<std::uint64_t> acknowledged() const;
 
 private:

@@ -75,7 +75,7 @@ asio::awaitable<Result<HttpAnswer>> HttpConnection::ask(http::verb method, std::
                                  std::move(parser.get().body())};
         }
         close();
-        if (was_open && failed != asio::error::timed_out) continue; // the server has closed it while it was idle
+        if (was_open && failed != asio::error::timed_out) continue; // the server has closed the idle connection
         if (failed != asio::error::timed_out) co_return unreachable(failed);
         co_return Error{Errc::kTimeout, fmt::format("{}:{} did not answer {} within {} s", place_.server.host,
                                                     place_.server.port, target, patience_.count())};

@@ -28,15 +28,16 @@ struct HttpAnswer {
     std::string body;
 };
 
-/// A connection to the server's HTTP port that is kept open between requests, and made anew when the server has closed
-/// it meanwhile.
-/// Thread  one request at a time, on its executor.
+/// A connection to the server's HTTP port. It stays open between requests and is opened again if the server has closed
+/// it.
+/// Threads: one request at a time, on its executor.
 class HttpConnection {
 public:
     HttpConnection(boost::asio::any_io_executor executor, HttpPlace place);
 
-    /// Pre     the connection stays until this is done.
-    /// Errors  kUnreachable: nobody answers; kTimeout.
+    /// Sends a request and waits for the answer.
+    /// Pre: the connection outlives the request.
+    /// Errors: kUnreachable: the server does not answer; kTimeout.
     [[nodiscard]] boost::asio::awaitable<Result<HttpAnswer>> ask(boost::beast::http::verb method, std::string target,
                                                                  std::string if_none_match = {});
     [[nodiscard]] boost::asio::awaitable<Result<HttpAnswer>> get(std::string target) {
@@ -44,7 +45,7 @@ public:
     }
 
     void set_patience(std::chrono::seconds patience) noexcept { patience_ = patience; }
-    /// Ends the request that is under way, if there is one.
+    /// Cancels the current request, if any.
     void close();
 
     [[nodiscard]] std::uint64_t bytes_in() const noexcept { return bytes_in_; }
@@ -61,18 +62,18 @@ private:
 
     boost::asio::any_io_executor executor_;
     HttpPlace place_;
-    std::string authorization_;             // empty: none
-    std::optional<net::LinkStream> stream_; // the newest
+    std::string authorization_;             // value of the header field; empty: none
+    std::optional<net::LinkStream> stream_; // the current or last one
     boost::beast::flat_buffer buffer_;
     std::chrono::seconds patience_{30};
     std::uint64_t bytes_in_ = 0;
     bool is_open_ = false;
 };
 
-/// What an Authorization field holds; empty where there is no token.
+/// Returns the value of an Authorization field; empty if there is no token.
 [[nodiscard]] std::string authorization_of(const std::string& token);
 
-/// What the server says of an answer that is not the one asked for, as a failure.
+/// Returns an answer with an unexpected status as an error.
 [[nodiscard]] Error refusal(const HttpAnswer& answer, const std::string& target);
 
 } // namespace scanloom::load

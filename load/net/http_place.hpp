@@ -7,10 +7,10 @@
 
 namespace scanloom::load {
 
-/// Where the server is asked over HTTP, and as whom.
+/// Address and credentials for the server's HTTP port.
 struct HttpPlace {
     robot::ServerAddress server;
-    net::TlsContext tls; ///< null: plainly
+    net::TlsContext tls; ///< null: without TLS
     std::string token;   ///< empty: none
 };
 

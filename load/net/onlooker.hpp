@@ -11,21 +11,21 @@
 
 namespace scanloom::load {
 
-/// What viewers and tile readers of one thread share.
+/// State shared by the viewers and tile readers of one thread.
 struct OnlookerShared {
     const RunClock& clock;
     HttpPlace http;
     AudienceFigures& figures;
-    bool stopped = false; ///< whoever sees it ends
+    bool stopped = false; ///< every reader and viewer ends once it is set
 };
 
-/// Watches a session as a page of the viewer does, over a WebSocket: all layers and points; takes every event as soon
-/// as it comes. A connection that ends is made anew after a second, and so it asks again where it is not let in.
-/// `shared` stays until the executor has stopped.
+/// Watches a session over a WebSocket as the viewer's page does: all layers and points, reading every event
+/// immediately. Reconnects a second after a connection ended or was refused. `shared` must live until the executor has
+/// stopped.
 [[nodiscard]] boost::asio::awaitable<void> watch(OnlookerShared& shared, std::string session);
 
-/// Fetches the tiles of a session one after the other, round and round, `rate` a second, each with the ETag that it had
-/// before, as a browser does. Begins `delay` from now, so that readers do not ask in step.
+/// Fetches the tiles of a session one after the other, again and again, `rate` per second, each with its last ETag, as
+/// a browser does. Starts after `delay`, so that readers do not send requests in step.
 [[nodiscard]] boost::asio::awaitable<void> read_tiles(OnlookerShared& shared, std::string session, double rate,
                                                       Micros delay);
 

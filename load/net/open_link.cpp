@@ -25,7 +25,7 @@ asio::awaitable<boost::system::error_code> open_link(net::LinkStream& stream, co
     if (unresolved) co_return unresolved;
     const auto [refused, endpoint] = co_await asio::async_connect(stream.socket(), addresses, kAwaitTuple);
     if (refused) co_return refused;
-    boost::system::error_code ignored; // without it small requests only wait longer
+    boost::system::error_code ignored; // without it, small requests only wait longer
     stream.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
     if (!place.tls) co_return refused;
     stream.expect_host(place.server.host);

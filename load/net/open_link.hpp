@@ -10,14 +10,14 @@
 
 namespace scanloom::load {
 
-/// A connection to the HTTP port that is not open yet.
+/// Returns a connection to the HTTP port that is not open yet.
 [[nodiscard]] net::LinkStream link_to(const HttpPlace& place, const boost::asio::any_io_executor& executor);
 
-/// Connects, and shakes hands where the place has TLS. Both stay until this is done.
+/// Connects, and performs the TLS handshake if the place has TLS. Both arguments must outlive the call.
 [[nodiscard]] boost::asio::awaitable<boost::system::error_code> open_link(net::LinkStream& stream,
                                                                           const HttpPlace& place);
 
-/// Why the link failed, for people.
+/// Returns for people why the link failed.
 [[nodiscard]] std::string trouble_with(const net::LinkStream& stream, const boost::system::error_code& failed);
 
 } // namespace scanloom::load

@@ -17,7 +17,7 @@ double in_seconds(const timeval& time) {
 ProcessUse own_use() {
     rusage use{};
     getrusage(RUSAGE_SELF, &use);
-    std::ifstream file("/proc/self/statm"); // pages: all, and those in RAM
+    std::ifstream file("/proc/self/statm"); // unit: pages; all, then resident ones
     double all = 0.0;
     double resident = 0.0;
     file >> all >> resident;

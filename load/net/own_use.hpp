@@ -6,10 +6,10 @@
 
 namespace scanloom::load {
 
-/// CPU time and memory of this process so far.
+/// Returns CPU time and memory used by this process so far.
 [[nodiscard]] ProcessUse own_use();
 
-/// Lets this process have as many descriptors as it may; says how many these are.
+/// Raises this process's limit of file descriptors to the allowed maximum and returns it.
 [[nodiscard]] std::uint64_t raise_descriptor_limit();
 
 } // namespace scanloom::load

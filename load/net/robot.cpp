@@ -18,7 +18,7 @@ using asio::ip::tcp;
 
 namespace {
 
-constexpr std::size_t kReadBytes = 512; // acks are some twenty bytes each
+constexpr std::size_t kReadBytes = 512; // acks have about twenty bytes each
 constexpr Micros kConnectMax = 10 * kSecond;
 
 wire::LinkError lost(std::string message) { return {{Errc::kUnreachable, std::move(message)}, true}; }
@@ -37,9 +37,9 @@ struct Robot::Link {
 
     net::LinkStream stream;
     Micros begun;
-    bool is_up = false; // connected, and encrypted where it has to be
+    bool is_up = false; // connected, and encrypted if required
     bool is_writing = false;
-    bool has_heard = false; // anything
+    bool has_heard = false; // received anything
     std::string out;
     wire::FrameDecoder in{wire::kFrameBytesMax};
 };
@@ -57,7 +57,7 @@ asio::awaitable<void> Robot::run() {
         close_link();
         talk_.close(shared_.figures);
         if (stopped_ || talk_.is_done()) break;
-        if (was_struck) continue; // the radio is back at once
+        if (was_struck) continue; // a radio link is back immediately
         note(failure);
         if (failed_) break;
         timer_.expires_after(backoff_.next());
@@ -103,7 +103,7 @@ asio::awaitable<boost::system::error_code> Robot::connect(std::shared_ptr<Link> 
     auto& socket = link->stream.socket();
     const auto [refused, endpoint] = co_await asio::async_connect(socket, shared_.link.server, kAwaitTuple);
     if (refused) co_return refused;
-    boost::system::error_code ignored; // without it small frames only wait longer
+    boost::system::error_code ignored; // without it, small frames only wait longer
     socket.set_option(tcp::no_delay(true), ignored);
     if (!shared_.link.tls) co_return refused;
     link->stream.expect_host(shared_.link.host);
@@ -126,7 +126,7 @@ asio::awaitable<wire::LinkError> Robot::read_frames(std::shared_ptr<Link> link) 
     }
 }
 
-/// A server that speaks TLS hangs up on the first bytes that are none.
+/// A server that requires TLS closes the connection after the first bytes that are not TLS.
 std::string Robot::ended(const Link& link, const boost::system::error_code& why) const {
     if (net::is_refused_certificate(why)) return net::handshake_text(why, 0);
     const bool may_want_tls = !shared_.link.tls && !link.has_heard;
@@ -161,7 +161,7 @@ void Robot::flush() {
                           shared_.figures.bytes_out += count;
                           link->is_writing = false;
                           link->out.clear();
-                          if (failed && link != abandoned_) link->stream.close(); // whoever reads from it sees that
+                          if (failed && link != abandoned_) link->stream.close(); // the pending read then fails
                           if (!failed && link == link_) flush();
                       });
 }
@@ -171,7 +171,7 @@ void Robot::close_link() {
     link_.reset();
 }
 
-// What happens to it --------------------------------------------------------------------------------------------------
+// Events --------------------------------------------------------------------------------------------------------------
 
 void Robot::due(std::uint64_t scans) {
     talk_.due(scans);
@@ -202,7 +202,7 @@ bool Robot::strike(Fault fault) {
     switch (fault) {
     case Fault::kStall: stalled_until_ = shared_.clock.now() + kStallTime; return true;
     case Fault::kCut:
-        socket.set_option(tcp::socket::linger(true, 0), ignored); // a reset, and no farewell
+        socket.set_option(tcp::socket::linger(true, 0), ignored); // resets the connection instead of closing it
         link_->stream.close();
         break;
     case Fault::kHalfOpen:

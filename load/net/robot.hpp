@@ -19,30 +19,31 @@
 
 namespace scanloom::load {
 
-/// Where and as whom all robots connect. Never changes while they run.
+/// Address and credentials of all robots. Constant during a run.
 struct RobotLinkOptions {
     std::vector<boost::asio::ip::tcp::endpoint> server;
-    std::string host;    ///< as the server's certificate has it
+    std::string host;    ///< as in the server's certificate
     net::TlsContext tls; ///< null: links are not encrypted
-    wire::Hello hello;   ///< without the names of session and robot
+    wire::Hello hello;   ///< without session and robot name
 };
 
-/// What went wrong with robots, in sentences.
+/// Errors of robots, in sentences.
 struct Troubles {
     static constexpr std::size_t kKept = 5;
 
-    std::vector<std::string> failures; ///< why robots gave up: the first kKept
-    std::string newest;                ///< why a link was lost that no fault of ours had struck; empty: none was
+    std::vector<std::string> failures; ///< why robots gave up; the first kKept
+    std::string newest;                ///< why a link was last lost, injected faults excluded; empty: never
 
     void add(const Troubles& other);
 };
 
-/// A robot of many on its links, one after the other. It costs a socket, a small buffer and the stack of one coroutine.
+/// One of many robots, on one link after another. It costs a socket, a small buffer and the stack of one coroutine.
 ///
-/// Thread  all on its io_context, which one thread runs. The context has stopped for good when this is destroyed.
+/// Threads: all on its io_context, which one thread runs. The context must have stopped for good before this object is
+///          destroyed.
 class Robot {
 public:
-    /// What the robots of one thread share.
+    /// State shared by the robots of one thread.
     struct Shared {
         boost::asio::io_context& io;
         const RunClock& clock;
@@ -56,19 +57,20 @@ public:
     Robot(const Robot&) = delete;
     Robot& operator=(const Robot&) = delete;
 
-    /// Connects, and again whenever the link is lost, until everything is acknowledged.
+    /// Connects, and reconnects whenever the link is lost, until everything is acknowledged.
     void start();
 
     void begin(Micros start) noexcept { talk_.begin(start); }
-    /// So many scans are there to be sent; sends what may be.
+    /// Sets the number of scans to send, and sends what the credit allows.
     void due(std::uint64_t scans);
-    /// There will be no more.
+    /// No more scans follow.
     void end();
-    /// Keeps the link alive and notices when it is not: to be called about once a second.
+    /// Keeps the link alive and detects when it is dead; call it about once a second.
     void look_after(Micros now);
-    /// @return false where there is no link that could fail.
+    /// Injects a fault.
+    /// @return false if there is no link that could fail
     bool strike(Fault fault);
-    /// Closes what is open. No more than that will happen.
+    /// Closes all connections. Nothing happens afterwards.
     void stop();
 
     [[nodiscard]] const RobotTalk& talk() const noexcept { return talk_; }
@@ -92,9 +94,9 @@ private:
     robot::Backoff backoff_;
     std::shared_ptr<Link> link_;
     std::shared_ptr<Link> abandoned_; // half-open
-    boost::asio::steady_timer timer_; // of a pause between links, or of a stall
+    boost::asio::steady_timer timer_; // for pauses between links, or a stall
     Micros stalled_until_ = 0;
-    bool struck_ = false; // the link ends by a fault of ours
+    bool struck_ = false; // the link ends by an injected fault
     bool stopped_ = false;
     bool failed_ = false;
 };

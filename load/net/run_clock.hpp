@@ -6,8 +6,8 @@
 
 namespace scanloom::load {
 
-/// One time for all threads of a run: microseconds since this was made.
-/// Thread  any.
+/// The time of a run for all its threads: microseconds since construction.
+/// Threads: any.
 class RunClock {
 public:
     using Steady = std::chrono::steady_clock;
@@ -15,7 +15,7 @@ public:
     [[nodiscard]] Micros now() const noexcept {
         return std::chrono::duration_cast<std::chrono::microseconds>(Steady::now() - begun_).count();
     }
-    /// For timers.
+    /// Converts a time for timers.
     [[nodiscard]] Steady::time_point at(Micros time) const noexcept { return begun_ + std::chrono::microseconds(time); }
 
 private:

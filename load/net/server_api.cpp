@@ -20,7 +20,7 @@ constexpr unsigned kNotFound = 404;
 
 std::string path_of(const std::string& session) { return "/api/v1/sessions/" + session; }
 
-/// What `read` makes of a JSON answer; it throws what boost::json throws where the answer is another one.
+/// Returns what `read` makes of a JSON answer; throws a boost::json exception if the answer has another form.
 template <class Read>
 auto read_json(const Result<HttpAnswer>& answer, const std::string& target, Read read)
     -> Result<decltype(read(json::value()))> {
@@ -65,7 +65,7 @@ std::vector<TilePlace> read_tile_list(const json::value& value) {
 
 asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& http, std::string prefix) {
     std::vector<std::string> names;
-    std::string after = prefix; // sessions are listed in the order of their names
+    std::string after = prefix; // sessions are listed by name
     for (;;) {
         const auto target = fmt::format("/api/v1/sessions?limit={}&after={}", kPageMax, after);
         const auto answer = co_await http.get(target);

@@ -15,23 +15,23 @@
 
 namespace scanloom::load {
 
-// What is asked over HTTP, beside tiles. Each fails as HttpConnection::ask() does, and with refusal() where the answer
-// is not 200, or not what the API says.
+// Requests over HTTP, except for tiles. Each fails as HttpConnection::ask() does, and with refusal() if the answer is
+// not 200 or not what the API specifies.
 
-/// Names of the sessions that begin with `prefix`.
+/// Returns the names of the sessions that begin with `prefix`.
 [[nodiscard]] boost::asio::awaitable<Result<std::vector<std::string>>> sessions_of(HttpConnection& http,
                                                                                    std::string prefix);
 [[nodiscard]] boost::asio::awaitable<Result<FoundSession>> find_session(HttpConnection& http, std::string session);
-/// One text for the digests of all layers.
+/// Returns the digests of all layers as one text.
 [[nodiscard]] boost::asio::awaitable<Result<std::string>> digest_of(HttpConnection& http, std::string session);
-/// One that is not there is fine.
+/// Succeeds if there is no such session.
 [[nodiscard]] boost::asio::awaitable<Result<>> delete_session(HttpConnection& http, std::string session);
 [[nodiscard]] boost::asio::awaitable<Result<ServerUse>> server_use(HttpConnection& http);
-/// Tiles of zoom 9 that were ever touched.
+/// Returns the tiles of zoom 9 that were ever changed.
 [[nodiscard]] boost::asio::awaitable<Result<std::vector<TilePlace>>> tiles_of(HttpConnection& http, std::string session,
                                                                               std::string layer);
 
-/// Reads a value of the Prometheus text format; 0 where there is none of that name.
+/// Reads a value of the Prometheus text format; 0 if there is none with this name.
 [[nodiscard]] double metric(std::string_view text, std::string_view name);
 
 } // namespace scanloom::load

@@ -17,8 +17,8 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr Micros kTick = 250;               ///< at most so many waits for the schedule: thousands a second cost CPU
-constexpr std::uint64_t kScansAtOnce = 128; ///< that are handed out before acks are read again
+constexpr Micros kTick = 250;               ///< shortest wait for the schedule: thousands of waits per second cost CPU
+constexpr std::uint64_t kScansAtOnce = 128; ///< handed out before acks are read again
 constexpr Micros kLookAfterPeriod = kSecond;
 
 } // namespace
@@ -54,7 +54,7 @@ void Shard::stop() {
     asio::post(io_, [this] {
         ended_ = true;
         for (auto& robot : robots_) robot->stop();
-        asio::post(io_, [this] { io_.stop(); }); // once they have seen it
+        asio::post(io_, [this] { io_.stop(); }); // once the robots have noticed
     });
     thread_.join();
 }
@@ -116,13 +116,13 @@ asio::awaitable<void> Shard::follow_schedule(Micros start) {
     end_all();
 }
 
-/// @return whether nothing more is due by now.
+/// @return whether no more scans are due now
 bool Shard::hand_out_due(Micros start) {
     const Schedule& schedule = *course_.schedule;
     const std::uint64_t places = plan_.scans * plan_.robots;
     for (std::uint64_t handed = 0; place_ < places; ++place_) {
         const std::uint32_t robot = schedule.robot_at(place_);
-        if (robot % plan_.threads != number_) continue; // another thread's
+        if (robot % plan_.threads != number_) continue; // belongs to another thread
         const Micros late = clock_.now() - start - schedule.due(place_);
         if (late < 0) return true;
         if (handed++ == kScansAtOnce) return false;

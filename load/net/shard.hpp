@@ -17,21 +17,21 @@
 
 namespace scanloom::load {
 
-/// How the robots of all threads together behave.
+/// What the robots of all threads do.
 struct FleetPlan {
     std::uint32_t robots = 0;
     double connections_per_second = 0.0;
     std::uint64_t scans = 0; ///< of each robot, by the course's schedule
-    Micros duration = 0;     ///< where the course has no schedule
+    Micros duration = 0;     ///< used if the course has no schedule
     FaultMeans faults{};
     std::uint64_t seed = 0;
     std::uint32_t threads = 1;
 };
 
-/// The robots of one thread: each that comes `threads` after the one before. One timer goes through the schedule of all
-/// and tells each robot when it has a scan; there is none for each.
+/// The robots of one thread: every `threads`-th of all. One timer follows the schedule of all of them and notifies each
+/// robot when a scan is due; robots need no timer for that.
 ///
-/// Thread  begin(), end(), and look() may be called from any; everything else happens on its own.
+/// Threads: begin(), end() and look() may be called from any; everything else happens on the shard's own.
 class Shard {
 public:
     struct Look {
@@ -39,40 +39,40 @@ public:
         Troubles troubles;
     };
 
-    /// How far the robots are.
+    /// Progress of the robots.
     struct Progress {
         std::uint32_t linked = 0;
         std::uint32_t greeted = 0;
         std::uint32_t finished = 0;
         std::uint32_t failed = 0;
         std::uint64_t acknowledged = 0;
-        std::string trouble; ///< the newest
+        std::string trouble; ///< the most recent one
 
         void add(const Progress& other);
     };
 
-    /// Makes no connection yet. `all` are the robots of all shards; the references stay until this is gone.
+    /// Opens no connection yet. `all` are the robots of all shards; the references must outlive this object.
     Shard(std::uint32_t number, const FleetPlan& plan, const std::vector<RobotPlan>& all, const RunClock& clock,
           const Course& course, const RobotLinkOptions& link);
     ~Shard();
     Shard(const Shard&) = delete;
     Shard& operator=(const Shard&) = delete;
 
-    /// Connects the robots, so many a second.
+    /// Connects the robots at the planned rate.
     void connect();
-    /// Lets them send from then on.
+    /// The robots send from `start` on.
     void begin(Micros start);
-    /// Whatever was not due yet never is.
+    /// Scans that are not due yet are never sent.
     void end();
-    /// Closes everything, and ends the thread.
+    /// Closes all connections and ends the thread.
     void stop();
 
-    /// How things stand; waits for the shard's thread to tell.
+    /// Returns the current statistics; waits for the shard's thread.
     [[nodiscard]] std::unique_ptr<Look> look();
-    /// The same without histograms, which are large.
+    /// Returns the progress without histograms, which are large.
     [[nodiscard]] Progress progress();
 
-    /// Pre  stop() was called.
+    /// Pre: stop() was called.
     [[nodiscard]] const std::vector<std::unique_ptr<Robot>>& robots() const noexcept { return robots_; }
 
 private:
@@ -95,7 +95,7 @@ private:
     boost::asio::io_context io_{1};
     boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
     std::vector<std::unique_ptr<Robot>> robots_;
-    std::uint64_t place_ = 0; // in the schedule: what is next
+    std::uint64_t place_ = 0; // next position in the schedule
     bool ended_ = false;
     std::thread thread_;
 };

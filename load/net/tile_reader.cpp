@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned kNotModified = 304;
 
-/// One reader: what it has seen, and what it is to ask for next.
+/// One tile reader, with the ETags it has seen and its next request.
 class TileReader {
 public:
     TileReader(OnlookerShared& shared, std::string session, asio::any_io_executor executor, const TileTour& tour)
@@ -53,7 +53,7 @@ private:
         std::string& etag = etags_[target];
         const std::uint64_t before = http_.bytes_in();
         const auto answer = co_await http_.ask(boost::beast::http::verb::get, target, etag);
-        if (shared_.stopped) co_return; // it may be cut off in the middle
+        if (shared_.stopped) co_return; // the answer may be incomplete
         ++figures.tile_requests;
         figures.tile_bytes += http_.bytes_in() - before;
         if (!answer) co_return note(answer.error());

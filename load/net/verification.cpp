@@ -41,7 +41,7 @@ asio::awaitable<void> verify_counts(HttpConnection& http, const std::vector<Expe
 asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions, std::string calm_name,
                                      CalmSession& calm, TellProgress tell, Evidence& evidence) {
     std::erase_if(sessions,
-                  [](const ExpectedSession& session) { return scans_of(session) == 0; }); // no maps to compare
+                  [](const ExpectedSession& session) { return scans_of(session) == 0; }); // has no maps to compare
     std::ranges::sort(sessions, {}, scans_of);
     std::uint64_t streamed = 0;
     std::string right;

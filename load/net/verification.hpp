@@ -12,18 +12,18 @@
 
 namespace scanloom::load {
 
-/// Called now and then with how far it is: "12 of 40 sessions".
+/// Called from time to time with the progress: "12 of 40 sessions".
 using TellProgress = std::function<void(const std::string&)>;
 
-/// Asks the server for every session, and adds to `evidence` how many scans it holds and what contradicts the
-/// acknowledgements.
+/// Reads every session from the server, and adds the number of its scans and what contradicts the acknowledgements to
+/// `evidence`.
 [[nodiscard]] boost::asio::awaitable<void> verify_counts(HttpConnection& http,
                                                          const std::vector<ExpectedSession>& sessions,
                                                          TellProgress tell, Evidence& evidence);
 
 /// Compares the maps of every session with those of `calm`, into which the same scans are streamed here: as many as the
-/// session with the fewest has, then on to the next number that occurs.
-/// Pre  one robot a session
+/// session with the fewest has, then up to each next number that occurs.
+/// Pre: one robot per session.
 [[nodiscard]] boost::asio::awaitable<void> verify_digests(HttpConnection& http, std::vector<ExpectedSession> sessions,
                                                           std::string calm_name, CalmSession& calm, TellProgress tell,
                                                           Evidence& evidence);

@@ -21,14 +21,14 @@ namespace {
 
 constexpr std::chrono::seconds kEnterMax{10};
 constexpr std::chrono::seconds kPause{1};
-constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's are at most 512 KiB
+constexpr std::size_t kEventMax = std::size_t{1} << 20; ///< bytes; the server's have at most 512 KiB
 
 using Stream = beast::websocket::stream<net::LinkStream>;
 
-/// What came of asking to watch.
+/// Result of a request to watch.
 struct Entry {
     boost::system::error_code failed;
-    std::string refusal; ///< what the server said instead of letting it in; empty: nothing
+    std::string refusal; ///< the server's answer if it refused; otherwise empty
 };
 
 asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::string session) {
@@ -47,7 +47,7 @@ asio::awaitable<Entry> enter(Stream& stream, const OnlookerShared& shared, std::
     co_return Entry{failed, refusal({answer.result_int(), {}, answer.body()}, target).message};
 }
 
-/// While nothing changes there are no events, but letting somebody in takes no time.
+/// A session without changes sends no events, so only the admission has a time limit.
 asio::awaitable<Entry> enter_in_time(Stream& stream, const OnlookerShared& shared, std::string session) {
     using namespace asio::experimental::awaitable_operators;
     asio::steady_timer timer(stream.get_executor());
@@ -69,7 +69,7 @@ asio::awaitable<boost::system::error_code> take_events(Stream& stream, AudienceF
     }
 }
 
-/// How a viewer counts. Who has ever been let in counts as such.
+/// Counts a viewer once, as admitted if it ever was.
 class Standing {
 public:
     explicit Standing(AudienceFigures& figures) : figures_(figures) {}
