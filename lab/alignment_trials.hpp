@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-/// The scenes on which alignment and locating are tried: the simulator's worlds, with a door that moves.
+/// The scenes for trials of alignment and localization: the simulator's worlds, with a door that moves.
 namespace scanloom::lab {
 
-/// The simulator's room, office and hall; robots may stand in the rooms of the office, too.
+/// Returns the simulator's room, office and hall. In the office, robots may also start inside rooms.
 [[nodiscard]] std::vector<robot::World> trial_worlds();
 
-/// Captures of a map.
+/// Numbers of captures in a map.
 inline constexpr std::array<std::size_t, 3> kMapSizes{1, 4, 12};
 
 struct AlignmentTrials {
@@ -22,33 +22,33 @@ struct AlignmentTrials {
     Trials trials;
 };
 
-/// Two captures of one world, see robot::two_captures(), and align().
-/// Errors  those of align() and try_scenes().
+/// Aligns two captures of one world with align() in each scene; see robot::two_captures().
+/// Errors: those of align() and try_scenes().
 [[nodiscard]] Result<AlignmentTrials> try_alignment(const robot::World& world, std::uint64_t seed, std::size_t scenes,
                                                     const Now& now);
 
 struct LocatingTrials {
-    std::string seen; ///< the world that the view is of
-    std::string map;  ///< the world that is mapped
+    std::string seen; ///< the world of the view
+    std::string map;  ///< the world of the map
     std::size_t captures = 0;
     Trials trials;
 };
 
-/// A map of so many captures and another view of that world, see robot::mapped_world(), and locate().
-/// Errors  those of locate() and try_scenes().
+/// Localizes another view of a world in a map of `captures` captures of it, with locate(); see robot::mapped_world().
+/// Errors: those of locate() and try_scenes().
 [[nodiscard]] Result<LocatingTrials> try_locating(const robot::World& world, std::size_t captures, std::uint64_t seed,
                                                   std::size_t scenes, const Now& now);
 
-/// The same maps, and a view of another world.
+/// Tries to localize views of the world `seen` in maps of the world `map`; the maps are those of try_locating().
 [[nodiscard]] Result<LocatingTrials> try_strangers(const robot::World& seen, const robot::World& map,
                                                    std::size_t captures, std::uint64_t seed, std::size_t scenes,
                                                    const Now& now);
 
-/// The scene that try_locating() has for the seed of a trial.
+/// Returns the scene that try_locating() uses for the seed of a trial.
 [[nodiscard]] robot::MappedWorld located_scene(const robot::World& world, std::size_t captures,
                                                std::uint64_t scene_seed);
 
-/// A scene that was drawn.
+/// A scene that was drawn as a picture.
 struct LocatedPicture {
     std::string file;
     std::string world;
@@ -56,7 +56,7 @@ struct LocatedPicture {
     Trial trial;
 };
 
-/// All kinds of scenes.
+/// Results for all kinds of scenes.
 struct TrialResults {
     std::size_t scenes = 0; ///< of each kind
     std::vector<AlignmentTrials> aligned;

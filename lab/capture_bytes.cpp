@@ -23,11 +23,11 @@ std::size_t robot_bytes(std::span<const Scan> scans) {
 std::size_t clustering_bytes(std::span<const Point2> points, double eps) {
     using landmarks::CellIndex;
     constexpr std::size_t kNumber = sizeof(std::uint32_t);
-    // the point, which distinct one it is, its cluster
+    // the point; index of its distinct point; its cluster
     constexpr std::size_t kEach = sizeof(Point2) + 2 * kNumber;
-    // the point and its count; place in the grid and cell; point and number among the core points; cluster
+    // the point and its count; position in the grid and cell; point and index among the core points; cluster
     constexpr std::size_t kDistinct = 2 * sizeof(Point2) + 5 * kNumber;
-    // the cell; where its core points begin, their tree; its set and cluster
+    // the cell; start of its core points and their tree; its set and cluster
     constexpr std::size_t kCell =
         sizeof(CellIndex::Cell) + sizeof(std::size_t) + sizeof(std::optional<landmarks::PointTree>) + 2 * kNumber;
     const auto distinct = landmarks::distinct_points(points);

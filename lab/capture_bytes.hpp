@@ -8,14 +8,15 @@
 
 namespace scanloom::lab {
 
-/// Bytes of the frames that a robot sends for some scans: a batch of Protocol Buffers for each, as while it measures,
-/// with length prefix and checksum.
+/// Returns the size of the frames that a robot sends for some scans, in bytes: one Protocol Buffers batch per scan, as
+/// during measurement, with length prefix and checksum.
 [[nodiscard]] std::size_t robot_bytes(std::span<const Scan> scans);
 
-/// Bytes that survey_landmarks() holds while it clusters points: the points, those of them that are distinct, the grid
-/// over these, and what is kept for each cell and each point. It is reckoned from the sizes of the elements, all points
-/// taken for core points; without spare room of vectors, and without the search trees of crowded cells.
-/// Pre  the points pass check_points(); eps as check_eps() takes it.
+/// Returns the bytes that survey_landmarks() holds while it clusters points: the points, the distinct ones among them,
+/// the grid over these, and the data for each cell and each point. The value is computed from the sizes of the elements
+/// with all points taken as core points; spare capacity of vectors and the search trees of crowded cells are not
+/// included.
+/// Pre: the points pass check_points(), and eps passes check_eps().
 [[nodiscard]] std::size_t clustering_bytes(std::span<const Point2> points, double eps);
 
 } // namespace scanloom::lab

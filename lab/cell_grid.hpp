@@ -32,7 +32,7 @@ private:
     }
 };
 
-/// Yes or no for each cell.
+/// A boolean for each cell.
 using CellMask = CellGrid<std::uint8_t>;
 
 /// Calls visit(Cell) for every cell of the box, row by row from the bottom.

@@ -13,7 +13,7 @@
 namespace scanloom::lab {
 namespace {
 
-constexpr double kMargin = 0.3; // metres around what is seen
+constexpr double kMargin = 0.3; // metres around the content
 
 } // namespace
 

@@ -8,7 +8,7 @@
 
 #include <span>
 
-/// What pictures of clouds have in common: north is up, and each point has the size that shows it.
+/// Shared by pictures of point clouds: north is up, and each point is large enough to be visible.
 namespace scanloom::lab {
 
 // blue, green, red
@@ -17,18 +17,18 @@ inline const cv::Scalar kSecondColour(0, 120, 235);
 inline const cv::Scalar kPaleColour(200, 200, 200);
 inline const cv::Scalar kBlack(0, 0, 0);
 inline const cv::Scalar kWhite(255, 255, 255);
-inline constexpr int kMark = 6; ///< pixels, radius of a place that is marked
+inline constexpr int kMark = 6; ///< pixels, radius of a marked place
 
-/// What a picture of some clouds and of one more point shows: all of them, and a little around.
+/// Returns the extent of all clouds and the point, with a margin.
 [[nodiscard]] tiles::Extent extent_around(const Point2& point, std::initializer_list<std::span<const Point2>> clouds);
 
-/// A picture, or a part of it, that shows a part of the plane.
+/// A picture, or a part of one, that shows a part of the plane.
 struct Panel {
     tiles::Extent part;
     double pixels_per_metre;
     int left; ///< column of its first pixel
 
-    /// As large as fits.
+    /// Returns the largest panel that fits.
     [[nodiscard]] static Panel fitting(const tiles::Extent& part, int width_max, int height_max);
 
     [[nodiscard]] int width() const;
@@ -44,8 +44,8 @@ void draw_disc(cv::Mat& picture, const cv::Point& at, int radius, const cv::Scal
 /// A black cross.
 void draw_sensor(cv::Mat& picture, const cv::Point& at);
 
-/// A bar in the lower left corner, as long as it says: a round number of metres, at most a quarter of the panel's
-/// width, but 1 m at least. To be drawn first, so that it hides nothing.
+/// Draws a scale bar in the lower left corner, labelled with its length: a round number of metres, at most a quarter of
+/// the panel's width but at least 1 m. Draw it first, so that it hides nothing.
 void draw_scale(cv::Mat& picture, const Panel& panel);
 
 /// Throws std::runtime_error when OpenCV fails.

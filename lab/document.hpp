@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-/// A report as plain values, so that its two forms cannot differ in what they say.
+/// A report as plain values, so that its two formats have the same content.
 namespace scanloom::lab {
 
 struct Heading {
@@ -23,9 +23,9 @@ struct Code {
 };
 struct Link {
     std::string text;
-    std::string file; ///< without its ending: Markdown links to .md, HTML to .html
+    std::string file; ///< without its extension: Markdown links to .md, HTML to .html
 };
-/// Numbers and short words; every row is as long as the head.
+/// Numbers and short words; every row has as many cells as the head.
 struct Table {
     std::vector<std::string> head;
     std::vector<std::vector<std::string>> rows;
@@ -35,7 +35,7 @@ struct Picture {
     std::string caption;
 };
 
-/// The cells of a row that is made of two parts.
+/// Joins two parts of a row.
 [[nodiscard]] inline std::vector<std::string> joined(std::vector<std::string> front,
                                                      const std::vector<std::string>& back) {
     front.insert(front.end(), back.begin(), back.end());
@@ -45,10 +45,10 @@ struct Picture {
 using Block = std::variant<Heading, Paragraph, Items, Code, Link, Table, Picture>;
 using Document = std::vector<Block>;
 
-/// Markdown as GitHub and GitLab show it. Texts are taken as they are.
+/// Formats a document as Markdown for GitHub and GitLab. Texts are not escaped.
 [[nodiscard]] std::string to_markdown(const Document& document);
 
-/// One page without scripts and without anything from elsewhere but its pictures.
+/// Formats a document as one page without scripts that loads only its pictures.
 [[nodiscard]] std::string to_html(const Document& document, std::string_view title);
 
 } // namespace scanloom::lab

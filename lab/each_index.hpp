@@ -9,11 +9,12 @@
 
 namespace scanloom::lab {
 
-/// Threads that for_each_index() works on.
+/// Number of threads that for_each_index() uses.
 [[nodiscard]] inline std::size_t worker_count() { return std::max(1U, std::thread::hardware_concurrency()); }
 
 /// Calls work(0), work(1), ... work(count - 1), each once, on all of the machine's processors and in any order.
-/// Thread  work is called on several at once. What it throws comes out here, when all have ended.
+/// Rethrows an exception of `work` when all threads have ended.
+/// Threads: work is called on several threads concurrently.
 template <class Work>
 void for_each_index(std::size_t count, const Work& work) {
     std::atomic<std::size_t> next = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPicturedNoiseCell = 0.05; // metres
 
-/// What pictures show: the room, 10 x 10 m, and some margin.
+/// The extent of pictures: the room, 10 x 10 m, and a margin.
 tiles::Extent pictured_part() {
     constexpr double kHalf = 5.3;
     return {kRoomMiddle.x - kHalf, kRoomMiddle.y - kHalf, kRoomMiddle.x + kHalf, kRoomMiddle.y + kHalf};
@@ -30,7 +30,7 @@ ScanTimes times_of(std::vector<double> seconds) {
     return {1e3 * sum / static_cast<double>(seconds.size()), at(0.5), at(0.95)};
 }
 
-/// The runs of a matrix, one after the other.
+/// Performs the runs of a matrix one after the other.
 class Runner {
 public:
     Runner(const Matrix& matrix, const Surroundings& surroundings) : matrix_(matrix), surroundings_(surroundings) {}

@@ -21,10 +21,10 @@ struct RunSpec {
     Start start;
 };
 
-/// "static_0.05_inverse_sensor_model_none_south_west"
+/// Returns for example "static_0.05_inverse_sensor_model_none_south_west".
 [[nodiscard]] std::string name_of(const RunSpec& spec);
 
-/// Of one scan, see weave(); milliseconds.
+/// Times for one scan, see weave(); milliseconds.
 struct ScanTimes {
     double mean = 0.0;
     double median = 0.0;
@@ -35,27 +35,27 @@ struct RunResult {
     RunSpec spec;
     Scores scores;              ///< at the end of the run
     std::size_t touched = 0;    ///< cells that any scan changed
-    std::size_t of_walkers = 0; ///< readings, without their noise, that met a walker
-    std::string picture;        ///< name of its file; empty: none
-    ScanTimes times;            ///< the only part that differs from one time to the next
+    std::size_t of_walkers = 0; ///< readings, without their noise, that hit a walker
+    std::string picture;        ///< file name; empty: none
+    ScanTimes times;            ///< the only part that differs between equal experiments
 };
 
-/// Shares of a run after which pictures show it.
+/// Fractions of a run at which pictures show it.
 inline constexpr std::array kMoments{0.10, 0.25, 0.50, 1.00};
 
-/// How the world outside takes part.
+/// Interfaces to clock, files and display.
 struct Surroundings {
     Now now;
     std::function<Result<>(const std::string& file, const tiles::Bytes& png)> keep_picture;
     std::function<void(const RunSpec& running, std::size_t runs_done, std::size_t scans_done)> on_scan;
 };
 
-/// Makes every run of the matrix. A selection of runs has a picture, see is_pictured().
-/// Pre     matrix.scans >= 10, so that the first moment has a scan.
-/// Errors  those of weave() and of keep_picture.
+/// Performs every run of the matrix. Some runs have a picture, see is_pictured().
+/// Pre: matrix.scans >= 10, so that the first moment has a scan.
+/// Errors: those of weave() and of keep_picture.
 [[nodiscard]] Result<std::vector<RunResult>> run_experiment(const Matrix& matrix, const Surroundings& surroundings);
 
-/// From the first start: every run without noise, and at cells of 5 cm those with noise.
+/// Whether a run has a picture: among runs from the first start, all without noise, and those with noise at 5 cm cells.
 [[nodiscard]] bool is_pictured(const Matrix& matrix, const RunSpec& spec);
 
 } // namespace scanloom::lab

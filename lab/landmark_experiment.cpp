@@ -13,11 +13,11 @@
 namespace scanloom::lab {
 namespace {
 
-// of trial_worlds()
-constexpr std::size_t kStranger = 0; // the room is looked for where it is not
+// indices into trial_worlds()
+constexpr std::size_t kStranger = 0; // the room, whose views are searched in maps of other worlds
 constexpr std::size_t kDrawnMap = 1; // the office
 
-/// The captures that were taken at one place.
+/// The captures from one place.
 struct PlaceCaptures {
     LidarCapture closed;
     LidarCapture closed_again;
@@ -194,7 +194,7 @@ Result<> Experiment::try_maps(TrialResults& trials, std::size_t captures) {
     return {};
 }
 
-/// Of the largest map of the office the first view that was found.
+/// Draws the first right result in the largest map of the office.
 Result<> Experiment::keep_located_picture(TrialResults& trials) {
     const robot::World& world = worlds_[kDrawnMap];
     const auto last =

@@ -13,43 +13,43 @@
 
 namespace scanloom::lab {
 
-/// Turns of each simulated capture, but for that of the sweep of readings, which has as many as the sweep needs.
+/// Turns of each simulated capture, except in the sweep of readings, which takes as many as it needs.
 inline constexpr std::size_t kTurns = 20;
 
-/// Two captures in one frame, and how alike they are.
+/// Two captures in one frame and their comparison.
 struct CapturePair {
     SeenLandmarks first;
     SeenLandmarks second;
     Comparison comparison; ///< with the default tolerance
-    std::string picture;   ///< name of its file
+    std::string picture;   ///< file name
 };
 
-/// A lidar stood at one place while a door was moved.
+/// Captures from one place while a door was moved.
 struct PlaceResult {
     Pose2 place;        ///< T_map_lidar
-    CapturePair door;   ///< first with the door closed, then with it open
-    Comparison control; ///< the closed capture with another one, the door still closed: what noise alone changes
+    CapturePair door;   ///< first with the door closed, second with it open
+    Comparison control; ///< the closed capture and another closed one: the effect of noise alone
     WaysToAlign door_ways;
     WaysToAlign control_ways;
 };
 
-/// Two places beside each other.
+/// Two neighbouring places.
 struct NeighbourResult {
-    std::size_t from = 0; ///< index of the place that the first capture was taken from
+    std::size_t from = 0; ///< index of the place of the first capture
     std::size_t to = 0;
-    bool door_moved = false; ///< closed in the first, open in the second; or else closed in both
+    bool door_moved = false; ///< closed in the first, open in the second; otherwise closed in both
     Comparison comparison;   ///< in the map frame, by the true poses
     WaysToAlign ways;
 };
 
-/// What a recording shows.
+/// Results for a recording.
 struct RecordedResult {
     std::string name; ///< as in RecordedCapture
     std::string remarks;
     std::size_t turns = 0;
     SeenLandmarks all;
-    CapturePair halves; ///< the first half of the turns and the second
-    WaysToAlign ways;   ///< of the halves, the truth being that it stood still
+    CapturePair halves; ///< the first and the second half of the turns
+    WaysToAlign ways;   ///< of the halves; the true transform is the identity, because the lidar stood still
 };
 
 struct LandmarkResults {
@@ -63,24 +63,24 @@ struct LandmarkResults {
     std::optional<RecordedResult> recorded;
 };
 
-/// How the world outside takes part.
+/// Interfaces to clock, files and display.
 struct LandmarkSurroundings {
     Now now;
     std::function<Result<>(const std::string& file, const tiles::Bytes& png)> keep_picture;
-    std::function<void(std::string_view doing)> on_part; ///< before each part
+    std::function<void(std::string_view doing)> on_part; ///< called before each part
 };
 
 struct LandmarkPlan {
-    std::uint64_t seed = 1;                       ///< of the noise, and of the scenes
-    std::size_t readings_max = kReadings.back();  ///< of the sweep of readings; less takes less time
-    std::size_t scenes = kScenes;                 ///< of each kind; 0: the report has no part about them
-    std::size_t captures_max = kMapSizes.back();  ///< of a map that a view is located in; fewer take less time
-    std::optional<RecordedCapture> recorded = {}; ///< absent: the report has no part about one
+    std::uint64_t seed = 1;                       ///< of the noise and the scenes
+    std::size_t readings_max = kReadings.back();  ///< of the sweep of readings; fewer take less time
+    std::size_t scenes = kScenes;                 ///< of each kind; 0: the report omits this part
+    std::size_t captures_max = kMapSizes.back();  ///< of a map in which a view is localized; fewer take less time
+    std::optional<RecordedCapture> recorded = {}; ///< absent: the report omits this part
 };
 
-/// Does the whole experiment. Everything but the times follows from the plan.
-/// Pre     a recording has two turns at least.
-/// Errors  those of its parts and of keep_picture.
+/// Runs the whole experiment. All results except the times depend on the plan only.
+/// Pre: a recording has at least two turns.
+/// Errors: those of its parts and of keep_picture.
 [[nodiscard]] Result<LandmarkResults> run_landmark_experiment(const LandmarkPlan& plan,
                                                               const LandmarkSurroundings& surroundings);
 

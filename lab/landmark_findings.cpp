@@ -20,7 +20,7 @@ std::string range_text(std::span<const double> values, int digits = 2) {
     return low_text == high_text ? low_text : fmt::format("{} to {}", low_text, high_text);
 }
 
-/// Of the comparisons that have it.
+/// Returns the values of those comparisons that have one.
 template <class Choose>
 std::vector<double> values_of(std::span<const Comparison* const> comparisons, Choose&& choose) {
     std::vector<double> values;
@@ -35,7 +35,8 @@ std::optional<double> stability(const Comparison& c) { return c.metrics.stabilit
 std::optional<double> distance(const Comparison& c) { return c.metrics.distance_mean; }
 std::optional<double> continuity(const Comparison& c) { return c.continuity.mean(); }
 
-/// "Persistence is 0.73 to 0.92, above the published 0.18 to 0.49: " and why; without it where nothing lies outside.
+/// "Persistence is 0.73 to 0.92, above the published 0.18 to 0.49: " and the reason; no reason if all values are
+/// within.
 std::string against(std::string_view what, std::span<const double> values, const ValueRange& published,
                     const std::string& why) {
     if (values.empty()) return fmt::format("{} is told of nothing: no landmarks matched.", what);
@@ -50,7 +51,7 @@ std::string named(const NeighbourResult& neighbour) {
     return way_name(neighbour) + (neighbour.door_moved ? kDoorOpened : "");
 }
 
-/// Errors of poses, and of how many that were asked for.
+/// Errors of poses, and the number of poses requested.
 class Errors {
 public:
     void add(const PoseError* error) {
@@ -73,10 +74,10 @@ private:
     std::vector<double> degrees_;
 };
 
-/// Both ways of some pairs of captures.
+/// Errors of both methods for some pairs of captures.
 struct WaysErrors {
     Errors by_landmarks;
-    Errors by_surfaces; ///< that are clear
+    Errors by_surfaces; ///< only clear alignments
 
     void add(const WaysToAlign& ways) {
         const auto& [alignment, error] = ways.by_surfaces;

@@ -16,7 +16,7 @@ const cv::Scalar kUnmatchedColour(40, 30, 210);
 constexpr int kPanelWidth = 600; // pixels
 constexpr int kPanelHeightMax = 900;
 constexpr int kPanelGap = 12;
-constexpr double kDash = 7.0; // pixels, of a dash and of what is between two
+constexpr double kDash = 7.0; // pixels, length of a dash and of a gap
 
 void draw_dashed(cv::Mat& picture, const cv::Point& from, const cv::Point& to) {
     const double length = std::hypot(to.x - from.x, to.y - from.y);

@@ -46,7 +46,7 @@ Items landmark_definitions() {
     }};
 }
 
-/// As it was called, where that was not by default.
+/// Returns the option --scenes as given, or "" for the default.
 std::string scenes_option(const LandmarkResults& results) {
     const std::size_t scenes = results.trials ? results.trials->scenes : 0;
     return scenes == kScenes ? "" : fmt::format(" --scenes {}", scenes);

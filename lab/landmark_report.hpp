@@ -5,14 +5,14 @@
 
 #include <string_view>
 
-/// The report of the landmark experiment: its files and folder are named as those of report.hpp.
+/// The report of the landmark experiment. Its files and folder have the names of report.hpp.
 namespace scanloom::lab {
 
-/// Everything that is the same for the same seed and recording: the same bytes.
+/// Returns the part that is equal, byte by byte, for equal seeds and recordings.
 [[nodiscard]] Document landmark_report_of(const LandmarkResults& results);
 
-/// What differs each time: how long it took.
-/// @param machine  on which, see machine_description()
+/// Returns the part that differs each time: the durations.
+/// @param machine  description of the machine, see machine_description()
 [[nodiscard]] Document landmark_times_report_of(const LandmarkResults& results, std::string_view machine);
 
 } // namespace scanloom::lab

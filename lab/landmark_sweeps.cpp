@@ -43,7 +43,7 @@ Result<ReadingsRow> readings_row(std::span<const Scan> scans, const Sensor& sens
                        .milliseconds = *milliseconds};
 }
 
-/// Which beams of a full circle are at a corner or an edge.
+/// Returns which beams of a full circle are at a corner or an edge.
 std::vector<bool> beams_at_corners(const Scan& scan, const Sensor& sensor) {
     const auto points = points_of(std::span(&scan, 1), sensor);
     const std::size_t count = points.size();
@@ -59,7 +59,7 @@ std::vector<bool> beams_at_corners(const Scan& scan, const Sensor& sensor) {
     return at_corner;
 }
 
-/// Collects what one window does to scan after scan.
+/// Collects the effect of one window on successive scans.
 class WindowFigures {
 public:
     void add(const landmarks::FilterFigures& figures) {
@@ -122,7 +122,7 @@ Result<std::vector<ReadingsRow>> sweep_readings(const LidarCapture& capture, con
 
 std::vector<FilterRow> sweep_windows(const LidarCapture& capture, const Scan& without_noise) {
     const auto at_corner = beams_at_corners(without_noise, capture.sensor);
-    std::vector<std::int32_t> steps(without_noise.ranges.size()); // evenly, all around
+    std::vector<std::int32_t> steps(without_noise.ranges.size()); // evenly over the full circle
     std::iota(steps.begin(), steps.end(), 0);
     std::vector<FilterRow> rows;
     for (const std::size_t window : kWindows) {

@@ -63,7 +63,7 @@ const std::vector<std::string> kWaysHead{
 std::vector<std::string> ways_cells(const WaysToAlign& ways) {
     const auto& [pairs, found, refusal] = ways.by_landmarks;
     const auto& [alignment, error] = ways.by_surfaces;
-    const auto& fit = found; // clang 14 captures no structured binding
+    const auto& fit = found; // clang 14 cannot capture a structured binding
     const auto of_fit = [&](auto text) { return fit ? text(*fit) : std::string(kNone); };
     return {whole(pairs),
             fit ? whole(fit->agreeing) : "refused",

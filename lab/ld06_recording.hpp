@@ -9,15 +9,15 @@
 
 namespace scanloom::lab {
 
-/// A recording of a real lidar that stood still.
+/// A recording of a real, stationary lidar.
 struct RecordedCapture {
-    LidarCapture capture; ///< all poses 0: the map frame is the lidar's
-    std::string name;     ///< of its file, without its directories
-    std::string remarks;  ///< what the decoder says of it
+    LidarCapture capture; ///< all poses are 0: the map frame is the lidar's
+    std::string name;     ///< file name without directories
+    std::string remarks;  ///< what the decoder reports
 };
 
-/// The bytes that an LD06 sent, as its robot client decodes them by default.
-/// Errors  those of robot::Ld06Capture; kInvalidField: less than two turns, which have no two halves to compare.
+/// Reads the bytes that an LD06 sent, decoded as by its robot client with default settings.
+/// Errors: those of robot::Ld06Capture; kInvalidField: fewer than two turns, so there are no two halves to compare.
 [[nodiscard]] Result<RecordedCapture> read_ld06_recording(const std::filesystem::path& path);
 
 } // namespace scanloom::lab

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTurnPeriod = 0.1; // seconds
 
-/// Calls visit(scan, point in the robot's frame) for each beam that met something.
+/// Calls visit(scan, point in the robot's frame) for each beam with a return.
 template <class Visit>
 void for_each_point(std::span<const Scan> scans, const Sensor& sensor, Visit&& visit) {
     const ReadingRules rules{sensor.range_min, sensor.range_max, true};

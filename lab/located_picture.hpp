@@ -5,9 +5,9 @@
 
 namespace scanloom::lab {
 
-/// A map and a view that was found in it, as a PNG: the map's points in blue, the places that it was seen from as blue
-/// discs, and over them in orange the view, at the pose where it was found; there its sensor is a black cross.
-/// Throws std::runtime_error when OpenCV fails.
+/// Draws a map and a view localized in it as a PNG: the map's points in blue, the places of its captures as blue discs,
+/// and over them in orange the view at its localized pose, with its sensor as a black cross.
+/// Errors: throws std::runtime_error if OpenCV fails.
 [[nodiscard]] tiles::Bytes located_png(const robot::MappedWorld& scene, const Pose2& T_map_found);
 
 } // namespace scanloom::lab

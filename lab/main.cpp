@@ -9,7 +9,7 @@
 #include <exception>
 
 int main(int argc, char** argv) try {
-    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
+    std::signal(SIGPIPE, SIG_IGN); // the reader of the output may close it
     scanloom::open_missing_standard_streams();
     const auto options = scanloom::lab::parse_options(argc, argv);
     if (const auto* leave = std::get_if<scanloom::Leave>(&options)) {

@@ -25,7 +25,7 @@ constexpr NoiseChoice kOneCell{"1_cell", [](double cell_size_m) { return MaybeNo
 constexpr NoiseChoice kThreeCells{"3_cells", [](double cell_size_m) { return MaybeNoise(uniform(3.0 * cell_size_m)); },
                                   false};
 
-// In opposite corners of the room, in the frame of the map; the robot follows the walls from there.
+// In opposite corners of the room, in the map frame; from there the robot follows the walls.
 constexpr Start kSouthWest{"south_west", {-3.5, -3.8, 0.0}};
 constexpr Start kNorthEast{"north_east", {3.5, 3.6, std::numbers::pi}};
 

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-/// What the reference experiments vary. Every name is short and is used in tables and names of files.
+/// What the reference experiments vary. Every name is short, because tables and file names contain it.
 namespace scanloom::lab {
 
 struct Scene {
     std::string_view name;
-    std::string_view world; ///< of the simulator
+    std::string_view world; ///< name in the simulator
 };
 
 struct RayModelChoice {
@@ -25,7 +25,7 @@ struct RayModelChoice {
 struct NoiseChoice {
     std::string_view name;
     std::optional<robot::Noise> (*at)(double cell_size_m);
-    bool drops_no_return; ///< beams without return are left out, as the reference implementation of this noise does
+    bool drops_no_return; ///< omits beams without return, as the reference implementation of this noise does
 };
 
 struct Start {
@@ -40,7 +40,7 @@ struct Matrix {
     std::vector<RayModelChoice> ray_models;
     std::vector<NoiseChoice> noises;
     std::vector<Start> starts;
-    std::size_t scans = 0;  ///< of each run
+    std::size_t scans = 0;  ///< per run
     std::uint64_t seed = 1; ///< of the noise
 
     [[nodiscard]] std::size_t run_count() const noexcept {
@@ -48,12 +48,12 @@ struct Matrix {
     }
 };
 
-/// 150 s at ten scans a second: once around the room.
+/// 150 s at ten scans per second: once around the room.
 inline constexpr std::size_t kScansDefault = 1500;
 
 [[nodiscard]] Matrix full_matrix();
 
-/// The coarse cells, without and with Gaussian noise, from one start: seconds instead of minutes.
+/// The coarse cells, without noise and with Gaussian noise, from one start: takes seconds instead of minutes.
 [[nodiscard]] Matrix quick_matrix();
 
 } // namespace scanloom::lab

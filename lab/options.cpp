@@ -75,7 +75,7 @@ std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, 
     } catch (const CLI::ParseError& reason) {
         return leave_for(app, reason, "say what to do: experiment or landmarks");
     }
-    // --out is not required() by the parser, which would ask for it in words of its own
+    // --out is not required() by the parser, so that its error message can be ours
     if (landmarks->parsed()) {
         if (landmark_options.out.empty()) return usage_error(app, "landmarks: name a directory with --out");
         return landmark_options;

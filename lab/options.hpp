@@ -14,7 +14,7 @@ namespace scanloom::lab {
 struct ExperimentOptions {
     std::string out;                  ///< directory of the report
     std::uint64_t seed = 1;           ///< of the noise
-    std::optional<std::size_t> scans; ///< of each run
+    std::optional<std::size_t> scans; ///< per run
     bool quick = false;
 };
 
@@ -22,11 +22,11 @@ struct LandmarkOptions {
     std::string out;                    ///< directory of the report
     std::uint64_t seed = 1;             ///< of the noise
     std::size_t scenes = kScenes;       ///< of each kind
-    std::optional<std::string> capture; ///< file of the bytes that an LD06 sent
+    std::optional<std::string> capture; ///< file with the bytes that an LD06 sent
 };
 
-/// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
-/// which beats the file.
+/// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag overrides the environment,
+/// which overrides the file.
 [[nodiscard]] std::variant<ExperimentOptions, LandmarkOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::lab

@@ -8,15 +8,15 @@
 
 namespace scanloom::lab {
 
-/// A directory that results are written to.
+/// A directory for results.
 class OutputDirectory {
 public:
-    /// Makes it, and its parents, if it does not exist.
-    /// Errors  kStoreFailed: it cannot be made.
+    /// Opens the directory; creates it and its parents if needed.
+    /// Errors: kStoreFailed: it cannot be created.
     [[nodiscard]] static Result<OutputDirectory> open(const std::filesystem::path& path);
 
-    /// Writes a file, over an older one of that name.
-    /// Errors  kStoreFailed: not all of it could be written.
+    /// Writes a file; replaces an older one of the same name.
+    /// Errors: kStoreFailed: the file could not be written completely.
     [[nodiscard]] Result<> write(const std::filesystem::path& file, std::string_view content) const;
     [[nodiscard]] Result<> write(const std::filesystem::path& file, std::span<const std::uint8_t> content) const;
 

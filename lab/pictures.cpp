@@ -18,17 +18,17 @@ const cv::Scalar kPointColour(40, 30, 220);
 const cv::Scalar kWalkerColour(0, 140, 255);
 const cv::Scalar kGapColour(255, 255, 255);
 constexpr int kGap = 8;        // pixels between two moments
-constexpr int kShift = 4;      // OpenCV draws at 1/16 of a pixel
-constexpr double kSnap = 1e-6; // cells: a pixel's side this near to a cell's lies on it
+constexpr int kShift = 4;      // OpenCV draws with a resolution of 1/16 pixel
+constexpr double kSnap = 1e-6; // cells: a pixel's edge this close to a cell's edge counts as equal
 
-/// From metres to pixels of one moment's picture.
+/// Converts metres to pixels of one moment's picture.
 struct Canvas {
     tiles::Extent part;
     int width;
     int height;
 
     [[nodiscard]] cv::Point at(const Point2& point) const {
-        // OpenCV counts from the middle of the first pixel
+        // OpenCV's origin is the centre of the first pixel
         const auto drawn = [](double metres) {
             return static_cast<int>(std::lround((metres * kPixelsPerMetre - 0.5) * (1 << kShift)));
         };
@@ -40,7 +40,7 @@ struct Canvas {
     }
 };
 
-/// The cells that each of some pixels in a row covers, from `begin_m` on.
+/// Returns the range of cells that each pixel of a row covers, starting at `begin_m`.
 std::vector<std::pair<std::int32_t, std::int32_t>> cells_of_pixels(int pixels, double begin_m, double cell_size_m) {
     std::vector<std::pair<std::int32_t, std::int32_t>> covered;
     for (int pixel = 0; pixel < pixels; ++pixel) {
@@ -52,9 +52,9 @@ std::vector<std::pair<std::int32_t, std::int32_t>> cells_of_pixels(int pixels, d
     return covered;
 }
 
-/// Of cells that share a pixel shows the one most likely occupied, else the one most likely free.
+/// Of cells in one pixel, selects the one most likely occupied, otherwise the one most likely free.
 mapping::LogOdds more_telling(mapping::LogOdds a, mapping::LogOdds b) {
-    if (a > 0 || b > 0) return std::max(a, b); // the unknown is below all others
+    if (a > 0 || b > 0) return std::max(a, b); // unknown is less than all other values
     if (a == mapping::kUnknownLogOdds || b == mapping::kUnknownLogOdds) return std::max(a, b);
     return std::min(a, b);
 }
@@ -67,7 +67,7 @@ std::uint8_t grey_of(mapping::LogOdds cell) {
 cv::Mat draw_map(const mapping::Snapshot& snapshot, const Canvas& canvas) {
     const double cell_size = snapshot.config.cell_size;
     const auto columns = cells_of_pixels(canvas.width, canvas.part.min_x, cell_size);
-    const auto rows = cells_of_pixels(canvas.height, canvas.part.min_y, cell_size); // from below
+    const auto rows = cells_of_pixels(canvas.height, canvas.part.min_y, cell_size); // bottom row first
     const auto occupancy =
         occupancy_of(snapshot, {columns.front().first, rows.front().first, columns.back().second, rows.back().second});
     cv::Mat picture(canvas.height, canvas.width, CV_8UC3);

@@ -10,18 +10,18 @@
 
 namespace scanloom::lab {
 
-/// A map some way through a run.
+/// A map at one moment of a run.
 struct Moment {
     mapping::Snapshot snapshot;
-    std::size_t scans = 0; ///< woven so far, at least 1
+    std::size_t scans = 0; ///< integrated so far, at least 1
 };
 
 inline constexpr double kPixelsPerMetre = 40.0;
 
-/// The moments side by side, as a PNG: the map (white free, black occupied, mid-grey unknown; where a pixel covers many
-/// cells, the one that says most), the path so far in blue, the points of the newest scan in red, the robot where it
-/// is, and walkers as orange rings.
-/// Throws std::runtime_error when OpenCV fails.
+/// Draws the moments side by side as a PNG: the map (white free, black occupied, mid-grey unknown; of many cells in a
+/// pixel, the most informative one), the trajectory so far in blue, the points of the newest scan in red, the robot at
+/// its pose, and walkers as orange rings.
+/// Errors: throws std::runtime_error if OpenCV fails.
 [[nodiscard]] tiles::Bytes strip_png(std::span<const Moment> moments, const Recording& recording,
                                      const tiles::Extent& part);
 

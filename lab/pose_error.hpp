@@ -7,7 +7,7 @@
 
 namespace scanloom::lab {
 
-/// How far a pose is from the true one.
+/// The difference between a pose and the ground truth.
 struct PoseError {
     double metres = 0.0;
     double radians = 0.0;

@@ -37,7 +37,7 @@ std::vector<Pose2> drive_from(const Start& start, std::size_t scans) {
 
 namespace {
 
-/// How many beams end at a walker: those that would not be as long without.
+/// Returns how many beams end at a walker: those whose range differs without walkers.
 std::size_t readings_of_walkers(const robot::World& world, const Sensor& laser, const Pose2& pose) {
     if (world.walkers.empty()) return 0;
     robot::World without = world;

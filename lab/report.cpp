@@ -144,7 +144,7 @@ void add_runs(Document& document, const Matrix& matrix, const std::vector<RunRes
 
 std::string milliseconds(double value) { return fmt::format("{:.3f}", value); }
 
-/// What the report of the reference experiments took in its slow language; nothing where it names no figure.
+/// Returns the published duration of the reference experiments, in their slower language; empty if none is published.
 std::string published(double cell_size) {
     if (cell_size == 0.01) return "80";
     if (cell_size == 0.1) return "8";

@@ -7,16 +7,16 @@
 
 namespace scanloom::lab {
 
-/// Names of the report's files, without their endings, and of its folder of pictures.
+/// Names of the report's files, without extension, and of its folder for pictures.
 inline constexpr const char* kReportFile = "report";
 inline constexpr const char* kTimesFile = "times";
 inline constexpr const char* kPicturesFolder = "pictures";
 
-/// Everything that is the same whenever the same matrix is run: the same bytes.
+/// Returns the part that is equal, byte by byte, for equal matrices.
 [[nodiscard]] Document report_of(const Matrix& matrix, const std::vector<RunResult>& results);
 
-/// What differs each time: how long it took.
-/// @param machine  on which, see machine_description()
+/// Returns the part that differs each time: the durations.
+/// @param machine  description of the machine, see machine_description()
 [[nodiscard]] Document times_report_of(const Matrix& matrix, const std::vector<RunResult>& results,
                                        std::string_view machine);
 

@@ -20,8 +20,8 @@ double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Tells how far an experiment is, now and then. Fine cells take most of the time: what is left is reckoned by the time
-/// of a scan going with 1 / cell size, as measured times nearly do.
+/// Reports the progress of an experiment from time to time. Fine cells take most of the time: the remaining time is
+/// estimated with a time per scan proportional to 1 / cell size, which nearly matches measurements.
 class Progress {
 public:
     Progress(Console& console, const Matrix& matrix) : console_(console), matrix_(matrix) {
@@ -33,7 +33,7 @@ public:
         work_done_ += 1.0 / running.cell_size;
         const double now = steady_seconds();
         const double period = std::chrono::duration<double>(console_.progress_period()).count();
-        if (!begun_) begun_ = told_ = now; // what is prepared before the first scan says nothing of the others
+        if (!begun_) begun_ = told_ = now; // excludes preparation before the first scan
         if (now < told_ + period) return;
         told_ = now;
         const double elapsed = now - *begun_;
@@ -47,7 +47,7 @@ private:
     const Matrix& matrix_;
     double work_ = 0.0;
     double work_done_ = 0.0;
-    std::optional<double> begun_; ///< with the first scan
+    std::optional<double> begun_; ///< time of the first scan
     double told_ = 0.0;
 };
 
@@ -56,7 +56,7 @@ Result<> write_document(const OutputDirectory& directory, const std::string& nam
     return directory.write(name + ".html", to_html(document, std::get<Heading>(document.front()).text));
 }
 
-/// Where a report goes.
+/// The directories of a report.
 struct ReportFiles {
     OutputDirectory directory;
     OutputDirectory pictures;
@@ -74,7 +74,7 @@ struct ReportFiles {
         return write_document(directory, kTimesFile, times);
     }
 
-    /// JSON.
+    /// Returns the name of the report as JSON.
     [[nodiscard]] std::string report_name() const {
         return boost::json::serialize((directory.path() / kReportFile).string() + ".html");
     }

@@ -4,7 +4,7 @@
 
 namespace scanloom::lab {
 
-/// Does what was asked for. Progress and errors go to stderr, one line of JSON about the result to stdout.
+/// Runs the chosen experiment. Progress and errors go to stderr, one line of JSON about the result to stdout.
 [[nodiscard]] ExitCode run(const ExperimentOptions& options);
 [[nodiscard]] ExitCode run(const LandmarkOptions& options);
 

@@ -9,13 +9,13 @@ double share(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Intersection over union of two sets that agree on shares of their own: 1 / (1 / precision + 1 / recall - 1).
+/// Intersection over union of two sets, from the share of each that agrees: 1 / (1 / precision + 1 / recall - 1).
 double jaccard(double precision, double recall) {
     const double product = precision * recall;
     return product == 0.0 ? 0.0 : product / (precision + recall - product);
 }
 
-/// The cells within the tolerance of those with the value.
+/// Returns the cells within the tolerance of cells with this value.
 template <class Value>
 CellMask around(const CellGrid<Value>& grid, Value value) {
     CellMask mask(grid.box, 0);
@@ -38,7 +38,7 @@ Scores score(const StateGrid& map, const TruthCells& truth, const CellMask& seen
     const CellMask near_occupied = around(map, CellState::kOccupied);
     Scores scores;
     std::size_t matched = 0;
-    std::size_t outside = 0; // of solids
+    std::size_t outside = 0; // not in a solid
     std::size_t surface = 0;
     std::size_t found = 0;
     std::size_t found_exactly = 0;

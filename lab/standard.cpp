@@ -8,14 +8,14 @@
 namespace scanloom::lab {
 namespace {
 
-/// The margin: maps that put walls outside the room are to be caught, also at 0.5 m.
+/// Returns the box of the truth with a margin, so that walls that maps place outside the room are found, also at 0.5 m.
 grid::CellBox box_of(const robot::TruthGrid& truth) {
     const auto margin = static_cast<std::int32_t>(std::ceil(2.0 / truth.cell_size));
     return {truth.i_begin - margin, truth.j_begin - margin, truth.i_begin + truth.width + margin,
             truth.j_begin + truth.height + margin};
 }
 
-/// Cells that a walker covered, or that scans of it may mark: half the thickness of obstacles around it and the
+/// Marks the cells that a walker covered or that scans of it may mark: within half the thickness of obstacles plus the
 /// tolerance of the scores.
 void mark_discs(const std::vector<robot::Disc>& discs, double reach, double cell_size, std::uint8_t value,
                 CellMask& mask) {

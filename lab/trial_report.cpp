@@ -78,7 +78,7 @@ std::string captures_text(std::size_t captures) {
     return captures == 1 ? "1 capture" : fmt::format("{} captures", captures);
 }
 
-/// Clear ones that are wrong, by name.
+/// Clear results that are wrong, with their names.
 class WrongOnes {
 public:
     void add(const std::string& kind, const Trials& trials) {
@@ -95,7 +95,7 @@ public:
         }
     }
 
-    /// What they are, and each.
+    /// Adds a summary and each result.
     void append_to(std::vector<std::string>& findings) const {
         if (!explained_.empty()) {
             findings.push_back(fmt::format(
@@ -112,12 +112,12 @@ public:
 
 private:
     std::vector<std::string> named_;
-    std::vector<double> explained_; // of those that lie elsewhere
+    std::vector<double> explained_; // of results in another place
     std::vector<double> at_truth_;
-    std::vector<double> nearby_; // millimetres, of the others
+    std::vector<double> nearby_; // millimetres, of the other results
 };
 
-/// Of all worlds together.
+/// Totals over all worlds.
 struct Sum {
     std::size_t scenes = 0;
     std::size_t right = 0;
@@ -146,7 +146,7 @@ std::vector<std::string> alignment_trial_findings(const TrialResults& results) {
 }
 
 std::vector<std::string> locating_trial_findings(const TrialResults& results) {
-    std::map<std::size_t, Sum> sums; // by the captures of a map
+    std::map<std::size_t, Sum> sums; // by the number of captures in a map
     WrongOnes wrong;
     for (const auto& row : results.located) {
         sums[row.captures].add(row.trials);

@@ -6,9 +6,9 @@
 namespace scanloom::lab {
 namespace {
 
-constexpr double kHairsBreadth = 1e-6; // metres: on this side of a wall or on that
+constexpr double kHairsBreadth = 1e-6; // metres: decides on which side of a wall a point is
 
-/// What can be seen from where.
+/// Decides which points can be seen from a trajectory.
 class Views {
 public:
     Views(const robot::World& world, const Sensor& laser, std::span<const Pose2> path)
@@ -50,7 +50,7 @@ void see_free_cells(const robot::TruthGrid& truth, const Views& views, CellMask&
 void see_side(const robot::Segment& side, double cell_size_m, const Views& views, CellMask& seen) {
     const Point2 begin{side.ax, side.ay};
     const Point2 along = Point2{side.bx, side.by} - begin;
-    const Point2 inward = Point2{-along.y, along.x} / norm(along) * kHairsBreadth; // sides turn counter-clockwise
+    const Point2 inward = Point2{-along.y, along.x} / norm(along) * kHairsBreadth; // sides run counter-clockwise
     const int steps = static_cast<int>(std::ceil(norm(along) / std::min(0.02, cell_size_m / 4.0)));
     for (int n = 0; n < steps; ++n) {
         const Point2 point = begin + (n + 0.5) / steps * along;

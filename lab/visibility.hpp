@@ -9,11 +9,13 @@
 
 namespace scanloom::lab {
 
-/// Which cells a run could see, with perfect beams in all directions between the first and the last of the laser's:
-///   free      the cell's centre is in the line of sight of one of the poses, within range
-///   occupied  the same for a point of a solid's side that lies in the cell; points are 2 cm apart or a quarter cell
+/// Returns the cells that a run could see, with perfect beams in all directions between the laser's first and last
+/// beam:
+///   free      one of the poses has a line of sight to the cell's centre, within range
+///   occupied  one of the poses has a line of sight, within range, to a point of a solid's side in the cell;
+///             points are 2 cm or a quarter cell apart, whichever is less
 /// Walkers hide nothing.
-/// Pre  the laser has uniform angles and stands on the robot's centre.
+/// Pre: the laser has uniform angles and is mounted at the robot's centre.
 [[nodiscard]] CellMask visible_cells(const robot::World& world, const robot::TruthGrid& truth, const Sensor& laser,
                                      std::span<const Pose2> path, const grid::CellBox& box);
 

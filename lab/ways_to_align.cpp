@@ -8,7 +8,7 @@ namespace {
 
 std::vector<Point2> in_frame_of(const Pose2& T_map_lidar, std::span<const Point2> points) {
     const Pose2 T_lidar_map = inverse(T_map_lidar);
-    // what was surveyed passed its checks
+    // the surveyed points have passed these checks
     return landmarks::transform_points(points, {T_lidar_map.x, T_lidar_map.y}, T_lidar_map.yaw).value();
 }
 
@@ -24,7 +24,7 @@ ByLandmarks align_by_landmarks(const PlacedCaptures& captures, std::span<const l
         aligned.refusal = fit.error().message;
         return aligned;
     }
-    // Both in the map frame: were there no error, nothing would be moved.
+    // Both captures are in the map frame, so without an error the transform is the identity.
     const Pose2 found = compose(fit->T_first_second, captures.T_map_second);
     aligned.fit = {fit->used.size(), fit->rms, pose_error(found, captures.T_map_second)};
     return aligned;

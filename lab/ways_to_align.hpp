@@ -8,23 +8,23 @@
 #include <optional>
 #include <string>
 
-/// What landmarks alone tell of how two captures lie on each other, beside what their surfaces do.
+/// Compares the alignment of two captures by their landmarks alone with that by their surfaces.
 namespace scanloom::lab {
 
-/// Metres within which matched landmarks agree on a transform: as near as those are that count as stable.
+/// Metres within which matched landmarks agree on a transform: the same distance within which they count as stable.
 inline constexpr double kAgreeingDistance = landmarks::kTolerance / 2.0;
 
-/// The transform of matched landmarks.
+/// The transform computed from matched landmarks.
 struct LandmarkFit {
-    std::size_t agreeing = 0; ///< pairs
-    double rms = 0.0;         ///< metres, of these
-    PoseError error;          ///< of where it puts the second lidar
+    std::size_t agreeing = 0; ///< number of pairs
+    double rms = 0.0;         ///< metres, of the agreeing pairs
+    PoseError error;          ///< of the second lidar's pose by this transform
 };
 
 struct ByLandmarks {
     std::size_t pairs = 0;
     std::optional<LandmarkFit> fit;
-    std::string refusal; ///< why there is none; empty where there is one
+    std::string refusal; ///< why there is no fit; empty if there is one
 };
 
 struct BySurfaces {
@@ -37,7 +37,7 @@ struct WaysToAlign {
     BySurfaces by_surfaces;
 };
 
-/// Two captures, and where their lidars stood.
+/// Two captures and the poses of their lidars.
 struct PlacedCaptures {
     const SeenLandmarks& first; ///< in the map frame
     const SeenLandmarks& second;
@@ -45,9 +45,9 @@ struct PlacedCaptures {
     Pose2 T_map_second;
 };
 
-/// Both ways from the first lidar to the second. The landmarks' pairs were matched by the true poses; the surfaces are
-/// told nothing of these.
-/// Errors  those of align(). What speaks against a transform of landmarks is a refusal, and no error.
+/// Computes the transform from the first lidar to the second by both methods. The pairs of landmarks were matched by
+/// the true poses, which the alignment of surfaces does not use.
+/// Errors: those of align(). A transform that landmarks do not support is a refusal, not an error.
 [[nodiscard]] Result<WaysToAlign> align_both_ways(const PlacedCaptures& captures,
                                                   std::span<const landmarks::Match> matches);
 

@@ -8,19 +8,20 @@
 
 namespace scanloom::lab {
 
-/// Seconds from any moment on, steady.
+/// Returns seconds of a steady clock with any origin.
 using Now = std::function<double()>;
 
-/// Called after each scan: how many are woven, and the projection they are in.
+/// Called after each scan with the number of scans integrated so far and their projection.
 using AfterScan = std::function<void(std::size_t scans, mapping::Projection& projection)>;
 
-/// Scans between two snapshots: a session whose robot sends ten a second publishes its maps once a second at least.
+/// Scans between two snapshots: a session whose robot sends ten scans per second publishes its maps at least once per
+/// second.
 inline constexpr std::size_t kScansPerSnapshot = 10;
 
-/// Weaves a recording as a session would.
-/// Errors  kInvalidField: settings no session takes.
-/// @return the seconds that each scan took: to fold it, and after every kScansPerSnapshot scans to make a snapshot,
-///         which brings frontiers and danger up to date; nothing else counted.
+/// Integrates a recording as a session would.
+/// Errors: kInvalidField: a session would not accept these options.
+/// @return seconds for each scan: to apply its entry and, after every kScansPerSnapshot scans, to make a snapshot,
+///         which updates frontiers and danger; nothing else is included
 [[nodiscard]] Result<std::vector<double>> weave(const Recording& recording, const SessionOptions& options,
                                                 const Now& now, const AfterScan& after_scan);
 
