@@ -16,7 +16,7 @@ void set_run(std::span<std::uint64_t> row, std::int32_t begin, std::int32_t end)
     }
 }
 
-/// The first column of the run of set bits that holds column x.
+/// Returns the first column of the run of set bits that contains column x.
 std::int32_t run_begin(std::span<const std::uint64_t> row, std::int32_t x) {
     for (;;) {
         const std::uint64_t word = row[static_cast<std::size_t>(x >> 6)];
@@ -40,7 +40,7 @@ std::int32_t next(std::span<const std::uint64_t> row, std::int32_t x) {
     return width;
 }
 
-/// Each bit sets those up to `columns` further right. A run of covered + 1 cells may be moved by its own length
+/// Extends each set bit by up to `columns` to the right. A run of covered + 1 cells can be shifted by its own length
 /// without leaving a gap.
 void widen_right(std::span<std::uint64_t> row, std::int32_t covered, std::int32_t columns) {
     while (covered < columns) {

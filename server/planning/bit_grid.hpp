@@ -9,7 +9,7 @@
 
 namespace scanloom::planning {
 
-/// A place in a window of the map: x columns from its left edge, y rows from its bottom.
+/// A cell of a window of the map: its column from the window's left edge, its row from the bottom edge.
 struct Spot {
     std::int32_t x = 0;
     std::int32_t y = 0;
@@ -17,30 +17,33 @@ struct Spot {
     friend bool operator==(const Spot&, const Spot&) = default;
 };
 
-/// One bit per cell of a window, 64 cells of a row in a word. A frame of clear bits surrounds them, so that whoever
-/// looks at a cell's neighbours needs no other test for the edge.
+/// One bit for each cell of a window; a word holds 64 cells of a row.
+///
+/// A border of clear bits surrounds the window, so reading a cell's neighbours needs no bounds check.
 class BitGrid {
 public:
     BitGrid() : BitGrid(0, 0) {}
 
-    /// All clear. Pre  width is a multiple of 64.
+    /// Creates a grid with all bits clear.
+    /// Precondition: `width` is a multiple of 64.
     BitGrid(std::int32_t width, std::int32_t height);
 
     [[nodiscard]] std::int32_t width() const noexcept { return width_; }
     [[nodiscard]] std::int32_t height() const noexcept { return height_; }
 
-    /// Pre  -1 <= x <= width, -1 <= y <= height.
+    /// Returns whether the cell's bit is set.
+    /// Precondition: -1 <= x <= width(), -1 <= y <= height().
     [[nodiscard]] bool test(Spot at) const noexcept { return (words_[word_of(at)] >> (at.x & 63) & 1) != 0; }
 
     void set(Spot at) noexcept { words_[word_of(at)] |= std::uint64_t{1} << (at.x & 63); }
     void clear(Spot at) noexcept { words_[word_of(at)] &= ~(std::uint64_t{1} << (at.x & 63)); }
 
-    /// The 3 x 3 bits around a cell: bit 3 (dy + 1) + (dx + 1).
+    /// Returns the 3 x 3 bits around a cell: bit 3 (dy + 1) + (dx + 1).
     [[nodiscard]] std::uint32_t around(Spot at) const noexcept {
         return three(at.x, at.y - 1) | three(at.x, at.y) << 3 | three(at.x, at.y + 1) << 6;
     }
 
-    /// The words of a row, the leftmost cell in the lowest bit of the first.
+    /// Returns the words of a row. The lowest bit of the first word is the leftmost cell.
     [[nodiscard]] std::span<std::uint64_t> row(std::int32_t y) noexcept {
         return {words_.data() + word_of({0, y}), static_cast<std::size_t>(width_ / 64)};
     }
@@ -50,7 +53,7 @@ public:
 
     [[nodiscard]] std::int64_t count() const noexcept;
 
-    /// These work cell by cell with another grid of the same size.
+    /// Combines this grid with another one of the same size, cell by cell.
     BitGrid& operator|=(const BitGrid& other) noexcept;
     BitGrid& operator&=(const BitGrid& other) noexcept;
     BitGrid& subtract(const BitGrid& other) noexcept;
@@ -62,7 +65,7 @@ private:
         return static_cast<std::size_t>(at.y + 1) * stride_ + static_cast<std::size_t>((at.x >> 6) + 1);
     }
 
-    /// The bits x - 1 .. x + 1 of a row.
+    /// Returns the bits x - 1 .. x + 1 of a row.
     [[nodiscard]] std::uint32_t three(std::int32_t x, std::int32_t y) const noexcept {
         const std::uint64_t* word = words_.data() + word_of({x, y});
         const int bit = x & 63;
@@ -77,7 +80,7 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-/// Calls visit(Spot) for each set cell, by rows from the bottom, then from the left.
+/// Calls visit(Spot) for each set cell: rows from the bottom, each row from the left.
 template <class Visit>
 void for_each_set(const BitGrid& grid, Visit&& visit) {
     for (std::int32_t y = 0; y < grid.height(); ++y) {
@@ -90,19 +93,21 @@ void for_each_set(const BitGrid& grid, Visit&& visit) {
     }
 }
 
-/// The first column >= x whose bit is set (or clear) in a row; the row's width when there is none.
+/// Returns the first column >= x whose bit is set, or the row's width if there is none.
 [[nodiscard]] std::int32_t next_set(std::span<const std::uint64_t> row, std::int32_t x) noexcept;
+/// Returns the first column >= x whose bit is clear, or the row's width if there is none.
 [[nodiscard]] std::int32_t next_clear(std::span<const std::uint64_t> row, std::int32_t x) noexcept;
 
-/// The first set cell, by rows from the bottom, then from the left.
+/// Returns the leftmost set cell of the lowest row that has one, or nullopt if no cell is set.
 [[nodiscard]] std::optional<Spot> first_set(const BitGrid& grid) noexcept;
 
-/// The set cells that hang together with a set cell, from one to the next of the 4 beside it.
-/// Source  scan-line seed fill: Smith, Tint Fill (SIGGRAPH 1979).
+/// Returns the set cells that are 4-connected to `seed`; none if `seed` is not set.
+/// Source: scan-line seed fill: Smith, Tint Fill (SIGGRAPH 1979).
 [[nodiscard]] BitGrid connected(const BitGrid& grid, Spot seed);
 
-/// Every cell within reach of a set one: up to half_widths[|dy|] columns away in the rows dy above and below.
-/// Pre  half_widths does not rise.
+/// Returns a grid in which each cell near a set cell of `grid` is set.
+/// @param half_widths  half_widths[|dy|] is how many columns to either side are set in the rows dy above and below;
+///     does not increase
 [[nodiscard]] BitGrid dilated(const BitGrid& grid, std::span<const std::int32_t> half_widths);
 
 } // namespace scanloom::planning

@@ -7,7 +7,7 @@
 namespace scanloom::planning {
 namespace {
 
-/// What a disc touches when its centre goes from a to b.
+/// The area that a disc covers while its centre moves from a to b.
 class Capsule {
 public:
     Capsule(const Point2& a, const Point2& b, double radius) : a_(a), b_(b), radius_(radius) {
@@ -21,8 +21,9 @@ public:
     [[nodiscard]] double bottom() const { return std::min(a_.y, b_.y) - radius_; }
     [[nodiscard]] double top() const { return std::max(a_.y, b_.y) + radius_; }
 
-    /// How far it reaches to the right between two heights. It is convex: the nearer to its rightmost point, the
-    /// further. Pre  it reaches between them.
+    /// Returns how far the capsule reaches to the right between two heights. The capsule is convex, so it reaches
+    /// further the nearer the height is to that of its rightmost point.
+    /// Precondition: the capsule reaches between the two heights.
     [[nodiscard]] double right(double low, double high) const {
         const auto [lowest, highest] = std::minmax(a_.y, b_.y);
         const double rightmost = a_.x > b_.x ? a_.y : a_.x < b_.x ? b_.y : std::clamp(low, lowest, highest);

@@ -18,7 +18,7 @@ constexpr Spot step_of(int direction) { return {direction % 3 - 1, direction / 3
 
 constexpr bool is_diagonal(int direction) { return direction != kHere && direction % 2 == 0; }
 
-/// Which steps are possible, as bits, by which of the 3 x 3 cells may be entered.
+/// Returns the possible steps, one bit for each direction, by which of the 3 x 3 cells can be entered.
 constexpr std::array<std::uint16_t, 512> possible_steps() {
     std::array<std::uint16_t, 512> table{};
     for (std::uint32_t enterable = 0; enterable < table.size(); ++enterable) {
@@ -38,9 +38,10 @@ constexpr auto kPossibleSteps = possible_steps();
 
 constexpr std::uint32_t kAll = (1U << 9) - 1;
 
-/// Where it is worth going on from a cell amid others that cost the same, by the step that led to it: elsewhere its
-/// predecessor gets as cheaply without it, the diagonal step first. Of equally cheap ways one is thus left.
-/// Source  the natural neighbours of Harabor, Grastien, Online Graph Pruning for Pathfinding on Grid Maps (AAAI 2011).
+/// Returns the steps worth taking from a cell whose neighbours all cost the same, by the step that led to it. The
+/// predecessor reaches any other neighbour as cheaply without this cell, taking the diagonal step first. So only one of
+/// several equally cheap paths is followed.
+/// Source: the natural neighbours of Harabor, Grastien, Online Graph Pruning for Pathfinding on Grid Maps (AAAI 2011).
 constexpr std::array<std::uint16_t, 9> natural_steps() {
     std::array<std::uint16_t, 9> table{};
     for (int came = 0; came < 9; ++came) {
@@ -65,15 +66,15 @@ Spot moved(Spot from, int direction) {
     return {from.x + step.x, from.y + step.y};
 }
 
-/// The cost between two cells when nothing is in the way, which is never more than the true one.
+/// Returns the cost between two cells without obstacles, a lower bound of the true cost.
 double without_obstacles(Spot from, Spot to) {
     const int dx = std::abs(from.x - to.x);
     const int dy = std::abs(from.y - to.y);
     return std::max(dx, dy) + (kDiagonal - 1.0) * std::min(dx, dy);
 }
 
-/// What a search is for: see CostSearch::search(). A step, less what the estimate falls by, is never shorter than a
-/// bucket is wide.
+/// Aims of a search; see CostSearch::search(). A step's cost minus the decrease of the estimate is never less than the
+/// width of a bucket.
 struct Everything {
     static constexpr double kBucketWidth = 0.5;
     [[nodiscard]] double estimate(Spot) const { return 0.0; }
@@ -82,7 +83,7 @@ struct Everything {
 };
 
 struct Towards {
-    static constexpr double kTrust = 0.95; // in the estimate: with all of it, steps straight on would stay in a bucket
+    static constexpr double kTrust = 0.95; // weight of the estimate: with 1, straight steps would stay in their bucket
     static constexpr double kBucketWidth = 1.0 - kTrust;
     Spot goal;
     const CostSearch& search;
@@ -126,7 +127,7 @@ CostSearch::CostSearch(const Passability& passability)
     buckets_.resize(std::bit_ceil(static_cast<std::size_t>(farthest / Towards::kBucketWidth) + 3));
 }
 
-/// To be written.
+/// Returns the cost of a cell for writing; allocates the cell's block if necessary.
 double& CostSearch::cost_of(std::uint32_t cell) {
     auto& block = blocks_[cell / kBlockCells];
     if (!block) {
@@ -144,9 +145,11 @@ void CostSearch::begin(Spot start) {
     cost_of(index_of(start)) = 0.0;
 }
 
-/// Takes the open cells bucket by bucket, by their cost and what `aim` estimates to be left. As no step stays within a
-/// bucket, all costs in the first one are final, in whatever order they are taken. `aim` is told of each cell taken and
-/// says whether to go on from there, and when to stop: once nothing still open can cost less than a bound.
+/// Takes the open cells bucket by bucket, ordered by their cost plus the remaining cost that `aim` estimates.
+///
+/// No step stays within a bucket, so all costs in the first bucket are final, in whatever order its cells are taken.
+/// `aim` receives each cell taken and decides whether to expand it. It also decides when to stop, given a bound below
+/// which no open cell can cost.
 template <class Aim>
 void CostSearch::search(Spot start, Aim& aim) {
     begin(start);
@@ -170,7 +173,7 @@ void CostSearch::search(Spot start, Aim& aim) {
             const Open taken = bucket.back();
             bucket.pop_back();
             --open;
-            if (taken.cost > cost_of(taken.cell)) continue; // it was cheaper another way
+            if (taken.cost > cost_of(taken.cell)) continue; // a cheaper path was found since
             const Spot at = spot_of(taken.cell);
             if (aim.take(at, taken.cost)) expand(at, taken, reach);
         }
@@ -178,7 +181,7 @@ void CostSearch::search(Spot start, Aim& aim) {
     }
 }
 
-/// Calls reach(Spot, cost, step) for the cells around one that was taken.
+/// Calls reach(Spot, cost, step) for each neighbour to which a step from the cell is possible and worthwhile.
 template <class Reach>
 void CostSearch::expand(Spot at, const Open& taken, Reach& reach) const {
     const std::uint32_t danger = passability_->danger.around(at);

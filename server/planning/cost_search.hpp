@@ -11,52 +11,55 @@
 
 namespace scanloom::planning {
 
-/// What it costs to get from one cell to others, from centre to centre, in cells: times the cell size it is metres.
+/// Finds the cheapest paths between cells, from centre to centre.
 ///
-/// Steps lead to the 8 cells around; a diagonal one only where both cells beside it may be entered, too, so that no
-/// corner is cut. A step costs its length times the mean of what a metre costs in its two cells: half of it lies in
-/// either. All costs are exact (up to rounding): the least of any sequence of steps.
-/// The same question gets the same answer, to the last bit. Memory: 8 bytes for each cell of the chunks reached.
-/// Source  Dijkstra (1959); Hart, Nilsson, Raphael (1968); buckets for a queue: Dial, CACM 12 (1969), which may be
-///         as wide as the shortest step (Denardo, Fox, Operations Research 27 (1979)).
+/// Costs are in cells; multiply by the cell size to get metres. A step leads to one of the 8 neighbours of a cell. A
+/// diagonal step is possible only if both cells next to it can be entered, so that no path cuts a corner. A step costs
+/// its length times the mean cost per metre of its two cells, because half of it lies in each. Each cost is the minimum
+/// over all sequences of steps, exact except for rounding. Equal searches return bit-identical results.
+/// Memory: 8 bytes for each cell of the chunks that a search reaches.
+/// Source: Dijkstra (1959); Hart, Nilsson, Raphael (1968); buckets as the queue: Dial, CACM 12 (1969); a bucket may be
+///     as wide as the shortest step: Denardo, Fox, Operations Research 27 (1979).
 class CostSearch {
 public:
-    /// The passability must outlive the search.
+    /// Keeps a reference to `passability`, which must outlive the search.
     explicit CostSearch(const Passability& passability);
     explicit CostSearch(Passability&&) = delete;
 
-    /// Costs of every cell that can be reached.
+    /// Computes the cost of every cell that can be reached from `start`.
     void from(Spot start);
 
-    /// Searches towards the goal only.
-    /// Pre  the goal can be reached: connected().
+    /// Searches until the cost of `goal` is known.
+    /// Precondition: `goal` can be reached from `start`; see connected().
     void between(Spot start, Spot goal);
 
-    /// Searches until the cheapest of some cells is found; of equally cheap ones the first by rows.
+    /// Searches until the cheapest of the wanted cells is found.
+    /// @return the cheapest of them, of equally cheap ones the first by rows; nullopt if none can be reached
     [[nodiscard]] std::optional<Spot> nearest(Spot start, const BitGrid& wanted);
 
-    /// Of the last search; infinite where it did not come.
+    /// Returns what it costs to get to a cell in the last search; infinity if the search did not reach the cell.
     [[nodiscard]] double cost(Spot spot) const noexcept {
         const std::uint32_t cell = index_of(spot);
         const auto& block = blocks_[cell / kBlockCells];
         return block ? (*block)[cell % kBlockCells] : std::numeric_limits<double>::infinity();
     }
 
-    /// The cells from the last search's start to a cell that it reached.
+    /// Returns the cells from the last search's start to `goal`, both included.
+    /// Precondition: the last search reached `goal`.
     [[nodiscard]] std::vector<Spot> path_to(Spot goal) const;
 
 private:
     static constexpr std::uint32_t kBlockSide = 64;
     static constexpr std::uint32_t kBlockCells = kBlockSide * kBlockSide;
-    using Block = std::array<double, kBlockCells>; // the costs of a square of cells; infinite where none is known
+    using Block = std::array<double, kBlockCells>; // costs of a square of cells; infinity: unknown
 
     struct Open {
         double cost;
         std::uint32_t cell;
-        std::uint32_t came; // the step that led to it
+        std::uint32_t came; // direction of the step that led to the cell
     };
 
-    /// Block by block.
+    /// Returns the index of a cell, numbered block by block.
     [[nodiscard]] std::uint32_t index_of(Spot spot) const noexcept {
         const auto x = static_cast<std::uint32_t>(spot.x);
         const auto y = static_cast<std::uint32_t>(spot.y);
@@ -79,9 +82,9 @@ private:
 
     const Passability* passability_;
     std::uint32_t blocks_wide_;
-    std::array<std::array<double, 9>, 3> step_costs_; // by how many of its two cells are in danger, and its direction
-    std::vector<std::unique_ptr<Block>> blocks_;      // by rows; null where the last search did not come
-    std::vector<std::uint32_t> reached_;              // the others
+    std::array<std::array<double, 9>, 3> step_costs_; // by number of its cells in danger, direction
+    std::vector<std::unique_ptr<Block>> blocks_;      // by rows; null: the last search did not reach it
+    std::vector<std::uint32_t> reached_;              // indices of the blocks that are not null
     std::vector<std::vector<Open>> buckets_;
 };
 

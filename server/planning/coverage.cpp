@@ -15,14 +15,14 @@
 namespace scanloom::planning {
 namespace {
 
-/// What is to be covered, and from where.
+/// What to cover, and from where.
 struct Task {
     Passability passability;
     Spot start;
-    BitGrid way_out;                 ///< of a narrow start: to leave it by, not to come back
-    BitGrid places;                  ///< where the body can be
-    BitGrid free;                    ///< of the region
-    BitGrid reachable;               ///< what of it is within reach of a place
+    BitGrid way_out;                 ///< cells to leave a narrow start by; not entered again
+    BitGrid places;                  ///< where the body's centre can be
+    BitGrid free;                    ///< free cells of the region
+    BitGrid reachable;               ///< cells of `free` within reach of a place
     std::vector<std::int32_t> reach; ///< half widths of the body's disc
     std::int32_t spacing;            ///< cells
 };
@@ -44,14 +44,14 @@ Result<std::int32_t> spacing_cells(const CoverageOptions& options, double cell_s
     return std::max(static_cast<std::int32_t>(cells), 1);
 }
 
-/// Places that hang together, and what of the ground is within reach of them.
+/// Connected places, and the ground within reach of them.
 struct Room {
     BitGrid places;
     BitGrid reachable;
 };
 
-/// A start in a gap may lead to several rooms between which there is no way for the body: the one where it reaches
-/// most.
+/// Returns the room in which the body reaches the most ground. A start in a gap may lead to several rooms that no path
+/// for the body connects.
 Room best_of_rooms(const Passability& passability, Spot start, std::span<const std::int32_t> reach,
                    const BitGrid& free) {
     BitGrid left = connected(passability.enterable, start);
@@ -108,7 +108,7 @@ Result<Task> make_task(const classify::ClassView& classes, double cell_size_m, c
                 std::move(reach),        *spacing};
 }
 
-/// The cells gone through so far, and what is left to cover.
+/// The cells visited so far, and those left to cover.
 class Tour {
 public:
     Tour(Task& task, const MayGoOn& may_go_on)
@@ -126,19 +126,21 @@ public:
         }
         search_.between(at(), goal);
         append(search_.path_to(goal));
-        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // without the way out
+        if (!std::exchange(has_left_, true)) task_.passability.enterable = task_.places; // without way_out
         return {};
     }
 
-    /// Straight along its row, whatever that costs. Pre  all cells between are places.
+    /// Moves straight along the current row, whatever that costs.
+    /// Precondition: all cells between are places.
     void go_along_row(Spot goal) {
         while (at().x != goal.x) step({at().x + (goal.x > at().x ? 1 : -1), goal.y});
     }
 
-    /// From now on calls `then` with each cell that is covered.
+    /// Calls `then` with each cell that is covered from now on.
     void when_covered(std::function<void(Spot)> then) { when_covered_ = std::move(then); }
 
-    /// The nearest of some cells. Pre  one of them can be reached.
+    /// Returns the nearest of the wanted cells.
+    /// Precondition: one of them can be reached.
     [[nodiscard]] Spot nearest(const BitGrid& wanted) {
         const auto nearest = search_.nearest(at(), wanted);
         assert(nearest);
@@ -156,7 +158,7 @@ private:
     }
 
     void cover(Spot centre) {
-        if (!task_.places.test(centre)) return; // beside a wall the disc would reach through it
+        if (!task_.places.test(centre)) return; // next to a wall the disc would reach through it
         const auto height = static_cast<std::int32_t>(task_.reach.size());
         for (std::int32_t dy = 1 - height; dy < height; ++dy) {
             const std::int32_t y = centre.y + dy;
@@ -173,14 +175,14 @@ private:
 
     Task& task_;
     const MayGoOn& may_go_on_;
-    bool has_left_ = false; // the start
+    bool has_left_ = false; // whether the tour has left the start
     CostSearch search_;
-    BitGrid left_; // of task_.reachable
+    BitGrid left_; // cells of task_.reachable not covered yet
     std::vector<Spot> cells_;
     std::function<void(Spot)> when_covered_;
 };
 
-/// Sweeps all rows of a block from one of the ends of its first or last row.
+/// Sweeps all rows of a block, starting at an end of its first or last row.
 Result<> sweep(Tour& tour, const SweepBlock& block, Spot entry) {
     SweepBlock rows = block;
     if (entry.y != rows.front().y) std::ranges::reverse(rows);
@@ -222,7 +224,7 @@ Result<> sweep_all(Tour& tour, const Task& task) {
     return {};
 }
 
-/// The offsets within the body's disc, the nearest first.
+/// Returns the offsets of the cells in the body's disc, the nearest first.
 std::vector<Spot> offsets_by_distance(const std::vector<std::int32_t>& reach) {
     std::vector<Spot> offsets;
     const auto height = static_cast<std::int32_t>(reach.size());
@@ -234,8 +236,8 @@ std::vector<Spot> offsets_by_distance(const std::vector<std::int32_t>& reach) {
     return offsets;
 }
 
-/// Goes to the place nearest to each cell left, from one to the nearest next; those of the cells in between are covered
-/// on the way, and their places not gone to.
+/// Covers the cells that the rows left out: goes to the place nearest to each, always to the nearest of these places. A
+/// place is skipped if all its cells were covered on the path to others.
 Result<> fetch_what_is_left(Tour& tour, const Task& task) {
     const auto offsets = offsets_by_distance(task.reach);
     const auto place_for = [&](Spot cell) {
@@ -249,7 +251,7 @@ Result<> fetch_what_is_left(Tour& tour, const Task& task) {
         return cell;
     };
     std::map<std::pair<std::int32_t, std::int32_t>, std::int64_t>
-        cells_left; // of which a place, (y, x), is the nearest
+        cells_left; // number of cells for which the place (y, x) is the nearest
     BitGrid wanted(task.places.width(), task.places.height());
     for_each_set(tour.left(), [&](Spot cell) {
         const Spot place = place_for(cell);
@@ -278,7 +280,7 @@ Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_s
     Tour tour(*task, may_go_on);
     if (auto swept = sweep_all(tour, *task); !swept) return swept.error();
     if (auto fetched = fetch_what_is_left(tour, *task); !fetched) return fetched.error();
-    task->passability.enterable |= task->way_out; // the path begins there
+    task->passability.enterable |= task->way_out; // the path starts there
     Coverage coverage;
     const Point2 end = task->passability.centre_of(tour.at());
     coverage.path = to_path(task->passability, tour.cells(), start, end, Shape::kSteps);

@@ -10,32 +10,38 @@
 namespace scanloom::planning {
 
 struct CoverageOptions {
-    PassabilityOptions passability; ///< its allow_unknown does not matter: only free ground is covered
+    PassabilityOptions passability; ///< allow_unknown is ignored: only free ground is covered
     std::optional<double>
-        spacing_m;              ///< between rows: at most 2 body radii and a cell; default 2 body radii; 0: every row
-    std::vector<Point2> region; ///< corners of a polygon, metres; none: no bound
+        spacing_m; ///< metres between rows: at most 2 body radii and a cell; default 2 body radii; 0: every row
+    std::vector<Point2> region; ///< corners of a polygon, metres, map frame; empty: no bound
 };
 
-/// Asked again and again during a long search, which ends with the error that it returns.
+/// A check that a long search calls repeatedly. The search stops with the error that the check returns.
 using MayGoOn = std::function<Result<>()>;
 
-/// A way over all free ground of a region in the search_window() around the start.
+/// A path that covers all free ground of a region within the search_window() around the start.
 struct Coverage {
     Path path; ///< from the start
     std::int64_t free_cells = 0;
     std::int64_t covered_cells = 0;
     std::vector<grid::Cell>
-        unreachable; ///< the other free cells, by rows: no place within reach of them can be entered
+        unreachable; ///< the other free cells, by rows: the body can reach no position that covers them
     double unreachable_m2 = 0.0;
-    double fraction = 0.0; ///< covered_cells of free_cells
+    double fraction = 0.0; ///< covered_cells / free_cells
 };
 
-/// Sweeps a region to and fro, row by row (boustrophedon), each block of rows after the nearest one before; then goes
-/// to what was left out at the rows' ends and beside obstacles, the nearest first.
-/// Each free cell (in danger or not) of the region has its centre within a body radius of the path, or is listed as
-/// unreachable. Rows are straight; between them the way is that of plan_path(), not straightened.
-/// Errors  kNoPath: the start cannot be (see plan_path()); no cell of the region can be reached. kInvalidField: an
-///         option, a spacing out of its range, a region that is none. kTooLarge: the map. Those of may_go_on.
+/// Plans a path that covers a region in parallel rows (boustrophedon).
+///
+/// The path sweeps block after block of rows, always the block nearest to the end of the previous one. It then visits
+/// what the rows left out at their ends and next to obstacles, the nearest first. Each free cell of the region (in
+/// danger or not) either has its centre within a body radius of the path or is listed as unreachable. Rows are
+/// straight; between rows the path is that of plan_path(), not straightened.
+/// @param cell_size_m  metres
+/// @param start        metres, map frame
+/// @param may_go_on    called before each connection between rows or places; may be empty
+/// Errors: kNoPath if the start is not possible (see plan_path()) or no cell of the region can be reached;
+///     kInvalidField for an option or a spacing out of range, or an invalid region; kTooLarge if the map is too large
+///     (see search_window()); the errors of `may_go_on`.
 [[nodiscard]] Result<Coverage> plan_coverage(const classify::ClassView& classes, double cell_size_m,
                                              const Point2& start, const CoverageOptions& options = {},
                                              const MayGoOn& may_go_on = {});

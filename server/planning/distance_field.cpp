@@ -13,11 +13,11 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-/// Cells to the nearest obstacle of the same column; squares of it are exact in 64 bits.
+/// In distances_in_columns(): the column has no obstacle. Distances are in cells; their squares are exact in 64 bits.
 constexpr std::int32_t kNoObstacle = -1;
 
-/// A column's obstacles upwards and downwards: the first pass of the transform, where its parabolas are all of
-/// height 0 or infinite.
+/// Computes the distance to the nearest obstacle of the same column, upwards and downwards. This is the first pass of
+/// the transform, in which all parabolas have height 0 or infinity.
 std::vector<std::int32_t> distances_in_columns(const classify::ClassView& classes, const grid::CellBox& window) {
     const auto width = static_cast<std::size_t>(window.width());
     const auto height = static_cast<std::size_t>(window.height());
@@ -34,7 +34,7 @@ std::vector<std::int32_t> distances_in_columns(const classify::ClassView& classe
             }
         }
     });
-    const auto spread = [&](std::size_t from, std::size_t to) { // rows: a row at a time is kind to the cache
+    const auto spread = [&](std::size_t from, std::size_t to) { // row by row, for the cache
         for (std::size_t x = 0; x < width; ++x) {
             const std::int32_t here = distances[from * width + x];
             std::int32_t& there = distances[to * width + x];
@@ -46,7 +46,7 @@ std::vector<std::int32_t> distances_in_columns(const classify::ClassView& classe
     return distances;
 }
 
-/// The second pass: along a row, the lower envelope of the parabolas that stand on its columns' distances.
+/// The second pass, along a row: the lower envelope of the parabolas that stand on the columns' distances.
 class Envelope {
 public:
     explicit Envelope(std::size_t width) { parabolas_.reserve(width); }
@@ -83,10 +83,11 @@ private:
     struct Parabola {
         std::int64_t x;
         std::int64_t height;
-        std::int64_t lowest_from; // the first column where no parabola further left is lower
+        std::int64_t lowest_from; // the first column in which no parabola further left is lower
     };
 
-    /// The first column >= 0 where `right` is not above `left`. Integers, so that no rounding picks the wrong one.
+    /// Returns the first column >= 0 in which `right` is not above `left`. Uses integers, so that rounding cannot
+    /// select a wrong parabola.
     static std::int64_t first_below(const Parabola& right, const Parabola& left) {
         const std::int64_t above = right.height + right.x * right.x - left.height - left.x * left.x;
         const std::int64_t twice_apart = 2 * (right.x - left.x);

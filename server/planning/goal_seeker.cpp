@@ -20,7 +20,7 @@ double square_of_distance(grid::Cell a, grid::Cell b) noexcept {
 }
 
 grid::Cell nearest_cell(const Frontier& frontier, grid::Cell to) {
-    const auto& cells = frontier.cells; // by rows: what is nearest in a row is found by halving
+    const auto& cells = frontier.cells; // sorted by rows: a binary search finds the nearest cell of a row
     const auto by_rows = [](grid::Cell cell) { return std::pair(cell.j, cell.i); };
     grid::Cell nearest = cells.front();
     double least = square_of_distance(nearest, to);
@@ -66,7 +66,7 @@ std::optional<FrontierGoal> GoalSeeker::seek(const Frontier& frontier, std::size
     return goal_at(*best, frontier, place);
 }
 
-/// The free cells among the 8 around each cell of the frontier: they are what makes it one.
+/// Returns the free cells among the 8 neighbours of each cell of the frontier; each frontier cell has one.
 std::vector<Spot> GoalSeeker::beside(const Frontier& frontier) {
     std::vector<Spot> ring;
     for (const grid::Cell cell : frontier.cells) {
@@ -80,8 +80,8 @@ std::vector<Spot> GoalSeeker::beside(const Frontier& frontier) {
     return ring;
 }
 
-/// The free cells beside a ring's, not seen yet. Straight steps: they pass no wall, be it one cell thin and
-/// slanted.
+/// Returns the free cells next to a ring's cells that were not visited yet. Only straight steps are taken: they cannot
+/// pass a wall, even a diagonal one of one cell's thickness.
 std::vector<Spot> GoalSeeker::around(const std::vector<Spot>& ring) {
     std::vector<Spot> next;
     for (const Spot at : ring) {
@@ -99,7 +99,7 @@ void GoalSeeker::add(Spot spot, std::vector<Spot>& ring) {
     ring.push_back(spot);
 }
 
-/// Of those that see the frontier.
+/// Returns the cheapest cell of the ring that can be reached and sees the frontier.
 std::optional<Spot> GoalSeeker::cheapest(const std::vector<Spot>& ring, bool in_danger,
                                          const Frontier& frontier) const {
     std::optional<Spot> best;

@@ -10,20 +10,22 @@
 
 namespace scanloom::planning {
 
+/// Returns the squared distance between two cells, in cells squared.
 [[nodiscard]] double square_of_distance(grid::Cell a, grid::Cell b) noexcept;
 
-/// The cell of the frontier nearest to another cell; of equally near ones the first.
+/// Returns the frontier's cell nearest to `to`; of equally near ones the first by rows.
 [[nodiscard]] grid::Cell nearest_cell(const classify::Frontier& frontier, grid::Cell to);
 
-/// Looks for goals around frontiers, ring after ring of free cells: see frontier_goals().
+/// Searches for the goal of a frontier, ring after ring of free cells around it; see frontier_goals().
 class GoalSeeker {
 public:
-    /// Both must outlive the seeker; the search tells what it costs the robot to get anywhere.
-    /// @param rings  how many to look at
+    /// Keeps references to both, which must outlive the seeker.
+    /// @param search  holds the cost from the robot to every cell
+    /// @param rings   how many rings to examine
     GoalSeeker(const Passability& passability, const CostSearch& search, std::int32_t rings);
 
-    /// Nothing where the robot can get to no place for it.
-    /// @param place  of the frontier among all
+    /// Returns the goal for a frontier, or nullopt if the robot can reach none.
+    /// @param place  index of the frontier among all frontiers
     [[nodiscard]] std::optional<FrontierGoal> seek(const classify::Frontier& frontier, std::size_t place);
 
 private:

@@ -21,7 +21,7 @@ using classify::ClassView;
 using classify::Frontier;
 
 constexpr double kStandoffMax = 100.0;        // metres
-constexpr std::int32_t kStandoffCellsMin = 8; // coarse cells: danger alone may be as wide
+constexpr std::int32_t kStandoffCellsMin = 8; // with coarse cells, danger alone may be this wide
 
 Result<std::int32_t> standoff_cells(const ExplorationOptions& options, double cell_size_m) {
     if (!(options.standoff_m >= 0.0 && options.standoff_m <= kStandoffMax)) {
@@ -31,7 +31,7 @@ Result<std::int32_t> standoff_cells(const ExplorationOptions& options, double ce
     return std::max(static_cast<std::int32_t>(options.standoff_m / cell_size_m), kStandoffCellsMin);
 }
 
-/// The cells of the frontier within reach of one of them.
+/// Returns the cells of the frontier within `reach_cells` of the target.
 std::vector<grid::Cell> cells_around(grid::Cell target, const Frontier& frontier, std::int32_t reach_cells) {
     const double reach = reach_cells;
     std::vector<grid::Cell> near;
@@ -40,22 +40,23 @@ std::vector<grid::Cell> cells_around(grid::Cell target, const Frontier& frontier
     return near;
 }
 
-/// A robot's place, and what it costs to get from there to anywhere.
+/// The ground around a robot, and the cost from the robot's position to every cell.
 struct Surroundings {
     Passability passability;
     CostSearch search;
-    bool hemmed_in; // the body fits in where the robot is only by leave of open_start()
+    bool hemmed_in; // the body fits at the robot's position only thanks to open_start()
 
     Surroundings(Passability ground, Spot start, bool start_opened)
         : passability(std::move(ground)), search(passability), hemmed_in(start_opened) {
         search.from(start);
     }
-    Surroundings(const Surroundings&) = delete; // the search knows where the passability is
+    Surroundings(const Surroundings&) = delete; // the search holds the passability's address
     Surroundings& operator=(const Surroundings&) = delete;
 };
 
-/// Which of the frontiers that count, the first ones, the others' targets take. A target in a smaller one takes none;
-/// one that is in no frontier any more takes the nearest that counts.
+/// Returns which of the first `counting` frontiers, those that are large enough, the other robots' targets take. A
+/// target in a smaller frontier takes none. A target that is in no frontier any more takes the nearest large enough
+/// one.
 std::vector<bool> taken_frontiers(std::span<const Frontier> frontiers, std::size_t counting,
                                   std::span<const grid::Cell> targets, std::int32_t reach_cells) {
     std::vector<bool> taken(frontiers.size());
@@ -100,13 +101,14 @@ bool any_of(const FrontierGoals& goals) {
     return std::ranges::any_of(goals, [](const auto& goal) { return goal.has_value(); });
 }
 
-/// The goals of a robot, and the ways there.
+/// The goals of a robot, and the search that found the paths there.
 struct Survey {
     std::unique_ptr<Surroundings> surroundings;
     FrontierGoals goals;
 };
 
-/// Over known ground; where a robot sees so little of it that it could not get away, over what there is.
+/// Searches over known ground only. If the robot sees too little known ground to leave its position, searches again
+/// over all free ground.
 Result<Survey> survey_goals(const ClassView& classes, double cell_size_m, std::span<const Frontier> frontiers,
                             const Point2& robot, const ExplorationOptions& options, std::int32_t rings) {
     auto careful = survey(classes, cell_size_m, robot, options.passability, true);
@@ -170,7 +172,7 @@ Result<NextGoal> next_goal(const ClassView& classes, double cell_size_m, const P
     auto frontiers = classify::find_frontiers(classes, 1, given_up);
     const std::size_t size_min = frontier_size_min(options, cell_size_m);
     const auto too_small = [&](const Frontier& frontier) { return frontier.cells.size() < size_min; };
-    const auto counting = std::ranges::find_if(frontiers, too_small); // the largest come first
+    const auto counting = std::ranges::find_if(frontiers, too_small); // the largest frontiers come first
     auto taken =
         taken_frontiers(frontiers, static_cast<std::size_t>(counting - frontiers.begin()), targets_of_others, *rings);
     frontiers.erase(counting, frontiers.end());

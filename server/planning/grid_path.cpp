@@ -13,7 +13,7 @@
 namespace scanloom::planning {
 namespace {
 
-/// Relative: sums in another order are no reason to keep a corner.
+/// Relative tolerance: a different order of summation must not keep a corner.
 constexpr double kRounding = 1e-12;
 
 Point2 centre_of(Spot spot) { return {spot.x + 0.5, spot.y + 0.5}; }
@@ -24,7 +24,7 @@ bool straight_on(const Point2& a, const Point2& b, const Point2& c) {
     return ab.x * bc.y - ab.y * bc.x == 0.0 && dot(ab, bc) >= 0.0;
 }
 
-/// The cells' centres between the two points, without those that lie on a straight line between others.
+/// Returns the centres of the cells between the two points, without those on a straight line between their neighbours.
 std::vector<Point2> corners(const std::vector<Spot>& cells, const Point2& start, const Point2& goal) {
     std::vector<Point2> points = {start};
     const auto append = [&](const Point2& point) {
@@ -37,15 +37,15 @@ std::vector<Point2> corners(const std::vector<Spot>& cells, const Point2& start,
     return points;
 }
 
-/// The cost from one corner to the next: both are in one cell or in two side by side that may be entered, so it has
-/// one.
+/// Returns the cost from one corner to the next. It exists, because both are in one cell or in two adjacent cells that
+/// can be entered.
 double cost_of_step(const Passability& passability, const Point2& from, const Point2& to) {
     const auto cost = cost_of_line(passability, from, to);
     assert(cost);
     return *cost;
 }
 
-/// Leaves out corners of a way wherever the straight one is as safe and costs no more.
+/// Removes the corners of a path wherever a straight segment is as safe and costs no more.
 class Straightener {
 public:
     Straightener(const Passability& passability, const std::vector<Point2>& points)
@@ -65,7 +65,8 @@ public:
     }
 
 private:
-    /// From the end backwards by halves to where there is a straight way, then on as far as that is no worse.
+    /// Returns the furthest corner that a straight segment can reach: halves the distance from the end until a segment
+    /// works, then extends it as long as it is no worse.
     [[nodiscard]] std::size_t furthest_from(std::size_t at) const {
         std::size_t furthest = at + 1;
         double cost = costs_[furthest] - costs_[at];
@@ -85,7 +86,7 @@ private:
         return furthest;
     }
 
-    /// Nothing when it is not as safe, or costs more than the way `around`.
+    /// Returns the cost of the straight segment, or nullopt if it is less safe or costs more than `around`.
     [[nodiscard]] std::optional<double> straight_cost(std::size_t from, std::size_t to, double around) const {
         const auto straight = cost_of_line(passability_, points_[from], points_[to]);
         if (!straight || *straight > around * (1.0 + kRounding)) return std::nullopt;
@@ -94,7 +95,7 @@ private:
 
     const Passability& passability_;
     const std::vector<Point2>& points_;
-    std::vector<double> costs_; // from the first point
+    std::vector<double> costs_; // cost from the first point to each point
 };
 
 Path within_a_cell(const Passability& passability, Spot cell, const Point2& start, const Point2& goal) {
@@ -119,7 +120,7 @@ Path to_path(const Passability& passability, const std::vector<Spot>& cells, con
     const Point2 corner{static_cast<double>(passability.window.i_begin),
                         static_cast<double>(passability.window.j_begin)};
     for (const Point2& point : points) path.points.push_back((point + corner) * passability.cell_size_m);
-    path.points.front() = start; // to the last bit
+    path.points.front() = start; // bit-identical
     path.points.back() = goal;
     return path;
 }

@@ -7,10 +7,10 @@
 namespace scanloom::planning {
 namespace {
 
-/// Cells: a line that misses a corner by less goes through it.
+/// In cells: a line that passes a corner at a smaller distance counts as going through it.
 constexpr double kCorner = 1e-9;
 
-/// A line's way across the cells along one axis. Parts of the line's length, 0 .. 1.
+/// How a line crosses the cells along one axis. Positions are fractions of the line's length, 0 .. 1.
 struct Axis {
     std::int32_t step;   // -1, 0, 1
     double to_next_cell; // where the line leaves the current cell
@@ -32,7 +32,8 @@ struct Axis {
 
 bool is_border(double a, double b) { return a == b && a == std::floor(a); }
 
-/// Along the border of two rows or columns of cells, a line touches both: it costs what the dearer one does.
+/// Returns the cost of a line along the border between two rows or columns of cells. It touches both, so the more
+/// expensive one counts.
 std::optional<double> cost_beside(const Passability& passability, const Point2& from, const Point2& to,
                                   const Point2& aside) {
     const auto one = cost_of_line(passability, from + aside, to + aside);

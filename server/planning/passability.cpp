@@ -45,9 +45,11 @@ void read_chunk(Passability& passability, grid::ChunkKey key, const ClassChunk& 
     }
 }
 
-/// The least radius, not below a given one, that is kept on a diagonal step from one cell's centre to another's if it
-/// is kept at both. The step's middle is m sqrt(2) from the corner of the square m cells beside it, from which both
-/// centres are sqrt(2 m^2 + 1/2): no other square is nearer to the middle than to the centres. In cells.
+/// Returns the smallest radius, not below `radius`, such that a diagonal step between two cell centres keeps `radius`
+/// if both centres keep the result. In cells.
+///
+/// The middle of the step is m sqrt(2) from the corner of the square m cells to its side; both centres are sqrt(2 m^2 +
+/// 1/2) from that corner. No other square is nearer to the middle than to the centres.
 double radius_for_steps(double radius) {
     const double beside = std::floor(std::numbers::sqrt2 / 2.0 * (radius + kRoundingCells));
     const double of_centres = std::sqrt(2.0 * beside * beside + 0.5);
@@ -58,7 +60,7 @@ void set_all(BitGrid& grid) {
     for (std::int32_t y = 0; y < grid.height(); ++y) std::ranges::fill(grid.row(y), ~std::uint64_t{0});
 }
 
-/// The outermost rows and columns.
+/// Clears the outermost `width` rows and columns.
 void clear_border(BitGrid& grid, std::int32_t width) {
     const std::int32_t right = std::max(grid.width() - width, 0);
     for (std::int32_t y = 0; y < grid.height(); ++y) {
@@ -71,7 +73,7 @@ void clear_border(BitGrid& grid, std::int32_t width) {
     }
 }
 
-/// The ground under a point where a path begins or ends.
+/// Returns the cell under a point where a path starts or ends; an error if a point cannot be there.
 Result<Spot> ground_at(const Passability& passability, const Point2& point, std::string_view which) {
     const auto cell = numbered_cell(point, passability.cell_size_m);
     if (!cell) return prefixed(fmt::format("{}: ", which), cell.error());
@@ -94,7 +96,8 @@ BitGrid disc_around(const Passability& passability, Spot centre, double radius) 
     return dilated(disc, disc_half_widths(radius, false));
 }
 
-/// What the body covers where it stands beside known ground: a sensor that looks ahead does not see its own cell.
+/// Turns unknown cells that the body covers into ground if the body is next to known ground: a sensor that looks ahead
+/// does not see its own cell.
 void take_as_ground(Passability& passability, Spot place, double radius) {
     if (passability.ground.test(place) || passability.occupied.test(place)) return;
     BitGrid covered = disc_around(passability, place, radius);
@@ -106,7 +109,7 @@ void take_as_ground(Passability& passability, Spot place, double radius) {
     if (passability.options.on_known) passability.obstacles.subtract(covered);
 }
 
-/// From a cell's centre to the nearest occupied square, or `far` if there is none as near. In cells.
+/// Returns the distance from a cell's centre to the nearest occupied square, at most `far`. In cells.
 double clearance_of(const Passability& passability, Spot place, double far) {
     const auto reach = static_cast<std::int32_t>(far) + 1;
     double least = far;
@@ -123,9 +126,9 @@ double clearance_of(const Passability& passability, Spot place, double far) {
     return least;
 }
 
-/// The cells through which a body may leave a place where it should not be: the ground that it covers, and with
-/// on_known also what is not near occupied cells, as far as it takes to get to known ground, but not further than four
-/// times as far.
+/// Returns the cells through which a body can leave a position where it should not be. These are the ground cells that
+/// it covers. With on_known they also include cells that are not near occupied ones, as far as necessary to get to
+/// known ground, but at most four times as far.
 BitGrid way_out(const Passability& passability, Spot place, double radius) {
     BitGrid near = disc_around(passability, place, radius + 1.0);
     near &= passability.ground;

@@ -21,7 +21,7 @@ Result<> check(std::span<const Point2> corners) {
     return {};
 }
 
-/// Where the polygon's edges cross a horizontal line, from the left.
+/// Returns where the polygon's edges cross a horizontal line, from left to right.
 std::vector<double> crossings(std::span<const Point2> corners, double y) {
     std::vector<double> places;
     for (std::size_t n = 0; n < corners.size(); ++n) {

@@ -8,9 +8,10 @@ namespace scanloom::planning {
 
 inline constexpr std::size_t kRegionCornersMax = 4096;
 
-/// The window's cells whose centres are inside a polygon; where it crosses itself, inside and outside alternate.
-/// @param corners  metres, in the map frame, either way round; the last is joined to the first
-/// Errors  kInvalidField: fewer than 3 or more than kRegionCornersMax corners, or one that is not finite.
+/// Returns the window's cells whose centres are inside a polygon. Where the polygon crosses itself, inside and outside
+/// alternate (even-odd rule).
+/// @param corners  metres, map frame, clockwise or counter-clockwise; the last one is connected to the first
+/// Errors: kInvalidField for fewer than 3 or more than kRegionCornersMax corners, or for a corner that is not finite.
 [[nodiscard]] Result<BitGrid> cells_inside(const Passability& passability, std::span<const Point2> corners);
 
 } // namespace scanloom::planning

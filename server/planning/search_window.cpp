@@ -30,7 +30,7 @@ Result<grid::Cell> numbered_cell(const Point2& point, double cell_size_m) {
     const double i = std::floor(point.x * cells_per_metre);
     const double j = std::floor(point.y * cells_per_metre);
     const auto end = static_cast<double>(grid::kNumberedChunks.ci_end * grid::kChunkSide);
-    if (!(std::abs(i) < end && std::abs(j) < end)) { // also when it is NaN
+    if (!(std::abs(i) < end && std::abs(j) < end)) { // also true for NaN
         return Error{Errc::kInvalidField, fmt::format("the point ({}, {}) has no cell in any map", point.x, point.y)};
     }
     return grid::Cell{static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)};
@@ -44,7 +44,7 @@ Result<SearchWindow> search_window(const ClassView& classes, double cell_size_m,
         if (!cell) return cell.error();
         chunks_of_ends.push_back(grid::chunk_of(*cell));
     }
-    // Cells of chunks with n others between them are more than n chunks apart.
+    // Cells of two chunks with n chunks between them are more than n chunk sides apart.
     grid::ChunkAreas areas(explored_chunks(classes),
                            1 + static_cast<std::int32_t>((reach.body_radius_m / cell_size_m + 2.0) / grid::kChunkSide));
     CellBox window;

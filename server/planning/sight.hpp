@@ -9,8 +9,9 @@
 
 namespace scanloom::planning {
 
-/// Whether no cell between two, one for each step along the longer axis of the straight line, is occupied.
-/// @param is_occupied  called with cells between the two
+/// Returns whether no cell on the straight line between two cells is occupied, testing one cell for each step along the
+/// line's longer axis.
+/// @param is_occupied  called with cells between the two, without the two
 template <class IsOccupied>
 [[nodiscard]] bool sees(grid::Cell from, grid::Cell to, IsOccupied&& is_occupied) {
     const std::int32_t steps = std::max(std::abs(to.i - from.i), std::abs(to.j - from.j));

@@ -19,7 +19,7 @@ std::vector<SweepRow> rows_at(const BitGrid& ground, std::int32_t y) {
 
 bool side_by_side(const SweepRow& a, const SweepRow& b) { return a.x_begin < b.x_end && b.x_begin < a.x_end; }
 
-/// The only one of some rows that is beside a row.
+/// Returns the index of the only row that overlaps `row` in x, or nullopt if there is none or several.
 std::optional<std::size_t> only_neighbour(const std::vector<SweepRow>& rows, const SweepRow& row) {
     std::optional<std::size_t> only;
     for (std::size_t n = 0; n < rows.size(); ++n) {
@@ -42,7 +42,7 @@ std::optional<std::int32_t> lowest_row(const BitGrid& ground) {
 std::vector<SweepBlock> sweep_blocks(const BitGrid& ground, std::int32_t spacing) {
     std::vector<SweepBlock> blocks;
     std::vector<SweepRow> below;
-    std::vector<std::size_t> blocks_below; // the block of each row below
+    std::vector<std::size_t> blocks_below; // for each row below, the index of its block
     for (std::int32_t y = lowest_row(ground).value_or(ground.height()); y < ground.height(); y += spacing) {
         const auto rows = rows_at(ground, y);
         std::vector<std::size_t> blocks_here;

@@ -6,7 +6,7 @@
 
 namespace scanloom::planning {
 
-/// Set cells side by side: x_begin <= x < x_end.
+/// Adjacent set cells of a row: x_begin <= x < x_end.
 struct SweepRow {
     std::int32_t y = 0;
     std::int32_t x_begin = 0;
@@ -18,13 +18,15 @@ struct SweepRow {
     friend bool operator==(const SweepRow&, const SweepRow&) = default;
 };
 
-/// Rows one above the other that can be swept to and fro without a choice.
+/// Adjacent rows that can be swept one after the other, with no choice between several neighbours.
 using SweepBlock = std::vector<SweepRow>;
 
-/// Parts ground into blocks: rows `spacing` cells apart, the first at the lowest set cell, split where a cell is not
-/// set. A block ends where a row has several neighbours above or below it, or shares one.
-/// Source  the cellular decomposition of Choset, Pignon, Coverage Path Planning: The Boustrophedon Cellular
-///         Decomposition (1998), on rows.
+/// Divides ground into blocks of rows.
+///
+/// Rows are `spacing` cells apart, the first at the lowest set cell, and are split at clear cells. A block ends where a
+/// row has several neighbours above or below it, or shares a neighbour with another row.
+/// Source: the cellular decomposition of Choset, Pignon, Coverage Path Planning: The Boustrophedon Cellular
+///     Decomposition (1998), applied to rows.
 [[nodiscard]] std::vector<SweepBlock> sweep_blocks(const BitGrid& ground, std::int32_t spacing);
 
 } // namespace scanloom::planning
