@@ -9,21 +9,23 @@
 
 namespace scanloom::guide {
 
-/// Which robot the map of a session begins with, of those that ask where they are while nothing is mapped. One that is
-/// told so stands where its people say it does; two that are told so at once would each begin a map, and nobody would
-/// know how the two lie to each other.
-/// Thread  any.
+/// Decides which robot starts the map of a session in which nothing is mapped yet, if several robots ask for their
+/// pose.
+///
+/// The robot that starts the map stands where its operator says. If two robots started a map at the same time, the
+/// transform between their poses would be unknown.
+/// Threads: any thread.
 class FirstPlaces {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// How long a robot that sends nothing keeps others from beginning.
+    /// How long a robot that sends nothing prevents other robots from starting the map.
     static constexpr std::chrono::seconds kKept{30};
 
-    /// Whether the robot may begin: nobody else may, or that was told so kKept ago.
+    /// Returns whether the robot may start the map. It may unless another robot was allowed to within the last kKept.
     [[nodiscard]] bool take(store::SessionId session, RobotIndex robot, Clock::time_point now);
 
-    /// The session is deleted: forgets it.
+    /// Forgets a session that was deleted.
     void remove(store::SessionId session);
 
 private:
@@ -33,7 +35,7 @@ private:
     };
 
     std::mutex mutex_;
-    std::map<store::SessionId, Taken> taken_; // those of sessions in which nothing is mapped, and kKept more
+    std::map<store::SessionId, Taken> taken_; // of sessions in which nothing is mapped, and for kKept after that
 };
 
 } // namespace scanloom::guide

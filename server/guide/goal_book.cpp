@@ -16,12 +16,12 @@ grid::Cell cell_of(const Point2& point, double cell_size) {
 
 Point2 centre_of(grid::Cell cell, double cell_size) { return {(cell.i + 0.5) * cell_size, (cell.j + 0.5) * cell_size}; }
 
-/// What the maps know of a robot; nothing where it joined after their last entry.
+/// Returns the state of a robot in the maps, or an empty one if the robot joined after their last entry.
 mapping::RobotState state_of(const mapping::Snapshot& maps, RobotIndex robot) {
     return robot < maps.robots.size() ? maps.robots[robot] : mapping::RobotState{};
 }
 
-/// To those known already: the oldest first, no more than are kept.
+/// Appends the cells that `to` does not contain yet, then removes the oldest ones beyond kInVainCellsMax.
 void add(const std::vector<grid::Cell>& cells, std::vector<grid::Cell>& to) {
     const auto place = [](grid::Cell cell) { return std::pair(cell.j, cell.i); };
     auto known = to;
@@ -53,7 +53,7 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
     forget_what_counts_no_longer(now);
     const mapping::RobotState state = state_of(maps, robot);
     InVain in_vain = take_in_vain(session, maps);
-    std::optional<Visit> going_on; // at the goal, without having looked yet
+    std::optional<Visit> going_on; // the robot is at the goal but has not looked yet
     if (const auto* had = find_entry(session, robot);
         had != nullptr && had->settings == maps.config && is_there(had->visit, state)) {
         if (has_looked(had->visit, state, cell_size)) {
@@ -73,7 +73,7 @@ Result<planning::NextGoal> GoalBook::next(const std::shared_ptr<const session::S
         return found;
     }
     Visit visit = begin_visit(*found->goal, state, cell_size, options.passability.body_radius_m);
-    if (going_on && is_there(visit, state)) { // be it a better goal: it waits no longer than it has to
+    if (going_on && is_there(visit, state)) { // also for a better goal: the robot keeps its waiting time
         visit.asking_since = going_on->asking_since.value_or(state.stamp);
     }
     const auto given = ways_.give_goal(session, robot, told(*found->goal, maps),
@@ -103,7 +103,8 @@ std::vector<grid::Cell> GoalBook::targets_of_others(const std::shared_ptr<const 
     return targets;
 }
 
-/// Without what is FRONTIER no longer; maps of an earlier time tell nothing of that.
+/// Removes and returns the record of the session and settings, without cells that are no longer FRONTIER. Maps older
+/// than the record do not change it.
 GoalBook::InVain GoalBook::take_in_vain(const std::shared_ptr<const session::Session>& session,
                                         const mapping::Snapshot& maps) {
     const auto known = std::ranges::find_if(

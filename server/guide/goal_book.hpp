@@ -16,59 +16,62 @@
 
 namespace scanloom::guide {
 
-/// Who pursues which frontier: gives each robot of a session its next goal, and no two of them the same frontier.
+/// Assigns each robot of a session its next goal, and no two robots the same frontier.
 ///
-/// A robot's goal counts until the robot asks again, and as long as the WayBook says that the robot holds it: no longer
-/// once the robot has left; a robot that comes back asks again. Nothing of it survives a restart.
-/// Goals are kept as places in the map frame: those of maps woven with other cells count, too.
+/// A robot's goal counts until the robot asks for the next one, and only while the WayBook says that the robot holds
+/// it. So it no longer counts after the robot has left; a robot that returns asks again. Goals do not survive a
+/// restart. They are stored as positions in the map frame, so goals found in maps with another cell size count as well.
 ///
-/// It also remembers what robots have looked at in vain, so that exploring comes to an end where a frontier cannot be
-/// seen (glass, a crack, what is too low for the laser). When a robot that has_looked() asks again, the cells that
-/// planning::seen_in_vain() counts for nobody's goals any more, as long as they are FRONTIER: each visit changes the
-/// map or takes a cell out. A robot that has not looked yet gets the same goal, or a better one. Maps may also go to
-/// and fro: beams along a wall free what beams towards it have shown, and show it again, wherever the robot is not. So
-/// cells around targets count no more either whenever they are FRONTIER again after kLooksMax looks. This is kept for
-/// each session and the settings of the maps, at most kInVainCellsMax cells each: then the oldest go, and looks are
-/// counted anew.
+/// The book also remembers frontiers that robots could not observe, so that exploration ends where a frontier cannot be
+/// seen (glass, a narrow gap, things too low for the laser). When a robot that has_looked() asks again, the cells that
+/// planning::seen_in_vain() returns are excluded from the goals of all robots, as long as they are FRONTIER: each visit
+/// changes the map or excludes a cell. A robot that has not looked yet gets the same goal or a better one.
 ///
-/// Thread  any; one search at a time.
+/// Maps may also alternate in places away from the robot: beams along a wall clear what beams towards the wall have
+/// shown, and those show it again. So cells around targets are also excluded whenever they are FRONTIER again after
+/// kLooksMax looks. Excluded cells and looks are kept for each session and the settings of its maps, at most
+/// kInVainCellsMax cells each. Beyond that, the oldest cells are dropped and looks are counted from 0 again.
+///
+/// Threads: any thread; one search at a time.
 class GoalBook {
 public:
     using Clock = WayBook::Clock;
 
     static constexpr std::size_t kInVainCellsMax = std::size_t{1} << 16;
     static constexpr int kLooksMax = 2;
-    static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently asked for go
+    static constexpr std::size_t kSettingsMax = 8; ///< of one session; the least recently used are dropped
 
-    /// The next goal of a robot at `position`, kept for it from now on.
-    /// @param maps  the session's, or others woven from its log
-    /// Errors  as planning::next_goal(); the robot has no goal then.
+    /// Finds the next goal of a robot and keeps it for that robot.
+    /// @param maps      the session's maps, or the maps of a replay job of its log
+    /// @param position  of the robot, metres, map frame
+    /// @return the goal, or why there is none
+    /// Errors: those of planning::next_goal(); the robot has no goal then.
     [[nodiscard]] Result<planning::NextGoal> next(const std::shared_ptr<const session::Session>& session,
                                                   const mapping::Snapshot& maps, RobotIndex robot,
                                                   const Point2& position, Clock::time_point now,
                                                   const planning::ExplorationOptions& options = {});
 
-    /// What robots were told, these goals among it.
+    /// Returns the goals and paths that robots hold, which include the goals assigned here.
     [[nodiscard]] WayBook& ways() noexcept { return ways_; }
 
 private:
     struct Entry {
         std::weak_ptr<const session::Session> session;
         RobotIndex robot;
-        std::uint64_t given;         // WayBook::give_goal()
-        mapping::MapConfig settings; // of the maps
+        std::uint64_t given;         // result of WayBook::give_goal()
+        mapping::MapConfig settings; // settings of the maps
         grid::Cell goal;
         std::vector<grid::Cell> around_target;
         Visit visit;
     };
 
-    using Looks = std::map<std::pair<std::int32_t, std::int32_t>, int>; // by (j, i)
+    using Looks = std::map<std::pair<std::int32_t, std::int32_t>, int>; // number of looks by (j, i)
 
     struct InVain {
         std::weak_ptr<const session::Session> session;
         mapping::MapConfig settings;
-        Revision revision;             // of the newest maps asked on
-        std::vector<grid::Cell> cells; // FRONTIER, looked at in vain, the oldest first
+        Revision revision;             // of the newest maps used
+        std::vector<grid::Cell> cells; // FRONTIER cells that could not be observed, the oldest first
         Looks looks;                   // how often robots looked at cells around their targets
     };
 
@@ -87,8 +90,8 @@ private:
 
     WayBook ways_;
     std::mutex mutex_;
-    std::vector<Entry> entries_;  // at most one a robot
-    std::vector<InVain> in_vain_; // of each session and settings one, if it has any; the last asked for last
+    std::vector<Entry> entries_;  // at most one for each robot
+    std::vector<InVain> in_vain_; // at most one for each session and settings; the most recently used last
 };
 
 } // namespace scanloom::guide

@@ -6,7 +6,8 @@
 namespace scanloom::guide {
 namespace {
 
-/// All there is; a robot that has stood too short a time for its capture to end has seen something, too.
+/// Returns all reference views, also those of captures that have not ended: a robot that has not stood long enough has
+/// seen something as well.
 landmarks::ReferenceViews views_of(session::Folded<landmarks::ReferenceLayer> folded) {
     auto views = std::move(folded.state);
     for (const auto& open : folded.open) {

@@ -11,32 +11,33 @@
 
 namespace scanloom::guide {
 
-/// A robot that was found.
+/// The pose that was found for a robot.
 struct Located {
-    landmarks::Alignment alignment; ///< clear; T_first_second is T_map_odom
-    Revision revision = 0;          ///< of the log entries that it was found in
+    landmarks::Alignment alignment; ///< of certainty kClear; T_first_second is T_map_odom
+    Revision revision = 0;          ///< of the map's last log entry that the search used
 };
 
-/// Tells robots where they are, by what they see and what the session's lasers have seen: what no other place explains
-/// as well, or nothing.
-/// Thread  any that may wait for the disk.
+/// Localizes robots in the map of their session by comparing what they see with what the session's lasers have seen. A
+/// pose is returned only if no other place matches as well.
+/// Threads: any thread that may wait for the disk.
 class Locator {
 public:
     explicit Locator(store::ScanLog& log) : folds_(log) {}
 
-    /// @param robot  who asks
+    /// Finds the pose of a robot in the map of its session.
+    /// @param robot  the robot to localize
     /// @param view   what the robot sees, odometry frame
-    /// @param near   where in the map to look; none: everywhere
-    /// @param ask    now and then; its error ends it
-    /// Errors  kAmbiguous, kUndetermined: the map does not tell, and the message says why; those of landmarks::locate(),
-    ///         CaptureFolds::up_to() and of `ask`.
-    ///         kNothingMapped is for one robot at a time (see FirstPlaces), and kOverloaded meanwhile for all others.
+    /// @param near   where in the map to search; nullopt: everywhere
+    /// @param ask    called from time to time; an error that it returns ends the search
+    /// Errors: kAmbiguous or kUndetermined if the map does not determine the pose; the message says why. kNothingMapped
+    ///     if nothing is mapped yet and this robot may start the map; kOverloaded if another robot may (see
+    ///     FirstPlaces). Those of landmarks::locate(), CaptureFolds::up_to() and `ask`.
     [[nodiscard]] Result<Located> locate(const session::Session& session, RobotIndex robot,
                                          const landmarks::CloudView& view,
                                          const std::optional<landmarks::Neighbourhood>& near,
                                          const std::function<Result<>()>& ask);
 
-    /// The session is deleted: forgets it.
+    /// Forgets a session that was deleted.
     void remove(store::SessionId session);
 
 private:

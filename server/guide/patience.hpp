@@ -10,23 +10,26 @@
 
 namespace scanloom::guide {
 
-/// How long a search may go on: until the server shuts down, which waits for it, and no longer than its time, for
-/// others wait for it, too.
-/// Thread  any one at a time.
+/// Limits how long a search may take: it ends when the server shuts down, because the shutdown waits for it, and when
+/// its time is over, because other requests wait for it as well.
+/// Threads: one at a time.
 class Patience {
 public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr std::chrono::seconds kTime{20};
 
-    /// @param instead  what to ask for that takes less time: a literal
+    /// Starts the time of a search.
+    /// @param sessions  must outlive this object
+    /// @param instead   what to request instead to need less time; part of the error message; a string literal
     explicit Patience(const session::SessionRegistry& sessions, Clock::time_point end = Clock::now() + kTime,
                       std::string_view instead =
                           "ask for a smaller region, or for rows further apart, or plan on a map "
                           "of larger cells")
         : sessions_(sessions), end_(end), instead_(instead) {}
 
-    /// Errors  kShuttingDown. kTooLarge: what is searched for takes too long.
+    /// Returns success while the search may continue.
+    /// Errors: kShuttingDown if the server is shutting down; kTooLarge if the search takes too long.
     [[nodiscard]] Result<> operator()() const {
         if (sessions_.is_draining()) return Error{Errc::kShuttingDown, "the server is shutting down"};
         if (Clock::now() < end_) return {};

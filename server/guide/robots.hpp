@@ -8,11 +8,12 @@
 
 namespace scanloom::guide {
 
-/// Errors  kNotFound: no robot of that name ever joined the session.
+/// Returns the index of the robot with the given name.
+/// Errors: kNotFound if no robot of that name ever joined the session.
 [[nodiscard]] Result<RobotIndex> find_robot(const mapping::Snapshot& maps, std::string_view name);
 
-/// T_map_robot of the robot's newest scan that is in the maps.
-/// Errors  kNoPath: it has sent none, or joined after their last entry; so there is no way from there.
+/// Returns T_map_robot of the robot's newest scan in the maps.
+/// Errors: kNoPath if the robot has sent no scan or joined after the maps' last entry, so that no path can start there.
 [[nodiscard]] Result<Pose2> pose_of(const mapping::Snapshot& maps, RobotIndex robot);
 
 } // namespace scanloom::guide

@@ -20,7 +20,8 @@ bool faces_target(const Visit& visit, const Pose2& pose, double cell_size_m) {
            heads(pose, {pose.x, pose.y}, visit.target);
 }
 
-/// Goes back through the scans as far as they were taken at the goal.
+/// Returns whether the robot stood at the goal for kLookingTakes, going back through its scans as long as they were
+/// taken there.
 bool has_stood(const Visit& visit, const mapping::RobotState& robot) {
     if (!visit.asking_since) return false;
     for (std::size_t n = robot.trajectory.size(); n > robot.trajectory.begin(); --n) {

@@ -6,13 +6,14 @@
 #include <cstddef>
 #include <vector>
 
-/// What robots are told. Everything in metres of the map frame; a revision is that of the maps searched.
+/// The goals and paths that robots hold. Positions and lengths are in metres of the map frame. A revision is that of
+/// the maps that were searched.
 namespace scanloom::guide {
 
 struct Goal {
-    Point2 place{0.0, 0.0};  ///< where to stand
-    Point2 target{0.0, 0.0}; ///< what to look at
-    bool in_danger = false;  ///< the place is, as there was no other
+    Point2 place{0.0, 0.0};  ///< where the robot should stand
+    Point2 target{0.0, 0.0}; ///< what the robot should observe
+    bool in_danger = false;  ///< `place` is in danger, because no other place was found
     Revision revision = 0;
 };
 
@@ -21,9 +22,9 @@ enum class WayKind { kGoal, kPlan, kCoverage };
 struct Way {
     WayKind kind = WayKind::kGoal;
     std::vector<Point2> points;
-    double length_m = 0.0; ///< of all of it
+    double length_m = 0.0; ///< of the whole path, also of points left out
     Revision revision = 0;
-    std::size_t points_left_out = 0; ///< after these
+    std::size_t points_left_out = 0; ///< number of points that follow `points`
 };
 
 } // namespace scanloom::guide

@@ -27,7 +27,7 @@ void WayBook::give_way(const SessionPtr& session, RobotIndex robot, std::optiona
         Record& record = record_of(session);
         auto& holding = record.holdings.try_emplace(robot, Holding{now, true, {}, 0, {}}).first->second;
         const bool had_none = !holding.way;
-        holding.was_connected = true; // or it could not have asked
+        holding.was_connected = true; // otherwise it could not have asked
         holding.way = nullptr;
         if (way) holding.way = bounded(record, std::move(*way));
         const bool has_none = !holding.way;
@@ -65,7 +65,7 @@ WayBook::State WayBook::state(const SessionPtr& session, Clock::time_point now) 
     if (record == nullptr) return {};
     State state{record->revision};
     for (const auto& [robot, holding] : record->holdings) {
-        if (holding.was_connected) continue; // and its session says when it leaves
+        if (holding.was_connected) continue; // its session notifies when it leaves
         state.until = std::min(state.until, holding.given + kKeptForAbsent + Clock::duration(1));
     }
     return state;
@@ -85,7 +85,7 @@ WayBook::Record& WayBook::record_of(const SessionPtr& session) {
     return records_[session];
 }
 
-/// What the session's robots hold now. Null: nothing was given there yet.
+/// Returns what the session's robots hold now, or nullptr if nothing was given yet.
 WayBook::Record* WayBook::find(const SessionPtr& session, Clock::time_point now) {
     const auto found = records_.find(session);
     if (found == records_.end()) return nullptr;
@@ -93,7 +93,7 @@ WayBook::Record* WayBook::find(const SessionPtr& session, Clock::time_point now)
     return &found->second;
 }
 
-/// The beginning of a way that is too long.
+/// Returns the path, cut to as many points as the record has room for, at least the first two.
 std::shared_ptr<const Way> WayBook::bounded(const Record& record, Way way) {
     std::size_t room = kPointsMax;
     for (const auto& [robot, holding] : record.holdings) {

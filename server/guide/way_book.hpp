@@ -16,58 +16,60 @@
 
 namespace scanloom::guide {
 
-/// Where each robot of a session was told to go, and the way it planned last: for whoever looks on.
+/// Keeps the goal of each robot of a session and the path it planned last, for display.
 ///
-/// A robot holds what it was given until it is given something else, or has left. What was given to a robot that was
-/// not connected is held until the robot has connected and left, or for kKeptForAbsent. Nothing of it survives a
-/// restart, or its session. That a robot has explored all it can reach is told on when it has left, until it asks anew.
-/// Robots that left are noticed when anybody asks; nobody has to wait for that.
+/// A robot holds its goal and path until it is given others or has left. What was given to a robot that was not
+/// connected is held until the robot has connected and left, or for kKeptForAbsent. Nothing outlives the server process
+/// or the Session object. That a robot has explored everything it can reach stays known after it has left, until it
+/// asks for a goal again. Robots that have left are removed when the book is read.
 ///
-/// Bounds  at most a goal and a way for each robot of a session, kWayPointsMax points a way, about kPointsMax a
-/// session.
-/// Thread  any; held for no search.
+/// Bounds: at most one goal and one path for each robot of a session, kWayPointsMax points for each path, about
+///     kPointsMax points for each session.
+/// Threads: any thread; no lock is held during a search.
 class WayBook {
 public:
     using Clock = std::chrono::steady_clock;
 
     static constexpr Clock::duration kKeptForAbsent = std::chrono::minutes(1);
     static constexpr std::size_t kWayPointsMax = 16'384;
-    static constexpr std::size_t kPointsMax = std::size_t{1} << 20; ///< a way beyond them has its two first points
+    static constexpr std::size_t kPointsMax = std::size_t{1} << 20; ///< a path beyond them keeps its first two points
 
-    /// How things stand with a session.
+    /// Whether the page of a session has changed, or will.
     struct State {
-        std::uint64_t revision = 0; ///< rises whenever anything of it changes; 0: nothing was given yet
-        Clock::time_point until = Clock::time_point::max(); ///< it may change by itself then
+        std::uint64_t revision = 0;                         ///< increases with each change; 0: nothing was given yet
+        Clock::time_point until = Clock::time_point::max(); ///< the page may change by itself after this time
     };
 
     struct Held {
         RobotIndex robot = 0;
         std::optional<Goal> goal;
-        std::shared_ptr<const Way> way; ///< null: it asked for one in vain
+        std::shared_ptr<const Way> way; ///< null: none was found
     };
 
     struct Page {
         std::uint64_t revision = 0;
-        std::vector<Held> robots;         ///< those that hold anything, by RobotIndex
-        std::vector<RobotIndex> explored; ///< those that asked for a goal last when none was left to reach, ascending
+        std::vector<Held> robots;         ///< robots that hold a goal or a path, by RobotIndex
+        std::vector<RobotIndex> explored; ///< robots whose last request found no goal left to reach, ascending
     };
 
     using SessionPtr = std::shared_ptr<const session::Session>;
 
-    /// The robot holds a goal and the way there, and nothing else. Tells the session's watchers, as all that changes
-    /// something does.
-    /// @return what tells this goal from all others of the session; see holds()
+    /// Gives a robot a goal and the path to it, which replace everything the robot held. Like every change, this
+    /// notifies the session's watchers.
+    /// @return a number that identifies this goal in the session; see holds()
     std::uint64_t give_goal(const SessionPtr& session, RobotIndex robot, const Goal& goal, Way way,
                             Clock::time_point now);
 
-    /// The way that the robot asked for over its link takes the place of the one it had; null: there is none. Its goal
-    /// stays.
+    /// Replaces the path of a robot by the one that it requested over its connection. Its goal stays.
+    /// @param way  nullopt: no path was found
     void give_way(const SessionPtr& session, RobotIndex robot, std::optional<Way> way, Clock::time_point now);
 
-    /// The robot holds nothing any more.
-    /// @param explored  whether that is because nothing is left that it could explore
+    /// Removes everything that a robot holds.
+    /// @param explored  whether the reason is that the robot can reach nothing left to explore
     void take_back(const SessionPtr& session, RobotIndex robot, bool explored = false);
 
+    /// Returns whether the robot still holds a goal.
+    /// @param goal  the result of give_goal()
     [[nodiscard]] bool holds(const SessionPtr& session, RobotIndex robot, std::uint64_t goal, Clock::time_point now);
 
     [[nodiscard]] State state(const SessionPtr& session, Clock::time_point now);
@@ -78,7 +80,7 @@ private:
         Clock::time_point given;
         bool was_connected;
         std::optional<Goal> goal;
-        std::uint64_t goal_given; // Record::revision then
+        std::uint64_t goal_given; // Record::revision when the goal was given
         std::shared_ptr<const Way> way;
     };
 
