@@ -10,13 +10,13 @@
 namespace scanloom::landmarks {
 namespace {
 
-/// More merges neighbouring things where a lone turn is thin; less leaves far walls in pieces.
+/// A larger quantile merges neighbouring things where a single turn is sparse; a smaller one splits far walls.
 constexpr double kQuantile = 0.75;
 
 constexpr std::size_t kNeighbors = 5;
 constexpr std::size_t kSamplesMax = 10'000;
 
-/// The least value that at least kQuantile of all values do not exceed; 0 of none.
+/// Returns the least value that at least kQuantile of all values do not exceed, or 0 if there are none.
 double quantile(std::vector<double> values) {
     if (values.empty()) return 0.0;
     const auto rank = static_cast<std::ptrdiff_t>(std::ceil(kQuantile * static_cast<double>(values.size()))) - 1;
@@ -32,7 +32,7 @@ std::vector<Point2> thinned(const std::vector<Point2>& points) {
     return kept;
 }
 
-/// Between surfaces' points, however often each was seen.
+/// Returns the quantile of the distances between points on a surface, independent of how often each was seen.
 double surface_distance(const std::vector<Point2>& points) {
     const std::vector<Point2> surface = thinned(points);
     const PointTree tree(surface);
@@ -42,7 +42,7 @@ double surface_distance(const std::vector<Point2>& points) {
     return quantile(std::move(distances));
 }
 
-/// To the k-th nearest other point, equal ones counted each.
+/// Returns the distance to the k-th nearest other point; equal points count separately.
 double distance_to_nth(const PointTree& tree, const DistinctPoints& cloud, const Point2& point, std::size_t k) {
     std::size_t count = 0;
     double distance = 0.0;
@@ -54,7 +54,7 @@ double distance_to_nth(const PointTree& tree, const DistinctPoints& cloud, const
     return distance;
 }
 
-/// Within which so many other points are.
+/// Returns the quantile of the distances within which points have `min_points` other points.
 double crowd_distance(const DistinctPoints& cloud, std::size_t min_points) {
     const PointTree tree(cloud.points);
     const std::size_t step = cloud.of.size() / kSamplesMax + 1;

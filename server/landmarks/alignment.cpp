@@ -16,7 +16,7 @@ namespace {
 constexpr double kDistanceMax = 100.0; // metres
 constexpr std::size_t kHypotheses = 16;
 
-/// The points from where they were seen.
+/// Returns the points relative to the sensor position.
 std::vector<Point2> around(const CloudView& view) {
     std::vector<Point2> points;
     points.reserve(view.points.size());
@@ -28,7 +28,7 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
     std::vector<Candidate> candidates;
     const auto& here = first.surface.surfels();
     const auto& there = second.surface.surfels();
-    const auto hypotheses = find_hypotheses(here, there, distance_max, kHypotheses).value(); // nobody ends it
+    const auto hypotheses = find_hypotheses(here, there, distance_max, kHypotheses).value(); // cannot fail
     for (const Pose2& hypothesis : hypotheses) {
         candidates.push_back(judged(first, second, settle(first.surface, there, hypothesis)));
     }
@@ -38,7 +38,7 @@ std::vector<Candidate> find_candidates(const Seen& first, const Seen& second, do
     return candidates;
 }
 
-/// T between the clouds' own frames.
+/// Converts a pose between the sensor positions to one between the frames of the clouds.
 Pose2 with_origins(const Pose2& pose, const Point2& first_from, const Point2& second_from) {
     return compose({first_from.x, first_from.y, 0.0}, compose(pose, {-second_from.x, -second_from.y, 0.0}));
 }

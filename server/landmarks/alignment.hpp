@@ -11,55 +11,58 @@
 
 namespace scanloom::landmarks {
 
-inline constexpr std::size_t kViewPointsMin = 20; ///< points of a view that is aligned
+inline constexpr std::size_t kViewPointsMin = 20; ///< points that a view needs to be matched
 
 struct AlignmentSettings {
-    double distance_max = 5.0; ///< metres between the places that the two were seen from, along each axis of the first
+    double distance_max = 5.0; ///< metres between the sensor positions of the two views, along each axis of the first
 };
 
-inline constexpr double kDistinctDistance = 0.1;   ///< metres; poses that differ by less say the same
+inline constexpr double kDistinctDistance = 0.1;   ///< metres; poses that differ by less are the same result
 inline constexpr double kDistinctTurn = 0.0523599; ///< radians, 3 degrees
 
 /// Whether an alignment can be relied on.
 enum class Certainty {
-    kClear,        ///< no other pose may be the truth as well
-    kAmbiguous,    ///< another one does; the pose given is one of several
-    kUndetermined, ///< too little of one view is seen in the other to say, or to say well
+    kClear,        ///< no other pose may be correct as well
+    kAmbiguous,    ///< another pose may be correct as well; the pose given is one of several
+    kUndetermined, ///< the views overlap too little to find the pose, or to find it accurately
 };
 
-/// How one view lies on another.
+/// The pose of one view relative to another, as found by scan matching.
 struct Alignment {
-    Pose2 T_first_second; ///< takes the second's frame into the first's
+    Pose2 T_first_second; ///< takes points of the second view's frame to the first's
     Certainty certainty = Certainty::kUndetermined;
-    std::string why;            ///< a sentence; empty when it is clear
-    std::optional<Pose2> rival; ///< the best of the other poses that may be the truth as well
+    std::string why;            ///< why the certainty is not kClear, a sentence; empty if it is
+    std::optional<Pose2> rival; ///< the best of the other poses that may be correct as well
 
-    /// Parts, 0 to 1, of the second's surface, every 10 cm of which count as one.
-    double explained = 0.0;      ///< lies on what the first shows
-    double contradicted = 0.0;   ///< stands where the first looked through: things that moved, or a wrong pose
-    double rms = 0.0;            ///< metres, of the explained from the lines of the first
-    double position_sigma = 0.0; ///< metres, where the second was seen from, in the direction least known
+    /// Ratios, 0 to 1, of the second view's surface, in which every 10 cm count as one element.
+    double explained = 0.0;      ///< inlier ratio: lies on a surface of the first view
+    double contradicted = 0.0;   ///< outlier ratio: lies in the first view's free space; moved things or a wrong pose
+    double rms = 0.0;            ///< metres, distance of the inliers from the lines of the first view
+    double position_sigma = 0.0; ///< metres, of the second view's sensor position, in its least certain direction
     double yaw_sigma = 0.0;      ///< radians
 };
 
-/// Whether a view can be aligned.
-/// Errors  kInvalidField, naming the view: a point, or where it was seen from (see check_points()); fewer than
-///         kViewPointsMin points.
+/// Checks that a view can be matched.
+/// @param name  the name of the view in error messages
+/// Errors: kInvalidField if a point or the sensor position is invalid (see check_points()), or if the view has fewer
+///     than kViewPointsMin points. The message contains the name.
 [[nodiscard]] Result<> check_view(std::string_view name, const CloudView& view);
 
-/// How two views of one place lie on each other, without any guess: all poses are looked at, the best ones refined, and
-/// judged by what both views saw and by what they saw through.
+/// Finds the pose of one view relative to another view of the same place, without an initial guess.
 ///
-/// Certainty  ambiguous: another pose, more than kDistinctDistance or kDistinctTurn away, explains the views nearly as
-///            well (a room that is symmetric but for little) and no second thing tells them apart, or it explains less
-///            and is contradicted less; or nothing holds the pose in some direction (a corridor, along its axis).
-///            Undetermined: little of the views overlaps, or much contradicts, or the place is known to within 2 cm
-///            only (3 position_sigma). A pose is given all the same, for whoever looks on. Whether it is one place at
-///            all no alignment can tell: rooms may be equal.
-/// Units      the sigmas are those of the fit, by the residuals and the surface's directions; things that moved and
-///            rivals are not in them.
-/// Errors     those of check_view(); kInvalidField: a distance_max that is not more than 0 and at most 100.
-/// Cost       n log n of the points, and some tens of milliseconds.
+/// Searches all poses, refines the best hypotheses, and tests them against what both views saw and against the free
+/// space that they observed. The certainty of the result is:
+/// - kAmbiguous if another pose, more than kDistinctDistance or kDistinctTurn away, has nearly as many inliers (a room
+///   that is almost symmetric) and at most one thing distinguishes the two poses; or if another pose has fewer inliers
+///   but also fewer outliers; or if nothing constrains the pose in some direction (a corridor, along its axis).
+/// - kUndetermined if the views overlap little, if there are many outliers, or if the position is less certain than
+///   2 cm (3 position_sigma).
+///
+/// A pose is returned in each case, for display. No alignment can show that two views are of the same place, because
+/// rooms may be equal. The sigmas are those of the fit, from its residuals and the directions of the surfaces; they do
+/// not include things that moved or other poses.
+/// Errors: those of check_view(); kInvalidField if distance_max is not more than 0 and at most 100.
+/// Cost: O(n log n) of the points, and some tens of milliseconds.
 [[nodiscard]] Result<Alignment> align(const CloudView& first, const CloudView& second,
                                       const AlignmentSettings& settings = {});
 

@@ -16,10 +16,10 @@ namespace {
 constexpr double kSlideStep = 0.05; // metres
 constexpr int kSlideSteps = 12;     // to either side
 
-constexpr double kLikely = 0.8; // of the best score
+constexpr double kLikely = 0.8; // fraction of the best score
 constexpr std::size_t kLikelyMax = 4;
 
-constexpr double kContradiction = 2.0; // matches that one contradiction outweighs
+constexpr double kContradiction = 2.0; // an outlier outweighs this many inliers
 
 double worth(Finding finding) {
     if (finding == Finding::kUnseen) return 0.0;

@@ -9,64 +9,70 @@
 
 namespace scanloom::landmarks {
 
-/// What was seen from one place or from several, in one frame, for others to be laid on.
+/// A surface that was seen from one or several places, in one frame, to match others against.
 struct Seen {
     Surface surface;
-    std::vector<const Horizon*> horizons; ///< of the places it was seen from; they must outlive it
-    bool is_map = false;                  ///< seen from several: what was seen more often is drawn thicker
+    std::vector<const Horizon*> horizons; ///< of the places it was seen from; must outlive this object
+    bool is_map = false;                  ///< seen from several places; surfaces seen more often have more elements
 };
 
-/// The direction in which lines hold a pose least, and how much, of the elements used.
+/// The direction in which lines constrain a pose least, and how much they constrain it, relative to the elements used.
 struct WeakDirection {
     Point2 direction;
     double held;
 };
 [[nodiscard]] WeakDirection weak_direction(const LineFit& fit);
 
-/// Whether two poses are further apart than kDistinctDistance or kDistinctTurn.
+/// Returns whether two poses are further apart than kDistinctDistance or kDistinctTurn.
 [[nodiscard]] bool is_distinct(const Pose2& a, const Pose2& b);
 
-/// A refined pose, and what speaks for it.
+/// A refined hypothesis and its evidence.
 struct Candidate {
     LineFit fit;
     Evidence second_in_first;
     Evidence first_in_second;
     bool is_on_map = false;
-    /// Of two views, the second's elements in the first, then the first's in the second; none where it lies on a map.
+    /// For two views: what the first view shows at the second's elements, then what the second shows at the first's.
+    /// Empty if the hypothesis was matched against a map.
     std::vector<Finding> findings;
-    std::vector<Point2> places; ///< of these elements in the first's frame
+    std::vector<Point2> places; ///< positions of these elements in the first view's frame
 
     [[nodiscard]] const Pose2& pose() const { return fit.T_first_second; }
     [[nodiscard]] Evidence both() const { return second_in_first + first_in_second; }
-    /// On a map only the view's elements count as matched: a wall that is drawn thicker has more than it has length.
+    /// Returns the number of inliers minus the weighted number of outliers. On a map only the view's elements count as
+    /// inliers, because a wall that was seen more often has more elements than its length.
     [[nodiscard]] double score() const;
 };
 
-/// Surface elements by which two poses differ: each that one of them explains and the other does not counts as one, and
-/// as more where one is contradicted, as in Candidate::score().
+/// How clearly surface elements distinguish two poses. Each element that is an inlier of only one of the poses counts
+/// as one, and as more if it is an outlier of the other, as in Candidate::score().
 struct Difference {
     double for_one = 0.0;
     double for_other = 0.0;
-    double of_one_thing = 0.0; ///< of what is for one, the most that lies around a place: one thing that moved, perhaps
+    double of_one_thing = 0.0; ///< the largest part of for_one around one place: perhaps one thing that moved
 };
 
-/// @param thing_radius  metres
-/// Pre   both are of the same two views.
-/// Cost  the square of the elements that are for one.
+/// Compares the evidence of two candidates.
+/// @param thing_radius  metres, the size of a thing that may have moved
+/// Precondition: both candidates are of the same two views.
+/// Cost: quadratic in the number of elements that support `one`.
 [[nodiscard]] Difference difference(const Candidate& one, const Candidate& other, double thing_radius);
 
-/// The candidate that a start leads to, which is off by a few centimetres: see settle().
-/// Pre  both have surface elements; the second's frame has its origin where it was seen from.
+/// Refines a hypothesis and collects its evidence.
+/// @param start  a pose that is off by a few centimetres; see settle()
+/// Precondition: both have surface elements; the origin of the second's frame is the position it was seen from.
 [[nodiscard]] Candidate judged(const Seen& first, const Seen& second, const Pose2& start);
 
-/// The best, and the few others that are distinct and nearly as good: each may be the truth once it is slid.
+/// Returns the best candidate and the few others that are distinct and nearly as good. Each may become the correct pose
+/// when it is slid; see add_slid().
 [[nodiscard]] std::vector<Candidate> likely(std::vector<Candidate> candidates);
 
-/// Adds what `best` becomes when it is slid along the direction that is held least, as a pose that slides along a
-/// corridor comes to rest at whatever is near.
+/// Adds the candidates that result from sliding `best` along its weakest direction, because refinement in a
+/// corridor stops wherever something is near.
 void add_slid(const Seen& first, const Seen& second, const Candidate& best, std::vector<Candidate>& candidates);
 
-/// By score, the best first; of those that say the same as the best, the one that fits best before all others.
+/// Sorts candidates by score, the best first. Of the candidates that are not distinct from the best, the one that fits
+/// best comes first.
 void rank(std::vector<Candidate>& candidates);
 
 } // namespace scanloom::landmarks

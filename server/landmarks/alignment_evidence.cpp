@@ -12,7 +12,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSameSurface = 0.15;      // metres between elements of one surface
 constexpr double kSameLine = 0.07;         // metres from a straight element's line
 constexpr double kSameSurfaceCosine = 0.8; // cosine between the normals of one surface
-constexpr double kDepth = 0.2;             // metres between what is before and what is behind
+constexpr double kDepth = 0.2;             // metres by which a place must be nearer or further to be in front or behind
 
 bool is_matched(const Surface& surface, const Surfel& there, const Point2& place, const Pose2& rotation) {
     const auto [index, distance] = surface.nearest(place);

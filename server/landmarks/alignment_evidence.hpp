@@ -10,22 +10,24 @@
 
 namespace scanloom::landmarks {
 
-/// How far could be seen from a place in each direction, by what was seen there.
+/// How far a sensor could see from one place in each direction, according to the points that it saw there.
 class Horizon {
 public:
-    /// @param from  where it was seen from, in the frame of the points
+    /// @param points  metres
+    /// @param from    the position of the sensor, in the frame of the points
     Horizon(std::span<const Point2> points, const Point2& from);
 
     enum class Verdict {
-        kOpen,    ///< what is seen that way is further: a thing here would have been seen
-        kHidden,  ///< something stands before it
-        kUnknown, ///< about as far as what is seen that way, or nothing is
+        kOpen,    ///< free space: the points in this direction are further away
+        kHidden,  ///< behind the points in this direction
+        kUnknown, ///< about as far as the points in this direction, or there are none
     };
+    /// Returns what the sensor saw at a place.
     [[nodiscard]] Verdict at(const Point2& place) const;
     [[nodiscard]] const Point2& from() const noexcept { return from_; }
-    [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, to the furthest that was seen
-    /// Whether anything as far away was seen at all, whichever way: quicker told than at(), which is kOpen for no
-    /// other.
+    [[nodiscard]] double reach() const noexcept { return reach_; } ///< metres, distance of the furthest point
+    /// Returns whether any point in any direction is further away than the place. at() returns kOpen for no other
+    /// places; this check is faster.
     [[nodiscard]] bool reaches(const Point2& place) const { return squared_norm(place - from_) < reach_ * reach_; }
 
 private:
@@ -42,33 +44,35 @@ private:
     std::array<Reach, kSectors> reaches_;
 };
 
-/// What one view of a place says of another, in surface elements.
+/// How many surface elements of one view support or contradict a pose, as seen by another view.
 struct Evidence {
-    std::size_t matched = 0;      ///< lie on the other's surface
-    std::size_t contradicted = 0; ///< stand where the other looked through
-    std::size_t elements = 0;     ///< all; those neither matched nor contradicted could not be seen by the other
+    std::size_t matched = 0;      ///< inliers: lie on the other view's surface
+    std::size_t contradicted = 0; ///< outliers: lie in the free space of the other view
+    std::size_t elements = 0;     ///< all; those neither matched nor contradicted were not visible to the other view
 
     friend Evidence operator+(const Evidence& a, const Evidence& b) {
         return {a.matched + b.matched, a.contradicted + b.contradicted, a.elements + b.elements};
     }
 };
 
-/// What one view says of a surface element of another.
+/// What one view shows at a surface element of another.
 enum class Finding : std::uint8_t {
-    kUnseen,       ///< it could not be seen
-    kMatched,      ///< it lies on the surface
-    kContradicted, ///< it stands where was looked through
+    kUnseen,       ///< the element was not visible
+    kMatched,      ///< inlier: the element lies on the view's surface
+    kContradicted, ///< outlier: the element lies in the view's free space
 };
 
-/// Of a second view's elements in a pose, what a first one says, which was seen from where the horizons are: what any
-/// of them looked through, and nothing of the surface is at, contradicts.
-/// Pre  the surface has elements.
+/// Tests the surface elements of a second view, in a given pose, against what a first view shows. An element is an
+/// outlier if it is not on the first view's surface and any of the horizons looked through its position.
+/// @param horizons  of the places that the first view was seen from
+/// Precondition: the surface has elements.
 [[nodiscard]] std::vector<Finding> findings_of(const Surface& surface, std::span<const Horizon* const> horizons,
                                                std::span<const Surfel> second, const Pose2& T_first_second);
 
+/// Counts the findings of each kind.
 [[nodiscard]] Evidence evidence_of(std::span<const Finding> findings);
 
-/// Whether somebody has looked through a place.
+/// Returns whether any of the horizons looked through a place.
 [[nodiscard]] bool is_open(std::span<const Horizon* const> horizons, const Point2& place);
 
 } // namespace scanloom::landmarks

@@ -13,49 +13,50 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr double kMargin = 0.08;       // of the best score, by which it must be better than that of any rival,
-constexpr double kMarginElements = 30; // and at least so many: what may have moved
-constexpr double kHeld = 0.02;         // of the elements used: less holds the pose in no direction
+constexpr double kMargin = 0.08;       // of the best score: no other pose may come this near to it,
+constexpr double kMarginElements = 30; // or this near in elements: things may have moved
+constexpr double kHeld = 0.02;         // of the elements used: below this, a direction is not constrained
 constexpr double kElementsMin = 40;
-constexpr double kContradictedMax = 0.1;       // of what is matched or contradicted, of two views,
+constexpr double kContradictedMax = 0.1;       // outliers / (inliers + outliers) for two views,
 constexpr double kContradictedInMapMax = 0.15; // and on a map
 
-constexpr double kOverlapMin = 0.3;      // of two views
-constexpr double kSigmaMax = 0.02 / 3.0; // metres, likewise: 2 cm, almost surely
+constexpr double kOverlapMin = 0.3;      // inlier ratio for two views
+constexpr double kSigmaMax = 0.02 / 3.0; // metres for two views: 2 cm are three sigmas
 
-/// Along a hall a pose beside the best explains hardly less of two views, as what holds it there is a small share of
-/// all. It is no rival if the elements by which the two differ tell them apart: so many more that speak for the best
-/// than otherwise,
+/// Along a hall, a pose near the best has hardly fewer inliers of two views, because few elements constrain the pose in
+/// that direction. It does not compete if the elements in which the two differ distinguish them clearly. The elements
+/// that support the best must exceed the others by this number,
 constexpr double kTelling = 20.0;
-constexpr double kTellingRatio = 3.0;      // and so many times as many;
-constexpr double kTellingElsewhere = 10.0; // so many more, even if all around some place is left out,
-constexpr double kThingRadius = 1.0;       // metres: one thing that moved may have been as large.
+constexpr double kTellingRatio = 3.0;      // and by this factor;
+constexpr double kTellingElsewhere = 10.0; // and by this number without all elements around any one place,
+constexpr double kThingRadius = 1.0;       // metres: the size of one thing that may have moved.
 
-/// A pose elsewhere may be the truth though it explains less: with two doors, one closed and one opened since, a room
-/// may look like itself turned round. It is a rival if it explains so much of what the best does,
+/// A distant pose may be correct although it has fewer inliers: with two doors, one closed and one opened since, a room
+/// may look like itself rotated by half a turn. The pose competes if it has this fraction of the best pose's inliers,
 constexpr double kAsMuch = 0.9;
-constexpr double kUnlikely = 8.0; // and less by so many elements for each by which it is contradicted less.
+constexpr double kUnlikely = 8.0; // minus this many elements for each outlier that it has fewer.
 
-constexpr double kFoundMin = 0.5;        // of a view that is laid on a map
-constexpr double kSigmaInMapMax = 0.033; // metres: the map is no better itself
-constexpr double kOutOfPlaceMax = 0.06;  // of a view: stands where a map is free
+constexpr double kFoundMin = 0.5;        // inlier ratio of a view on a map
+constexpr double kSigmaInMapMax = 0.033; // metres: the map itself is no more accurate
+constexpr double kOutOfPlaceMax = 0.06;  // of a view: outliers on a map
 
-/// On a map a pose that explains less than the best is a rival, too, unless the best explains this much of the view,
+/// On a map, a pose with fewer inliers than the best competes as well, unless the best has this inlier ratio. It must
+/// have
 constexpr double kAllFound = 0.97;
-constexpr double kRivalFoundMin = 0.3;    // if it explains so much,
-constexpr double kHardlyMore = 0.002;     // hardly more than the best is contradicted,
-constexpr double kElsewhere = 0.5;        // and it is so far away, in metres,
-constexpr double kTurnedElsewhere = 0.17; // or in radians, for the best itself to be no part of it
+constexpr double kRivalFoundMin = 0.3;    // this inlier ratio,
+constexpr double kHardlyMore = 0.002;     // an outlier ratio at most this much above the best pose's,
+constexpr double kElsewhere = 0.5;        // and be this far away, in metres,
+constexpr double kTurnedElsewhere = 0.17; // or in radians, so that it is not the best pose itself
 
-/// Neighbouring surface elements come from the same points: so many of them tell what one alone does. Of 937 clear
-/// alignments in the simulator's office and hall one is further off than three sigmas, and ten are turned further.
+/// Neighbouring surface elements come from the same points, so this many of them count as one observation. Of 937 clear
+/// alignments in the simulator's office and hall, one position was off by more than three sigmas, and ten yaws were.
 constexpr double kShared = 12.0;
 
 double share(std::size_t part, std::size_t all) {
     return all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all);
 }
 
-/// The part that overlaps of what has to.
+/// Returns the inlier ratio of what must overlap: of both views, or of the view on a map.
 double overlap_of(const Candidate& candidate, LaidOn first) {
     const Evidence of = first == LaidOn::kView ? candidate.both() : candidate.second_in_first;
     return share(of.matched, of.elements);
@@ -70,9 +71,9 @@ bool overlaps(const Candidate& candidate, LaidOn first, double overlap_min) {
     return overlap_of(candidate, first) >= overlap_min && static_cast<double>(candidate.both().matched) >= kElementsMin;
 }
 
-/// Puts in what is known of the fit, of n residuals and 3 unknowns.
+/// Sets the standard deviations of the fit, from its residuals and 3 unknowns.
 void add_sigmas(const LineFit& fit, Alignment& alignment) {
-    const double held = 1e-6 * std::max(1.0, static_cast<double>(fit.used)); // else it would be infinite
+    const double held = 1e-6 * std::max(1.0, static_cast<double>(fit.used)); // keeps the covariance finite
     const Eigen::Matrix3d covariance =
         kShared * fit.rms * fit.rms * (fit.normal_matrix + held * Eigen::Matrix3d::Identity()).inverse();
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
@@ -112,13 +113,13 @@ bool is_elsewhere(const Pose2& a, const Pose2& b) {
     return std::hypot(a.x - b.x, a.y - b.y) > kElsewhere || std::abs(normalize_angle(a.yaw - b.yaw)) > kTurnedElsewhere;
 }
 
-/// Whether the truth may be there, in a part of the map that is not complete, and the best is what merely looks alike.
+/// Returns whether the correct pose may be `other`, in an incomplete part of the map, and `best` may only look similar.
 bool may_be_unfinished(const Candidate& other, const Candidate& best) {
     return overlap_of(best, LaidOn::kMap) < kAllFound && overlaps(other, LaidOn::kMap, kRivalFoundMin) &&
            contradicted_of(other) <= contradicted_of(best) + kHardlyMore && is_elsewhere(other.pose(), best.pose());
 }
 
-/// Of two views, whether what tells a pose beside the best from it says clearly enough which is the better one.
+/// For two views, returns whether the elements in which a nearby pose differs from the best clearly support the best.
 bool is_told_from(const Candidate& best, const Candidate& beside) {
     if (is_elsewhere(beside.pose(), best.pose())) return false;
     const auto [for_best, for_other, of_one_thing] = difference(best, beside, kThingRadius);
@@ -126,7 +127,7 @@ bool is_told_from(const Candidate& best, const Candidate& beside) {
     return more >= kTelling && for_best >= kTellingRatio * for_other && more - of_one_thing >= kTellingElsewhere;
 }
 
-/// Of two views, whether the truth may be elsewhere.
+/// For two views, returns whether the correct pose may be the distant pose `other`.
 bool may_be_elsewhere(const Candidate& other, const Candidate& best) {
     const auto worth = [](const Candidate& one, double as_much) {
         const Evidence both = one.both();
@@ -136,7 +137,7 @@ bool may_be_elsewhere(const Candidate& other, const Candidate& best) {
            is_elsewhere(other.pose(), best.pose());
 }
 
-/// Of the candidates, the best that is distinct from the first and may be the truth as well.
+/// Returns the best candidate that is distinct from the first and may be correct as well, or nullptr.
 const Candidate* rival_of(const std::vector<Candidate>& candidates, LaidOn first) {
     const Candidate& best = candidates.front();
     const double near = best.score() - std::max(kMargin * best.score(), kMarginElements);

@@ -7,23 +7,24 @@
 
 namespace scanloom::landmarks {
 
-/// What a view was laid on.
+/// What a view was matched against.
 enum class LaidOn {
-    kView, ///< what was seen from one other place
-    kMap,  ///< what was seen from many: most of it cannot be seen from one place, and there may be more than it has
+    kView, ///< a view from one other place
+    kMap,  ///< a map seen from many places: mostly not visible from one place, and maybe incomplete
 };
 
-/// What the candidates say: the first of them, and whether it can be relied on. See Alignment.
+/// Performs the acceptance test: returns the best candidate and whether it can be relied on; see Alignment.
 ///
-/// On a map more of the view has to be found, little of it may stand where the map is free, and its place need not be
-/// known as well, as the map is no better itself. Where the view is not found as a whole, a pose elsewhere that
-/// explains less of it and is not contradicted is a rival as well: the map may be incomplete there, and this one look
-/// alike.
+/// On a map, more of the view must be found, little of it may lie in the map's free space, and its position may be less
+/// accurate, because the map is no more accurate itself. If the view is not found as a whole, a distant pose with fewer
+/// inliers and hardly more outliers makes the result ambiguous: the map may be incomplete there, and the best pose may
+/// only look similar.
 ///
-/// On a view a pose beside the best that explains hardly less is no rival, if by far the most of what they differ in
-/// speaks for the best, and not one thing alone, which may have moved: all surface elements of both views are told
-/// apart. A pose elsewhere is a rival though it explains less, if it puts less where somebody looked through.
-/// Pre  they are ranked.
+/// For two views, a pose near the best with hardly fewer inliers does not make the result ambiguous if by far most of
+/// the elements in which the two differ support the best, and not only the elements of one thing, which may have
+/// moved. All surface elements of both views are compared for this. A distant pose makes the result ambiguous even with
+/// fewer inliers if fewer of its elements lie in observed free space.
+/// Precondition: the candidates are ranked; see rank().
 [[nodiscard]] Alignment judge(const std::vector<Candidate>& candidates, LaidOn first);
 
 } // namespace scanloom::landmarks

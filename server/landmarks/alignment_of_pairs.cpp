@@ -12,10 +12,10 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr double kUndetermined = 1e-9; // of what the points' extents would give if they agreed
+constexpr double kUndetermined = 1e-9; // relative to the value for points that agree
 constexpr int kStepsMax = 50;
-constexpr std::size_t kSeedsMax = 64; // pairs, of which each two are tried
-constexpr double kRivalMin = 0.8;     // of the best's worth, by which another transform is as good
+constexpr std::size_t kSeedsMax = 64; // pairs that are combined, two at a time
+constexpr double kRivalMin = 0.8;     // of the best worth: another transform above this makes it ambiguous
 constexpr std::size_t kAgreeingMin = 3;
 
 Result<> check(std::span<const PointPair> pairs) {
@@ -35,7 +35,8 @@ double squared_distance(const Pose2& T_first_second, const PointPair& pair) {
     return squared_norm(pair.first - transform(T_first_second, pair.second));
 }
 
-/// Pre  the pairs are checked.
+/// Fits the transform to all pairs with weight.
+/// Precondition: the pairs passed check().
 Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
     PairAlignment fit;
     double heaviest = 0.0;
@@ -71,7 +72,7 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
         second_extent += weight * squared_norm(second);
     }
     const double size = std::max(max_abs(first_centre), max_abs(second_centre));
-    const double rounding = 1e-14 * size * size * weights; // of equal points, once their mean is taken off
+    const double rounding = 1e-14 * size * size * weights; // what remains of equal points minus their mean
     if (std::hypot(along, across) <= kUndetermined * std::sqrt(first_extent * second_extent) + rounding) {
         return Error{Errc::kInvalidField, "the pairs determine no rotation, as all points of one side are equal or any "
                                           "rotation fits them as well: give pairs that are further apart"};
@@ -90,8 +91,8 @@ Result<PairAlignment> least_squares(std::span<const PointPair> pairs) {
 /// Pairs that agree on a transform.
 struct Consensus {
     Pose2 T_first_second;
-    std::vector<std::size_t> pairs; // rising
-    double worth = 0.0;             // of each its weight, less the nearer it is to disagreeing
+    std::vector<std::size_t> pairs; // ascending
+    double worth = 0.0;             // sum of weights, each reduced with the pair's distance
 };
 
 Consensus consensus_on(const Pose2& T_first_second, std::span<const PointPair> pairs, double inlier_distance) {
@@ -110,7 +111,7 @@ bool is_better(const Consensus& a, const Consensus& b) { return a.worth > b.wort
 
 PointPair at(std::span<const PointPair> pairs, std::size_t n) { return {pairs[n].first, pairs[n].second, 1.0}; }
 
-/// What pairs agree on, from the transform that two of them give on.
+/// Fits the transform to the agreeing pairs repeatedly, as long as the consensus improves.
 Consensus settled(Consensus consensus, std::span<const PointPair> pairs, double inlier_distance) {
     for (int step = 0; step < kStepsMax && consensus.pairs.size() >= 2; ++step) {
         std::vector<PointPair> agreeing;
@@ -124,10 +125,10 @@ Consensus settled(Consensus consensus, std::span<const PointPair> pairs, double 
     return consensus;
 }
 
-/// Of each two pairs as far from each other in both frames, what agrees with them.
+/// Calls `visit` with the consensus on the transform of each two pairs that are equally far apart in both frames.
 template <class Visit>
 void for_each_consensus(std::span<const PointPair> pairs, double inlier_distance, Visit visit) {
-    std::vector<std::size_t> some; // so that work is bounded, evenly chosen ones stand for all
+    std::vector<std::size_t> some; // evenly chosen, to bound the work
     const std::size_t step = pairs.size() / kSeedsMax + 1;
     for (std::size_t n = 0; n < pairs.size(); n += step) {
         if (pairs[n].weight > 0.0) some.push_back(n);
@@ -144,7 +145,7 @@ void for_each_consensus(std::span<const PointPair> pairs, double inlier_distance
     }
 }
 
-/// Whether what two consensuses rest on is mostly not the same.
+/// Returns whether less than half of the pairs of `a` are also in `b`.
 bool is_other(const Consensus& a, const Consensus& b) {
     std::vector<std::size_t> common;
     std::ranges::set_intersection(a.pairs, b.pairs, std::back_inserter(common));

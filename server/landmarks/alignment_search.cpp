@@ -10,11 +10,11 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr int kRotations = 120;            // of a full turn
-constexpr double kCell = 0.15;             // metres, of translations
-constexpr double kComparableCosine = 0.85; // cosine between normals of like direction
-constexpr std::size_t kPeaksMax = 6;       // of one rotation
-constexpr double kApart = 0.3;             // metres between hypotheses of like rotation
+constexpr int kRotations = 120;            // in a full turn
+constexpr double kCell = 0.15;             // metres, side of a cell of translations
+constexpr double kComparableCosine = 0.85; // cosine between normals of similar direction
+constexpr std::size_t kPeaksMax = 6;       // for each rotation
+constexpr double kApart = 0.3;             // metres between hypotheses of similar rotation
 constexpr double kTurned = 7.0 * std::numbers::pi / 180.0;
 
 struct Peak {
@@ -30,7 +30,7 @@ std::vector<Surfel> rotated(std::span<const Surfel> surfels, double yaw) {
     return turned;
 }
 
-/// Votes for translations, in cells around none.
+/// Counts votes for translations in a grid of cells around the zero translation.
 class Ballot {
 public:
     explicit Ballot(double distance_max)
@@ -52,7 +52,7 @@ public:
         }
     }
 
-    /// The squares of 2 x 2 cells with the most votes, none beside a better one.
+    /// Returns the squares of 2 x 2 cells with the most votes, without neighbours of a better square.
     [[nodiscard]] std::vector<Peak> peaks(double yaw, std::size_t count_max) const {
         std::vector<Peak> all;
         for (int y = 1; y + 2 < side_; ++y) {
@@ -89,7 +89,7 @@ bool is_near(const Pose2& a, const Pose2& b) {
     return std::hypot(a.x - b.x, a.y - b.y) < kApart && std::abs(normalize_angle(a.yaw - b.yaw)) < kTurned;
 }
 
-/// Of peaks that are near each other the one with the most votes.
+/// Returns the poses of the best peaks; of peaks near each other only the one with the most votes.
 std::vector<Pose2> likeliest(std::vector<Peak> peaks, std::size_t count_max) {
     std::ranges::stable_sort(peaks, std::greater(), &Peak::votes);
     std::vector<Pose2> hypotheses;

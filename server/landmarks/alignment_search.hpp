@@ -11,26 +11,32 @@ namespace scanloom::landmarks {
 
 inline constexpr std::size_t kSurfelsMax = 250;
 
-/// Of many surface elements as many, evenly among the cloud's rows.
+/// Returns at most count_max surface elements, chosen evenly among the cloud's rows.
 [[nodiscard]] std::vector<Surfel> sample(std::span<const Surfel> surfels, std::size_t count_max);
 
-/// The poses in which two surfaces might lie on each other, the likeliest first; all distinct, none refined: a good one
-/// is within about 0.2 m and 3 degrees of what it stands for.
+/// Searches the poses in which two surfaces may match, the likeliest first.
 ///
-/// For each of evenly spread rotations every pair of surface elements of like direction votes for the translation that
-/// lays one on the other; where votes heap up is a hypothesis. So no guess is needed, and rivals are found as well.
-/// @param distance_max  metres that the second frame's origin may be from the first's, along each axis
-/// @param count_max     so many hypotheses at most
-/// @param first_max     so many surface elements of the first stand for all at most; of the second kSurfelsMax
-/// @param ask           before each rotation; its error ends it
-/// Cost    rotations by pairs of those that stand for all.
-/// Source  Ballard, Generalizing the Hough transform to detect arbitrary shapes (1981); Olson, Real-time correlative scan
-///         matching (2009), for looking everywhere.
+/// For each of evenly spaced rotations, every pair of surface elements of similar direction votes for the translation
+/// that moves one onto the other. Maxima of the votes are hypotheses. So the search needs no initial guess, and also
+/// finds the other poses that may be correct. Hypotheses are distinct and not refined: a good one is within about 0.2 m
+/// and 3 degrees of the pose it represents.
+/// @param distance_max  metres from the first frame's origin to the second's, along each axis
+/// @param count_max     at most this many hypotheses are returned
+/// @param first_max     at most this many surface elements of the first surface are used, evenly chosen; of the second
+///     kSurfelsMax
+/// @param ask           called before each rotation; an error that it returns ends the search
+/// Errors: those of `ask`.
+/// Cost: the number of rotations times the number of pairs of elements used.
+/// Source: Ballard, Generalizing the Hough transform to detect arbitrary shapes (1981); Olson, Real-time correlative
+///     scan matching (2009), for the exhaustive search.
 [[nodiscard]] Result<std::vector<Pose2>> find_hypotheses(
     std::span<const Surfel> first, std::span<const Surfel> second, double distance_max, std::size_t count_max,
     std::size_t first_max = kSurfelsMax, const std::function<Result<>()>& ask = [] { return Result<>(); });
 
-/// Likewise of one rotation alone: where things repeat, most of the places they may be taken for.
+/// Searches the translations for one rotation, as find_hypotheses() does. If things repeat, it finds most of the places
+/// that may be confused.
+/// @param yaw           radians, rotation of the second surface
+/// @param distance_max  metres from the first frame's origin to the second's, along each axis
 [[nodiscard]] std::vector<Pose2> find_translations(std::span<const Surfel> first, std::span<const Surfel> second,
                                                    double yaw, double distance_max, std::size_t count_max,
                                                    std::size_t first_max = kSurfelsMax);

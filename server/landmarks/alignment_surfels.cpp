@@ -14,17 +14,17 @@ namespace scanloom::landmarks {
 namespace {
 
 constexpr int kStraightPointsMin = 5;
-constexpr double kStraight = 0.15; // variance across a straight surface, of that along it, at most
-constexpr double kExtent = 4e-4;   // square metres, of variance along a straight surface, at least
+constexpr double kStraight = 0.15; // a straight surface's variance across / variance along, at most
+constexpr double kExtent = 4e-4;   // square metres, a straight surface's variance along, at least
 
 using CellKey = std::pair<std::int64_t, std::int64_t>; // (y, x)
 
-/// Sums over points, from a place among them, so that nothing is lost far from the origin.
+/// Sums over points, relative to a point of the cloud, so that no precision is lost far from the origin.
 struct Moments {
     int count = 0;
     Point2 sum{0.0, 0.0};
     Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-    double distances = 0.0; // from where they were seen
+    double distances = 0.0; // sum of the distances from the sensor
 
     void add(const Point2& point, double distance) {
         ++count;
@@ -48,13 +48,13 @@ struct Moments {
 
 using Cells = std::map<CellKey, Moments>;
 
-/// Squares to each side that belong to the line through these points.
+/// Returns how many squares to each side belong to the line through these points.
 std::int64_t reach_of(const Moments& moments, double around) {
     const double distance = moments.distances / moments.count;
     return std::max<std::int64_t>(1, std::llround(around * distance / kSurfelSpacing));
 }
 
-/// Those of the squares up to `reach` from one.
+/// Returns the moments of all points up to `reach` squares away.
 Moments within(const Cells& cells, CellKey key, std::int64_t reach) {
     Moments all;
     for (std::int64_t y = key.first - reach; y <= key.first + reach; ++y) {

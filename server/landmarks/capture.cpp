@@ -15,13 +15,13 @@ bool is_still(const Capture& capture, const Scan& scan) {
     return distance(capture.pose, scan.pose) <= kStillDistance && turn(capture.pose, scan.pose) <= kStillTurn;
 }
 
-/// Whether a robot that began `last` begins another one there.
+/// Returns whether a robot whose last keyframe is `last` starts another one here.
 bool is_due(const Capture& last, double stamp, const Pose2& pose) {
     return distance(last.pose, pose) >= kCaptureDistance || turn(last.pose, pose) >= kCaptureTurn ||
            std::abs(stamp - last.stamp) >= kCaptureAgainAfter;
 }
 
-/// Where millimetres can be counted, metres: no map reaches as far.
+/// Metres: coordinates within it fit in integer millimetres, and no map is larger.
 constexpr double kCoordinateLimit = 2e6;
 
 void add_points(Capture& capture, const Scan& scan, const Sensor& sensor) {
@@ -59,7 +59,7 @@ std::optional<Capture> CaptureCutter::add(const Scan& scan, const Sensor& sensor
     newest_->last = revision;
     newest_->scans += 1;
     add_points(*newest_, scan, sensor);
-    if (newest_->scans == kCaptureScansMax) ended = end(); // kCaptureScansMax > 1: none has ended with this scan yet
+    if (newest_->scans == kCaptureScansMax) ended = end(); // kCaptureScansMax > 1: no other keyframe ended with it
     return ended;
 }
 

@@ -7,7 +7,7 @@
 namespace scanloom::landmarks {
 namespace {
 
-/// Of the radius. 1 / sqrt(2) would do; this leaves a hundredth to rounding.
+/// Side of a square as a fraction of the radius. 1 / sqrt(2) would do; this leaves a hundredth for rounding.
 constexpr double kSide = 0.7;
 
 struct Place {

@@ -8,37 +8,40 @@
 
 namespace scanloom::landmarks {
 
-/// Points by the squares of a grid that they are in.
+/// An index of points by the squares of a grid that contain them.
 class CellIndex {
 public:
     struct Cell {
         std::int64_t j = 0; ///< row
         std::int64_t i = 0; ///< column
         std::uint32_t begin = 0;
-        std::uint32_t end = 0; ///< its points are order()[begin .. end)
+        std::uint32_t end = 0; ///< the cell's points are order()[begin .. end)
     };
 
     static constexpr std::int64_t kReach = 2;
 
-    /// Squares so small that any two points of one are within `radius` of each other, and so large that whatever is
-    /// within it of a point is at most kReach squares away.
-    /// Pre  the points pass check_points(); radius >= 1e-6.
-    /// Cost n log n.
+    /// Creates an index for neighbour searches. Any two points of one square are within `radius` of each other, and
+    /// points within `radius` of a point are at most kReach squares away.
+    /// @param radius  metres
+    /// Precondition: the points pass check_points(); radius >= 1e-6.
+    /// Cost: O(n log n).
     [[nodiscard]] static CellIndex of_radius(std::span<const Point2> points, double radius);
 
-    /// Squares of a given side, metres. The same holds.
+    /// Creates an index with squares of a given side, in metres.
+    /// Precondition: the points pass check_points(); side >= 1e-6.
+    /// Cost: O(n log n).
     [[nodiscard]] static CellIndex of_side(std::span<const Point2> points, double side) { return {points, side}; }
 
-    /// The points' indices by cells; rising within each.
+    /// Returns the points' indices ordered by cells, ascending within each cell.
     [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
-    /// The cells that hold points, by rows.
+    /// Returns the cells that contain points, by rows.
     [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
     [[nodiscard]] std::span<const std::uint32_t> points_of(const Cell& cell) const {
         return std::span(order_).subspan(cell.begin, cell.end - cell.begin);
     }
 
-    /// Calls `visit` with the number of each cell around one, in the order of cells(), until it returns false.
-    /// The cell itself is not among them.
+    /// Calls `visit` with the index of each cell around a cell, without the cell itself, in the order of cells(), until
+    /// `visit` returns false.
     template <class Visit>
     void around(std::size_t cell, Visit visit) const {
         for (std::int64_t row = -kReach; row <= kReach; ++row) {
@@ -54,7 +57,7 @@ public:
 private:
     CellIndex(std::span<const Point2> points, double side);
 
-    /// The first cell that does not come before (j, i).
+    /// Returns the index of the first cell that is not before (j, i).
     [[nodiscard]] std::size_t first_from(std::int64_t j, std::int64_t i) const;
 
     std::vector<std::uint32_t> order_;

@@ -8,12 +8,13 @@
 
 namespace scanloom::landmarks {
 
-/// The points scaled, then rotated around the origin, then moved: translation + R(rotation) * scale * point.
-/// Order and number stay. Scale 1, rotation 0 and no translation give the very same coordinates.
+/// Scales points, rotates them around the origin, then translates them: translation + R(rotation) * scale * point.
+///
+/// Keeps the order and number of points. Scale 1, rotation 0 and translation 0 return identical coordinates.
 /// @param translation   metres
 /// @param rotation_rad  counter-clockwise
-/// @param scale         > 0; it never mirrors
-/// Errors  kInvalidField: a parameter out of its range. Those of check_points(), of the points and what they become.
+/// @param scale         more than 0; does not mirror
+/// Errors: kInvalidField for a parameter out of range; those of check_points(), for the points and for the results.
 [[nodiscard]] Result<std::vector<Point2>> transform_points(std::span<const Point2> points, const Point2& translation,
                                                            double rotation_rad, double scale = 1.0);
 

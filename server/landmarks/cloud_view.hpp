@@ -6,10 +6,10 @@
 
 namespace scanloom::landmarks {
 
-/// What was seen from one place, in some turns of a lidar that stood still.
+/// What a stationary lidar saw from one place in some turns.
 struct CloudView {
     std::span<const Point2> points; ///< metres, in any frame
-    Point2 from{0.0, 0.0};          ///< where the sensor was, in that frame
+    Point2 from{0.0, 0.0};          ///< position of the sensor, in that frame
 };
 
 } // namespace scanloom::landmarks

@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// More core points than these are searched by a tree.
+/// More core points than these are searched with a tree.
 constexpr std::size_t kFewPoints = 64;
 
-/// Sets that are put together; each goes by the lowest number in it.
+/// Disjoint sets that can be merged. Each is identified by its lowest element.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -39,7 +39,7 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// A core point near a place.
+/// A core point and its squared distance from a place.
 struct Near {
     double squared = std::numeric_limits<double>::infinity();
     std::uint32_t index = kNone;
@@ -52,7 +52,7 @@ class CorePoints {
 public:
     explicit CorePoints(std::size_t cells) : trees_(cells) { begin_.reserve(cells + 1); }
 
-    /// Cells are added in their order, a cell's points rising.
+    /// Starts the next cell. Cells are added in order, the points of a cell in ascending order.
     void begin_cell() { begin_.push_back(indices_.size()); }
     void add(std::uint32_t index, const Point2& point) {
         indices_.push_back(index);
@@ -67,7 +67,7 @@ public:
         return std::span(points_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
     }
 
-    /// The nearest core point of a cell, of equally near ones that with the lowest index.
+    /// Returns the nearest core point of a cell; of equally near ones that with the lowest index.
     [[nodiscard]] Near nearest(std::size_t cell, const Point2& place) {
         const auto candidates = points(cell);
         if (candidates.size() > kFewPoints) {
@@ -86,8 +86,8 @@ public:
 private:
     std::vector<std::uint32_t> indices_;
     std::vector<Point2> points_;
-    std::vector<std::size_t> begin_;              // of each cell, and the end
-    std::vector<std::optional<PointTree>> trees_; // made when they are needed first
+    std::vector<std::size_t> begin_;              // for each cell, and the end
+    std::vector<std::optional<PointTree>> trees_; // built on first use
 };
 
 class Dbscan {
@@ -120,7 +120,7 @@ private:
     void find_core(std::size_t cell) {
         const auto points = cells_.points_of(cell_at(cell));
         core_.begin_cell();
-        std::size_t together = 0; // all within eps of each other
+        std::size_t together = 0; // number of points, all within eps of each other
         for (const std::uint32_t point : points) together += distinct_.counts[point];
         for (const std::uint32_t point : points) {
             cell_of_[point] = static_cast<std::uint32_t>(cell);
@@ -128,7 +128,8 @@ private:
         }
     }
 
-    /// @param count  the points of its cell
+    /// Returns whether a point is a core point.
+    /// @param count  number of points in its cell
     [[nodiscard]] bool is_core(std::size_t cell, std::uint32_t point, std::size_t count) const {
         if (count >= min_points_) return true;
         cells_.around(cell, [&](std::size_t other) {
@@ -141,7 +142,7 @@ private:
         return count >= min_points_;
     }
 
-    /// Joins a cell's core points to those around it. Each pair of cells is looked at from the later one.
+    /// Merges a cell with the earlier cells around it whose core points are within eps.
     void join(std::size_t cell) {
         if (core_.points(cell).empty()) return;
         cells_.around(cell, [&](std::size_t other) {
@@ -162,9 +163,9 @@ private:
         });
     }
 
-    /// Numbers the clusters by their first core points. Returns how many there are.
+    /// Numbers the clusters by their first core points. Returns the number of clusters.
     std::size_t number() {
-        std::vector<std::uint32_t> first(cell_count(), kNone); // of each set, its first core point
+        std::vector<std::uint32_t> first(cell_count(), kNone); // for each set, its first core point
         for (std::uint32_t cell = 0; cell < cell_count(); ++cell) {
             if (core_.indices(cell).empty()) continue;
             std::uint32_t& at = first[sets_.find(cell)];
@@ -187,7 +188,8 @@ private:
         }
     }
 
-    /// The core point that a point follows: a core point itself.
+    /// Returns the core point that determines a point's cluster, which is the point itself if it is a core point; kNone
+    /// for noise.
     [[nodiscard]] std::uint32_t nearest_core(std::size_t cell, std::uint32_t point) {
         if (std::ranges::binary_search(core_.indices(cell), point)) return point;
         const Point2& place = distinct_.points[point];

@@ -10,10 +10,11 @@ namespace {
 struct Axes {
     double major = 0.0; ///< eigenvalues, square metres
     double minor = 0.0;
-    Point2 direction{1.0, 0.0}; ///< of the major one
+    Point2 direction{1.0, 0.0}; ///< of the major axis
 };
 
-/// From the first point, so that equal points have exactly no extent.
+/// Computes the axes of points. Coordinates are relative to the first point, so that equal points have exactly no
+/// extent.
 Axes axes_of(std::span<const Point2> points) {
     const auto count = static_cast<double>(points.size());
     Point2 mean{0.0, 0.0};
@@ -30,7 +31,7 @@ Axes axes_of(std::span<const Point2> points) {
     const double middle = 0.5 * (xx + yy);
     const double apart = std::hypot(0.5 * (xx - yy), xy);
     Axes axes{middle + apart, std::max(middle - apart, 0.0)};
-    // Of the two ways to write the eigenvector, the one that does not cancel.
+    // Of the two forms of the eigenvector, the one without cancellation.
     const Point2 direction = xx >= yy ? Point2{axes.major - yy, xy} : Point2{xy, axes.major - xx};
     if (norm(direction) > 0.0) axes.direction = normalized(direction);
     return axes;
@@ -46,7 +47,8 @@ std::vector<double> gaps_along(std::span<const Point2> points, const Point2& dir
     return gaps;
 }
 
-/// Pre  mean > 0.
+/// Returns the evenness of gaps; see Continuity.
+/// Precondition: mean > 0.
 double evenness_of(std::span<const double> gaps, double mean) {
     double variance = 0.0;
     for (const double gap : gaps) variance += (gap - mean) * (gap - mean) / static_cast<double>(gaps.size());

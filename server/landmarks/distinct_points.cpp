@@ -37,7 +37,7 @@ DistinctPoints distinct_points(std::span<const Point2> cloud) {
     for (std::size_t n = 0, first = 0; n < places.size(); ++n) {
         if (!places[n].is_at(places[first])) first = n;
         distinct.of[places[n].index] =
-            places[first].index; // in the cloud; its number among the distinct ones comes next
+            places[first].index; // index in the cloud; replaced by the number of the distinct point below
     }
     for (std::uint32_t n = 0; n < cloud.size(); ++n) {
         const std::uint32_t first = distinct.of[n];

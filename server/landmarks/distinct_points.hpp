@@ -8,17 +8,18 @@
 
 namespace scanloom::landmarks {
 
-/// A cloud's points with equal ones put together: a lidar that stands still measures the same again and again.
-/// In the order in which they came first, so that of two distinct points the one with the lower number also has the
-/// lower index in the cloud.
+/// A cloud's points with equal ones merged: a stationary lidar measures the same points repeatedly. They are in the
+/// order of their first occurrence, so of two distinct points the one with the lower number also has the lower index in
+/// the cloud.
 struct DistinctPoints {
     std::vector<Point2> points;
-    std::vector<std::uint32_t> counts; ///< how many of the cloud are equal to each
-    std::vector<std::uint32_t> of;     ///< for each point of the cloud, the distinct one it is equal to
+    std::vector<std::uint32_t> counts; ///< for each distinct point, how many points of the cloud are equal to it
+    std::vector<std::uint32_t> of;     ///< for each point of the cloud, the number of its distinct point
 };
 
-/// Cost  n log n.
-/// Pre   the points pass check_points().
+/// Merges the equal points of a cloud.
+/// Precondition: the points pass check_points().
+/// Cost: O(n log n).
 [[nodiscard]] DistinctPoints distinct_points(std::span<const Point2> cloud);
 
 } // namespace scanloom::landmarks

@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::vector<std::optional<Point2>>;
 
-/// One a beam, in the sensor frame; nothing where there is no return.
+/// Returns one point for each beam, in the sensor frame; nullopt if the beam has no return.
 Points points_of(std::span<const RangeMm> ranges, const BeamAngles& angles) {
     Points points(ranges.size());
     for (std::size_t n = 0; n < ranges.size(); ++n) {
@@ -36,7 +36,7 @@ double rmse(const Points& before, const Points& after) {
     return count == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(count));
 }
 
-/// Along each axis.
+/// Returns the roughness along each axis.
 Point2 roughness(const Points& points, bool full_circle) {
     std::vector<double> x;
     std::vector<double> y;

@@ -13,12 +13,12 @@
 namespace scanloom::landmarks {
 namespace {
 
-/// Numbers in order, and their median.
+/// Numbers in ascending order, with their median.
 class Sorted {
 public:
     void add(double number) { numbers_.insert(std::ranges::upper_bound(numbers_, number), number); }
 
-    /// Pre: there is one.
+    /// Precondition: there is at least one number.
     [[nodiscard]] double median() const {
         const std::size_t half = numbers_.size() / 2;
         return numbers_.size() % 2 == 1 ? numbers_[half] : (numbers_[half - 1] + numbers_[half]) / 2.0;
@@ -32,7 +32,7 @@ private:
 
 /// Points of different clouds that correspond.
 struct Group {
-    std::size_t began = 0; ///< with which cloud
+    std::size_t began = 0; ///< index of the cloud that started the group
     Sorted x;
     Sorted y;
 
@@ -42,7 +42,7 @@ struct Group {
     }
 };
 
-/// Groups by the squares that they stand in, so that a cloud need not be matched with those that are far away.
+/// Groups by the squares that contain them, so that a cloud is only matched with nearby groups.
 class Squares {
 public:
     explicit Squares(double threshold) : reach_(threshold), side_(std::max(threshold, 0.5)) {}
@@ -56,10 +56,10 @@ public:
         put(group, to);
     }
 
-    /// All that are within the threshold of any of the points, and others around them; rising.
+    /// Returns all groups within the threshold of any of the points, and some around them, ascending.
     [[nodiscard]] std::vector<std::uint32_t> near_to(const std::vector<Point2>& cloud) const {
         std::vector<std::uint64_t> keys;
-        for (const auto& point : cloud) { // a square is no smaller than the threshold: these are all
+        for (const auto& point : cloud) { // a square is at least as large as the threshold, so these are all
             for (const double y : {point.y - reach_, point.y, point.y + reach_}) {
                 for (const double x : {point.x - reach_, point.x, point.x + reach_}) keys.push_back(key_of(x, y));
             }
@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    /// Squares far outside share one, which only means that more is looked at.
+    /// Returns the key of a square. Squares far outside share a key, which only means that more groups are compared.
     [[nodiscard]] std::uint64_t key_of(double x, double y) const {
         const auto number = [&](double metres) {
             constexpr double kFarthest = 1 << 30;
@@ -91,7 +91,7 @@ private:
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> groups_;
 };
 
-/// Points of different clouds, and where each group of them stands.
+/// Groups of points of different clouds, and the position of each group.
 class Groups {
 public:
     explicit Groups(double threshold) : threshold_(threshold), squares_(threshold) {}
@@ -139,7 +139,7 @@ private:
 
     const double threshold_;
     std::vector<Group> groups_;
-    std::vector<Point2> medians_; // of them
+    std::vector<Point2> medians_; // positions of the groups
     Squares squares_;
 };
 

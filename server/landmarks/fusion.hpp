@@ -9,26 +9,29 @@
 
 namespace scanloom::landmarks {
 
+/// A point of a fused cloud.
 struct FusedPoint {
-    Point2 position;    ///< metres; of one cloud alone: its very coordinates
-    std::size_t clouds; ///< how many of them saw it, 1 or more
-    std::size_t first;  ///< the first of them, by its index
+    Point2 position;    ///< metres; if only one cloud saw it, exactly its coordinates
+    std::size_t clouds; ///< how many clouds saw it, at least 1
+    std::size_t first;  ///< index of the first cloud that saw it
 };
 
-/// One cloud of many. Points of different clouds that correspond become one; all others stay.
+/// Fuses several clouds into one. Points of different clouds that correspond become one point; all others stay.
 ///
-/// What corresponds: the clouds are taken in their order, and each point of the first is a group. The points of each
-/// further cloud are matched with the groups so far, as match() does: mutual nearest neighbours at most `threshold`
-/// apart, a group standing where the per-axis median of its points is (of an even number, the mean of the middle
-/// two). A point that is matched joins its group, one that is not begins a new one. So a group has at most one point of
-/// a cloud, and equal points of one cloud stay as many as they are. The fused points are the groups' medians.
-///
-/// Frames  all clouds in one frame; see transform_points().
-/// @return in the order in which the groups began
-/// Post    as many clouds seen, over all fused points, as there are points in all clouds.
-/// @param ask  before each cloud, as many take seconds; its error ends it
-/// Errors  kInvalidField: a threshold that is negative or not finite. Those of check_points() and of `ask`.
-/// Cost    for each cloud n log n of its points and of the groups around, and of each point that joins a group, its members.
+/// The clouds are processed in their order; each point of the first cloud starts a group. The points of each further
+/// cloud are matched with the groups found so far, as match() does: mutual nearest neighbours at most `threshold`
+/// apart, where the position of a group is the per-axis median of its points (of an even number, the mean of the middle
+/// two). A matched point joins its group; any other point starts a new one. So a group has at most one point of each
+/// cloud, and equal points of one cloud remain separate. The fused points are the medians of the groups. Their counts
+/// of clouds add up to the number of points of all clouds.
+/// @param clouds     metres, all in one frame; see transform_points()
+/// @param threshold  metres
+/// @param ask        called before each cloud, because many clouds take seconds; an error that it returns ends the
+///     fusion
+/// @return the fused points, in the order in which their groups started
+/// Errors: kInvalidField if the threshold is negative or not finite; those of check_points() and `ask`.
+/// Cost: for each cloud O(n log n) of its points and the groups around them; for each point that joins a group, the
+///     size of the group.
 [[nodiscard]] Result<std::vector<FusedPoint>> fuse(
     std::span<const std::vector<Point2>> clouds, double threshold,
     const std::function<Result<>()>& ask = [] { return Result<>(); });

@@ -32,11 +32,12 @@ public:
     }
 
 private:
-    std::vector<std::size_t> begin_; // of each cluster, and the end
+    std::vector<std::size_t> begin_; // for each cluster, and the end
     std::vector<Point2> points_;
 };
 
-/// Pre  there are points.
+/// Returns the landmark of a cluster.
+/// Precondition: there is at least one point.
 Landmark landmark_of(std::span<const Point2> points, double eps) {
     std::vector<double> values(points.size());
     const auto median_of = [&](auto value) {

@@ -26,7 +26,7 @@ void add_pair(PairSums& sums, std::span<const Landmark> first, std::span<const L
 
 void LandmarkLayer::add(const RobotCapture& ended) {
     auto seen = find_landmarks(in_metres(ended.capture.points));
-    if (!seen) return; // it lies further out than a map can reach
+    if (!seen) return; // a point is beyond the limit of coordinates
     if (seen_last_.size() <= ended.robot) seen_last_.resize(ended.robot + 1);
     auto& seen_last = seen_last_[ended.robot];
     if (seen_last) add_pair(sums_, *seen_last, *seen);

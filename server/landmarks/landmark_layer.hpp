@@ -10,41 +10,41 @@
 
 namespace scanloom::landmarks {
 
-/// How alike what robots saw in succession was: sums over pairs of captures, each of one robot, the second behind the
-/// first. What is divided by is beside it.
+/// How consistent successive observations are: sums over pairs of successive keyframes of one robot. Each sum follows
+/// the number to divide it by.
 struct PairSums {
-    std::uint64_t persistence_pairs = 0; ///< of which the first had landmarks
+    std::uint64_t persistence_pairs = 0; ///< pairs whose first keyframe has landmarks
     double persistence = 0.0;
-    std::uint64_t stability_pairs = 0; ///< of which landmarks matched
+    std::uint64_t stability_pairs = 0; ///< pairs in which landmarks matched
     double stability = 0.0;
-    std::uint64_t landmarks = 0; ///< of all captures
-    double continuity = 0.0;     ///< summed over them
+    std::uint64_t landmarks = 0; ///< of all keyframes
+    double continuity = 0.0;     ///< sum over these landmarks
 
     friend bool operator==(const PairSums&, const PairSums&) = default;
 };
 
-/// What the landmarks of a session are, at one moment.
+/// The landmarks of a session at one moment.
 struct LandmarkState {
     LandmarkView landmarks;
     std::uint64_t captures = 0;
     PairSums sums;
 };
 
-/// Landmarks of captures: those of each are found (models: adaptive eps, DBSCAN, medians) and matched with those that
-/// are known, and with those of the robot's capture before.
-/// Thread  one writer; what snapshot() gives is for everybody.
+/// The landmarks of a session's keyframes. Finds the landmarks of each keyframe (adaptive eps, DBSCAN, medians) and
+/// matches them with the known ones and with those of the same robot's previous keyframe.
+/// Threads: one writer; any thread may use what snapshot() returned.
 class LandmarkLayer {
 public:
-    /// Adds the next capture. Robots are numbered from 0; one that was not seen before may be any of them.
+    /// Adds the next keyframe. Its robot may have any index, also one that was not seen before.
     void add(const RobotCapture& ended);
 
-    /// Landmarks.
+    /// Returns the number of landmarks.
     [[nodiscard]] std::size_t size() const noexcept { return map_.size(); }
     [[nodiscard]] LandmarkState snapshot() { return {map_.snapshot(), captures_, sums_}; }
 
 private:
     LandmarkMap map_;
-    std::vector<std::optional<std::vector<Landmark>>> seen_last_; // by RobotIndex: in its last capture, if it had any
+    std::vector<std::optional<std::vector<Landmark>>> seen_last_; // by RobotIndex: in the last keyframe, if any
     std::uint64_t captures_ = 0;
     PairSums sums_;
 };

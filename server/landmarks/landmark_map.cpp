@@ -14,7 +14,7 @@ std::pair<std::int32_t, std::int32_t> cell_of(const Point2& position) {
             static_cast<std::int32_t>(std::floor(position.x / kTolerance))};
 }
 
-/// Of the sightings that are kept.
+/// Returns the median of the observations kept.
 Point2 median_position(const MapLandmark& known) {
     const std::size_t count = std::min<std::size_t>(known.seen, kSightingsKept);
     std::array<double, kSightingsKept> values{};
@@ -45,7 +45,7 @@ std::size_t LandmarkMap::add(std::span<const Landmark> seen, Revision revision) 
     return matches->size();
 }
 
-/// By rising id: of equally near ones the oldest counts.
+/// Returns the ids of nearby landmarks in ascending order, so that of equally near ones the oldest is matched.
 std::vector<std::uint32_t> LandmarkMap::known_around(std::span<const Landmark> seen) const {
     std::vector<std::uint32_t> ids;
     for (const auto& landmark : seen) {

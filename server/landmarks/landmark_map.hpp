@@ -14,16 +14,16 @@
 
 namespace scanloom::landmarks {
 
-/// A landmark's position is the per-axis median of where it was seen the last times, so many.
+/// A landmark's position is the per-axis median of its last observations, at most this many.
 inline constexpr std::size_t kSightingsKept = 15;
 
-/// A landmark of a session, seen from one place or from many. Metres, map frame.
+/// A landmark of a session, seen from one place or several. Metres, map frame.
 struct MapLandmark {
-    std::uint32_t id = 0;                                          ///< its number in the session, from 0, for ever
-    std::uint32_t seen = 0;                                        ///< by so many captures
-    Revision first = 0;                                            ///< log entry that the first of them ended with
-    Revision last = 0;                                             ///< and the newest
-    Landmark landmark;                                             ///< as it was seen last, but for its position
+    std::uint32_t id = 0;                                          ///< number in the session, from 0; never changes
+    std::uint32_t seen = 0;                                        ///< number of keyframes that show it
+    Revision first = 0;                                            ///< log entry at which the first of them ended
+    Revision last = 0;                                             ///< log entry at which the newest of them ended
+    Landmark landmark;                                             ///< as it was seen last, except for its position
     std::array<std::array<double, 2>, kSightingsKept> sightings{}; ///< a ring: sighting n is at n % kSightingsKept
 
     friend bool operator==(const MapLandmark&, const MapLandmark&) = default;
@@ -40,7 +40,7 @@ using LandmarkBlocks = std::vector<std::shared_ptr<const LandmarkBlock>>;
 } // namespace detail
 
 /// The landmarks of a session at one moment, by id. Immutable, cheap to copy.
-/// Thread  any number of readers.
+/// Threads: any number of readers.
 class LandmarkView {
 public:
     LandmarkView() = default;
@@ -50,31 +50,32 @@ public:
         return blocks_->empty() ? 0 : (blocks_->size() - 1) * kLandmarkBlock + blocks_->back()->landmarks.size();
     }
 
-    /// Pre: id < size().
+    /// Returns the landmark with the given id.
+    /// Precondition: id < size().
     [[nodiscard]] const MapLandmark& operator[](std::size_t id) const noexcept {
         return (*blocks_)[id / kLandmarkBlock]->landmarks[id % kLandmarkBlock];
     }
 
-    /// In blocks of kLandmarkBlock; each knows when it changed last.
+    /// Returns the landmarks in blocks of kLandmarkBlock. Each block has the revision of its last change.
     [[nodiscard]] const detail::LandmarkBlocks& blocks() const noexcept { return *blocks_; }
 
 private:
     std::shared_ptr<const detail::LandmarkBlocks> blocks_ = std::make_shared<const detail::LandmarkBlocks>();
 };
 
-/// All landmarks of a session: what captures see is found again, or new.
-/// Thread  one writer; views are for everybody.
+/// All landmarks of a session. Recognizes known landmarks in keyframes and adds new ones.
+/// Threads: one writer; any thread may use views.
 class LandmarkMap {
 public:
-    /// Adds what one capture saw: a landmark that is the mutual nearest of one that is known, within kTolerance, is
-    /// that one, seen once more; others are new, in their order.
+    /// Adds the landmarks of one keyframe. A landmark that is the mutual nearest neighbour of a known one, within
+    /// kTolerance, counts as another observation of it. The others are new, in their order.
     /// @return how many were known
-    /// Cost  the landmarks seen, and the known ones around them.
+    /// Cost: proportional to the landmarks of the keyframe and the known ones around them.
     std::size_t add(std::span<const Landmark> seen, Revision revision);
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-    /// Cheap; what changes next is copied first, a block at a time.
+    /// Returns a view of the current landmarks. Cheap: only blocks that change later are copied.
     [[nodiscard]] LandmarkView snapshot();
 
 private:
@@ -89,8 +90,8 @@ private:
     void take_away(std::uint32_t id, const Point2& position);
 
     std::vector<std::shared_ptr<detail::LandmarkBlock>> blocks_;
-    std::vector<bool> is_shared_;                          // with views: for each block, not to be written any more
-    std::map<CellKey, std::vector<std::uint32_t>> ids_in_; // where landmarks are
+    std::vector<bool> is_shared_;                          // for each block: whether views use it (copy on write)
+    std::map<CellKey, std::vector<std::uint32_t>> ids_in_; // ids of the landmarks in each square
     std::size_t size_ = 0;
     LandmarkView view_;
     bool has_changed_ = false; // since view_ was made

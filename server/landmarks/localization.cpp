@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kHalfExtentMax = 100.0; // metres
 constexpr std::size_t kMapHypotheses = 48;
-constexpr std::size_t kRepetitions = 12;     // of each quarter turn
-constexpr std::size_t kMapSurfelsMax = 4000; // that stand for all
+constexpr std::size_t kRepetitions = 12;     // for each quarter turn
+constexpr std::size_t kMapSurfelsMax = 4000; // at most this many are used, evenly chosen
 constexpr std::size_t kViewSurfelsMax = 4000;
-constexpr double kBeyond = 1.0; // metres that are looked at beyond what the view shows
+constexpr double kBeyond = 1.0; // metres of the map that are used beyond the view's range
 
-/// Metres between two places along the axis where it is more.
+/// Returns the distance of two places along the axis where it is larger, in metres.
 double apart(const Point2& a, const Point2& b) { return max_abs(a - b); }
 
-/// Of the views those that may show something of what is seen from within the neighbourhood.
+/// Returns the views that may show something visible from within the neighbourhood.
 ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near, double reach) {
     ReferenceViews some;
     std::ranges::copy_if(views, std::back_inserter(some), [&](const auto& view) {
@@ -38,12 +38,12 @@ ReferenceViews views_near(const ReferenceViews& views, const Neighbourhood& near
     return some;
 }
 
-/// A view of a room has some hundred surface elements: of one that has far more, evenly chosen ones stand for all.
+/// Returns the surface elements of a view, at most kViewSurfelsMax, evenly chosen. A view of a room has some hundreds.
 std::vector<Surfel> some_surfels_of(const std::vector<Point2>& points) {
     return sample(surfels_of(CloudView{points}, kAroundOfMap), kViewSurfelsMax);
 }
 
-/// A view, and the map that it is laid on.
+/// The search for the pose of a view in a map.
 class Search {
 public:
     /// @param within  in the map's own frame
@@ -51,9 +51,10 @@ public:
            const std::vector<Point2>& points);
 
     [[nodiscard]] Result<std::vector<Pose2>> hypotheses(const std::function<Result<>()>& ask) const;
-    /// Where things repeat, the truth may have fewer votes than what it is taken for; but walls stand alike.
+    /// Returns hypotheses for a rotation. Where things repeat, the correct pose may have fewer votes than others; but
+    /// walls are parallel.
     [[nodiscard]] std::vector<Pose2> repetitions(double yaw) const;
-    /// Adds what comes of one, where a sensor may be.
+    /// Refines a hypothesis and adds the result if a sensor can be there.
     void add(const Pose2& hypothesis, std::vector<Candidate>& candidates) const;
     [[nodiscard]] Result<> add_slid_of_the_likely(std::vector<Candidate>& candidates,
                                                   const std::function<Result<>()>& ask) const;
@@ -68,7 +69,7 @@ private:
     Neighbourhood within_;
     Seen second_;
     double reach_;
-    std::vector<Surfel> near_; // what may be seen from within, from its middle
+    std::vector<Surfel> near_; // what may be visible from the neighbourhood, relative to its middle
 };
 
 Search::Search(const ReferenceMap& map, const Neighbourhood& within, const Horizon& horizon,
@@ -118,14 +119,14 @@ Result<> Search::add_slid_of_the_likely(std::vector<Candidate>& candidates,
     return {};
 }
 
-/// From the middle of what there is; no more than there is.
+/// Returns the neighbourhood relative to the middle of the extent, not larger than the extent requires.
 Neighbourhood within(const Extent& extent, const std::optional<Neighbourhood>& near) {
     if (!near) return {{0.0, 0.0}, extent.half};
     const Point2 middle = near->middle - extent.middle;
     return {middle, std::min(near->radius, extent.half + apart(middle, {0.0, 0.0}))};
 }
 
-/// Another place may be mapped.
+/// Returns the reason why nothing can be found. Other places may be mapped.
 std::string nothing_there(const std::optional<Neighbourhood>& near) {
     if (!near) return "all that the session's lasers have seen has gone since: go where it has been mapped";
     return fmt::format("no laser has seen anything within {:g} m of ({:g}, {:g}): say another place, or none",

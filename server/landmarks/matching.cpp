@@ -12,7 +12,7 @@
 namespace scanloom::landmarks {
 namespace {
 
-/// The distinct points of a set, in the order in which they come first.
+/// The distinct points of a set, in the order of their first occurrence.
 struct Distinct {
     explicit Distinct(std::span<const Point2> all) {
         auto [its_points, counts, of] = distinct_points(all);
@@ -24,7 +24,7 @@ struct Distinct {
     }
 
     std::vector<Point2> points;
-    std::vector<std::size_t> first_of; // the lowest index of each in the set
+    std::vector<std::size_t> first_of; // for each distinct point, its lowest index in the set
     PointTree tree{{}};
 };
 
@@ -39,7 +39,8 @@ Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const 
     }
     std::vector<Match> matches;
     if (first.empty() || second.empty()) return matches;
-    // Of equal points only the first can be in a match: trees of all of them would look at each for each.
+    // Of equal points only the first can be matched. In trees of all points, each equal point would examine all the
+    // others.
     const Distinct here(first);
     const Distinct there(second);
     for (std::size_t n = 0; n < here.points.size(); ++n) {

@@ -10,7 +10,7 @@ namespace scanloom::landmarks {
 
 inline constexpr double kTolerance = 0.25; ///< metres
 
-/// A point of one set and one of another that are each other's nearest.
+/// Points of two sets that are each other's nearest neighbours.
 struct Match {
     std::size_t first;  ///< index in the first set
     std::size_t second; ///< index in the second set
@@ -19,11 +19,14 @@ struct Match {
     friend bool operator==(const Match&, const Match&) = default;
 };
 
-/// Mutual nearest neighbours at most `tolerance` apart, both sets in one frame. Of several nearest the lowest index
-/// counts; so each point is in one match at most, and of equal points in one set only the first can be.
-/// @return in the order of `first`; empty where a set is
-/// Errors  kInvalidField: a tolerance that is negative or not finite. Those of check_points().
-/// Cost    n log n of the points.
+/// Finds mutual nearest neighbours of two sets in one frame.
+///
+/// Of several nearest points the one with the lowest index counts. So each point is in at most one match, and of equal
+/// points in one set only the first can be matched.
+/// @param tolerance  metres; matched points are at most this far apart
+/// @return the matches in the order of `first`; empty if a set is empty
+/// Errors: kInvalidField if the tolerance is negative or not finite; those of check_points().
+/// Cost: O(n log n) of the points.
 [[nodiscard]] Result<std::vector<Match>> match(std::span<const Point2> first, std::span<const Point2> second,
                                                double tolerance = kTolerance);
 

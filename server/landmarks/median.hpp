@@ -7,8 +7,8 @@
 
 namespace scanloom::landmarks {
 
-/// The middle value; of an even count, the mean of the middle two. Reorders the values.
-/// Pre  there are some, all finite.
+/// Returns the middle value; of an even count, the mean of the middle two. Reorders the values.
+/// Precondition: there is at least one value; all are finite.
 [[nodiscard]] inline double median(std::span<double> values) {
     assert(!values.empty());
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

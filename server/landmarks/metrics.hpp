@@ -7,19 +7,21 @@
 
 namespace scanloom::landmarks {
 
-/// How alike two sets of landmarks are. What would be divided by none is nothing.
+/// How consistent two sets of landmarks are. A value is nullopt if it would be divided by 0.
 struct Metrics {
     std::size_t matched = 0;
-    std::optional<double> persistence;   ///< matched of the first set's landmarks
-    std::optional<double> stability;     ///< of the matched, those at most half the tolerance apart
-    std::optional<double> distance_mean; ///< metres, of the matched
+    std::optional<double> persistence;   ///< fraction of the first set's landmarks that are matched
+    std::optional<double> stability;     ///< fraction of the matches at most half the tolerance apart
+    std::optional<double> distance_mean; ///< metres, of the matches
     std::optional<double>
-        distance_sigma; ///< metres, their standard deviation: of these pairs, so divided by their number
+        distance_sigma; ///< metres, standard deviation of the matches' distances, divided by their number
 };
 
-/// @param matches      what match() found with `tolerance`
-/// @param first_count  landmarks of the first set
-/// Pre     no more matches than first_count.
+/// Computes how consistent two sets of landmarks are.
+/// @param matches      the result of match() with `tolerance`
+/// @param first_count  number of landmarks of the first set
+/// @param tolerance    metres
+/// Precondition: there are no more matches than first_count.
 [[nodiscard]] Metrics metrics_of(std::span<const Match> matches, std::size_t first_count,
                                  double tolerance = kTolerance);
 

@@ -12,10 +12,11 @@ namespace scanloom::landmarks {
 inline constexpr double kPointCoordinateMax = 1e7;       ///< metres from the origin, each axis
 inline constexpr std::size_t kPointsMax = 1'000'000'000; ///< of one cloud
 
-/// Whether points can be worked with: squares of their distances and counts of cells stay far from overflow.
-/// @param name  what they are called in the sentence of an error: "second[3] is not finite"
-/// Errors  kInvalidField: one is not finite or lies beyond kPointCoordinateMax; the message names the first of them.
-///         kTooLarge: more than kPointsMax.
+/// Checks that points are usable: squares of their distances and numbers of cells stay far from overflow.
+/// @param points  metres
+/// @param name    how an error message calls them: "second[3] is not finite"
+/// Errors: kInvalidField if a point is not finite or beyond kPointCoordinateMax, with the first such point in the
+///     message; kTooLarge if there are more than kPointsMax.
 [[nodiscard]] Result<> check_points(std::span<const Point2> points, std::string_view name = "points");
 
 } // namespace scanloom::landmarks

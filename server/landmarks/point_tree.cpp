@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kLeafPoints = 16;
 
-/// The points as nanoflann reads them.
+/// Adapter through which nanoflann reads the points.
 struct Cloud {
     std::vector<Point2> points;
 
@@ -32,7 +32,7 @@ struct Cloud {
 
 using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 2, std::uint32_t>;
 
-/// A point found, by the square of its distance.
+/// A point that was found, with its squared distance.
 struct Found {
     double squared;
     std::uint32_t index;
@@ -40,11 +40,11 @@ struct Found {
     [[nodiscard]] auto operator<=>(const Found&) const = default;
 };
 
-/// nanoflann leaves out what is not nearer than the bound, and its bounds on whole branches are rounded: with a little
-/// more, whatever is as near as the bound is still looked at.
+/// Returns a slightly larger bound. nanoflann excludes points at the bound, and rounds its bounds of branches; with a
+/// larger bound, all points exactly at the original bound are examined.
 double beyond(double squared) { return squared * (1.0 + 1e-9) + std::numeric_limits<double>::min(); }
 
-/// Collects the nearest points for nanoflann: `found` is a heap, the furthest on top.
+/// Collects the nearest points for nanoflann. `found` is a heap with the furthest point on top.
 class Nearest {
 public:
     explicit Nearest(std::size_t count) : count_(count) { found_.reserve(count); }
@@ -73,7 +73,7 @@ private:
     std::vector<Found> found_;
 };
 
-/// The one nearest point, without a heap.
+/// Collects only the nearest point, without a heap.
 class First {
 public:
     [[nodiscard]] bool full() const { return true; }

@@ -11,42 +11,42 @@
 
 namespace scanloom::landmarks {
 
-/// What was seen from one place, of what others can be found in.
+/// What was seen from one place, for localization.
 struct ReferenceView {
     Point2 from{0.0, 0.0};       ///< metres, map frame
     std::vector<PointMm> points; ///< map frame
     Revision ended = 0;
 };
 
-/// Of a capture of many points, that stand for all.
+/// Converts a keyframe to a view. Of more than kPointsOfAView points, evenly chosen ones are kept.
 [[nodiscard]] ReferenceView reference_view_of(const RobotCapture& capture);
 
-/// By the log entry at which they ended.
+/// Views, ordered by the log entry at which they ended.
 using ReferenceViews = std::vector<std::shared_ptr<const ReferenceView>>;
 
-/// Of a session's captures those that tell where what is now: of captures from one place and in one direction the
-/// newest few, as doors open and people go. So their number grows with the ground that was covered, and not with time.
-/// Thread  one writer; what snapshot() gives is for everybody.
+/// The keyframes of a session that are used for localization: the newest few of each place and direction, because doors
+/// open and people leave. So their number grows with the area that was covered, and not with time.
+/// Threads: one writer; any thread may use what snapshot() returned.
 class ReferenceLayer {
 public:
     static constexpr double kPlaceSize = 0.5;           ///< metres, along each axis
-    static constexpr int kDirections = 8;               ///< of a robot; a laser may see forward only
-    static constexpr std::size_t kViewsOfAPlace = 2;    ///< in each direction
-    static constexpr std::size_t kPointsOfAView = 4096; ///< of more points every so many-th stays
+    static constexpr int kDirections = 8;               ///< headings of a robot; a laser may only see forward
+    static constexpr std::size_t kViewsOfAPlace = 2;    ///< for each direction
+    static constexpr std::size_t kPointsOfAView = 4096; ///< of more points, every n-th is kept
 
-    /// The memory that a view takes beside its points while somebody is located, in points.
+    /// The memory that a view needs in addition to its points during localization, in points.
     static constexpr std::size_t kViewItself = 720;
 
     void add(const RobotCapture& ended);
 
-    /// Points of all views that are kept, and kViewItself for each.
+    /// Returns the number of points of all views kept, plus kViewItself for each view.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] ReferenceViews snapshot() const;
 
 private:
     using PlaceKey = std::array<std::int64_t, 3>; // row, column, direction
 
-    std::map<PlaceKey, ReferenceViews> places_; // each the oldest first
+    std::map<PlaceKey, ReferenceViews> places_; // in each place the oldest view first
     std::size_t size_ = 0;
 };
 

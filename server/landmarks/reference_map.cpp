@@ -6,7 +6,7 @@
 namespace scanloom::landmarks {
 namespace {
 
-constexpr double kBeenThere = 0.3; // metres from where somebody saw from
+constexpr double kBeenThere = 0.3; // metres from the place of a view
 
 } // namespace
 

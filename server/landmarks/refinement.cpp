@@ -11,8 +11,8 @@ namespace scanloom::landmarks {
 namespace {
 
 constexpr int kSettleStepsMax = 20;
-constexpr double kSettleDistance = 0.5; // metres; what is further corresponds to nothing
-constexpr double kCloser = 0.75;        // of what is within it
+constexpr double kSettleDistance = 0.5; // metres; pairs further apart do not correspond
+constexpr double kCloser = 0.75;        // fraction of these pairs that is used
 constexpr std::size_t kSettlePairsMin = 10;
 constexpr double kAtRest = 2e-3; // metres, and radians
 
@@ -20,8 +20,8 @@ constexpr int kFitStepsMax = 15;
 constexpr double kFitDistance = 0.15;        // metres between elements that correspond
 constexpr double kResidualMax = 0.08;        // metres from a line
 constexpr double kCorrespondingCosine = 0.9; // cosine between normals that correspond
-constexpr double kRoundWeight = 0.2;         // of a surface element that is not straight: its place depends on the view
-constexpr double kDamping = 1e-3;            // of the elements used: holds what no line holds
+constexpr double kRoundWeight = 0.2;         // of an element that is not straight: its position depends on the view
+constexpr double kDamping = 1e-3;            // of the elements used: constrains what no line constrains
 constexpr double kFitted = 1e-5;             // metres, and radians
 
 bool is_at_rest(const Pose2& before, const Pose2& after, double limit) {
@@ -67,7 +67,9 @@ struct NormalEquations {
     }
 };
 
-/// Two elements, one of each surface, both in the first's frame, that may show the same.
+/// Adds a pair of elements that may correspond, one of each surface, both in the first's frame.
+/// @param line    normal of the line that the distance is measured from
+/// @param origin  of the second's frame
 void add(NormalEquations& equations, const Surfel& here, const Surfel& there, const Point2& line,
          const Point2& origin) {
     if (here.is_straight() != there.is_straight()) return;
@@ -79,7 +81,7 @@ void add(NormalEquations& equations, const Surfel& here, const Surfel& there, co
     if (here.is_straight()) {
         if (std::abs(dot(here.normal, there.normal)) < kCorrespondingCosine) return;
         equations.add(line, from_origin, off, closeness * closeness); // Tukey's biweight
-        equations.agreement += closeness * closeness * closeness;     // and what it makes most
+        equations.agreement += closeness * closeness * closeness;     // the objective that the biweight maximizes
     } else {
         equations.add({1.0, 0.0}, from_origin, offset.x, kRoundWeight);
         equations.add({0.0, 1.0}, from_origin, offset.y, kRoundWeight);
@@ -88,7 +90,7 @@ void add(NormalEquations& equations, const Surfel& here, const Surfel& there, co
     ++equations.used;
 }
 
-/// Of both surfaces' elements, each with the nearest of the other and by the line of that one.
+/// Adds the elements of both surfaces, each with the nearest of the other surface and that one's line.
 NormalEquations normal_equations(const Surface& first, const Surface& second, const Pose2& pose) {
     NormalEquations equations;
     const Point2 origin{pose.x, pose.y};

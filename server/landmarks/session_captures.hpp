@@ -11,43 +11,44 @@
 
 namespace scanloom::landmarks {
 
-/// A capture, and whose it is.
+/// A keyframe and the robot that it is from.
 struct RobotCapture {
     RobotIndex robot = 0;
     Capture capture;
-    Revision ended = 0; ///< log entry at which it ended: its last scan or, where the robot moved on, a later one
+    Revision ended = 0; ///< log entry at which it ended: its last scan, or a later one if the robot moved on
 
     friend bool operator==(const RobotCapture&, const RobotCapture&) = default;
 };
 
-/// The captures of a session's robots, cut from its log entry by entry.
-/// Thread  one at a time.
+/// Divides a session's log, entry by entry, into the keyframes of its robots.
+/// Threads: one at a time.
 class SessionCaptures {
 public:
-    /// @param filter  which scans are integrated in the session's maps; captures hold no others
+    /// @param filter  selects the scans that are integrated in the session's maps; keyframes contain no others
     explicit SessionCaptures(ScanFilter filter = ScanFilter()) : filter_(std::move(filter)) {}
 
-    /// Of the entries that are in.
+    /// Returns the revision of the last entry added or skipped.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
-    /// Whether a scan that is the next entry may change anything, told without its readings. One that does not is
-    /// passed over.
+    /// Returns whether a scan, as the next entry, may change anything. The readings are not needed to know. If it
+    /// returns false, call pass_over() instead of add().
     [[nodiscard]] bool needs(const ScanPose& scan) const noexcept {
         if (filter_.use_of(revision_ + 1, scan) != ScanUse::kIntegrated) return false;
         return scan.robot >= cutters_.size() || cutters_[scan.robot].needs(scan.stamp, scan.pose);
     }
+    /// Skips the next entry.
     void pass_over(const ScanPose& scan) { filter_.take(++revision_, scan); }
 
-    /// Adds the next entry. A scan of a sensor that was never described is passed over: only a damaged log has such.
-    /// @return the capture that has ended with it
+    /// Adds the next entry. A scan of a sensor that was never described is skipped: only a damaged log contains one.
+    /// @return the keyframe that ended with this entry; nullopt: none ended
     [[nodiscard]] std::optional<RobotCapture> add(const LogEntry& entry);
 
-    /// Those that are being taken, by robot, as if they ended now.
+    /// Returns the keyframes in progress, by robot, as if they ended now.
     [[nodiscard]] std::vector<RobotCapture> open() const;
 
 private:
     std::vector<CaptureCutter> cutters_;                             // by RobotIndex
-    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by robot and id, as described last
+    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by robot and id, as last described
     ScanFilter filter_;
     Revision revision_ = 0;
 };
