@@ -22,7 +22,7 @@ Error too_many(std::string_view what_has, std::size_t count, std::string_view of
     return {Errc::kTooLarge, fmt::format("{} {} {}, at most {} are allowed", what_has, count, of_what, count_max)};
 }
 
-/// As the server reads it. Pre: it is no longer than a frame.
+/// Decodes the message as the server does. Pre: it is no longer than a frame.
 Result<> check_as_read(const wire::Message& message) {
     std::string frame;
     wire::encode(message, frame);
@@ -31,7 +31,7 @@ Result<> check_as_read(const wire::Message& message) {
     return {};
 }
 
-/// What may be of any length at a caller's and not in a frame.
+/// Checks the sizes that have no limit in the caller's data but have one in a frame.
 Result<> check_sizes(const Sensor& sensor, const Scan& scan) {
     if (sensor.name.size() > kNameBytesMax) {
         return too_many("the sensor's name has", sensor.name.size(), "bytes", kNameBytesMax);

@@ -6,16 +6,17 @@
 #include "robot_client/client/client.hpp"
 #include "robot_client/uplink/open_requests.hpp"
 
-/// What no server takes is refused here, before it ends the link: each value is checked as it is there.
-/// Errors  kInvalidField, kTooLarge: the message names the field.
+/// Checks values that no server accepts before they are sent, because sending them would end the link.
+/// Errors: kInvalidField, kTooLarge; the message names the field.
 namespace scanloom::robot {
 
-/// Without those of files. The program's flags have the same limits.
+/// Checks all options except those that name files. The program's flags have the same limits.
 [[nodiscard]] Result<> check(const ClientOptions& options);
 
+/// Checks a scan and the description of the sensor that took it.
 [[nodiscard]] Result<> check(const Sensor& sensor, const Scan& scan);
 
-/// Of a request's values those that a server would not refuse in a reply, but end the link for.
+/// Checks the values for which a server would end the link instead of refusing the request in its reply.
 [[nodiscard]] Result<> check(const Request& request);
 
 } // namespace scanloom::robot

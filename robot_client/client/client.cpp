@@ -28,7 +28,7 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
         if (!tls) return tls.error();
         uplink.tls = std::move(*tls);
     }
-    uplink.give_up_after = uplink.give_up_after_end = milliseconds(0); // flush() has a patience of its own
+    uplink.give_up_after = uplink.give_up_after_end = milliseconds(0); // flush() has its own patience
     uplink.backoff_seed = std::random_device{}();
     uplink.conversation.buffer_bytes_max = options.memory_bytes_max;
     uplink.conversation.batch_delay = options.batch_delay;
@@ -44,8 +44,8 @@ Result<UplinkOptions> uplink_options(const ClientOptions& options) {
     return uplink;
 }
 
-/// What a robot saw that asks where it is.
-/// Errors  kInvalidField, kTooLarge: what no server would take.
+/// Collects the points of the scans of a locate request.
+/// Errors: kInvalidField or kTooLarge if no server accepts a value.
 Result<SeenPoints> seen_from(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans) {
     static_assert(Client::kLocatePointsMin == kSeenPointsMin);
     if (!sensor) return Error{Errc::kInvalidField, "scans need their sensor"};
@@ -127,7 +127,7 @@ Result<ExplorationGoal> Client::next_goal(milliseconds patience) {
     if (goal->exploration == wire::Exploration::kTakenByOthers) next.outcome = ExplorationGoal::Outcome::kTakenByOthers;
     if (goal->exploration != wire::Exploration::kGoal) return next;
     next.outcome = ExplorationGoal::Outcome::kGoal;
-    next.path = std::move(goal->path->points); // they come with a goal
+    next.path = std::move(goal->path->points); // always present with a goal
     next.target = *goal->target;
     return next;
 }

@@ -7,13 +7,14 @@
 
 namespace scanloom::robot {
 
-/// Scans that somebody hands over. Thread: as of LiveSource, push() and stop() included.
+/// A source of the scans that its owner pushes.
+/// Threads: as for LiveSource, including push() and stop().
 class PushedSource final : public LiveSource {
 public:
     void push(Observation observation);
 
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
-    /// What was handed over before is still given.
+    /// Ends the source after the scans that were pushed before.
     void stop() override;
 
     [[nodiscard]] std::size_t waiting() const noexcept { return scans_.size(); }

@@ -17,15 +17,16 @@ using std::chrono::milliseconds;
 
 namespace {
 
-/// Scans on their way to the client's thread. It takes them at once, unless the disk of its spool stands still.
+/// Scans that were posted and not yet taken by the client's thread, which takes them at once unless the spool's disk
+/// does not respond.
 constexpr std::size_t kHandedOverMax = 1024;
 
 constexpr milliseconds kPatienceMax = std::chrono::hours(24 * 365);
 
-/// How much later than it should the client's thread may be: its disk may stand still.
+/// How late the client's thread may be, because its disk may not respond.
 constexpr milliseconds kGrace{1000};
 
-/// How often to look for what no bell tells: that scans were dropped, or stood in a spool and are stored already.
+/// How often to check for what no bell reports: dropped scans, and spooled scans that are already stored.
 constexpr milliseconds kLookPeriod{100};
 
 } // namespace
@@ -59,7 +60,7 @@ std::optional<Error> Client::Worker::failure() {
 // Scans ---------------------------------------------------------------------------------------------------------------
 
 Result<> Client::Worker::push(Observation observation) {
-    const std::lock_guard lock(mutex_); // so that what is taken before close() is there before the source's end
+    const std::lock_guard lock(mutex_); // every scan accepted before close() is posted before the source's end
     if (outcome_) return *outcome_;
     if (is_closing_) return Error{Errc::kGone, "the client is being closed"};
     if (on_their_way_.fetch_add(1) >= kHandedOverMax) {
@@ -107,8 +108,9 @@ asio::awaitable<Result<>> Client::Worker::until_all_are(Fate fate, Patience pati
     const std::uint64_t handed_over = handed_over_;
     const std::uint64_t dropped = uplink_.status().dropped;
     for (;;) {
-        // Scans go in order: once no more are left than came later, those from before are through. Which of them were
-        // dropped is not known; to take all for later ones only means to wait for as many more.
+        // Scans are processed in order: when no more remain than were added later, all earlier ones are done. Which
+        // scans were dropped is unknown; counting all of them as later ones only makes the wait longer, by as many
+        // scans.
         const std::uint64_t left = count_of_those_not(fate);
         const std::uint64_t newer = handed_over_ - handed_over;
         if (left == 0 || left + (uplink_.status().dropped - dropped) <= newer) co_return Result<>{};

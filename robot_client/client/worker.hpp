@@ -19,11 +19,12 @@
 
 namespace scanloom::robot {
 
-/// The uplink on a thread of its own.
+/// Runs the uplink on a thread of its own.
 ///
-/// What a caller waits for is a coroutine on that thread that ends by itself when the caller's patience does, so that
-/// nothing is left of those who have gone.
-/// Thread  any, several at a time. What is private runs on its own, except where it says otherwise.
+/// Each waiting call runs a coroutine on that thread. The coroutine ends by itself when the caller's patience ends, so
+/// none remains after its caller has returned.
+/// Threads: any thread, several at a time. Private functions run on the worker's own thread unless their comment says
+///          otherwise.
 class Client::Worker {
 public:
     Worker(UplinkOptions uplink, std::unique_ptr<Spool> spool, LiveFeedOptions feed);
@@ -34,8 +35,8 @@ public:
     [[nodiscard]] Result<> push(Observation observation);
     [[nodiscard]] Result<> flush(std::chrono::milliseconds patience);
     [[nodiscard]] Result<> close(std::chrono::milliseconds patience);
-    /// Errors  kInvalidField, kTooLarge: a value that would end the link; kTimeout; what ended the client. A refusal of
-    ///         the server is in the reply.
+    /// Sends a request and waits for the reply, which may be a refusal by the server.
+    /// Errors: kInvalidField or kTooLarge if a value would end the link; kTimeout; the error that ended the client.
     [[nodiscard]] Result<Reply> ask(Request request, std::chrono::milliseconds patience);
     [[nodiscard]] ClientStatus status();
 
@@ -50,22 +51,24 @@ private:
         Clock::time_point until;
     };
 
-    /// What is to become of scans.
+    /// The state that a caller waits for scans to reach.
     enum class Fate { kStored, kInMaps };
 
     [[nodiscard]] boost::asio::awaitable<void> run();
-    /// Of the scans handed over before; those dropped meanwhile count as gone.
+    /// Waits for the scans that were handed over before. Dropped scans count as done.
     [[nodiscard]] boost::asio::awaitable<Result<>> until_all_are(Fate fate, Patience patience);
     [[nodiscard]] boost::asio::awaitable<Result<>> until_stored(Patience patience);
     [[nodiscard]] boost::asio::awaitable<Result<Reply>> until_answered(Request request, Patience patience);
     [[nodiscard]] std::uint64_t count_of_those_not(Fate fate) const;
-    /// Why there is no use in waiting on, if so: the client has ended, or the patience has.
+    /// Returns the error to stop waiting with if the client has ended or the patience is over, else nullopt.
     [[nodiscard]] std::optional<Error> reason_to_leave(std::string_view what, const Patience& patience);
 
-    /// Waits for a coroutine. Thread: the caller's.
+    /// Waits for a coroutine.
+    /// Threads: the caller's.
     template <class Value>
     [[nodiscard]] Result<Value> wait_for(boost::asio::awaitable<Result<Value>> coroutine, const Patience& patience);
-    /// What the client has ended with. Thread: any.
+    /// Returns the error that the client has ended with, if it has.
+    /// Threads: any thread.
     [[nodiscard]] std::optional<Error> failure();
 
     boost::asio::io_context io_{1};
@@ -73,8 +76,8 @@ private:
     PushedSource source_;
     LiveFeed feed_;
     Uplink uplink_;
-    std::uint64_t handed_over_ = 0;      ///< scans, to source_
-    std::uint64_t dropped_and_told_ = 0; ///< scans, by flush()
+    std::uint64_t handed_over_ = 0;      ///< scans, given to source_
+    std::uint64_t dropped_and_told_ = 0; ///< scans that flush() has reported
     std::atomic<std::size_t> on_their_way_ = 0;
     std::mutex mutex_;
     std::optional<Error> outcome_; ///< guarded by mutex_
