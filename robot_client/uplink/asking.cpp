@@ -15,7 +15,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-/// What is waited for. The uplink may hear the answer when nobody waits any more.
+/// The state of a request. The uplink may receive the reply after the coroutine was cancelled.
 struct Pending {
     asio::steady_timer answered;
     std::optional<Reply> reply;

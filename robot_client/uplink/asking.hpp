@@ -6,9 +6,10 @@
 
 namespace scanloom::robot {
 
-/// Asks the server once all scans that were taken so far are in its maps: so the answer depends on the scans alone,
-/// however long they were on their way. Cancelled, it abandons the question. The uplink outlives it.
-/// Errors  kOverloaded: OpenRequests::kMax are open. A refusal of the server is in the reply.
+/// Sends a request once all scans taken so far are in its maps, and returns the reply, which may be a refusal. So the
+/// reply depends only on the scans, not on how long their transmission took. Abandons the request if cancelled.
+/// `uplink` must outlive the coroutine.
+/// Errors: kOverloaded if OpenRequests::kMax requests are open.
 [[nodiscard]] boost::asio::awaitable<Result<Reply>> ask_once_applied(Uplink& uplink, Request request);
 
 } // namespace scanloom::robot

@@ -11,8 +11,8 @@ struct BackoffWaits {
     std::chrono::milliseconds longest{10'000};
 };
 
-/// How long to wait before the next attempt: doubling from the first wait to the longest, each a random part between
-/// half and whole, so that many robots do not come back at one moment.
+/// Chooses how long to wait before the next attempt. The wait doubles from the first to the longest; a random part
+/// between half and all of it is used, so that many robots do not reconnect at the same moment.
 class Backoff {
 public:
     explicit Backoff(std::uint32_t seed, const BackoffWaits& waits = {})
@@ -20,7 +20,7 @@ public:
 
     [[nodiscard]] std::chrono::milliseconds next();
 
-    /// It went well: the next wait is a short one.
+    /// Makes the next wait the first, short one. Call it after a success.
     void reset() noexcept { wait_ = waits_.first; }
 
 private:

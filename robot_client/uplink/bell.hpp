@@ -11,14 +11,14 @@
 
 namespace scanloom::robot {
 
-/// Wakes all coroutines that wait for it. Who wakes looks for itself whether anything is new. It may go before or after
-/// the executor of those that wait.
-/// Thread  one at a time.
+/// Wakes all coroutines that wait for it. A woken coroutine checks itself whether anything has changed. A Bell may be
+/// destroyed before or after the executor of the waiting coroutines.
+/// Threads: one at a time.
 class Bell {
 public:
     using Time = boost::asio::steady_timer::time_point;
 
-    /// Until it rings, or until then.
+    /// Waits until the bell rings or until the given time.
     [[nodiscard]] boost::asio::awaitable<void> wait(Time until = Time::max()) {
         const auto waiting = waiting_;
         boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor, until);

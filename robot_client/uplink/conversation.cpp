@@ -13,16 +13,16 @@
 namespace scanloom::robot {
 namespace {
 
-/// Pings a server may have unanswered here; one that sends more is not the server.
+/// Pings that may be unanswered here; a server never sends more.
 constexpr std::size_t kPingsToAnswerMax = 16;
 
-/// Frame and batch fields around the scans of a batch, length prefix included.
+/// Bytes of the frame and batch fields around the scans of a batch, including the length prefix.
 constexpr std::size_t kBatchOverhead = wire::kLengthPrefixBytes + 16;
 
 wire::LinkError retry(Errc code, std::string message) { return {{code, std::move(message)}, true}; }
 wire::LinkError give_up(Error error) { return {std::move(error), false}; }
 
-/// A server's failure with a sentence that can be shown.
+/// Makes the message of a server's failure safe to show.
 wire::LinkError in_plain_text(wire::LinkError failure) {
     auto& [code, message] = failure.error;
     message = message.empty()
@@ -31,7 +31,7 @@ wire::LinkError in_plain_text(wire::LinkError failure) {
     return failure;
 }
 
-/// A server that states no limit means the protocol's.
+/// Replaces limits that the server did not state by the protocol's limits.
 wire::Limits with_defaults(wire::Limits limits) {
     if (limits.frame_size_max == 0) limits.frame_size_max = wire::kFrameBytesMax;
     if (limits.beams_max == 0) limits.beams_max = kBeamsMax;
@@ -78,7 +78,7 @@ std::optional<wire::LinkError> Conversation::receive(const wire::Message& messag
     if (link_->welcomed) {
         if (const auto* ack = std::get_if<wire::Ack>(&message)) return on_ack(*ack, now);
         if (std::holds_alternative<wire::Correction>(message))
-            return std::nullopt; // poses are sent as the source has them
+            return std::nullopt; // ignored: poses are sent as the source gives them
         if (requests_.answer(message)) return std::nullopt;
     }
     return retry(Errc::kMalformed, fmt::format("the server sent an unexpected {}", wire::name_of(message)));
@@ -154,7 +154,7 @@ std::optional<std::string> Conversation::next_frame(Time now) {
     return frame;
 }
 
-/// Credit is of what the server has in the end, not of what travels.
+/// Credit counts uncompressed bytes: what the server holds, not what is transmitted.
 void Conversation::write_batch(const wire::ScanBatch& batch, std::string& frame) {
     wire::encode(batch, frame);
     link_->credit.sent(batch.scans.back().seq, frame.size());
@@ -185,7 +185,7 @@ std::optional<wire::Message> Conversation::next_message(Time now) {
         link_->said_goodbye = true;
         return wire::Goodbye{"every scan is acknowledged"};
     }
-    if (auto request = requests_.next()) return request; // somebody waits for the reply
+    if (auto request = requests_.next()) return request; // a caller waits for the reply
     return next_about_scans(now);
 }
 
@@ -207,14 +207,14 @@ std::optional<wire::Message> Conversation::next_about_scans(Time now) {
     return batch;
 }
 
-/// Whether more scans may come that share the batch with the `fitting` ones, and there is time for it.
+/// Returns whether to wait for more scans to share the batch with the `fitting` ones.
 bool Conversation::waits_for_others(std::size_t fitting, Time now) const {
     const bool is_all = fitting == buffer_.unsent_count() && !ended_ && fitting < link_->limits.scans_per_batch_max;
     return is_all && unsent_since_ && now < *unsent_since_ + options_.batch_delay;
 }
 
-/// How many of the unsent scans go into the next batch: those whose sensor stands described, within the credit, the
-/// server's limits and the wanted batch size. The first may exceed the latter.
+/// Returns how many unsent scans go into the next batch: those whose sensor was described, within the credit, the
+/// server's limits and batch_bytes_max. The first scan may exceed batch_bytes_max.
 std::size_t Conversation::scans_that_fit() {
     const wire::Limits& limits = link_->limits;
     const std::uint64_t frame_max = limits.frame_size_max + wire::kLengthPrefixBytes;
@@ -272,7 +272,7 @@ Conversation::Time Conversation::deadline(Time now) const {
 
 void Conversation::add(Observation observation, Time now) {
     assert(!ended_);
-    if (buffer_.empty()) progress_ = now; // nothing waited until now
+    if (buffer_.empty()) progress_ = now; // no scan was waiting until now
     if (!unsent_since_) unsent_since_ = now;
     buffer_.push(std::move(observation));
 }

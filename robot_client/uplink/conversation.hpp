@@ -20,13 +20,14 @@ namespace scanloom::robot {
 
 struct ConversationOptions {
     wire::Hello hello;
-    std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of scans not yet acknowledged; then the source waits
-    std::size_t batch_bytes_max = std::size_t{64} << 10;  ///< of one ScanBatch of several scans
-    std::chrono::milliseconds batch_delay{0};             ///< how long a scan may wait for others to share its batch
-    bool compress = false;                                ///< batches, where the server understands it
-    std::chrono::milliseconds welcome_timeout{10'000};    ///< from hello to welcome
-    std::chrono::milliseconds ping_after{5'000};          ///< of silence
-    std::chrono::milliseconds silence_max{15'000};        ///< then the link counts as dead
+    std::size_t buffer_bytes_max = std::size_t{32}
+                                   << 20;                ///< of scans not yet acknowledged; when full, the source waits
+    std::size_t batch_bytes_max = std::size_t{64} << 10; ///< of one ScanBatch of several scans
+    std::chrono::milliseconds batch_delay{0};            ///< how long a scan may wait for others to share its batch
+    bool compress = false;                               ///< compress batches if the server supports it
+    std::chrono::milliseconds welcome_timeout{10'000};   ///< from hello to welcome
+    std::chrono::milliseconds ping_after{5'000};         ///< of silence
+    std::chrono::milliseconds silence_max{15'000};       ///< then the link is considered dead
 };
 
 /// The state of one connection of a Conversation.
@@ -34,7 +35,7 @@ struct ConversationLink {
     using Time = std::chrono::steady_clock::time_point;
 
     Time opened;
-    Time heard; ///< the newest frame that came
+    Time heard; ///< when the newest frame arrived
     std::optional<Time> pinged;
     bool said_hello = false;
     bool welcomed = false;
@@ -44,17 +45,18 @@ struct ConversationLink {
     CreditWindow credit;
     std::map<std::uint32_t, std::shared_ptr<const Sensor>> described; ///< by Sensor::id
     std::deque<std::uint64_t> pings_to_answer;
-    std::optional<Error> cannot_send; ///< the next scan exceeds what this server takes
+    std::optional<Error> cannot_send; ///< set if the next scan exceeds this server's limits
 };
 
-/// The robot's side of the robot link, without a socket and without a clock: what to say next, what to say again after
-/// a reconnect, how much may be under way. It outlives its links and is driven by events.
+/// The robot's side of the robot link as a state machine without socket and clock. It decides which message to send
+/// next, what to send again after a reconnect, and how much may be outstanding. It outlives its links.
 ///
-/// Usage   link up: open(); for every frame that came: receive(); while next_frame() gives something: send it;
-///         link down: close(). Scans come in by add() while has_room(), end() after the last one.
-/// Errors  a LinkError ends the link; only if it is retryable, another may be tried.
-/// Thread  one at a time.
-/// Source  proto/scanloom/v1/frame.proto.
+/// Usage: when a link is up, call open(); receive() for each frame that arrives; next_frame() until it returns nullopt,
+/// and send what it returns; close() when the link is down. Call add() for each scan while has_room(), and end() after
+/// the last one.
+/// Errors: a LinkError ends the link; another link may be tried only if it is retryable.
+/// Threads: one at a time.
+/// Source: proto/scanloom/v1/frame.proto.
 class Conversation {
 public:
     using Time = std::chrono::steady_clock::time_point;
@@ -65,46 +67,49 @@ public:
     void open(Time now);
     void close();
     [[nodiscard]] std::optional<wire::LinkError> receive(const wire::Message& message, Time now);
-    /// The next frame to send, length prefix included; nothing while there is nothing to say or no credit to say it.
+    /// Returns the next frame to send, including its length prefix, or nullopt while there is no message to send or no
+    /// credit for it.
     [[nodiscard]] std::optional<std::string> next_frame(Time now);
-    /// What is wrong with the link by now.
+    /// Returns the failure of the link at this time, if any.
     [[nodiscard]] std::optional<wire::LinkError> check(Time now) const;
-    /// Until then neither check() nor next_frame(), which had nothing to give, changes its answer, unless something
-    /// happens.
+    /// Returns the time until which the results of check() and next_frame() stay the same unless an event occurs. Pre:
+    /// next_frame() returned nullopt.
     [[nodiscard]] Time deadline(Time now) const;
 
     // The source
-    /// How many scans the server held when it was first reached; nothing before that.
+    /// Returns how many scans the server had at the first welcome, or nullopt before it.
     [[nodiscard]] std::optional<std::uint64_t> resumed_after() const noexcept { return resumed_after_; }
     [[nodiscard]] bool has_room() const noexcept { return buffer_.has_room(); }
-    /// Before the server was reached, too. Pre: has_room(), not ended.
+    /// Adds the source's next scan, also before the server was reached. Pre: has_room(), not ended.
     void add(Observation observation, Time now);
-    /// @return false where all there are may have been sent.
+    /// Drops the oldest unsent scan.
+    /// @return false if every scan in the buffer may have been sent
     bool drop_oldest_unsent() noexcept { return buffer_.drop_oldest_unsent(); }
     void end() noexcept { ended_ = true; }
 
     // Questions
-    /// Asks the server; `answered` is called once, from receive(), with the reply, which may be a refusal. What was
-    /// asked on a link that breaks is asked again on the next; what is not answered when all scans are durable and
-    /// there will be no more, never is.
-    /// @return its id; nothing when OpenRequests::kMax are not answered yet, and nothing is asked then.
+    /// Adds a request to the server. A request sent on a link that breaks is sent again on the next one. A request that
+    /// is open when the last scan is durable is never answered.
+    /// @param answered  called once, from receive(), with the reply, which may be a refusal
+    /// @return the request's id, or nullopt if OpenRequests::kMax requests are open; then it is not added
     [[nodiscard]] std::optional<std::uint64_t> ask(Request request, Answered answered) {
         return requests_.add(std::move(request), std::move(answered));
     }
-    /// Nobody waits for the answer any more.
+    /// Drops the callback of a request: its reply is no longer needed.
     void abandon(std::uint64_t id) { requests_.abandon(id); }
 
-    // How far it is
-    /// Every scan there will be is durable.
+    // Progress
+    /// Returns whether the source has ended and every scan is durable.
     [[nodiscard]] bool is_done() const noexcept { return ended_ && buffer_.empty(); }
     [[nodiscard]] bool said_goodbye() const noexcept { return link_ && link_->said_goodbye; }
-    /// Of Welcome: changes when the session is deleted and made anew; empty before the server was reached.
+    /// Returns Welcome::session_id, which changes when the session is deleted and recreated; empty before the first
+    /// welcome.
     [[nodiscard]] const std::string& session_id() const noexcept { return session_id_; }
     [[nodiscard]] bool is_welcome() const noexcept { return link_ && link_->welcomed; }
-    /// Since when something is waiting for the server without the server getting anywhere; nothing if nothing waits.
+    /// Returns since when data have been waiting without progress of the server, or nullopt if no data wait.
     [[nodiscard]] std::optional<Time> stalled_since() const;
     [[nodiscard]] std::uint64_t acknowledged() const noexcept { return buffer_.acknowledged(); }
-    /// Highest seq of this robot that is in the server's maps, as far as is known.
+    /// Returns the highest seq of this robot known to be in the server's maps.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
     [[nodiscard]] std::uint64_t last() const noexcept { return buffer_.last(); }
     [[nodiscard]] std::uint64_t sent_ever() const noexcept { return buffer_.sent_ever(); }
@@ -130,7 +135,7 @@ private:
     std::optional<std::uint64_t> resumed_after_;
     std::string session_id_;
     Time progress_;
-    std::optional<Time> unsent_since_; ///< when the oldest scan came that may wait for others
+    std::optional<Time> unsent_since_; ///< arrival of the oldest scan that may wait for others
     std::optional<wire::Compressor> compressor_;
     std::uint64_t applied_ = 0;
     bool ended_ = false;

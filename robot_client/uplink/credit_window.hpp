@@ -6,11 +6,11 @@
 
 namespace scanloom::robot {
 
-/// The bytes of ScanBatch frames (length prefix included) that are under way on one link: sent, not yet durable.
-/// A batch counts whole until its last scan is durable.
+/// Counts the bytes of ScanBatch frames (including length prefix) that are outstanding on one link: sent and not yet
+/// durable. A batch counts in full until its last scan is durable.
 class CreditWindow {
 public:
-    /// A new link; nothing is under way on it.
+    /// Starts a new link with nothing outstanding.
     void reset(std::uint64_t credit_bytes) {
         batches_.clear();
         under_way_ = 0;
@@ -19,7 +19,7 @@ public:
 
     void set_credit(std::uint64_t credit_bytes) noexcept { credit_ = credit_bytes; }
 
-    /// Bytes that may be sent now; 0 also where the server has lowered the credit below what is under way.
+    /// Returns how many bytes may be sent now; 0 also if the server has lowered the credit below the outstanding bytes.
     [[nodiscard]] std::uint64_t available() const noexcept { return credit_ > under_way_ ? credit_ - under_way_ : 0; }
     [[nodiscard]] std::uint64_t under_way() const noexcept { return under_way_; }
     [[nodiscard]] std::uint64_t credit() const noexcept { return credit_; }

@@ -11,25 +11,26 @@
 
 namespace scanloom::robot {
 
-/// The uplink as a feed sees it: where its scans go, and how far they are.
-/// Thread  the uplink's.
+/// The uplink's interface for a feed: it accepts scans and reports their progress.
+/// Threads: the uplink's.
 class Intake {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
-    /// Scans of this robot that the server held when it was first reached; nothing before that.
+    /// Returns how many scans of this robot the server had at the first welcome, or nullopt before it.
     [[nodiscard]] virtual std::optional<std::uint64_t> resumed_after() const = 0;
-    /// Of Welcome; empty before the server was reached.
+    /// Returns Welcome::session_id, or an empty string before the first welcome.
     [[nodiscard]] virtual const std::string& session_id() const = 0;
     [[nodiscard]] virtual bool has_room() const = 0;
-    /// Takes the robot's next scan. Pre: has_room().
+    /// Adds the robot's next scan. Pre: has_room().
     virtual void add(Observation observation) = 0;
-    /// @return false where all scans there are may have been sent.
+    /// Drops the oldest unsent scan.
+    /// @return false if every scan in the buffer may have been sent
     virtual bool drop_oldest_unsent() = 0;
-    /// No more scans are wanted.
+    /// Returns whether the uplink accepts no more scans.
     [[nodiscard]] virtual bool is_stopped() const = 0;
 
-    /// Waits until one of these may have changed, or until then, or for wake(). One coroutine at a time.
+    /// Waits until one of these values may have changed, until the given time, or for wake(). One coroutine at a time.
     [[nodiscard]] virtual boost::asio::awaitable<void> news(Time until = Time::max()) = 0;
     virtual void wake() = 0;
 
@@ -37,30 +38,30 @@ protected:
     ~Intake() = default;
 };
 
-/// What hands scans to an uplink. It outlives the uplink's run.
-/// Thread  the uplink's.
+/// Hands scans to an uplink. It must outlive the uplink's run.
+/// Threads: the uplink's.
 class Feed {
 public:
     virtual ~Feed() = default;
 
-    /// Hands scans over until there are no more, or the intake is stopped.
-    /// Errors  end the uplink, once what was handed over is acknowledged.
+    /// Hands scans over until there are no more or the intake is stopped.
+    /// Errors: end the uplink once the scans handed over are acknowledged.
     [[nodiscard]] virtual boost::asio::awaitable<Result<>> run(Intake& intake) = 0;
 
-    /// The server holds all scans up to `seq`.
+    /// Notifies the feed that the server has stored all scans up to `seq`.
     virtual void acknowledged(std::uint64_t seq) { static_cast<void>(seq); }
 
-    /// Scans there will be in the end; nothing where that is not known.
+    /// Returns the total number of scans, or nullopt if it is not known.
     [[nodiscard]] virtual std::optional<std::uint64_t> scan_count() const { return std::nullopt; }
-    /// Whether nothing is taken any more, though some may have to be handed over still.
+    /// Returns whether the source has ended. Scans taken before may still have to be handed over.
     [[nodiscard]] virtual bool has_ended() const { return false; }
-    /// Scans that were taken and not handed over yet.
+    /// Returns the number of scans taken and not handed over yet.
     [[nodiscard]] virtual std::uint64_t waiting() const { return 0; }
-    /// Scans that were taken and are lost, for want of room.
+    /// Returns the number of scans taken and lost for lack of room.
     [[nodiscard]] virtual std::uint64_t dropped() const { return 0; }
-    /// How long nothing will be handed over, in a long pause only.
+    /// Returns the time until the next scan, only during a long pause.
     [[nodiscard]] virtual std::optional<std::chrono::duration<double>> next_scan_in() const { return std::nullopt; }
-    /// Why it counts as unfinished when it was stopped after scan `last`; nothing if it does not.
+    /// Returns why the feed counts as unfinished if it was stopped after scan `last`, or nullopt if it does not.
     [[nodiscard]] virtual std::optional<std::string> unfinished(std::uint64_t last) const {
         static_cast<void>(last);
         return std::nullopt;

@@ -13,7 +13,7 @@ namespace {
 NextStop as_stop(wire::Goal goal) {
     switch (goal.exploration) {
     case wire::Exploration::kGoal:
-        return {NextStop::Outcome::kGoal, std::move(goal.path->points), *goal.target}; // they come with a goal
+        return {NextStop::Outcome::kGoal, std::move(goal.path->points), *goal.target}; // always present with a goal
     case wire::Exploration::kTakenByOthers: return {NextStop::Outcome::kTakenByOthers, {}, {0.0, 0.0}};
     case wire::Exploration::kComplete: break;
     }

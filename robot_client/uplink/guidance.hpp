@@ -5,9 +5,10 @@
 
 namespace scanloom::robot {
 
-/// Asks the server where to explore next, once all scans that were taken so far are in its maps: so the answer depends
-/// on the scans alone, however long they were on their way.
-/// Errors of what it gives  the server's refusal; kOverloaded: OpenRequests::kMax are open.
+/// Makes a NextGoal that asks the server for the next exploration goal once all scans taken so far are in its maps. So
+/// the goal depends only on the scans, not on how long their transmission took.
+/// @param body_radius_m  metres
+/// Errors: of the returned function: the server's refusal; kOverloaded if OpenRequests::kMax requests are open.
 [[nodiscard]] NextGoal guided_by(Uplink& uplink, double body_radius_m);
 
 } // namespace scanloom::robot

@@ -16,7 +16,7 @@ asio::awaitable<Result<>> LiveFeed::run(Intake& intake) {
     co_return outcome_;
 }
 
-/// Ends only when it is cancelled: hand_over() ends the run.
+/// Ends only when cancelled: hand_over() ends the run.
 asio::awaitable<void> LiveFeed::take(Intake& intake) {
     if (source_.can_wait()) {
         while (!intake.resumed_after()) co_await room_.wait();
@@ -50,8 +50,8 @@ void LiveFeed::keep(Intake& intake, Observation observation) {
         options_.tell(fmt::format("{}; scans are held in memory only, or dropped while others wait in the spool",
                                   kept.error().message));
     }
-    // Scans go in the order in which they were taken. Those that the spool never saw would upset its numbering, so that
-    // there is no way back to it for this program.
+    // Scans are sent in the order in which they were taken. A scan that bypasses the spool would break its numbering,
+    // so this program cannot return to the spool.
     spool_given_up_ = spool_->waiting() == 0;
     if (spool_given_up_) return keep_in_memory(intake, std::move(observation));
     ++dropped_;
@@ -63,7 +63,7 @@ void LiveFeed::keep_in_memory(Intake& intake, Observation observation) {
                                   "--spool keeps them on disk",
                                   options_.when_full == WhenFull::kDropOldest ? "oldest unsent" : "newest"));
     }
-    while (!intake.has_room()) { // the oldest may be smaller
+    while (!intake.has_room()) { // the oldest scan may be smaller than the new one
         ++dropped_;
         if (options_.when_full == WhenFull::kDropNewest || !intake.drop_oldest_unsent()) return;
     }
@@ -85,7 +85,7 @@ asio::awaitable<void> LiveFeed::hand_over(Intake& intake) {
             }
         }
         if (ended_ && waiting() == 0) {
-            if (spool_ && begun_) spool_->tidy_up(); // of what was acknowledged before; the rest follows
+            if (spool_ && begun_) spool_->tidy_up(); // files acknowledged before; acknowledged() removes the rest
             co_return;
         }
         room_.ring();

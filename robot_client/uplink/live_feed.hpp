@@ -12,20 +12,22 @@
 namespace scanloom::robot {
 
 struct LiveFeedOptions {
-    WhenFull when_full = WhenFull::kDropOldest; ///< without a spool; that has its own
-    /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
+    WhenFull when_full = WhenFull::kDropOldest; ///< without a spool, which has its own setting
+    /// Called before the first scan is sent with the number of scans that the server has from earlier runs, if there
+    /// are any.
     std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
-    /// Hears sentences for people: that scans are being dropped, that the spool cannot be written.
+    /// Receives messages for people, for example that scans are dropped or that the spool cannot be written.
     std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 
-/// Hands over what cannot be had again. It takes scans whether there is a server or not: into the spool, and from there
-/// as there is room; without a spool into the uplink's memory, and drops some where that is full. A source that can
-/// wait is asked for nothing before the server was reached, nor while there is no room.
-/// Errors of run()  those of the source, once what it gave before is handed over; those of the spool.
+/// Feeds scans that cannot be obtained again. It takes scans whether or not the server is reachable. With a spool,
+/// scans go into it and from there to the uplink when there is room. Without a spool they go into the uplink's memory,
+/// and some are dropped when it is full. A source that can wait is not read before the server was reached or while
+/// there is no room.
+/// Errors of run(): those of the source, once the scans before are handed over; those of the spool.
 class LiveFeed final : public Feed {
 public:
-    /// `spool` may be null.
+    /// @param spool  may be null
     LiveFeed(LiveSource& source, std::unique_ptr<Spool> spool, LiveFeedOptions options);
 
     [[nodiscard]] boost::asio::awaitable<Result<>> run(Intake& intake) override;
@@ -46,14 +48,14 @@ private:
     LiveSource& source_;
     std::unique_ptr<Spool> spool_;
     LiveFeedOptions options_;
-    Bell room_; ///< there may be some
+    Bell room_; ///< rings when there may be room
     Result<> outcome_;
-    std::uint64_t dropped_ = 0; ///< not by the spool
+    std::uint64_t dropped_ = 0; ///< not counting those of the spool
     bool told_of_dropping_ = false;
     bool told_of_spool_ = false;
     bool spool_given_up_ = false;
-    bool begun_ = false; ///< the spool
-    bool ended_ = false; ///< the source
+    bool begun_ = false; ///< Spool::begin() was called
+    bool ended_ = false; ///< the source has ended
 };
 
 } // namespace scanloom::robot

@@ -15,7 +15,7 @@ namespace {
 static_assert(kSeenPointsMin == wire::kLocatePointsMin && kSeenPointsMax == wire::kLocatePointsMax);
 
 asio::awaitable<Result<Located>> ask(Uplink& uplink, wire::LocateRequest request) {
-    Request question = std::move(request); // named, as g++ 12 destroys such temporaries twice
+    Request question = std::move(request); // a named variable, because g++ 12 destroys such temporaries twice
     const Result<Reply> reply = co_await ask_once_applied(uplink, std::move(question));
     if (!reply) co_return reply.error();
     const auto& correction = std::get<wire::LocateReply>(*reply).correction;
@@ -23,8 +23,8 @@ asio::awaitable<Result<Located>> ask(Uplink& uplink, wire::LocateRequest request
     co_return Located{correction->T_map_odom, correction->explained, correction->position_sigma, correction->yaw_sigma};
 }
 
-/// What was said of the first place holds for no other: a robot that is carried out of it may be where that looks
-/// alike.
+/// The prior of a locate request. The prior of the first place does not hold for later ones: a robot that was carried
+/// away may stand at a place that looks like the first one.
 struct Sought {
     std::optional<wire::Near> near;
     Point2 first_place;

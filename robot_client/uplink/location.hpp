@@ -7,16 +7,15 @@
 
 namespace scanloom::robot {
 
-/// Metres along each axis: a robot of which was said where it stands first is not carried further before it stands
-/// again.
+/// Metres along each axis: the farthest that a robot with a given first place is carried before it is stationary again.
 inline constexpr double kCarriedMax = 100.0;
 
-/// Asks the server where the robot is, as ask_once_applied() does.
-/// @param near         where it stands first; each further place is within kCarriedMax of the one that was told before.
-///                     None: anywhere in the map
-/// @param first_place  where it is taken to stand if nothing is mapped when it asks first
-/// Errors of what it gives  the server's refusal, e.g. kAmbiguous, kUndetermined, kNothingMapped; kOverloaded:
-///                          OpenRequests::kMax are open.
+/// Makes a Locate that asks the server for the robot's position, as ask_once_applied() does.
+/// @param near         where the robot stands first; each later place is within kCarriedMax of the previous result.
+///         None: anywhere in the map
+/// @param first_place  metres in the map frame; the assumed place if no map exists at the first request
+/// Errors: of the returned function: the server's refusal, e.g. kAmbiguous, kUndetermined or kNothingMapped;
+///         kOverloaded if OpenRequests::kMax requests are open.
 [[nodiscard]] Locate located_by(Uplink& uplink, const std::optional<wire::Near>& near, const Point2& first_place);
 
 } // namespace scanloom::robot

@@ -26,7 +26,7 @@ std::optional<std::uint64_t> OpenRequests::add(Request request, Answered answere
 
 void OpenRequests::abandon(std::uint64_t id) {
     const auto asked = open_.find(id);
-    if (asked == open_.end()) return; // the answer was quicker
+    if (asked == open_.end()) return; // it was answered before
     if (id > sent_) {
         open_.erase(asked);
     } else {

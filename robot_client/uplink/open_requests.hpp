@@ -11,49 +11,49 @@
 
 namespace scanloom::robot {
 
-/// What a robot may ask of the server: see proto/scanloom/v1/frame.proto. Pre: points are finite and within
-/// common/scan/limits.hpp. The id is given when it is asked.
+/// A request that a robot can send to the server, see proto/scanloom/v1/frame.proto. OpenRequests sets the id. Pre:
+/// points are finite and within common/scan/limits.hpp.
 using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
 
-/// The reply to a request is of the same kind.
+/// The reply to a request, of the same kind.
 using Reply = std::variant<wire::PlanReply, wire::GoalReply, wire::CoverageReply, wire::LocateReply>;
 using Answered = std::function<void(const Reply&)>;
 
-/// Requests that are not answered yet. They outlive links: what was asked on a link that broke is asked again.
-/// Thread  one at a time.
+/// Requests that have no reply yet. They outlive links: a request sent on a link that broke is sent again.
+/// Threads: one at a time.
 class OpenRequests {
 public:
-    static constexpr std::size_t kMax = 4; ///< what a server meets at a time
+    static constexpr std::size_t kMax = 4; ///< the most that a server processes at a time
 
-    /// @return its id; nothing when kMax are open, and nothing is asked then.
+    /// @return the request's id, or nullopt if kMax requests are open; then it is not added
     [[nodiscard]] std::optional<std::uint64_t> add(Request request, Answered answered);
 
-    /// Nobody waits for the reply any more. What was not sent never is; of what was, the server counts one until its
-    /// reply was read, or the link is gone.
+    /// Drops the callback of a request. An unsent request is never sent. The server counts a sent one as open until its
+    /// reply was read or the link has ended.
     void abandon(std::uint64_t id);
 
-    /// The link is gone: all are unsent, and those that were abandoned are forgotten.
+    /// Marks all requests as unsent after a link has ended, and forgets the abandoned ones.
     void rewind();
 
-    /// The next to be sent, in the order in which they were asked; counts as sent from then on.
+    /// Returns the next request to send, in the order of add(), and counts it as sent.
     [[nodiscard]] std::optional<wire::Message> next();
 
-    /// Hands a reply to whoever asked, who may ask again at once.
-    /// @return false for a message that answers none of them.
+    /// Passes a reply to the callback of its request, which may add a request at once.
+    /// @return false if the message is not a reply to an open request
     [[nodiscard]] bool answer(const wire::Message& message);
 
-    /// Whether the server was asked on the present link where the robot is, and has not answered yet.
+    /// Returns whether a LocateRequest was sent on the current link and is not answered yet.
     [[nodiscard]] bool is_locating() const;
 
 private:
     struct Open {
         Request request;
-        Answered answered; ///< none: abandoned
+        Answered answered; ///< empty: abandoned
     };
 
-    std::map<std::uint64_t, Open> open_; // by id, which grows
+    std::map<std::uint64_t, Open> open_; // by id, which increases
     std::uint64_t newest_ = 0;           // id
-    std::uint64_t sent_ = 0;             // up to this id, on the present link
+    std::uint64_t sent_ = 0;             // up to this id, on the current link
 };
 
 } // namespace scanloom::robot

@@ -11,11 +11,11 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr std::uint64_t kScansBetweenYields = 32; // a fast source must not keep the acknowledgements waiting
+constexpr std::uint64_t kScansBetweenYields = 32; // so that a fast source does not delay acknowledgements
 
-constexpr std::uint64_t kScansOfARobotMax = 1'000'000'000; // three years of ten a second
+constexpr std::uint64_t kScansOfARobotMax = 1'000'000'000; // three years at ten scans a second
 
-/// Errors  kConflict: the server has more scans than there will be.
+/// Errors: kConflict if the server has more scans than the source.
 Result<> check_resume(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
     if (stored <= scan_count.value_or(kScansOfARobotMax)) return {};
     if (!scan_count) {
@@ -30,7 +30,7 @@ Result<> check_resume(std::uint64_t stored, std::optional<std::uint64_t> scan_co
                     stored, *scan_count)};
 }
 
-/// Lets others on the thread go first.
+/// Lets other handlers of the thread run first.
 asio::awaitable<void> yield() { co_await asio::post(co_await asio::this_coro::executor, asio::use_awaitable); }
 
 } // namespace
@@ -44,7 +44,7 @@ asio::awaitable<Result<>> RecordingFeed::run(Intake& intake) {
     co_return co_await hand_over(intake);
 }
 
-/// The server has them from an earlier run.
+/// Skips scans that the server has from an earlier run.
 asio::awaitable<Result<>> RecordingFeed::pass_over(Intake& intake, std::uint64_t scans) {
     if (scans == 0) co_return Result<>{};
     if (auto ok = check_resume(scans, source_.scan_count()); !ok) co_return ok;
@@ -72,7 +72,7 @@ asio::awaitable<Result<>> RecordingFeed::hand_over(Intake& intake) {
             break;
         }
         co_await wait_until_due(intake, pacer_.due(observation->scan.stamp, Clock::now()));
-        if (intake.is_stopped()) break; // this scan was not due yet
+        if (intake.is_stopped()) break; // this scan is not due yet
         intake.add(std::move(*observation));
         if (++scans_since_yield % kScansBetweenYields == 0) co_await yield();
     }

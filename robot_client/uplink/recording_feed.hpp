@@ -8,20 +8,21 @@
 
 namespace scanloom::robot {
 
-/// A pause between two scans that people are told of.
+/// A pause between two scans that is reported to people.
 inline constexpr std::chrono::seconds kLongPause{60};
 
 struct RecordingFeedOptions {
-    double speed = 0.0; ///< of the source's own pace; 0 = as fast as the server takes it
-    /// Hears, before the first scan is sent, how many the server holds from earlier runs; only if there are any.
+    double speed = 0.0; ///< multiple of the source's own pace; 0 = as fast as the server accepts scans
+    /// Called before the first scan is sent with the number of scans that the server has from earlier runs, if there
+    /// are any.
     std::function<void(std::uint64_t)> on_resume = [](std::uint64_t) {};
-    /// Hears how long nothing will be sent, when the next scan is due in more than kLongPause only.
+    /// Called with the length of a pause, only if the next scan is due in more than kLongPause.
     std::function<void(std::chrono::duration<double>)> on_long_pause = [](std::chrono::duration<double>) {};
 };
 
-/// Hands over what can be had again: passes over the scans that the server holds from earlier runs, keeps the pace, and
-/// waits where there is no room.
-/// Errors of run()  kConflict: the server holds more scans than the source has; those of the source.
+/// Feeds scans that can be read again. It skips the scans that the server has from earlier runs, keeps the pace, and
+/// waits while there is no room.
+/// Errors of run(): kConflict if the server has more scans than the source; those of the source.
 class RecordingFeed final : public Feed {
 public:
     RecordingFeed(Source& source, RecordingFeedOptions options);
@@ -41,7 +42,7 @@ private:
     Source& source_;
     RecordingFeedOptions options_;
     Pacer pacer_;
-    std::optional<Clock::time_point> pause_ends_; ///< of a long pause
+    std::optional<Clock::time_point> pause_ends_; ///< end of a long pause
     bool ended_ = false;
 };
 

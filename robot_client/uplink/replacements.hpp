@@ -6,17 +6,18 @@
 
 namespace scanloom::robot {
 
-/// Tells two reasons apart for which a server ends a link with "the same robot connected again". One is an earlier link
-/// of this program whose hello arrived late, over a network that stalls: it passes. The other is another program under
-/// the same name, which would come back for ever, as this one would.
+/// Distinguishes the two reasons for which a server ends a link with "the same robot connected again". Either an
+/// earlier link of this program is the cause, whose hello arrived late over a stalled network; then retrying helps. Or
+/// another program uses the same name; then both would replace each other forever.
 class Replacements {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
-    static constexpr std::size_t kMax = 3; ///< so many of them within
+    static constexpr std::size_t kMax = 3; ///< this many replacements within kWithin are too many
     static constexpr std::chrono::seconds kWithin{60};
 
-    /// A link was replaced. @return whether it may pass.
+    /// Records that a link was replaced.
+    /// @return whether to connect again
     [[nodiscard]] bool may_pass(Time now) {
         while (!times_.empty() && times_.front() + kWithin <= now) times_.pop_front();
         times_.push_back(now);
@@ -24,7 +25,7 @@ public:
     }
 
 private:
-    std::deque<Time> times_; // kMax at most
+    std::deque<Time> times_; // at most kMax
 };
 
 } // namespace scanloom::robot

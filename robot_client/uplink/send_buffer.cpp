@@ -70,7 +70,7 @@ Result<> SendBuffer::rewind(std::uint64_t seq) {
                         "uses the same --robot and --session",
                         seq, sent_ever_)};
     }
-    sent_ = std::max(sent_, seq); // an earlier link may have brought over more than was sent again since
+    sent_ = std::max(sent_, seq); // an earlier link may have delivered more than was sent again since
     acknowledge(seq);
     sent_ = seq;
     return {};

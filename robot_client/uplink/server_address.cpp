@@ -13,7 +13,7 @@ std::optional<ServerAddress> parse_server_address(std::string_view text) {
     if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
         host = host.substr(1, host.size() - 2);
     } else if (host.find(':') != std::string_view::npos) {
-        return std::nullopt; // an IPv6 address without brackets: which colon is the port's?
+        return std::nullopt; // an IPv6 address without brackets is ambiguous
     }
     std::uint16_t number = 0;
     const auto [stopped, failed] = std::from_chars(port.data(), port.data() + port.size(), number);

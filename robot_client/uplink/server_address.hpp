@@ -7,11 +7,11 @@
 namespace scanloom::robot {
 
 struct ServerAddress {
-    std::string host; ///< a name or an address, without brackets
+    std::string host; ///< host name or address, without brackets
     std::string port;
 };
 
-/// HOST:PORT or [ADDRESS]:PORT, the port 1 to 65535; nothing for anything else.
+/// Parses HOST:PORT or [ADDRESS]:PORT with a port from 1 to 65535; returns nullopt for anything else.
 [[nodiscard]] std::optional<ServerAddress> parse_server_address(std::string_view text);
 
 } // namespace scanloom::robot

@@ -7,14 +7,14 @@
 namespace scanloom::robot {
 namespace {
 
-/// Characters that do not stand in the text but change how it is shown.
-/// Source  Unicode 15: general categories Cc, Zl and Zp, and the property Bidi_Control.
+/// Returns whether a character is not displayed itself but changes how the text is displayed.
+/// Source: Unicode 15: general categories Cc, Zl and Zp, and the property Bidi_Control.
 bool is_control(char32_t c) {
     return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
            (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
 }
 
-/// Bytes of the printable UTF-8 character at the front of `text`; 0 where there is none.
+/// Returns the size in bytes of the printable UTF-8 character at the front of `text`, or 0 if there is none.
 std::size_t printable_size(std::string_view text) {
     const auto first = first_character(text);
     return first && !is_control(first->value) ? first->size : 0;

@@ -82,12 +82,12 @@ UplinkStatus Uplink::status() const {
 asio::awaitable<void> Uplink::take_from_feed() {
     const Result<> fed = co_await feed_.run(*this);
     const auto cancellation = co_await asio::this_coro::cancellation_state;
-    if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has the outcome
+    if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has set the outcome
     if (!fed) outcome_ = fed.error();
     if (!fed && conversation_.acknowledged() == conversation_.last()) co_return;
     conversation_.end();
     wake_all();
-    for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the others tell when all is done
+    for (;;) co_await wait(feed_wake_, Clock::time_point::max()); // the other coroutines end the run
 }
 
 void Uplink::add(Observation observation) {
@@ -152,7 +152,8 @@ asio::awaitable<void> Uplink::keep_linked() {
     for (;;) {
         const wire::LinkError failure = co_await use_one_link();
         const auto cancellation = co_await asio::this_coro::cancellation_state;
-        if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has the outcome
+        if (cancellation.cancelled() != asio::cancellation_type::none)
+            co_return; // another coroutine has set the outcome
         conversation_.close();
         heard_.ring();
         if (conversation_.is_done()) co_return;
@@ -214,7 +215,7 @@ asio::awaitable<std::optional<wire::LinkError>> Uplink::connect(net::LinkStream:
         co_return lost(
             fmt::format("cannot connect to {}: {}; is scanloom-server running there?", where, refused.message()));
     }
-    boost::system::error_code ignored; // without it small frames only wait longer
+    boost::system::error_code ignored; // without no_delay small frames only wait longer
     socket.set_option(tcp::no_delay(true), ignored);
     co_return std::nullopt;
 }
@@ -248,7 +249,8 @@ wire::LinkError Uplink::closed(const boost::system::error_code& failed) const {
                             options_.server.host, options_.server.port));
 }
 
-/// Bytes that are no frames of a server. Before the welcome it is another program that listens there.
+/// Makes the error for bytes that are not valid frames. Before the welcome they mean that another program listens
+/// there.
 wire::LinkError Uplink::unreadable(const Error& error) const {
     if (conversation_.is_welcome()) return {prefixed("what the server sent cannot be read: ", error), true};
     return {
@@ -278,13 +280,13 @@ asio::awaitable<wire::LinkError> Uplink::write_frames(net::LinkStream& stream) {
             const auto [failed, count] = co_await asio::async_write(stream, asio::buffer(*frame), kAwaitTuple);
             if (failed) co_return lost(fmt::format("the connection was lost: {}", failed.message()));
         }
-        if (conversation_.said_goodbye()) stream.shutdown_send(); // the reader sees how the link ends
+        if (conversation_.said_goodbye()) stream.shutdown_send(); // then the reader reports how the link ends
         if (auto failure = conversation_.check(Clock::now())) co_return *failure;
         co_await wait(write_wake_, conversation_.deadline(Clock::now()));
     }
 }
 
-/// Notices a dead link even while a write to it is stuck.
+/// Detects a dead link even while a write to it blocks.
 asio::awaitable<wire::LinkError> Uplink::watch_link() {
     asio::steady_timer timer(io_);
     for (;;) {

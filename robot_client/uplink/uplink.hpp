@@ -25,63 +25,65 @@ struct UplinkOptions {
     ConversationOptions conversation;
     std::chrono::milliseconds connect_timeout{10'000};
     std::chrono::milliseconds give_up_after{120'000};     ///< without progress; 0 = never
-    std::chrono::milliseconds give_up_after_end{120'000}; ///< likewise, once the feed has ended
+    std::chrono::milliseconds give_up_after_end{120'000}; ///< as give_up_after, once the feed has ended
     std::chrono::milliseconds drain_max{10'000};          ///< how long stop() waits for acknowledgements
     std::uint32_t backoff_seed = 1;
-    BackoffWaits backoff; ///< before a link that failed is replaced
-    /// Hears of every link that failed and is going to be replaced.
+    BackoffWaits backoff; ///< before reconnecting after a failed link
+    /// Called for each link that failed and is going to be replaced.
     std::function<void(const Error&)> on_trouble = [](const Error&) {};
 };
 
-/// How far an uplink is, for people and for the summary.
+/// Progress of an uplink, for messages and the summary.
 struct UplinkStatus {
-    std::uint64_t resumed_after = 0; ///< scans the server held from earlier runs
+    std::uint64_t resumed_after = 0; ///< scans the server had from earlier runs
     std::uint64_t last = 0;          ///< highest seq taken from the source, or resumed_after
     std::uint64_t acknowledged = 0;  ///< highest durable seq
-    std::uint64_t sent = 0;          ///< scans that went out in this run, each counted once
-    std::uint64_t bytes = 0;         ///< sent, resent ones included
+    std::uint64_t sent = 0;          ///< scans sent in this run, each counted once
+    std::uint64_t bytes = 0;         ///< sent, including repeated ones
     std::uint64_t reconnects = 0;
-    std::uint64_t waiting = 0; ///< scans that were taken and are behind `last`, in a spool
-    std::uint64_t dropped = 0; ///< scans that were taken and are lost, for want of room
+    std::uint64_t waiting = 0; ///< scans taken that follow `last`, in a spool
+    std::uint64_t dropped = 0; ///< scans taken and lost for lack of room
     bool is_linked = false;
-    std::optional<std::chrono::duration<double>> next_scan_in = {}; ///< only in a long pause
+    std::optional<std::chrono::duration<double>> next_scan_in = {}; ///< only during a long pause
 };
 
-/// Carries a feed's scans to the server: connects and reconnects. The protocol is Conversation's; here are the sockets
-/// and timers.
+/// Carries a feed's scans to the server; connects and reconnects. It owns the sockets and timers; Conversation
+/// implements the protocol.
 ///
-/// Thread  everything runs on the one thread of `io`; all functions are called on it, too.
+/// Threads: everything runs on the one thread of `io`. All functions must be called on it.
 class Uplink final : private Intake {
 public:
     Uplink(boost::asio::io_context& io, UplinkOptions options, Feed& feed);
 
     /// Completes when every scan of the feed is durable.
-    /// Errors  the server's, if it is final; kTimeout when nothing moves for give_up_after or not all sent scans
-    ///         were acknowledged within drain_max of stop(); those of outcome_when_interrupted(); those of the feed.
+    /// Errors: the server's, if it is not retryable; kTimeout if there is no progress for give_up_after, or if not all
+    ///         sent scans were acknowledged within drain_max of stop(); those of outcome_when_interrupted(); those of
+    ///         the feed.
     [[nodiscard]] boost::asio::awaitable<Result<>> run();
 
-    /// No more scans from the feed; run() completes once those taken are durable, or after drain_max.
+    /// Takes no more scans from the feed. run() completes once the scans taken are durable, or after drain_max.
     void stop();
 
-    /// What it comes to when it is left now, after stop().
-    /// Errors  kShuttingDown: scans were taken and not acknowledged, or the feed has an end and is not there yet.
+    /// Returns the result of run() if it is abandoned now, after stop().
+    /// Errors: kShuttingDown if scans taken are not acknowledged, or if the feed has an end and has not reached it.
     [[nodiscard]] Result<> outcome_when_interrupted() const;
 
-    /// Conversation::ask(), sent as soon as there is a link. `answered` is called on the thread of `io`.
+    /// Adds a request as Conversation::ask() does; it is sent as soon as there is a link. `answered` runs on the thread
+    /// of `io`.
     [[nodiscard]] std::optional<std::uint64_t> ask(Request request, Answered answered);
-    /// Nobody waits for the answer any more.
+    /// Drops the callback of a request: its reply is no longer needed.
     void abandon(std::uint64_t id) { conversation_.abandon(id); }
 
-    /// Completes when all scans that were taken by now are in the server's maps.
+    /// Completes when all scans taken so far are in the server's maps.
     [[nodiscard]] boost::asio::awaitable<void> until_applied();
 
-    /// Rings whenever something came from the server, and when a link has ended.
+    /// Returns a bell that rings when a message arrives from the server and when a link has ended.
     [[nodiscard]] Bell& news_bell() noexcept { return heard_; }
 
     [[nodiscard]] UplinkStatus status() const;
-    /// The highest seq that is in the server's maps, as far as is known.
+    /// Returns the highest seq known to be in the server's maps.
     [[nodiscard]] std::uint64_t applied() const noexcept { return conversation_.applied(); }
-    /// Why nothing moves, for people.
+    /// Returns a message for people that explains why there is no progress.
     [[nodiscard]] std::string what_is_wrong() const;
     [[nodiscard]] boost::asio::io_context::executor_type executor() const { return io_.get_executor(); }
 
@@ -112,7 +114,7 @@ private:
     [[nodiscard]] std::optional<wire::LinkError> take(std::string_view body);
     [[nodiscard]] std::optional<Error> reason_to_give_up() const;
 
-    /// Waits until `time` or until the timer is cancelled, which is how the coroutines wake one another.
+    /// Waits until `time` or until the timer is cancelled. The coroutines wake one another by cancelling timers.
     [[nodiscard]] static boost::asio::awaitable<void> wait(boost::asio::steady_timer& timer, Clock::time_point time);
     void wake_all();
 

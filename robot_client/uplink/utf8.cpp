@@ -21,7 +21,7 @@ std::optional<Character> first_character(std::string_view text) {
         if ((byte_at(text, i) & 0xc0) != 0x80) return std::nullopt;
         character = character << 6 | (byte_at(text, i) & 0x3fU);
     }
-    // Longer than needed would be another way to write smaller characters, controls among them.
+    // Reject overlong encodings: they would be another way to write smaller characters, including controls.
     constexpr std::array<char32_t, 5> kSmallest{0, 0, 0x80, 0x800, 0x10000};
     const bool is_text = first >= 0xc0 && first < 0xf8 && character >= kSmallest[size] && character <= 0x10ffff &&
                          (character < 0xd800 || character > 0xdfff);

@@ -11,7 +11,7 @@ struct Character {
     std::size_t size = 0; ///< bytes
 };
 
-/// The character at the front of a text in UTF-8; nothing where there is none, or bytes that are no such text.
+/// Returns the first character of a UTF-8 text, or nullopt if the text is empty or does not begin with valid UTF-8.
 [[nodiscard]] std::optional<Character> first_character(std::string_view text);
 
 [[nodiscard]] bool is_utf8(std::string_view text);

@@ -7,17 +7,17 @@
 #include <memory>
 #include <string>
 
-/// What every robot does that waits for a server, the program's and that of the client library.
+/// Functions for robots that wait for a server, shared by the program and the client library.
 namespace scanloom::robot {
 
 using Tell = std::function<void(const std::string&)>;
 
-/// Opens the robot's spool, SESSION.ROBOT within SpoolOptions::directory; null where that is empty.
-/// Errors  those of Spool::open().
+/// Opens the robot's spool, the directory SESSION.ROBOT in SpoolOptions::directory. Returns null if that is empty.
+/// Errors: those of Spool::open().
 [[nodiscard]] Result<std::unique_ptr<Spool>> open_spool_of(const std::string& session, const std::string& robot,
                                                            SpoolOptions options, const Tell& tell);
 
-/// For UplinkOptions::on_trouble: a server that is away for long is told once.
+/// Makes a UplinkOptions::on_trouble that reports repeated identical errors only once.
 [[nodiscard]] std::function<void(const Error&)> told_once(Tell tell);
 
 } // namespace scanloom::robot
