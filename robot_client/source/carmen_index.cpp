@@ -23,7 +23,7 @@ class Indexer {
 public:
     Indexer(const CarmenOptions& options, const std::function<void(const SkippedLine&)>& report)
         : options_(options), report_(report) {
-        hash_.update("carmen 1\n"); // to be raised when the same lines begin to give other scans
+        hash_.update("carmen 1\n"); // increase it when the same lines give different scans
     }
 
     [[nodiscard]] Result<> read(CarmenRecords& records);
@@ -120,7 +120,7 @@ void Indexer::report_unread_kinds() {
     }
 }
 
-/// Logs that hold RAWLASER and other laser lines hold every scan twice.
+/// Drops the RAWLASER lines of logs that also have other laser lines: such logs contain every scan twice.
 void Indexer::keep_one_view_of_each_scan() {
     if (!has_flaser_ && !has_robot_laser_) return;
     for (LaserLine& line : lines_) line.is_used = line.is_used && !line.is_raw;
@@ -150,7 +150,7 @@ void Indexer::order_scans(CarmenIndex& index) {
     if (!scans.is_of_stamps) hash_.update("with jitter in its place\n"); // "carmen 1" alone: strictly by stamp
 }
 
-/// The options count as far as they change the scans: stating a default makes no difference.
+/// Options count only if they change the scans: stating a default makes no difference.
 std::string Indexer::fingerprint() {
     const auto hash_options = [&](std::string_view lines, CarmenKind kind, const std::string& range_max) {
         hash_.update(fmt::format("{} {} {}\n", lines, range_max,

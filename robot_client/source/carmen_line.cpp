@@ -50,7 +50,7 @@ Result<Pose2> read_pose(std::string_view field, TokenSpan triple) {
     return Pose2{values[0], values[1], normalize_angle(values[2])};
 }
 
-/// `n r1..rn` at the front of `tokens`; takes them away.
+/// Reads `n r1..rn` from the front of `tokens` and removes them.
 Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     const auto count = tokens.empty() ? std::nullopt : to_count(tokens[0]);
     if (!count) return malformed("the number of beams is missing or no number");
@@ -71,7 +71,7 @@ Result<std::vector<RangeMm>> take_ranges(TokenSpan& tokens) {
     return ranges;
 }
 
-/// The stamp of a trailer of 3 (ipc_timestamp hostname logger_timestamp), 2 (without the first) or 0 values.
+/// Reads the stamp of a trailer of 3 (ipc_timestamp hostname logger_timestamp), 2 (without the first) or 0 values.
 Result<std::optional<double>> read_stamp(TokenSpan trailer) {
     if (trailer.empty()) return std::optional<double>{};
     const std::string_view token = trailer.size() == 3 ? trailer[0] : trailer[1];
@@ -111,7 +111,7 @@ Result<CarmenLine> read_flaser(TokenSpan tokens) {
     return CarmenLine(std::move(scan));
 }
 
-/// laser_type start_angle fov angular_resolution maximum_range accuracy remission_mode; takes them away.
+/// Reads laser_type start_angle fov angular_resolution maximum_range accuracy remission_mode and removes them.
 Result<> take_laser_head(TokenSpan& tokens, CarmenScan& scan) {
     if (tokens.size() < 7) return malformed("the line ends within the laser's parameters");
     auto start = finite("start_angle", tokens[1], 2.0 * kFullTurn);
@@ -135,20 +135,20 @@ Result<> check_span(const CarmenScan& scan) {
                                                   scan.ranges.size(), scan.angles.increment)};
 }
 
-/// Where the tail of a laser line divides: the values before the poses (m and the remissions), and the trailer.
+/// Parts of the tail of a laser line: the values before the poses (m and the remissions), and the trailer.
 struct TailShape {
-    std::size_t remissions = 0; ///< values, their count m included
+    std::size_t remissions = 0; ///< values, including their count m
     std::size_t trailer = 0;    ///< 3, 2 or 0 values
 };
 
-/// `body_sizes`: how many values may stand between the remissions and the trailer.
-/// Trailers with a host name are tried first, longest first: a host name is not a number.
+/// @param body_sizes  how many values may be between the remissions and the trailer
+/// Tries trailers with a host name first, longest first: a host name is not a number.
 std::optional<TailShape> find_shape(TokenSpan tail, std::span<const std::size_t> body_sizes) {
     for (const std::size_t trailer : {3U, 2U, 0U}) {
         if (tail.size() < trailer) continue;
         if (trailer > 0 && to_number(tail[tail.size() - 2])) continue;
         const std::size_t values = tail.size() - trailer;
-        // A leading count of 0 and a time of 0 are rather m and turn_axis of a line without ipc_timestamp.
+        // A leading count of 0 with a time of 0 is more likely m and turn_axis of a line without ipc_timestamp.
         const bool looks_counted = trailer == 3 && tail[0] == "0" && to_number(tail[tail.size() - 3]) == 0.0;
         for (const std::size_t body : body_sizes) {
             if (values == body && !looks_counted) return TailShape{0, trailer};
@@ -161,7 +161,7 @@ std::optional<TailShape> find_shape(TokenSpan tail, std::span<const std::size_t>
     return std::nullopt;
 }
 
-/// laser pose, robot pose, tv, rv, forward_safety_dist, side_safety_dist and, in most files, turn_axis
+/// Counts of laser pose, robot pose, tv, rv, forward_safety_dist, side_safety_dist and, in most files, turn_axis.
 constexpr std::array<std::size_t, 2> kRobotLaserBody{10, 11};
 constexpr std::array<std::size_t, 1> kRawLaserBody{0};
 
@@ -196,7 +196,7 @@ Result<CarmenLine> read_new_laser(TokenSpan tokens, CarmenKind kind, std::uint32
     return CarmenLine(std::move(scan));
 }
 
-/// x y theta tv rv accel, and a trailer with a stamp.
+/// Reads x y theta tv rv accel, and a trailer with a stamp.
 CarmenLine read_odometry(TokenSpan tokens) {
     if (tokens.size() != 9 && tokens.size() != 8) return {};
     const auto pose = read_pose("odom", tokens.first(3));

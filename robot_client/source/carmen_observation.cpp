@@ -10,10 +10,10 @@
 namespace scanloom::robot {
 namespace {
 
-/// Logs print poses with six decimals: mounts derived from them agree to a few times that.
+/// Logs print poses with six decimals, so mounts derived from them agree to a few times that.
 constexpr double kMountRounding = 1e-5;
 
-/// Descriptions worth remembering; a log whose mount differs from line to line is described anew each time.
+/// Descriptions that are kept for reuse. A log whose mount changes from line to line is described again each time.
 constexpr std::size_t kSensorsRemembered = 16;
 
 bool nearly_same(const Pose2& a, const Pose2& b) {

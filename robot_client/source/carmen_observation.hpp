@@ -11,32 +11,33 @@
 namespace scanloom::robot {
 
 struct CarmenOptions {
-    /// Default: kFree where the log states its sensor's range (ROBOTLASER, RAWLASER), kDrop where it does not (FLASER).
+    /// Default: kFree if the log states its sensor's range (ROBOTLASER, RAWLASER), kDrop if it does not (FLASER).
     std::optional<NoReturn> no_return;
-    /// Metres; readings of this length or more are no-return, and so are those of the length that the log states.
+    /// Metres. Readings of at least this length are no-returns, as are those of the length that the log states.
     /// Default: kCarmenRangeMax.
     std::optional<double> range_max;
     LineLimits limits;
 };
 
-/// Logs write "no return" as 50, 80, 81.83, 81.91 ...: from 50 m on a reading is one, unless the user says otherwise.
+/// Logs write "no return" as 50, 80, 81.83, 81.91 ...: readings from 50 m on are no-returns unless the user sets
+/// another limit.
 inline constexpr double kCarmenRangeMax = 50.0;
 
-/// What beams without a return mean in lines of this kind.
+/// Returns how beams without a return are used in lines of this kind.
 [[nodiscard]] NoReturn no_return_of(CarmenKind kind, const CarmenOptions& options);
 
-/// Whether a line can become a scan, as far as it alone can tell.
-/// Errors  kInvalidField: it states a range no sensor has; kTooLarge: its laser is too far from its robot.
+/// Checks whether a line can become a scan, as far as the line alone shows.
+/// Errors: kInvalidField if it states a range that no sensor has; kTooLarge if its laser is too far from its robot.
 [[nodiscard]] Result<> check_usable(const CarmenScan& line, const CarmenOptions& options);
 
-/// Turns the lines of one log into scans of described sensors. Feed it in order of time.
+/// Converts the lines of one log into scans of described sensors. Call observe() in order of time.
 class CarmenObserver {
 public:
     CarmenObserver(const CarmenOptions& options, double laser_offset_forward)
         : options_(options), laser_offset_forward_(laser_offset_forward) {}
 
-    /// Pre     a RAWLASER line comes with the robot's pose filled in; `stamp` is finite.
-    /// Errors  those of check_usable().
+    /// Converts one line. Pre: a RAWLASER line has the robot's pose filled in; `stamp` is finite.
+    /// Errors: those of check_usable().
     [[nodiscard]] Result<Observation> observe(const CarmenScan& line, double stamp);
 
 private:

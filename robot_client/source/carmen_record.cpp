@@ -27,7 +27,7 @@ Result<std::optional<CarmenRecord>> CarmenRecords::next() {
         } else if (const auto* unread = std::get_if<CarmenUnreadLaser>(&*parsed)) {
             record.content = *unread;
         } else {
-            continue; // a comment, or a line that tells nothing of a laser
+            continue; // a comment, or a line without laser data
         }
         return std::optional(std::move(record));
     }

@@ -12,13 +12,13 @@
 
 namespace scanloom::robot {
 
-/// A laser line and its time: its own stamp, else that of the laser line before it.
+/// A laser line and its time: its own stamp, or that of the laser line before it.
 struct StampedScan {
     CarmenScan scan;
     double stamp = 0.0; ///< finite
 };
 
-/// A line of a log that says something; a line that cannot be used says why.
+/// A line of a log with content, or the error of a line that cannot be used.
 struct CarmenRecord {
     std::size_t line_number = 0;
     std::string_view text; ///< valid until the next record
@@ -28,11 +28,12 @@ struct CarmenRecord {
 /// The records of a CARMEN log in the order of the file, one at a time.
 class CarmenRecords {
 public:
-    /// Errors  those of LineReader.
+    /// Errors: those of LineReader.
     [[nodiscard]] static Result<CarmenRecords> open(const std::filesystem::path& path, LineLimits limits,
                                                     OnRead on_read = {});
 
-    /// Errors  those of LineReader. Nothing after the last line.
+    /// Returns the next record, or nullopt after the last line.
+    /// Errors: those of LineReader.
     [[nodiscard]] Result<std::optional<CarmenRecord>> next();
 
     [[nodiscard]] std::size_t line_count() const noexcept { return lines_.line_number(); } ///< read so far

@@ -19,7 +19,7 @@ using namespace asio::experimental::awaitable_operators;
 namespace {
 
 constexpr int kFailuresMax = 10;
-constexpr double kAskAgainAfter = 1.0; // seconds of the simulation
+constexpr double kAskAgainAfter = 1.0; // seconds of simulated time
 constexpr int kTimesBlockedMax = 30;
 
 } // namespace
@@ -65,7 +65,7 @@ asio::awaitable<Result<>> ExploringSource::ask() {
                         pose.x, pose.y)};
     }
     auto answer = co_await (next_goal_() || until_stopped());
-    due_ = Clock::time_point::min(); // the world stood still meanwhile
+    due_ = Clock::time_point::min(); // the simulation stood still meanwhile
     if (is_stopped_ || answer.index() != 0) co_return Result<>{};
     co_return take(std::get<0>(std::move(answer)));
 }
@@ -86,9 +86,9 @@ Result<> ExploringSource::take(Result<NextStop> answer) {
     return {};
 }
 
-/// A scan comes when it would be taken; time that was lost is not made up for.
+/// Waits until a scan is due. Lost time is not made up for.
 asio::awaitable<void> ExploringSource::wait_until_due(double stamp) {
-    const double passed = stamp - std::exchange(stamp_, stamp); // none between the sensors of one moment
+    const double passed = stamp - std::exchange(stamp_, stamp); // zero between sensors that scan at the same time
     if (speed_ <= 0.0 || passed <= 0.0) co_return;
     due_ = std::max(due_, Clock::now());
     wake_->expires_at(due_);

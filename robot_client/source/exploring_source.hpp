@@ -17,25 +17,26 @@
 
 namespace scanloom::robot {
 
-/// A simulated robot that explores a world where it is told to, until that is complete or the first of its limits.
-/// The world stands still while an answer is awaited: the same answers give the same scans. An answer that is an error
-/// is asked for again after a second of the simulation, ten times in a row at most.
+/// A simulated robot that explores a world and goes where the server directs it, until exploration is complete or the
+/// first of its limits is reached. The simulation stands still while a reply is awaited, so the same replies give the
+/// same scans. After a reply with an error the robot asks again after one second of simulated time, at most ten times
+/// in a row.
 ///
-/// Thread  as of LiveSource
+/// Threads: as for LiveSource.
 class ExploringSource final : public LiveSource {
 public:
     /// @param speed  of the simulation, as a multiple of real time; 0 = as fast as scans are taken
     ExploringSource(SimulatorOptions options, SimulationLimits limits, NoReturn no_return, double speed);
 
-    /// Who tells where to go. To be called before the first next().
+    /// Sets the function that returns the next goal. Call it before the first next().
     void ask_with(NextGoal next_goal) { next_goal_ = std::move(next_goal); }
 
     [[nodiscard]] bool can_wait() const override { return true; }
-    /// Stamps go on behind those of the scans that are stored, and limits count them. The robot itself begins where it
-    /// always begins.
+    /// Stamps continue after those of the stored scans, and limits count those scans. The robot itself starts at its
+    /// usual start.
     void resume_after(std::uint64_t scans) override { resumed_after_ = scans; }
 
-    /// Errors  the last of ten answers that were errors. kNoPath: something blocks the robot wherever it is sent.
+    /// Errors: the last of ten failed replies; kNoPath if something blocks the robot wherever it is sent.
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
     void stop() override;
     [[nodiscard]] std::string remarks() const override { return explore_->remarks(); }
@@ -53,7 +54,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<void> wait_until_due(double stamp);
     [[nodiscard]] boost::asio::awaitable<void> until_stopped();
 
-    Explore* explore_; // the simulator has it
+    Explore* explore_; // owned by the simulator
     Simulator simulator_;
     SimulationLimits limits_;
     NoReturn no_return_;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kAlmostSure = 3.0; // sigmas
 
-/// As it is told, without a -0.00.
+/// Rounds for messages, without a -0.00.
 double rounded(double value) { return std::round(100.0 * value) / 100.0 + 0.0; }
 
 std::string text_of(const Pose2& pose) {
@@ -47,7 +47,7 @@ void Halts::add(Observation turn) {
     }
 }
 
-/// The sensor stands no longer where it stood.
+/// Ends the halt: the sensor was moved.
 void Halts::leave() {
     const bool was_a_halt = stillness_.turns() == kTurnsAlike;
     told_.clear();
@@ -112,7 +112,7 @@ void Halts::refuse(Error refusal) {
     drop_held();
 }
 
-/// Gives the turns of this halt, all but the newest.
+/// Releases the turns of this halt except the newest `held_back`.
 void Halts::release(std::size_t held_back) {
     for (; held_.size() > held_back; held_.pop_front()) {
         Observation turn = std::move(held_.front());

@@ -14,55 +14,56 @@
 
 namespace scanloom::robot {
 
-/// Divides the turns of a laser that is carried from place to place into halts, and says of each what is to be asked
-/// and what becomes of its turns. Nothing is given whose place was not told.
+/// Divides the turns of a laser that is carried from place to place into halts, in which the sensor is stationary.
+/// Decides for each halt what to ask the server and which of its turns to send. Turns without a known pose are never
+/// sent.
 ///
-/// A halt begins with kTurnsAlike turns in a row that are alike (Stillness). It ends with the first turn that is not,
-/// and the kTurnsHeldBack turns before that one are not given either: there the movement may have begun. Turns in which
-/// too little is seen to tell are dropped and change nothing. A room that changes by and by, until more of it is new
-/// than a move would change, ends a halt, too; it is asked about again then.
+/// A halt begins with kTurnsAlike similar turns in a row (Stillness). It ends with the first turn that differs; the
+/// kTurnsHeldBack turns before that one are dropped too, because the movement may have begun in them. Turns that show
+/// too little to decide are dropped and change nothing. A halt also ends when a room changes gradually until more of it
+/// is new than a movement would change; the pose is then requested again.
 ///
-/// Frames  the turns' poses are in an odometry frame of their own; a bare lidar stands at its origin.
-/// Thread  one at a time. It has no clock: time is that of the turns' stamps.
+/// Frames: the turns' poses are in an odometry frame of their own; a bare lidar is at its origin.
+/// Threads: one at a time. The class has no clock: time is that of the turns' stamps.
 class Halts {
 public:
     static constexpr std::size_t kTurnsAlike = Stillness::kTurnsMax;
     static constexpr std::size_t kTurnsHeldBack = 3;
-    static constexpr double kAskAgainAfter = 10.0; ///< seconds; others may have mapped the place meanwhile
+    static constexpr double kAskAgainAfter = 10.0; ///< seconds; other robots may have mapped the place meanwhile
 
-    /// @param first_place  T_map_robot of the first halt, in case nothing is mapped then
+    /// @param first_place  T_map_robot of the first halt, used if no map exists then
     explicit Halts(const Pose2& first_place) : first_place_(first_place) {}
 
-    /// The next turn. Pre  a laser took it; question() is answered.
+    /// Adds the next turn. Pre: a laser took it; question() is answered.
     void add(Observation turn);
 
-    /// What is to be asked now.
+    /// Returns the points to send in a locate request now, or nullopt if none is needed.
     [[nodiscard]] std::optional<SeenPoints> question() const;
 
-    /// What the answer to question() was. Turns that were refused a place are dropped; newer ones are asked about
+    /// Takes the reply to question(). After a refusal the turns are dropped; the request is repeated for newer turns
     /// kAskAgainAfter later, or at another place.
     void answer(const Result<Located>& located);
 
-    /// There will be no more turns: those that stood still to the end are given.
+    /// Ends the sequence: the turns of a halt that lasted to the end are given.
     void end();
 
-    /// The next turn to give, with its pose in the map.
+    /// Returns the next turn to send, with its pose in the map.
     [[nodiscard]] std::optional<Observation> take();
 
-    /// Sentences for people that are new; each is told once a halt, or again after many others.
+    /// Returns new messages for people. Each is given once per halt, or again after many others.
     [[nodiscard]] std::vector<std::string> take_news();
 
     [[nodiscard]] bool is_located() const noexcept { return T_map_odom_.has_value(); }
     [[nodiscard]] std::uint64_t given() const noexcept { return given_; }
-    /// Halts that ended because the sensor was moved.
+    /// Returns the number of halts that ended because the sensor was moved.
     [[nodiscard]] std::uint64_t carried() const noexcept { return carried_; }
-    /// Turns of which no place was known, and those that a movement may have begun in.
+    /// Returns the number of turns dropped because their pose was unknown or a movement may have begun in them.
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
-    /// The newest refusal.
+    /// Returns the newest refusal.
     [[nodiscard]] const std::optional<Error>& refusal() const noexcept { return refusal_; }
 
 private:
-    static constexpr std::size_t kToldMax = 32; // a refused halt may last for days
+    static constexpr std::size_t kToldMax = 32; // a halt with a refused place may last for days
 
     void leave();
     void drop_held();
@@ -76,10 +77,10 @@ private:
     std::deque<Observation> held_; ///< at most kTurnsAlike of the newest turns, all alike
     std::deque<Observation> ready_;
     std::optional<Pose2> T_map_odom_;  ///< of this halt
-    bool begins_map_ = false;          ///< this halt: its place was said, not told
-    std::optional<double> refused_at_; ///< stamp, seconds: of this halt
+    bool begins_map_ = false;          ///< whether the place of this halt was given by the user, not by the server
+    std::optional<double> refused_at_; ///< stamp, seconds; of this halt
     std::optional<Error> refusal_;
-    std::deque<std::string> told_; ///< of this halt, the newest kToldMax
+    std::deque<std::string> told_; ///< messages of this halt, the newest kToldMax
     std::vector<std::string> news_;
     std::uint64_t given_ = 0;
     std::uint64_t carried_ = 0;

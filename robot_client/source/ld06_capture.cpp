@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kChunkBytes = 16'384;
 
-/// The options that determine the scans. Doubles are written so that different ones differ.
+/// Returns the options that determine the scans. Doubles are written so that different ones differ.
 std::string text_of(const Ld06ScanOptions& options, const Ld06Poses& poses) {
-    // The number is to be raised when the same bytes begin to give other scans.
+    // Increase the number when the same bytes give different scans.
     std::string text =
         fmt::format("ld06 1\nrange {} {} {}\nconfidence {}\nmedian {}\nmount {} {} {}\n", options.range_min,
                     options.range_max, options.no_return == NoReturn::kFree ? "free" : "drop", options.confidence_min,
@@ -50,7 +50,7 @@ Result<> Ld06Capture::reopen() {
     return Error{Errc::kNotFound, fmt::format("{}: cannot be opened: {}", path_, std::strerror(errno))};
 }
 
-/// `on_bytes` sees what is read of the file.
+/// @param on_bytes  called with the bytes read from the file
 template <class OnBytes>
 std::optional<Ld06Turn> Ld06Capture::next_turn(OnBytes&& on_bytes) {
     auto& [file, decoder, clock, turns] = reading_;

@@ -14,26 +14,27 @@
 
 namespace scanloom::robot {
 
-/// Where the robot is: in one place all the time, or as poses tell.
+/// The robot's pose: one pose for the whole recording, or a timeline of poses.
 using Ld06Poses = std::variant<Pose2, PoseTimeline>;
 
-/// The bytes that an LD06 sent, recorded in a file, as a source: a scan for each turn that has a pose. Stamps and the
-/// times of poses are seconds since the first packet.
+/// A source of the recorded bytes of an LD06: one scan for each turn that has a pose. Stamps and the times of poses are
+/// seconds since the first packet.
 ///
-/// The file is read twice: open() counts its scans, next() makes them as they are needed.
+/// The file is read twice: open() counts its scans, next() creates them as they are needed.
 class Ld06Capture final : public Source {
 public:
-    /// Errors  kNotFound: no such file, not to be read, or without a scan in it: no full turn, or none with a pose.
+    /// Errors: kNotFound if the file does not exist, cannot be read or contains no scan: no full turn, or none with a
+    ///         pose.
     [[nodiscard]] static Result<Ld06Capture> open(const std::filesystem::path& path, const Ld06ScanOptions& options,
                                                   Ld06Poses poses);
 
-    /// Errors  kConflict: the file is not any more what open() has read.
+    /// Errors: kConflict if the file has changed since open().
     [[nodiscard]] Result<std::optional<Observation>> next() override;
     [[nodiscard]] std::optional<std::uint64_t> scan_count() const override { return scan_count_; }
 
-    /// At most 64 printable bytes; the same for the same scans, whatever the file's name.
+    /// Returns at most 64 printable bytes that are the same for the same scans, whatever the file's name.
     [[nodiscard]] const std::string& fingerprint() const noexcept { return fingerprint_; }
-    /// Of the whole file, for people.
+    /// Returns a message for people about the whole file.
     [[nodiscard]] std::string remarks() const override { return remarks_; }
 
 private:

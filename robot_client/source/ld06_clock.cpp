@@ -9,9 +9,9 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kWrap = kLd06ClockWrap * 1e-3; // seconds
-constexpr double kWindow = 5.0;                 // seconds; two of them are looked at
+constexpr double kWindow = 5.0;                 // seconds; the last two windows are used
 
-/// Later than this no packet comes through: then one of the two clocks was set.
+/// No packet arrives later than this. If one seems to, one of the two clocks was set.
 constexpr double kLateMax = 1.0; // seconds
 
 } // namespace

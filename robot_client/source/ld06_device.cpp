@@ -43,7 +43,7 @@ private:
     std::optional<Clock::time_point> gone_since_;
     std::chrono::milliseconds wait_ = kFirstWait;
     Clock::time_point packet_at_{};
-    bool is_foreign_told_ = false; ///< that there are bytes but no packets
+    bool is_foreign_told_ = false; ///< bytes that are not packets were reported
 };
 
 asio::awaitable<Error> Reading::run() {
@@ -62,7 +62,7 @@ asio::awaitable<Error> Reading::run() {
     }
 }
 
-/// Opens it and reads until that fails.
+/// Opens the device and reads it until that fails.
 asio::awaitable<Error> Reading::read_once() {
     auto link = co_await open_link(options_.endpoint, options_.silent_max);
     if (!link) co_return link.error();

@@ -15,27 +15,28 @@ namespace scanloom::robot {
 
 struct Ld06DeviceOptions {
     Ld06Endpoint endpoint;
-    std::chrono::milliseconds reopen_for{60'000}; ///< without a packet, since it went away; 0: not at all
-    std::chrono::milliseconds silent_max{5'000};  ///< a device without a byte for so long went away, too
+    std::chrono::milliseconds reopen_for{
+        60'000};                                 ///< how long to retry a failed device until it sends packets; 0: never
+    std::chrono::milliseconds silent_max{5'000}; ///< a device that sends no byte for this long counts as failed
     std::function<void(const std::string&)> note = [](const std::string&) {}; ///< for people
 };
 
-/// Who takes what a device gives.
+/// Receives the bytes of a device.
 class Ld06Listener {
 public:
     virtual ~Ld06Listener() = default;
 
-    /// The bytes to come do not continue those before.
+    /// Called when a device was opened: the next bytes do not continue the previous ones.
     virtual void on_open() = 0;
-    /// @return whether there was a packet's end among them.
+    /// @return whether a packet ended within the bytes
     virtual bool on_bytes(std::span<const std::uint8_t> bytes) = 0;
 };
 
-/// Reads a device for ever. One that goes away, having been opened, is opened again and again, after waits that double
-/// from 0.1 s to 2 s, until it gives packets or reopen_for is over. People are told when it goes, when it is back, and
-/// when it gives bytes that are no packets.
+/// Reads a device until it fails permanently. A device that fails after it was opened is reopened, after waits that
+/// double from 0.1 s to 2 s, until it sends packets or reopen_for is over. Notes report when the device fails, when it
+/// is back, and when it sends bytes that are not packets.
 ///
-/// @return why it is over: kShuttingDown where it was cancelled; else that of the link.
+/// @return the reason for the end: kShuttingDown if cancelled, else the error of the link
 [[nodiscard]] boost::asio::awaitable<Error> read_ld06_device(Ld06DeviceOptions options, Ld06Listener& listener);
 
 } // namespace scanloom::robot

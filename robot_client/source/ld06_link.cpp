@@ -100,7 +100,7 @@ asio::awaitable<Result<std::size_t>> read_some(Ld06Link& link, std::span<std::ui
     }
     const auto [failed, count] = std::get<0>(first);
     if (!failed) co_return count;
-    // a terminal without its other end says so with an I/O error
+    // a terminal without its other end reports an I/O error
     const bool hung_up = failed == asio::error::eof || failed == error_code(EIO, boost::system::system_category());
     co_return Error{Errc::kUnreachable, hung_up ? "hung up; is it still plugged in?"
                                                 : fmt::format("cannot be read ({})", failed.message())};

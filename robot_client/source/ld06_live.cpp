@@ -29,7 +29,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-/// Stops a coroutine from outside, as long as there is one: it may have ended, or its executor may be gone.
+/// Stops a coroutine from outside, if it still exists: it may have ended, or its executor may be destroyed.
 struct StopSwitch {
     asio::cancellation_signal signal;
     bool is_running = false;
@@ -39,7 +39,7 @@ struct StopSwitch {
     }
 };
 
-/// On a coroutine's frame, so that it knows when that is gone.
+/// Placed in a coroutine's frame, so that the switch knows when the frame is destroyed.
 class Running {
 public:
     explicit Running(StopSwitch& stop) : stop_(stop) { stop_.is_running = true; }
@@ -54,14 +54,14 @@ private:
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kPosesKept = 4096; // 40 s of 100 a second
-constexpr double kOtherClock = 60.0;     // seconds; no late pose is so far from a scan
+constexpr double kOtherClock = 60.0;     // seconds; no late pose is this far from a scan
 
 double unix_now() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 } // namespace
 
-/// What the reading coroutines and next() share. Timers and lines are on the coroutines' own frames, so that they never
-/// outlive their executor.
+/// State shared by the reading coroutines and next(). Timers and lines are in the frames of the coroutines, so they
+/// never outlive their executor.
 class Ld06Live::State final : public Ld06Listener, public std::enable_shared_from_this<Ld06Live::State> {
 public:
     explicit State(Ld06LiveOptions options)
@@ -83,10 +83,10 @@ public:
 private:
     struct Waiting {
         Scan scan;
-        Clock::time_point until; ///< it waits for a pose
+        Clock::time_point until; ///< it waits for a pose until then
     };
 
-    /// Where next() waits, while it does.
+    /// Makes the timer of next() known while next() waits.
     class Asleep {
     public:
         Asleep(asio::steady_timer*& place, asio::steady_timer& timer) : place_(place) { place_ = &timer; }
@@ -98,7 +98,7 @@ private:
         asio::steady_timer*& place_;
     };
 
-    /// What a scan is told that asks for its pose.
+    /// The result of looking up the pose of a scan.
     struct Answer {
         std::optional<Pose2> pose;
         bool is_final = true;
@@ -125,7 +125,7 @@ private:
     std::uint64_t given_ = 0; ///< scans
     bool told_of_other_clock_ = false;
     bool told_of_poses_ahead_ = false;
-    std::optional<Error> ended_; ///< why nothing more comes from the sensor
+    std::optional<Error> ended_; ///< why the sensor gives no more scans
     bool is_started_ = false;
     bool is_stopped_ = false;
     asio::steady_timer* asleep_ = nullptr;
@@ -196,7 +196,7 @@ void Ld06Live::State::add(const StampedPose& pose) {
     if (timeline == nullptr) return;
     const double now = unix_now();
     const double latest = now + seconds(options_.pose_ahead_max);
-    timeline->forget_after(latest); // the clock was put back
+    timeline->forget_after(latest); // the clock was set back
     if (pose.stamp > latest) {
         if (std::exchange(told_of_poses_ahead_, true)) return;
         options_.device.note(
@@ -227,7 +227,7 @@ asio::awaitable<Result<std::optional<Observation>>> Ld06Live::State::next() {
     co_return end_when_stopped();
 }
 
-/// The next scan whose pose is known; those that will have none are passed over.
+/// Returns the next scan with a known pose; skips scans that will have none.
 std::optional<Observation> Ld06Live::State::take_ready() {
     while (!waiting_.empty()) {
         const Answer answer = pose_for(waiting_.front());
@@ -245,7 +245,7 @@ std::optional<Observation> Ld06Live::State::take_ready() {
     return std::nullopt;
 }
 
-/// Poses that count from another moment would be passed over for ever without a word.
+/// Reports poses whose clock has another origin. Without the message they would be skipped silently forever.
 void Ld06Live::State::tell_of_other_clock(double stamp) {
     const auto& timeline = std::get<PoseTimeline>(options_.poses);
     if (timeline.empty() || told_of_other_clock_) return;
@@ -257,7 +257,7 @@ void Ld06Live::State::tell_of_other_clock(double stamp) {
                                      newest, stamp));
 }
 
-/// A robot of which nothing was mapped for want of poses has failed, though it was told to stop.
+/// Returns an error if there were scans and none had a pose, although stop() was requested.
 Result<std::optional<Observation>> Ld06Live::State::end_when_stopped() const {
     if (given_ > 0 || losses_.without_pose == 0) return std::optional<Observation>{};
     return Error{Errc::kNotFound,

@@ -44,12 +44,12 @@ Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> byte
 }
 
 bool is_plausible(const Ld06Packet& packet) noexcept {
-    // The vendor's test, at half its rate: a packet spans 12 samples' worth of turning, and half as much again. The
-    // vendor's driver counts on 4500 samples a second, as LD06 and LD19 take them; but the example in the LD06's own
-    // manual was taken at 2250, and is to pass, too.
+    // The vendor's test, at half its rate: a packet spans the angle of 12 samples, plus half as much. The vendor's
+    // driver assumes 4500 samples per second, as LD06 and LD19 take them. But the example in the LD06's own manual was
+    // taken at 2250 and must pass, too.
     constexpr double kSamplesPerSecondMin = 2250.0;
     constexpr double kSpanMargin = 1.5;
-    const int degrees = angles_spanned(packet) / 100; // rounded down, as the vendor does
+    const int degrees = angles_spanned(packet) / 100; // rounded down, as in the vendor's driver
     const double degrees_max = packet.speed * kLd06PacketPoints / kSamplesPerSecondMin * kSpanMargin;
     return packet.start_angle <= kAnglesPerTurn && packet.end_angle <= kAnglesPerTurn &&
            packet.timestamp <= kLd06ClockWrap && degrees <= degrees_max;

@@ -6,7 +6,7 @@
 #include <span>
 
 /// The packets of LDROBOT's spinning lidars LD06 and LD19 (D300 and D500 kits, STL-19P, STL-27L).
-/// Source  LDROBOT, LD06 development manual, and ldrobotSensorTeam/ldlidar_stl_ros2 for what it leaves open.
+/// Source: LDROBOT, LD06 development manual; ldrobotSensorTeam/ldlidar_stl_ros2 where the manual is incomplete.
 namespace scanloom::robot {
 
 inline constexpr std::size_t kLd06PacketBytes = 47;
@@ -19,7 +19,7 @@ inline constexpr std::int32_t kLd06StepsPerDegree = 1100;
 inline constexpr std::int32_t kLd06StepsPerTurn = 360 * kLd06StepsPerDegree;
 
 struct Ld06Point {
-    std::uint16_t distance = 0;  ///< millimetres; 0 = none was measured
+    std::uint16_t distance = 0;  ///< millimetres; 0 = no measurement
     std::uint8_t confidence = 0; ///< the sensor's own scale
 
     friend bool operator==(const Ld06Point&, const Ld06Point&) = default;
@@ -35,17 +35,18 @@ struct Ld06Packet {
     friend bool operator==(const Ld06Packet&, const Ld06Packet&) = default;
 };
 
-/// Polynomial 0x4D, from 0, not reflected. Over a whole packet it is 0.
+/// Returns the CRC-8 with polynomial 0x4D, initial value 0, not reflected. Over a whole packet it is 0.
 [[nodiscard]] std::uint8_t ld06_crc(std::span<const std::uint8_t> bytes) noexcept;
 
-/// Pre  the bytes begin with the header and their CRC is right.
+/// Decodes a packet. Pre: the bytes begin with the header and their CRC is correct.
 [[nodiscard]] Ld06Packet read_ld06_packet(std::span<const std::uint8_t, kLd06PacketBytes> bytes) noexcept;
 
-/// False for what no sensor sends, though its CRC is right: one damaged packet in 256 has one that is. Sensors of 2250
-/// samples a second and more pass, so those of 4500 (LD06, LD19) with up to three times the span of their speed.
+/// Returns false for values that no sensor sends, although the CRC is correct: one damaged packet in 256 has a correct
+/// CRC. Accepts sensors of at least 2250 samples per second, and therefore those of 4500 (LD06, LD19) with up to three
+/// times the span of their speed.
 [[nodiscard]] bool is_plausible(const Ld06Packet& packet) noexcept;
 
-/// Steps from the first point to the last, clockwise.
+/// Returns the steps from the first point to the last, clockwise.
 [[nodiscard]] std::int32_t steps_spanned(const Ld06Packet& packet) noexcept;
 
 } // namespace scanloom::robot

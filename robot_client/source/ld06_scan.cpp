@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRadiansPerStep = 2.0 * std::numbers::pi / kLd06StepsPerTurn;
 
-/// Only described: every scan brings its own angles.
+/// Only for the description: every scan contains its own angles.
 constexpr std::uint32_t kUsualBeams = 450;
 
 class ReadingFilter {

@@ -7,8 +7,8 @@
 namespace scanloom::robot {
 namespace {
 
-/// What angle and time may differ by: the time is in whole milliseconds (3.6 degrees at 10 turns a second), the speed
-/// changes while the sensor starts, and some packets are sent out of their place by a few degrees.
+/// How much angle and time may differ: the time is in whole milliseconds (3.6 degrees at 10 turns per second), the
+/// speed changes while the sensor starts, and some packets are sent out of place by a few degrees.
 constexpr std::int32_t kDisagreementMax = 20 * kLd06StepsPerDegree;
 
 } // namespace
@@ -38,7 +38,7 @@ void Ld06Turns::add(const Ld06Packet& packet, double stamp) {
     before_ = Before{start, packet.timestamp};
 }
 
-/// Where the packet starts, in steps of the turn under way; nothing where that cannot be told.
+/// Returns where the packet starts, in steps of the current turn, or nullopt if that cannot be determined.
 std::optional<std::int32_t> Ld06Turns::follow(const Ld06Packet& packet) const {
     const int elapsed = (packet.timestamp - before_->timestamp + 2 * kLd06ClockWrap) % kLd06ClockWrap;
     const std::int64_t expected = std::int64_t{elapsed} * packet.speed * kLd06StepsPerDegree / 1000;
@@ -54,7 +54,7 @@ void Ld06Turns::add_point(Ld06Beam beam, double stamp) {
     if (beam.step < 0 || (!beams_.empty() && beam.step <= beams_.back().step)) return;
     if (beams_.empty()) first_stamp_ = stamp;
     last_stamp_ = stamp;
-    if (beams_.size() <= kBeamsMax) beams_.push_back(beam); // one too many tells that there were
+    if (beams_.size() <= kBeamsMax) beams_.push_back(beam); // one point too many shows that the turn is too long
 }
 
 void Ld06Turns::end_turn() {

@@ -18,41 +18,41 @@ struct Ld06Beam {
 
 /// The points from one crossing of 0 degrees to the next.
 struct Ld06Turn {
-    double stamp = 0.0;          ///< of its middle: one pose is meant for all its beams
-    std::vector<Ld06Beam> beams; ///< 1 or more, their steps rising
+    double stamp = 0.0;          ///< seconds, of its middle: one pose is used for all its beams
+    std::vector<Ld06Beam> beams; ///< at least 1, with increasing steps
 
     friend bool operator==(const Ld06Turn&, const Ld06Turn&) = default;
 };
 
-/// Cuts packets into turns, exactly where the angle crosses 0, within packets, too. A turn has as many points as it
-/// has, and no direction twice: a point that is not ahead of the one before it is dropped.
+/// Cuts packets into turns exactly where the angle crosses 0, also within packets. The number of points of a turn
+/// varies. No direction occurs twice: a point that is not ahead of the previous one is dropped.
 ///
-/// The turn that is under way when the stream begins is dropped, and the one that is when it ends. A turn of which
-/// packets were lost has a hole there. Where a whole turn may be missing, or angle and time disagree (something else
-/// goes on), there is a gap: the turn ends with the points it has, and the points behind begin another one. These are
-/// parts of turns, not full ones, and are given all the same: what was measured once is not to be had again.
+/// The incomplete turns at the beginning and at the end of the stream are dropped. A turn with lost packets has a hole
+/// there. If a whole turn may be missing, or angle and time disagree (another stream follows), there is a gap: the turn
+/// ends with the points it has, and the points after the gap begin another one. Such parts of turns are given too,
+/// because their measurements cannot be repeated.
 class Ld06Turns {
 public:
-    /// `stamp`: of this packet, seconds.
+    /// @param stamp  of this packet, seconds
     void add(const Ld06Packet& packet, double stamp);
 
-    /// The next turn that is complete.
+    /// Returns the next complete turn.
     [[nodiscard]] std::optional<Ld06Turn> next();
 
-    /// The stream begins anew.
+    /// Starts a new stream.
     void restart();
 
-    /// Turns given to this day, parts among them, without those of more than kBeamsMax points.
+    /// Returns the number of turns given, including parts, without those of more than kBeamsMax points.
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-    /// Of these the ones that a gap has cut.
+    /// Returns how many of these turns were cut by a gap.
     [[nodiscard]] std::uint64_t parts() const noexcept { return parts_; }
     [[nodiscard]] std::uint64_t gaps() const noexcept { return gaps_; }
-    /// Turns of more than kBeamsMax points, which are dropped: the sensor turns far too slowly.
+    /// Returns the number of turns with more than kBeamsMax points. They are dropped: the sensor turns far too slowly.
     [[nodiscard]] std::uint64_t too_long() const noexcept { return too_long_; }
 
 private:
     struct Before {
-        std::int32_t start = 0; ///< steps within the turn under way
+        std::int32_t start = 0; ///< steps within the current turn
         std::uint16_t timestamp = 0;
     };
 
@@ -60,9 +60,9 @@ private:
     void add_point(Ld06Beam beam, double stamp);
     void end_turn();
 
-    std::optional<Before> before_; ///< the packet before
-    bool is_given_ = false;        ///< the turn under way: its begin was seen, or is behind a gap
-    bool is_part_ = false;         ///< so is this: a gap has cut it
+    std::optional<Before> before_; ///< the previous packet
+    bool is_given_ = false;        ///< the current turn will be given: it began at 0 degrees or after a gap
+    bool is_part_ = false;         ///< the current turn was cut by a gap
     std::vector<Ld06Beam> beams_;
     double first_stamp_ = 0.0;
     double last_stamp_ = 0.0;

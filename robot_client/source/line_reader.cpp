@@ -13,7 +13,7 @@ namespace scanloom::robot {
 struct LineReader::State {
     State(const std::filesystem::path& name, LineLimits given, OnRead listener)
         : path(name.string()), limits(given), on_read(std::move(listener)), file(name) {
-        std::error_code failed; // then nothing is known of the total
+        std::error_code failed; // on failure the total is unknown
         const auto size = std::filesystem::file_size(name, failed);
         if (!failed) bytes_total = size;
     }
@@ -36,7 +36,7 @@ struct LineReader::State {
 
     [[nodiscard]] Error cannot_unpack() const;
 
-    /// The line that has been read to its end.
+    /// Returns the line that was read completely.
     [[nodiscard]] std::string_view take_line() {
         constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
         std::string_view taken = line;
@@ -44,7 +44,7 @@ struct LineReader::State {
         return taken;
     }
 
-    /// Fills the empty chunk; leaves it empty at the end of the text.
+    /// Fills the empty chunk, or leaves it empty at the end of the text.
     [[nodiscard]] Result<> refill();
 };
 

@@ -13,28 +13,28 @@
 
 namespace scanloom::robot {
 
-/// How much a reader takes from one file before it gives up.
+/// Limits of a reader for one file.
 struct LineLimits {
     std::uint64_t text_bytes_max = std::uint64_t{1} << 30; ///< after decompression
     std::size_t line_bytes_max = std::size_t{1} << 20;
 };
 
-/// How far a file has been read; bytes of the file as it is, compressed or not.
+/// How far a file has been read, in bytes of the file as it is, compressed or not.
 struct ReadProgress {
     std::uint64_t bytes = 0;
     std::uint64_t bytes_total = 0;
 };
 using OnRead = std::function<void(const ReadProgress&)>;
 
-/// The lines of a text file, plain or compressed with gzip or bzip2; its first bytes tell, not its name.
-/// Zero bytes behind compressed data are ignored.
+/// Reads the lines of a text file, plain or compressed with gzip or bzip2. The first bytes of the file determine its
+/// format, not its name. Zero bytes after compressed data are ignored.
 ///
-/// Errors  kNotFound: no such file, or not to be read; kMalformed: damaged or cut short;
-///         kTooLarge: beyond the limits. Each names the file and how many whole lines could be read.
-/// Thread  one at a time.
+/// Errors: kNotFound if the file does not exist or cannot be read; kMalformed if it is damaged or truncated; kTooLarge
+///         if it exceeds the limits. Each names the file and how many complete lines could be read.
+/// Threads: one at a time.
 class LineReader {
 public:
-    /// `on_read`, if there is one, hears after every piece of the file how far it has been read.
+    /// @param on_read  if not empty, called after each chunk of the file with the progress
     [[nodiscard]] static Result<LineReader> open(const std::filesystem::path& path, LineLimits limits = {},
                                                  OnRead on_read = {});
 
@@ -42,11 +42,11 @@ public:
     LineReader& operator=(LineReader&&) noexcept;
     ~LineReader();
 
-    /// The next line without its ending (LF or CR LF) and without UTF-8's byte order mark before the first, valid until
-    /// the next call; nothing after the last one.
+    /// Returns the next line, or nullopt after the last one. Line endings (LF or CR LF) and a UTF-8 byte order mark
+    /// before the first line are removed. The text is valid until the next call.
     [[nodiscard]] Result<std::optional<std::string_view>> next();
 
-    /// Number of the line that next() gave last, from 1.
+    /// Returns the number of the line that next() returned last, from 1.
     [[nodiscard]] std::size_t line_number() const noexcept;
 
 private:

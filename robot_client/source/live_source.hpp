@@ -10,30 +10,31 @@
 
 namespace scanloom::robot {
 
-/// Where scans come from that come when they come: a sensor, or a robot that waits for answers. What was taken once
-/// cannot be had again.
+/// A source whose scans arrive at their own time: a sensor, or a robot that waits for replies. Its scans cannot be
+/// obtained again.
 ///
-/// Post    as of Source.
-/// Thread  that of the executor which awaits next().
+/// Every scan and sensor keeps common/scan/limits.hpp, as for Source.
+/// Threads: that of the executor which awaits next().
 class LiveSource {
 public:
     virtual ~LiveSource() = default;
 
-    /// The next scan, once there is one; nothing when there will be no more.
-    /// Errors  a sensor that cannot be read any more.
+    /// Waits for the next scan and returns it, or nullopt when there are no more.
+    /// Errors: the sensor's, if it cannot be read any more.
     [[nodiscard]] virtual boost::asio::awaitable<Result<std::optional<Observation>>> next() = 0;
 
-    /// Whether time stands still for it while next() is not called, as in a simulation: nothing is lost by waiting
-    /// then.
+    /// Returns whether the source's time stands still between calls of next(), as in a simulation. Then waiting loses
+    /// nothing.
     [[nodiscard]] virtual bool can_wait() const { return false; }
-    /// The server holds so many of its scans from earlier runs. Only where it can wait, before the first next().
+    /// Sets the number of this source's scans that the server has from earlier runs. Only if can_wait(), before the
+    /// first next().
     virtual void resume_after(std::uint64_t scans) { static_cast<void>(scans); }
 
-    /// No more is wanted: next() comes to its end soon, and after it gives nothing, or an error where nothing could be
-    /// had at all.
+    /// Ends the source: a pending next() returns soon, and later calls return nullopt, or an error if no scan could be
+    /// obtained.
     virtual void stop() = 0;
 
-    /// What people should know of it beside its scans, a few words; empty: nothing.
+    /// Returns a few words for people about the source, besides its scans; may be empty.
     [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 

@@ -11,9 +11,9 @@
 
 namespace scanloom::robot {
 
-/// Asks where a robot is that has seen these points from there, all in its odometry frame, on maps that hold all its
-/// scans so far.
-/// Pre  20 to 32,768 points.
+/// Requests the position of a robot that saw these points from this place, both in its odometry frame, on maps that
+/// contain all its scans so far.
+/// Pre: 20 to 32,768 points.
 using Locate = std::function<boost::asio::awaitable<Result<Located>>(std::vector<PointMm> points, Point2 from)>;
 
 } // namespace scanloom::robot

@@ -4,11 +4,11 @@
 
 namespace scanloom::robot {
 
-/// Where a robot's odometry frame is in the map, and how sure that is.
+/// Position of a robot's odometry frame in the map, with its uncertainty.
 struct Located {
     Pose2 T_map_odom;
-    double explained = 0.0;      ///< part of what the robot saw that lies on what the map has, 0 to 1
-    double position_sigma = 0.0; ///< metres, in the direction least known
+    double explained = 0.0;      ///< inlier ratio: share of the observed points that match the map, 0 to 1
+    double position_sigma = 0.0; ///< metres; standard deviation in the least certain direction
     double yaw_sigma = 0.0;      ///< radians
 };
 

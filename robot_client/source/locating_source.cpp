@@ -21,10 +21,10 @@ namespace {
 
 using Time = std::chrono::steady_clock::time_point;
 
-/// Whether the server may tell what it did not, if it is asked again.
+/// Returns whether the server may locate the robot if it is asked again.
 bool may_pass(Errc code) { return code == Errc::kOverloaded || code == Errc::kShuttingDown; }
 
-/// Shows where a timer is as long as it is there. It may go before or after the source.
+/// Makes a timer known while it exists. It may be destroyed before or after the source.
 class Shown {
 public:
     Shown(std::shared_ptr<asio::steady_timer*> place, asio::steady_timer& timer) : place_(std::move(place)) {
@@ -67,13 +67,13 @@ asio::awaitable<Result<std::optional<Observation>>> LocatingSource::next() {
     }
 }
 
-/// Until the map has been looked at: that there is no time for it at this moment says nothing of the place.
+/// Repeats the request until the server has searched the map. A busy server says nothing about the place.
 asio::awaitable<void> LocatingSource::ask(SeenPoints seen) {
     const auto points = seen.points();
     const Point2 from = seen.from();
     bool is_told = false;
     while (!is_stopped_) {
-        auto asked = points; // named, as g++ 12 destroys such temporaries twice
+        auto asked = points; // a named variable, because g++ 12 destroys such temporaries twice
         const auto answer = co_await (locate_(std::move(asked), from) || wait(Time::max()));
         if (answer.index() != 0) continue;
         const Result<Located>& located = std::get<0>(answer);
@@ -87,7 +87,7 @@ asio::awaitable<void> LocatingSource::ask(SeenPoints seen) {
     }
 }
 
-/// Or until it is stopped.
+/// Waits until the given time or until stop().
 asio::awaitable<void> LocatingSource::wait(Time until) {
     if (is_stopped_) co_return;
     asio::steady_timer timer(co_await asio::this_coro::executor, until);

@@ -16,33 +16,34 @@
 
 namespace scanloom::robot {
 
-/// A laser without odometry that is carried from place to place. Where it stands it asks the server for its place, and
-/// gives what it sees from there (see Halts); what it sees on its way is dropped.
+/// A laser without odometry that is carried from place to place. While it is stationary the source requests its
+/// position from the server and gives the scans taken there (see Halts). Scans taken while it moves are dropped.
 ///
-/// While an answer is awaited nothing is read of the laser: one that cannot wait keeps the newest turns itself, and
-/// drops older ones (Ld06Live). A server that has no time is asked again. The turns that were asked about are kept here
-/// and are given however late the answer is. Once a place is known nothing of it needs the server any more.
+/// While a reply is awaited the laser is not read: a laser that cannot wait keeps the newest turns itself and drops
+/// older ones (Ld06Live). If the server is busy, the request is repeated. The turns of a request are kept here and are
+/// given however late the reply is. Once the position is known, the source needs the server no more until the laser is
+/// moved.
 ///
-/// Thread  as of LiveSource
+/// Threads: as for LiveSource.
 class LocatingSource final : public LiveSource {
 public:
     using Tell = std::function<void(const std::string&)>;
 
-    /// @param turns        of one laser, their poses in its odometry frame; of a bare lidar the origin
-    /// @param first_place  T_map_robot where it stands first, in case nothing is mapped yet
-    /// @param tell         hears sentences for people
-    /// @param ask_again_after  where the server says that it cannot tell at this moment
+    /// @param turns            of one laser, with poses in its odometry frame; the origin for a bare lidar
+    /// @param first_place      T_map_robot at the start, used if no map exists yet
+    /// @param tell             receives messages for people
+    /// @param ask_again_after  pause before the request is repeated when the server is busy
     LocatingSource(std::unique_ptr<LiveSource> turns, const Pose2& first_place, Tell tell,
                    std::chrono::milliseconds ask_again_after = std::chrono::seconds(1));
 
-    /// Who tells where it is. To be called before the first next().
+    /// Sets the function that locates the robot. Call it before the first next().
     void ask_with(Locate locate) { locate_ = std::move(locate); }
 
     [[nodiscard]] bool can_wait() const override { return turns_->can_wait(); }
     void resume_after(std::uint64_t scans) override { turns_->resume_after(scans); }
 
-    /// Errors  those of the turns; once there are no more, where not one could be given: the newest refusal, or kNotFound:
-    ///         the laser never stood still, or it was stopped before there was an answer.
+    /// Errors: those of the turns; at the end, if no scan could be given: the newest refusal, or kNotFound if the laser
+    ///         was never stationary or stop() was called before a reply arrived.
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
     void stop() override;
     [[nodiscard]] std::string remarks() const override;
@@ -60,7 +61,7 @@ private:
     Locate locate_;
     bool has_ended_ = false;
     bool is_stopped_ = false;
-    /// Of wait(), on its frame.
+    /// The timer of wait() while it runs; it is in the frame of that coroutine.
     std::shared_ptr<boost::asio::steady_timer*> awaiting_ = std::make_shared<boost::asio::steady_timer*>(nullptr);
 };
 

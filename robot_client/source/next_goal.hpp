@@ -10,20 +10,20 @@
 
 namespace scanloom::robot {
 
-/// What a robot is to explore next.
+/// The next exploration goal of a robot.
 struct NextStop {
     enum class Outcome {
-        kGoal,          ///< there is somewhere to go
-        kTakenByOthers, ///< other robots have all that this one can reach
-        kComplete,      ///< nothing can be reached any more
+        kGoal,          ///< `path` leads to the next goal
+        kTakenByOthers, ///< other robots have all goals that this robot can reach
+        kComplete,      ///< no goal can be reached any more
     };
     Outcome outcome = Outcome::kComplete;
-    std::vector<Point2> path; ///< with kGoal: the way there, metres in the map frame
-    Point2 target{0.0, 0.0};  ///< with kGoal: what to look at from its end
+    std::vector<Point2> path; ///< with kGoal: path to the goal, metres in the map frame
+    Point2 target{0.0, 0.0};  ///< with kGoal: the point to observe from the end of the path
 };
 
-/// Asks for the next stop of a robot that stands where its newest scan was taken, on maps that hold all its scans so
-/// far. Ways should keep as far from obstacles as the robot needs to follow them.
+/// Requests the next goal of a robot at the pose of its newest scan, on maps that contain all its scans so far. Paths
+/// should keep the distance from obstacles that the robot needs to follow them.
 using NextGoal = std::function<boost::asio::awaitable<Result<NextStop>>()>;
 
 } // namespace scanloom::robot

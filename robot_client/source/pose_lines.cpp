@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kNumbers = 4;
 
-/// Takes the lines one by one.
+/// Parses lines and collects their poses.
 class Collector {
 public:
     explicit Collector(const std::function<void(const SkippedLine&)>& report) : report_(report) {}

@@ -11,12 +11,13 @@
 #include <optional>
 #include <string_view>
 
-/// Poses as text, a line each: `t x y yaw`, in seconds, metres and radians counter-clockwise, beyond a full turn, too, as
-/// odometry counts; what stands behind is ignored, and so are blank lines and those that begin with '#'.
+/// Reads poses from text, one per line: `t x y yaw` in seconds, metres and radians counter-clockwise. The yaw may
+/// exceed a full turn, as odometry counts it. Text after these values, blank lines and lines that begin with '#' are
+/// ignored.
 namespace scanloom::robot {
 
-/// Nothing for a line that says nothing.
-/// Errors  kMalformed, kInvalidField: not as above, not finite, or beyond kCoordinateMax.
+/// Parses one line; returns nullopt for a blank line or comment.
+/// Errors: kMalformed or kInvalidField if the line is not as above, not finite, or beyond kCoordinateMax.
 [[nodiscard]] Result<std::optional<StampedPose>> read_pose_line(std::string_view line);
 
 struct PoseLines {
@@ -24,13 +25,14 @@ struct PoseLines {
     std::size_t skipped = 0; ///< lines that could not be used
 };
 
-/// Reads all of a file; `report` hears of every line that cannot be used.
-/// Errors  those of LineReader; kNotFound: no line is usable.
+/// Reads a whole file.
+/// @param report  called for each line that cannot be used
+/// Errors: those of LineReader; kNotFound if no line is usable.
 [[nodiscard]] Result<PoseLines> read_pose_lines(const std::filesystem::path& path,
                                                 const std::function<void(const SkippedLine&)>& report,
                                                 LineLimits limits = {});
 
-/// The same of a stream of bytes, which `name` calls for people.
+/// Reads a whole stream. `name` identifies it in messages. Errors: as for a file.
 [[nodiscard]] Result<PoseLines> read_pose_lines(std::istream& lines, std::string_view name,
                                                 const std::function<void(const SkippedLine&)>& report);
 

@@ -8,17 +8,17 @@
 
 namespace scanloom::robot {
 
-/// Poses as they become known. Unlike PosePath it answers for times between its poses only, however far apart they are:
-/// who tells where a robot was, tells it for the time between, too.
+/// Poses that arrive over time. Unlike PosePath it interpolates only between its poses, however far apart they are: the
+/// sender of poses also defines the trajectory between them.
 class PoseTimeline {
 public:
-    /// Poses may come in any order.
+    /// Adds a pose. Poses may arrive in any order.
     void insert(const StampedPose& pose);
 
-    /// Forgets the oldest beyond `count`.
+    /// Removes the oldest poses beyond `count`.
     void keep_newest(std::size_t count);
 
-    /// Forgets those of later times.
+    /// Removes the poses later than `stamp`.
     void forget_after(double stamp);
 
     [[nodiscard]] std::optional<Pose2> at(double stamp) const;
@@ -27,12 +27,12 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return poses_.size(); }
     [[nodiscard]] auto begin() const noexcept { return poses_.begin(); }
     [[nodiscard]] auto end() const noexcept { return poses_.end(); }
-    /// Pre  not empty.
+    /// Pre: not empty.
     [[nodiscard]] const StampedPose& oldest() const noexcept { return poses_.front(); }
     [[nodiscard]] const StampedPose& newest() const noexcept { return poses_.back(); }
 
 private:
-    std::deque<StampedPose> poses_; // by rising stamp
+    std::deque<StampedPose> poses_; // by increasing stamp
 };
 
 } // namespace scanloom::robot

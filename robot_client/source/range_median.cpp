@@ -7,11 +7,11 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr std::int32_t kGapsMax = 4; // as the server has it: wider ones are blind
+constexpr std::int32_t kGapsMax = 4; // as on the server: wider gaps were not observed
 
 bool is_return(RangeMm range) { return range != kInvalidRange && range != kNoReturn; }
 
-/// From each beam to the next, around the turn.
+/// Returns the steps from each beam to the next, around the turn.
 std::vector<std::int32_t> gaps_between(std::span<const std::int32_t> steps, std::int32_t steps_per_turn) {
     std::vector<std::int32_t> gaps(steps.size());
     for (std::size_t i = 0; i + 1 < steps.size(); ++i) gaps[i] = steps[i + 1] - steps[i];
@@ -36,7 +36,7 @@ std::vector<RangeMm> median_filtered(std::span<const RangeMm> ranges, std::span<
     if (count < static_cast<std::size_t>(window)) return filtered;
     const auto gaps = gaps_between(steps, steps_per_turn);
     const std::int32_t gap_max = kGapsMax * median_of(gaps);
-    /// Whether beam `i` and the next one are returns side by side.
+    /// Returns whether beam `i` and the next one are adjacent returns.
     const auto goes_on = [&](std::size_t i) {
         return is_return(ranges[i]) && is_return(ranges[(i + 1) % count]) && gaps[i] <= gap_max;
     };

@@ -9,15 +9,18 @@
 namespace scanloom::robot {
 
 inline constexpr int kMedianWindowMin = 3;
-inline constexpr int kMedianWindowMax = 101; ///< beams; from about 15 on corners go round, from 51 on they go
+inline constexpr int kMedianWindowMax =
+    101; ///< beams; windows of about 15 and more round corners, of 51 and more remove them
 
-/// Each return becomes the median of itself and its neighbours, as many on either side: half of `window`, or fewer
-/// where the neighbours end: at a beam that is no return, and at a gap of more than four times the median gap. So
-/// nothing becomes a return that was none, no return is lost, and nothing is mixed across what was not seen.
+/// Replaces each return by the median of itself and its neighbours, the same number on each side: half of `window`, or
+/// fewer where the neighbours end, at a beam without a return and at a gap of more than four times the median gap. So
+/// no beam becomes a return, no return is lost, and returns are not mixed across unobserved directions.
 ///
-/// Shapes  `steps`: the direction of each beam, rising, all within one turn of `steps_per_turn`; beams are neighbours
-///         across its begin, too.
-/// Pre     window odd, 1 (nothing changes) to kMedianWindowMax; ranges.size() == steps.size().
+/// @param steps           direction of each beam, increasing, all within one turn; the last and the first beam are
+///         neighbours, too
+/// @param steps_per_turn  steps of a full turn
+/// @param window          beams; odd, from 1 (no change) to kMedianWindowMax
+/// Pre: ranges.size() == steps.size().
 [[nodiscard]] std::vector<RangeMm> median_filtered(std::span<const RangeMm> ranges, std::span<const std::int32_t> steps,
                                                    std::int32_t steps_per_turn, int window);
 

@@ -10,7 +10,7 @@ namespace asio = boost::asio;
 
 asio::awaitable<Result<std::optional<Observation>>> ReplayedSource::next() {
     co_await asio::post(co_await asio::this_coro::executor,
-                        asio::use_awaitable); // others on the thread have their turn
+                        asio::use_awaitable); // lets other handlers of the thread run
     if (is_stopped_) co_return std::optional<Observation>{};
     co_return recording_->next();
 }

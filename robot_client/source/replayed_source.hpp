@@ -6,15 +6,15 @@
 
 namespace scanloom::robot {
 
-/// A recording as if it were taken now: its time stands still while nobody asks. It is given from its begin whatever
-/// the server holds of earlier runs.
+/// A recording replayed as a live source. Its time stands still between calls of next(). It starts at its beginning,
+/// whatever the server has from earlier runs.
 ///
-/// Thread  as of LiveSource
+/// Threads: as for LiveSource.
 class ReplayedSource final : public LiveSource {
 public:
     explicit ReplayedSource(std::unique_ptr<Source> recording) : recording_(std::move(recording)) {}
 
-    /// Errors  those of the recording.
+    /// Errors: those of the recording.
     [[nodiscard]] boost::asio::awaitable<Result<std::optional<Observation>>> next() override;
     [[nodiscard]] bool can_wait() const override { return true; }
     void stop() override { is_stopped_ = true; }

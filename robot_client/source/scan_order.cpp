@@ -10,7 +10,7 @@ ScanOrder order_of(std::span<const double> stamps) {
     result.order.resize(stamps.size());
     std::iota(result.order.begin(), result.order.end(), 0U);
 
-    std::vector<double> newest(stamps.begin(), stamps.end()); // of each scan's part up to it
+    std::vector<double> newest(stamps.begin(), stamps.end()); // newest stamp of each scan's part, up to that scan
     for (std::size_t i = 1; i < stamps.size(); ++i) {
         if (stamps[i] < stamps[i - 1]) ++result.steps_back;
         const double back = newest[i - 1] - stamps[i];

@@ -4,7 +4,7 @@
 
 namespace scanloom::robot {
 
-/// `duration` as a number of seconds.
+/// Converts a duration to seconds.
 [[nodiscard]] inline double seconds(std::chrono::milliseconds duration) {
     return std::chrono::duration<double>(duration).count();
 }

@@ -9,26 +9,26 @@
 
 namespace scanloom::robot {
 
-inline constexpr std::size_t kSeenPointsMin = 20; ///< of fewer no server tells where they were seen
+inline constexpr std::size_t kSeenPointsMin = 20; ///< fewer points do not determine a position
 inline constexpr std::size_t kSeenPointsMax = 32'768;
 
-/// Where the lasers of a robot that stands met something, scan by scan.
+/// The points that a stationary robot's lasers observed, added scan by scan.
 ///
-/// Frames  that of Scan::pose: the odometry frame of a robot that asks where it is.
-/// Units   points in whole millimetres; metres.
+/// Units: points in whole millimetres, otherwise metres.
+/// Frames: that of Scan::pose, i.e. the odometry frame of a robot that requests its position.
 class SeenPoints {
 public:
-    /// Beams that met nothing, and what lies beyond kCoordinateMax, are passed over.
-    /// Pre  the sensor took the scan; its angles have one entry per range.
+    /// Adds the returns of a scan. Beams without a return and points beyond kCoordinateMax are skipped. Pre: the sensor
+    /// took the scan; its angles have one entry per range.
     void add(const Scan& scan, const Sensor& sensor);
 
-    /// All of them, or kSeenPointsMax taken evenly from all.
+    /// Returns all points, or kSeenPointsMax selected evenly.
     [[nodiscard]] std::vector<PointMm> points() const;
 
-    /// Of all, also of those beyond kSeenPointsMax.
+    /// Returns the number of all points, also beyond kSeenPointsMax.
     [[nodiscard]] std::size_t count() const noexcept { return points_.size(); }
 
-    /// The middle of where the sensors were. Pre  a scan was added.
+    /// Returns the mean position of the sensors, in metres. Pre: a scan was added.
     [[nodiscard]] Point2 from() const;
 
 private:

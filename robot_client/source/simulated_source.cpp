@@ -7,7 +7,7 @@ namespace scanloom::robot {
 
 std::uint64_t scans_within(double duration, std::size_t sensors) {
     const double moments =
-        std::ceil(duration / kScanPeriod - 1e-6); // 0.3 s are three periods of 0.1 s, rounded as they are
+        std::ceil(duration / kScanPeriod - 1e-6); // 0.3 s are three periods of 0.1 s despite rounding
     const double scans = moments * static_cast<double>(sensors);
     return scans < 1e15 ? static_cast<std::uint64_t>(scans) : std::numeric_limits<std::uint64_t>::max();
 }

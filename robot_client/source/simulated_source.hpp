@@ -8,23 +8,23 @@
 namespace scanloom::robot {
 
 struct SimulationLimits {
-    double duration = std::numeric_limits<double>::infinity();       ///< seconds of the simulation's time
+    double duration = std::numeric_limits<double>::infinity();       ///< seconds of simulated time
     std::uint64_t scans = std::numeric_limits<std::uint64_t>::max(); ///< of all sensors
 };
 
-/// How many scans so many sensors take at 0, p, 2 p, ... before `duration` seconds have passed.
+/// Returns how many scans `sensors` sensors take at 0, p, 2 p, ... before `duration` seconds have passed.
 [[nodiscard]] std::uint64_t scans_within(double duration, std::size_t sensors);
 
-/// The next scan of a simulated robot.
+/// Takes the next scan of a simulated robot.
 [[nodiscard]] Observation observed(Simulator& simulator, NoReturn no_return);
 
-/// A simulated robot as a source; it ends at the first of its limits, or when its behaviour is done, or never.
+/// A simulated robot as a source. It ends at the first of its limits, when its behaviour is done, or never.
 class SimulatedSource final : public Source {
 public:
     SimulatedSource(Simulator simulator, SimulationLimits limits, NoReturn no_return);
 
     [[nodiscard]] Result<std::optional<Observation>> next() override;
-    /// Not known before its end where its behaviour has one.
+    /// Returns nullopt until the end if the behaviour can end.
     [[nodiscard]] std::optional<std::uint64_t> scan_count() const override;
     [[nodiscard]] std::string remarks() const override { return simulator_.behaviour().remarks(); }
 

@@ -47,11 +47,10 @@ void add_world(Lines& lines, const World& world) {
 
 } // namespace
 
-// A line that there was not in older versions is there only where something of it is: what gave the same scans then has
-// the same fingerprint now.
+// A line that older versions did not have is added only if it has an effect, so equal scans keep their fingerprint.
 std::string fingerprint_of(const SimulatorOptions& options, std::string_view drive, NoReturn no_return) {
     Lines lines;
-    // The number is to be raised when the same options begin to give other scans: another drive, another simulator.
+    // Increase the number when the same options give different scans: another drive, another simulator.
     lines.add("simulation", 2);
     lines.add("seed", options.seed);
     lines.add("drive", drive);

@@ -26,7 +26,8 @@ Sensor make_ring(const SonarOptions& options) {
     return {0, SensorKind::kSonar, "sonar ring", Pose2{}, std::move(angles), options.aperture, 0.0, options.range_max};
 }
 
-/// The numbers of one line. Errors  kMalformed, kInvalidField.
+/// Reads the numbers of one line.
+/// Errors: kMalformed, kInvalidField.
 Result<std::vector<double>> read_numbers(std::string_view line, std::size_t count, std::string_view what) {
     const Tokens tokens = split(line);
     if (tokens.size() != count) {
@@ -69,7 +70,7 @@ Result<Scan> read_measurement(std::string_view line, const SonarOptions& options
     return scan;
 }
 
-/// Gives every line that is not blank to `take`; its errors get the file and the line in front.
+/// Calls `take` for each line that is not blank; its errors get the file and the line number as prefix.
 Result<> read_lines(const std::filesystem::path& path, LineLimits limits, Sha256& hash,
                     const std::function<Result<>(std::string_view line)>& take) {
     auto lines = LineReader::open(path, limits);

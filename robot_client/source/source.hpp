@@ -11,32 +11,32 @@
 
 namespace scanloom::robot {
 
-/// What a beam without a return tells the map: its way is free up to range_max, or nothing.
+/// How a beam without a return is used: the cells up to range_max are free, or the beam is dropped.
 enum class NoReturn { kFree, kDrop };
 
-/// A scan and the sensor that took it. Its seq is not set here: the uplink numbers scans.
+/// A scan and the sensor that took it. The uplink sets its seq.
 struct Observation {
     std::shared_ptr<const Sensor> sensor;
     Scan scan;
 };
 
-/// Where scans come from, in the order in which they are sent.
+/// A source of scans, in the order in which they are sent.
 ///
-/// Post    every scan and sensor keeps common/scan/limits.hpp: the server will not refuse it.
-/// Thread  one at a time.
+/// Every scan and sensor keeps common/scan/limits.hpp, so the server accepts it.
+/// Threads: one at a time.
 class Source {
 public:
     virtual ~Source() = default;
 
-    /// The next scan; nothing when the source has ended. A source that is made anew gives the same scans again: that
-    /// is how a robot continues behind those the server has.
-    /// Errors  a recording that cannot be read on.
+    /// Returns the next scan, or nullopt at the end. A source that is recreated gives the same scans again; so a robot
+    /// can resume after the scans that the server has.
+    /// Errors: those of a recording that cannot be read further.
     [[nodiscard]] virtual Result<std::optional<Observation>> next() = 0;
 
-    /// Scans this source will have given in the end; nothing where it is endless, or that is not known.
+    /// Returns the total number of scans of this source, or nullopt if it is endless or the number is not known.
     [[nodiscard]] virtual std::optional<std::uint64_t> scan_count() const = 0;
 
-    /// What people should know of it beside its scans, a few words; empty: nothing.
+    /// Returns a few words for people about the source, besides its scans; may be empty.
     [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 

@@ -12,16 +12,16 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTolerance = 0.03;      // metres, and
+constexpr double kTolerance = 0.03;      // metres, plus
 constexpr double kTolerancePart = 0.005; // of the range
 
-/// Of a sensor that sees less nothing can be told.
+/// A turn that shows fewer directions cannot be judged.
 constexpr std::size_t kDirectionsMin = kDirections / 10;
 
-/// Of the directions that could be compared. Of the turns of a real recording that a gap has cut, the least has 0.23.
+/// Smallest share of the comparable directions. In a real recording, the least among turns cut by a gap is 0.23.
 constexpr double kComparedPartMin = 0.2;
 
-/// NaN where there are none. Changes the order of `values`.
+/// Returns NaN for no values. Changes the order of `values`.
 double median_of(std::vector<double>& values) {
     if (values.empty()) return kNothing;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -32,14 +32,14 @@ double median_of(std::vector<double>& values) {
 std::size_t direction_of(double angle_rad) {
     const double turns = angle_rad / (2.0 * std::numbers::pi);
     const double degrees = (turns - std::floor(turns)) * static_cast<double>(kDirections);
-    return std::min(static_cast<std::size_t>(degrees), kDirections - 1); // rounding may make it a full turn
+    return std::min(static_cast<std::size_t>(degrees), kDirections - 1); // rounding may give a full turn
 }
 
 std::size_t shown_by(const TurnProfile& turn) {
     return static_cast<std::size_t>(std::ranges::count_if(turn, [](double range) { return !std::isnan(range); }));
 }
 
-/// The median of each direction over the turns, where half of them or more show something.
+/// Returns the median of each direction over the turns, if at least half of them have a return there.
 TurnProfile medians_of(const std::vector<TurnProfile>& turns) {
     TurnProfile medians;
     std::vector<double> values;
@@ -79,7 +79,7 @@ void Stillness::learn(const TurnProfile& turn) {
         ++comparable_;
         for (const std::size_t beside : {direction + 1, direction + kDirections - 1}) {
             const double range = medians[beside % kDirections];
-            low_[direction] = std::fmin(low_[direction], range); // which pass over NaN
+            low_[direction] = std::fmin(low_[direction], range); // fmin and fmax ignore NaN
             high_[direction] = std::fmax(high_[direction], range);
         }
         const double tolerance = kTolerance + kTolerancePart * medians[direction];

@@ -12,56 +12,57 @@ namespace scanloom::robot {
 
 inline constexpr std::size_t kDirections = 360;
 
-/// What one turn of a sensor shows in each direction of its own, each a degree wide: the median of what it met there,
-/// in metres; NaN where it met nothing.
+/// For each direction of the sensor, one degree wide: the median range of its returns in one turn, in metres; NaN
+/// without returns.
 using TurnProfile = std::array<double, kDirections>;
 
-/// Pre  the sensor took the scan; its angles have one entry per range.
+/// Computes the profile of one turn. Pre: the sensor took the scan; its angles have one entry per range.
 [[nodiscard]] TurnProfile profile_of(const Scan& scan, const Sensor& sensor);
 
-/// Tells from ranges alone whether a sensor stands where it stood when it took the turns that were learnt.
+/// Stationary detection: decides from ranges alone whether a sensor is still where it was during the learned turns.
 ///
-/// A turn is compared with their medians, direction by direction. Where it lies outside the span of the same direction
-/// and its two neighbours (the beams of a spinning sensor point elsewhere turn by turn) by more than 3 cm and 0.5 % of
-/// the range, that direction has changed. People who walk by change some directions, a move changes many.
+/// A turn is compared, direction by direction, with the span of the learned turns. A direction has changed if its range
+/// is outside the span of the same direction and its two neighbours (the beams of a spinning sensor point elsewhere in
+/// each turn) by more than 3 cm plus 0.5 % of the range. People who walk past change some directions, a movement of the
+/// sensor changes many.
 ///
-/// Measured, as the part of the directions that changed:
+/// Measured share of the directions that changed:
 ///                              stands       a person at 0.5 m, 0.8 m   moved 10 cm        turned 5 (3) degrees
 ///   a real LD06 in a room      up to 0.02                              0.38 and more      0.53 (0.33) and more
 ///   simulated, room, office    up to 0.08   up to 0.24, 0.17           19 of 20 over 0.34 0.41 (0.27) and more
-/// The real sensor stood; the points of its turns were moved and turned instead. The simulated one has 360 beams, each
-/// with a sigma of 0.02 m and 0.005 rad. Along a corridor without corners, and in a hall most of which is out of its
-/// sight, a move shows later.
+/// The real sensor was stationary; the points of its turns were shifted and rotated instead. The simulated one has 360
+/// beams, each with a sigma of 0.02 m and 0.005 rad. Along a corridor without corners, and in a hall most of which is
+/// out of the sensor's range, a movement is detected later.
 ///
-/// Thread  one at a time.
+/// Threads: one at a time.
 class Stillness {
 public:
     static constexpr std::size_t kTurnsMax = 10;
     static constexpr double kChangedPartMax = 0.27;
-    /// As long as it learns, so that a sensor that is being put down is not taken for one that stands: four of five
-    /// moves by 5 cm change more, in both rows above.
+    /// Limit while turns are learned, so that a sensor that is just being put down does not count as stationary: four
+    /// of five moves by 5 cm change more, in both rows above.
     static constexpr double kLearningPartMax = 0.15;
 
     enum class Verdict {
         kStill,
         kMoved,
-        kUnclear, ///< too few directions can be compared: a part of a turn, a sensor that is covered
+        kUnclear, ///< too few directions can be compared: part of a turn, or a covered sensor
     };
 
-    /// Of a turn, against those learnt. The first one is still, if it shows enough.
+    /// Compares a turn with those learned. The first turn is kStill if it shows enough.
     [[nodiscard]] Verdict judge(const TurnProfile& turn) const;
 
-    /// The part of the directions compared that have changed; nothing where they are too few.
+    /// Returns the share of the compared directions that have changed, or nullopt if too few can be compared.
     [[nodiscard]] std::optional<double> changed_part(const TurnProfile& turn) const;
 
-    /// The sensor stood where it stands now when it took this turn. Pre  fewer than kTurnsMax were learnt.
+    /// Adds a turn taken at the sensor's current place. Pre: fewer than kTurnsMax turns were learned.
     void learn(const TurnProfile& turn);
 
     [[nodiscard]] std::size_t turns() const noexcept { return learnt_.size(); }
 
 private:
     std::vector<TurnProfile> learnt_;
-    TurnProfile low_{}; ///< the span of each direction, metres; NaN: nothing to compare with
+    TurnProfile low_{}; ///< span of each direction, metres; NaN: nothing to compare with
     TurnProfile high_{};
     std::size_t comparable_ = 0; ///< directions
 };

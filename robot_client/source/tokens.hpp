@@ -5,18 +5,18 @@
 #include <string_view>
 #include <vector>
 
-/// The words and numbers of recordings in text.
+/// The words and numbers of text recordings.
 namespace scanloom::robot {
 
 using Tokens = std::vector<std::string_view>;
 
-/// What blanks divide.
+/// Splits a line at blanks.
 [[nodiscard]] Tokens split(std::string_view line);
 
-/// A whole token as a number; one too large for a double counts as infinite.
+/// Converts a whole token to a number; one too large for a double becomes infinite.
 [[nodiscard]] std::optional<double> to_number(std::string_view token);
 
-/// A token for people: short, and without what a terminal could take for a command.
+/// Returns a token for messages: shortened, and without characters that a terminal could interpret.
 [[nodiscard]] std::string shown_token(std::string_view token);
 
 } // namespace scanloom::robot

@@ -27,7 +27,7 @@ std::optional<std::size_t> UnpackedFile::read(std::span<char> text) {
         }
         const Unpacked step = member_->step(packed_, text);
         packed_.remove_prefix(step.taken);
-        const bool is_cut_short = step.taken == 0 && step.made == 0; // it needs more, and there is no more
+        const bool is_cut_short = step.taken == 0 && step.made == 0; // it needs more input and there is none
         is_damaged_ =
             step.state == Unpacked::State::kDamaged || (step.state == Unpacked::State::kGoesOn && is_cut_short);
         if (step.state == Unpacked::State::kEnded) member_.reset();

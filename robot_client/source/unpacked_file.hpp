@@ -14,26 +14,26 @@
 
 namespace scanloom::robot {
 
-/// The bytes of a file, plain or unpacked from gzip or bzip2. Zero bytes behind packed data are padding, as archives
-/// and tapes leave it.
+/// Reads the bytes of a file, plain or decompressed from gzip or bzip2. Zero bytes after compressed data are padding,
+/// as archives and tapes leave it.
 ///
-/// Thread  one at a time.
+/// Threads: one at a time.
 class UnpackedFile {
 public:
-    /// Opens it; is_open() tells whether that went well, errno why not.
+    /// Opens the file. is_open() returns whether that succeeded; errno holds the reason if not.
     explicit UnpackedFile(const std::filesystem::path& path);
 
     [[nodiscard]] bool is_open() const { return file_.is_open(); }
     [[nodiscard]] Packing packing() const noexcept { return packing_; }
 
-    /// Fills `text`, which is not empty, from its begin on. @return how many bytes there were, 0 at the end; nothing
-    /// where the packed data are damaged or cut short. What stands before the damage comes first.
+    /// Fills `text`, which must not be empty, from its beginning. Bytes before damage are returned first.
+    /// @return number of bytes, 0 at the end; nullopt if the compressed data are damaged or truncated
     [[nodiscard]] std::optional<std::size_t> read(std::span<char> text);
 
-    /// Bytes of the file, packed as it is.
+    /// Returns how many bytes of the file itself were read, compressed or not.
     [[nodiscard]] std::uint64_t bytes_read() const noexcept { return bytes_read_; }
 
-    /// True when the end came because the file could not be read on.
+    /// Returns whether the end was reached because reading the file failed.
     [[nodiscard]] bool has_failed() const { return file_.bad(); }
 
 private:
@@ -43,9 +43,9 @@ private:
 
     std::ifstream file_;
     std::array<char, 16384> buffer_{};
-    std::string_view packed_; ///< what is left of the buffer
+    std::string_view packed_; ///< the remaining part of the buffer
     Packing packing_ = Packing::kPlain;
-    std::unique_ptr<MemberUnpacker> member_; ///< none between two members
+    std::unique_ptr<MemberUnpacker> member_; ///< empty between two members
     std::uint64_t bytes_read_ = 0;
     bool is_first_member_ = true;
     bool is_damaged_ = false;

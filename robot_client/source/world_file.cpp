@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A plain image of the most pixels, with six characters each, and its comments.
+/// Size of a plain image with the most pixels, six characters each, and its comments.
 constexpr std::uintmax_t kFileBytesMax = 7 * static_cast<std::uintmax_t>(kRosImagePixelsMax);
 
 Error about(const fs::path& path, const Error& error) { return prefixed(path.string() + ": ", error); }
@@ -46,7 +46,7 @@ Result<World> load_map(const fs::path& yaml) {
     if (description->image.empty()) {
         return about(yaml, {Errc::kInvalidField, "the map's yaml: image is missing; it names the file of the map"});
     }
-    const fs::path image = yaml.parent_path() / description->image; // an absolute one stays as it is
+    const fs::path image = yaml.parent_path() / description->image; // an absolute path stays as it is
     const auto file = content_of(image);
     if (!file) return file.error();
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(file->data()), file->size());

@@ -8,11 +8,12 @@
 
 namespace scanloom::robot {
 
-/// Whether a world is meant that is read from a file: *.yaml or *.yml.
+/// Returns whether `world` names a file: *.yaml or *.yml.
 [[nodiscard]] bool is_world_file(std::string_view world);
 
-/// A world of a name (see find_world()), or a ROS map: the path of its YAML, which names the image beside it, a PGM.
-/// Errors  those of find_world(); of a map, with the path of the file in front: kNotFound: it cannot be read; those of
+/// Loads a built-in world by name (see find_world()), or a ROS map by the path of its YAML file, which names a PGM
+/// image in the same folder.
+/// Errors: those of find_world(). For a map, with the path of the file first: kNotFound if it cannot be read; those of
 ///         parse_ros_yaml(), read_ros_pgm() and world_of_map().
 [[nodiscard]] Result<World> load_world(const std::string& world);
 
