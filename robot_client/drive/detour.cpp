@@ -15,10 +15,10 @@ namespace {
 // metres
 constexpr double kExpected = 0.12;              // from what the plan knows
 constexpr double kBeside = kBodyRadius + 0.12;  // from an obstacle that is passed
-constexpr double kNoWayBetween = 2.0 * kBeside; // obstacles nearer to each other are one
+constexpr double kNoWayBetween = 2.0 * kBeside; // obstacles nearer to each other than this count as one
 constexpr double kOffsetMax = 1.6;
-constexpr double kSeenAhead = 1.5; // how far ahead what stands there matters to where to pass
-constexpr double kPastMin = 0.6;   // room ahead beside the line
+constexpr double kSeenAhead = 1.5; // obstacles within this distance ahead decide where to pass
+constexpr double kPastMin = 0.6;   // room ahead, parallel to the line
 // control steps
 constexpr int kSeenSteps = 200;
 constexpr int kDetourBlockedStepsMax = 40;
@@ -65,11 +65,11 @@ std::optional<Detour> Detour::plan(const Ground& ground, const Senses& senses, c
     return Detour(line, *offset, first);
 }
 
-/// How far to the left of the line to pass; nothing where there is no room, or nothing in the way.
+/// Returns how far to the left of the line to pass, or nullopt if there is no room or no obstacle.
 std::optional<double> Detour::side(const Ground& ground, const Line& line, const std::vector<Point2>& obstacles,
                                    double first) {
     if (first >= kSeenAhead) return std::nullopt;
-    double right = 0.0; // what belongs together, from here
+    double right = 0.0; // the obstacles to pass as one, from here
     double left = 0.0;  // to there
     for (bool grows = true; grows;) {
         grows = false;
@@ -130,7 +130,7 @@ void Detour::begin_next_part(const Ground& ground, const Point2& position) {
     }
 }
 
-/// How far the ground goes on beside the line, metres, up to the line's end.
+/// Returns how far the ground is free parallel to the line, in metres, up to the line's end.
 double Detour::room_beside(const Ground& ground) const {
     const double step = ground.plan().cell_size;
     double room = 0.0;
@@ -144,7 +144,7 @@ double Detour::room_beside(const Ground& ground) const {
 
 void Detour::remember(const Ground& ground, const Senses& senses) {
     std::erase_if(seen_, [&](const Seen& seen) { return seen.step < step_ - kSeenSteps; });
-    if (step_ % 2 == 0) return; // a scan comes every other step
+    if (step_ % 2 == 0) return; // a scan arrives every other step
     const auto [low, high] = std::minmax({0.0, offset_});
     for (const Point2& obstacle : unexpected_obstacles(ground, senses)) {
         const Point2 place = line_.to_line(obstacle);
@@ -152,7 +152,7 @@ void Detour::remember(const Ground& ground, const Senses& senses) {
     }
 }
 
-/// From beside the line straight back to it.
+/// Returns whether the robot can go straight back to the line.
 bool Detour::may_return(const Ground& ground, const Point2& on_line) const {
     if (on_line.x < first_obstacle_ + kBeside) return false;
     const auto is_in_the_way = [&](const Seen& seen) { return std::abs(seen.place.x - on_line.x) < kBeside; };

@@ -9,25 +9,25 @@
 
 namespace scanloom::robot {
 
-/// What the newest scan shows and the plan does not: more than a hand from all that stands still, metres in the map
-/// frame.
+/// Returns the points of the newest scan that are not in the plan: more than 0.12 m from everything that stands still
+/// there. Metres in the map frame.
 [[nodiscard]] std::vector<Point2> unexpected_obstacles(const Ground& ground, const Senses& senses);
 
-/// A way around something unexpected that stands in a line, in three parts: a step aside, past it beside the line, and
-/// back to the line as soon as nothing stands there any more.
+/// A detour around an unexpected obstacle on a line, in three parts: sideways, past the obstacle parallel to the line,
+/// and back to the line as soon as it is free.
 class Detour {
 public:
     enum class State { kUnderWay, kBackOnLine, kPastEnd, kFailed };
 
-    /// Chooses the side that is nearer, of those where the ground and what stands around leave room.
-    /// @param end  of the line from where the robot is
-    /// @return nothing where neither side does
+    /// Chooses the nearer side among those where the ground and the obstacles leave room.
+    /// @param end  of the line that starts at the robot
+    /// @return nullopt if neither side has room
     [[nodiscard]] static std::optional<Detour> plan(const Ground& ground, const Senses& senses, const Point2& end);
 
     [[nodiscard]] Velocity step(const Ground& ground, const Senses& senses);
 
-    /// kPastEnd: beside the line's end, where nothing let it back. kFailed: something has stood in its way for some
-    /// time.
+    /// kPastEnd: the robot is next to the line's end and could not return to the line. kFailed: its detour has been
+    /// blocked for some time.
     [[nodiscard]] State state() const noexcept { return state_; }
 
 private:
@@ -43,7 +43,7 @@ private:
     };
 
     struct Seen {
-        Point2 place; // on the line's frame
+        Point2 place; // in the line's frame
         int step;
     };
 
@@ -58,7 +58,7 @@ private:
     Line line_;
     double offset_;         // metres to the left of the line
     double first_obstacle_; // metres along the line
-    double room_ = 0.0;     // metres beside the line
+    double room_ = 0.0;     // metres free parallel to the line
     Part part_ = Part::kAside;
     State state_ = State::kUnderWay;
     PathFollower follower_;

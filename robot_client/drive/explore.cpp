@@ -14,12 +14,12 @@ namespace scanloom::robot {
 namespace {
 
 constexpr int kLookBlockedStepsMax = 40; // two seconds
-constexpr double kElsewhere = 0.5;       // metres: so far from where it was blocked it has got on
-constexpr int kBlockedBeforeFree = 3;    // times, before it gets away from there
+constexpr double kElsewhere = 0.5;       // metres: farther than this from a blockage is another place
+constexpr int kBlockedBeforeFree = 3;    // times, before the robot moves away from there
 constexpr double kGetFree = 0.4;         // metres
 constexpr int kLookDirections = 16;
 
-/// The end of the longest free straight way, up to kGetFree; of equal ones that which asks for the smallest turn.
+/// Returns the end of the longest free straight line, up to kGetFree; among equal ones the one with the smallest turn.
 Point2 free_place(const Senses& senses) {
     double best_yaw = senses.pose.yaw;
     double most = 0.0;

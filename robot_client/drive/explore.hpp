@@ -9,17 +9,17 @@
 
 namespace scanloom::robot {
 
-/// Goes where it is told and looks there, until it is told that there is nothing left to explore: a full turn where it
-/// starts, then way after way. It does not know who tells it: while is_asking(), whoever drives it calls one of go(),
-/// wait() and finish().
+/// Drives to the goals it is given and observes the target there, until exploration is finished: first a full turn at
+/// the start, then path after path. It does not know the source of the goals: while is_asking(), its caller calls one
+/// of go(), wait() and finish().
 class Explore final : public Behaviour {
 public:
-    /// Metres that ways should keep from obstacles: what it asks for as the radius of its body, which is 0.15 m. It is
-    /// kKeptClear, 0.17 m, nearer than which its centre does not go to what it sees, and 0.05 m for what noise
-    /// (sigma 0.02 m) and corners (passed by 0.03 m) take of a way. Nearer ways can be driven, only
-    /// more slowly: in exploring_robot_test it explores as much with 0.15 m and touches nothing either, yet the
-    /// office takes it 17 to 21 minutes instead of 15 to 17. The price: passages narrower than 0.44 m are not explored,
-    /// though the body would fit through those of 0.3 m.
+    /// Distance in metres that paths should keep from obstacles. It is requested as the radius of the body, which is
+    /// 0.15 m. It is the sum of kKeptClear, 0.17 m, the distance that the robot's centre keeps from what it sees, and
+    /// 0.05 m for noise (sigma 0.02 m) and corners (passed by 0.03 m). Paths nearer to obstacles can be driven, but
+    /// only more slowly: in exploring_robot_test the robot explores as much with 0.15 m and touches nothing either, but
+    /// the office takes it 17 to 21 minutes instead of 15 to 17. The cost: passages narrower than 0.44 m are not
+    /// explored, although the body would fit through those of 0.3 m.
     static constexpr double kWayClearance = 0.22;
 
     [[nodiscard]] Velocity step(const Senses& senses) override;
@@ -27,21 +27,21 @@ public:
     [[nodiscard]] bool has_an_end() const override { return true; }
     [[nodiscard]] std::string remarks() const override;
 
-    /// It stands, and wants to be told what to do: it has looked where it was sent, or cannot get there.
+    /// Returns whether the robot stands and waits for a goal: it has observed the last target or cannot reach it.
     [[nodiscard]] bool is_asking() const noexcept { return task_ == Task::kAsk; }
 
-    /// To the end of a way, and there a turn to the target. Metres, in the map frame.
+    /// Drives to the end of a path and turns to the target there. Metres in the map frame.
     void go(std::vector<Point2> way, const Point2& target);
 
-    /// Stands for some time and asks again.
+    /// Stands for some time, then asks again.
     void wait(double seconds);
 
-    /// There is nothing left to explore.
+    /// Finishes: there is nothing left to explore.
     void finish() { task_ = Task::kDone; }
 
     [[nodiscard]] double driven_m() const noexcept { return driven_; }
     [[nodiscard]] double driven_s() const noexcept;
-    /// How many times in a row something was in a way that it had been given, nearly where the robot was before.
+    /// Returns how many times in a row a given path was blocked at nearly the same place.
     [[nodiscard]] int times_blocked() const noexcept { return times_blocked_; }
 
 private:

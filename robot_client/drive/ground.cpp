@@ -7,7 +7,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Metres from a cell's centre to the square of another, so many columns and rows away.
+/// Returns the distance in metres from a cell's centre to the square of the cell `dx` columns and `dy` rows away.
 double to_square(std::int32_t dx, std::int32_t dy, double cell_size) {
     const double x = std::max(0.0, std::abs(dx) - 0.5);
     const double y = std::max(0.0, std::abs(dy) - 0.5);
@@ -45,7 +45,7 @@ Point2 Ground::centre_of(Spot spot) const noexcept {
     return {(plan_.i_begin + spot.x + 0.5) * plan_.cell_size, (plan_.j_begin + spot.y + 0.5) * plan_.cell_size};
 }
 
-/// Looks at points a quarter of a cell apart: a corner that is cut between them is cut by a small part of a cell.
+/// Checks points a quarter of a cell apart: a corner cut between two of them is cut by a small part of a cell.
 bool Ground::fits_along(const Point2& from, const Point2& to) const noexcept {
     const int pieces = std::max(1, static_cast<int>(std::ceil(norm(to - from) / plan_.cell_size * 4.0)));
     for (int n = 0; n <= pieces; ++n) {

@@ -9,7 +9,7 @@
 
 namespace scanloom::robot {
 
-/// Which cells of a map are free of whatever stands still. Cell (0, 0) has its lower-left corner at the map's origin.
+/// The free cells of a map, not counting what moves. Cell (0, 0) has its lower-left corner at the map's origin.
 struct FloorPlan {
     double cell_size = 0.0;   ///< metres
     std::int32_t i_begin = 0; ///< of the lowest, leftmost cell
@@ -19,7 +19,7 @@ struct FloorPlan {
     std::vector<std::uint8_t> is_free; ///< width * height of 0 or 1, bottom row first
 };
 
-/// A cell of a floor plan, counted from its lower-left one.
+/// A cell of a floor plan, counted from the plan's lower-left cell.
 struct Spot {
     std::int32_t x = 0;
     std::int32_t y = 0;
@@ -27,15 +27,15 @@ struct Spot {
     friend bool operator==(const Spot&, const Spot&) = default;
 };
 
-/// Where of a floor plan a body's centre may be: in the free cells whose centre is at least a clearance away from every
-/// cell that is not free.
+/// The cells of a floor plan where a body's centre may be: free cells whose centre is at least a clearance away from
+/// every cell that is not free.
 class Ground {
 public:
     Ground(FloorPlan plan, double clearance_m);
 
     [[nodiscard]] const FloorPlan& plan() const noexcept { return plan_; }
 
-    /// The same, and no place within `clearance_m` of any of some points.
+    /// Returns a copy that also excludes the cells within `clearance_m` of any of the points.
     [[nodiscard]] Ground without(std::span<const Point2> obstacles, double clearance_m) const;
 
     [[nodiscard]] bool holds(Spot spot) const noexcept {
@@ -45,17 +45,17 @@ public:
         return static_cast<std::size_t>(spot.y) * static_cast<std::size_t>(plan_.width) +
                static_cast<std::size_t>(spot.x);
     }
-    /// Beyond the plan nothing is free and nothing fits.
+    /// Outside the plan no cell is free and the body fits nowhere.
     [[nodiscard]] bool is_free(Spot spot) const noexcept { return holds(spot) && plan_.is_free[index_of(spot)] != 0; }
     [[nodiscard]] bool fits(Spot spot) const noexcept { return holds(spot) && fits_[index_of(spot)] != 0; }
 
     [[nodiscard]] Spot spot_of(const Point2& point) const noexcept;
     [[nodiscard]] Point2 centre_of(Spot spot) const noexcept;
 
-    /// Whether a body's centre may go straight from one point to another.
+    /// Returns whether a body's centre can move straight from one point to another.
     [[nodiscard]] bool fits_along(const Point2& from, const Point2& to) const noexcept;
 
-    /// Whether a point is on a cell that is not free, or so near to one; what lies beyond the plan is.
+    /// Returns whether a point is within `metres` of a cell that is not free; true outside the plan.
     [[nodiscard]] bool is_near_solid(const Point2& point, double metres) const noexcept;
 
 private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStartReach = 0.5; // metres
 
-/// A search over the ground from a spot: by cost, and by an estimate of what is left.
+/// A search over the ground from one cell, ordered by cost plus an estimate of the remaining cost.
 class Search {
 public:
     Search(const Ground& ground, Spot start)
@@ -24,14 +24,15 @@ public:
         open_.push({0.0F, start});
     }
 
-    /// Goes on until `is_wanted` takes a spot, cheapest first. @return that one.
+    /// Continues until `is_wanted` accepts a cell, cheapest first.
+    /// @return that cell
     template <class IsWanted, class Estimate>
     [[nodiscard]] std::optional<Spot> run(IsWanted&& is_wanted, Estimate&& estimate) {
         while (!open_.empty()) {
             const auto [bound, at] = open_.top();
             open_.pop();
             const float cost = cost_[ground_.index_of(at)];
-            if (bound > cost + estimate(at)) continue; // it was cheaper another way
+            if (bound > cost + estimate(at)) continue; // a cheaper path to it was found
             if (is_wanted(at)) return at;
             expand(at, cost, estimate);
         }
@@ -84,7 +85,7 @@ std::vector<Point2> straightened(const Ground& ground, const std::vector<Point2>
     std::vector<Point2> kept = {points.front()};
     for (std::size_t at = 0; at + 1 < points.size();) {
         std::size_t next = at + 1;
-        for (std::size_t step = points.size() - 1 - at; step > 0; step /= 2) { // the furthest, nearly
+        for (std::size_t step = points.size() - 1 - at; step > 0; step /= 2) { // approximately the farthest
             while (next + step < points.size() && ground.fits_along(points[at], points[next + step])) next += step;
         }
         kept.push_back(points[next]);

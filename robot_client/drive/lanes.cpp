@@ -7,7 +7,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Cells side by side: x_begin <= x < x_end.
+/// Adjacent cells of one row: x_begin <= x < x_end.
 struct Row {
     std::int32_t y = 0;
     std::int32_t x_begin = 0;
@@ -30,7 +30,7 @@ std::vector<Row> rows_at(const Ground& ground, const Cells& cells, std::int32_t 
     return rows;
 }
 
-/// The only one of some rows that is beside a row.
+/// Returns the only one of `rows` that adjoins `row`, or nullopt if there is none or more than one.
 std::optional<std::size_t> only_neighbour(const std::vector<Row>& rows, const Row& row) {
     std::optional<std::size_t> only;
     for (std::size_t n = 0; n < rows.size(); ++n) {
@@ -61,7 +61,7 @@ std::vector<std::vector<Row>> blocks_of_rows(const Ground& ground, const Cells& 
     return blocks;
 }
 
-/// Whether there is a cell beside each of a row's, so many rows further up.
+/// Returns whether each cell of a row has a cell of the area `up` rows above it.
 bool borders(const Ground& ground, const Cells& cells, const Row& row, std::int32_t up) {
     for (std::int32_t x = row.x_begin; x < row.x_end; ++x) {
         if (!is_set(ground, cells, {x, row.y + up})) return false;
@@ -70,7 +70,7 @@ bool borders(const Ground& ground, const Cells& cells, const Row& row, std::int3
 }
 
 Block lanes_of(const Ground& ground, const Cells& cells, const std::vector<Row>& rows, std::int32_t spacing) {
-    // Where another block has a lane along the border, the first one here is a space away from that.
+    // If another block has a lane along the border, the first lane here is one spacing away from it.
     const bool open_below = borders(ground, cells, rows.front(), -1);
     const bool open_above = borders(ground, cells, rows.back(), 1);
     const std::int32_t first = open_below ? -1 : 0;

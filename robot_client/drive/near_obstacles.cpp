@@ -6,7 +6,7 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kNear = 1.0;    // metres
-constexpr double kSquare = 0.05; // likewise
+constexpr double kSquare = 0.05; // metres
 constexpr int kRememberedSteps = 60;
 
 } // namespace

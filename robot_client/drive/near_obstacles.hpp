@@ -9,14 +9,14 @@
 
 namespace scanloom::robot {
 
-/// Remembers for three seconds what stood within a metre of the robot: a laser that looks ahead loses sight of what is
-/// beside a robot that turns.
+/// Remembers for three seconds the obstacles within a metre of the robot, because a laser that points ahead loses sight
+/// of what is next to a turning robot.
 class NearObstacles {
 public:
-    /// Takes what the scan shows, once each control step.
+    /// Adds the points of the scan. Call it once per control step.
     void see(const Senses& senses);
 
-    /// Where they are, metres in the map frame; one for each square of 5 cm.
+    /// Returns the obstacles, in metres in the map frame; one for each square of 5 cm.
     [[nodiscard]] std::vector<Point2> places() const;
 
 private:

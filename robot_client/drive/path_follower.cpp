@@ -15,8 +15,8 @@ namespace {
 constexpr double kAhead = 0.3;
 constexpr double kAtCorner = 0.03;
 constexpr double kNearEnd = 0.10;
-constexpr double kStopBefore = 0.2; // what stands in the way, beside kKeptClear
-constexpr double kSlack = 0.08;     // by so much a wall behind a corner may seem to stand before it
+constexpr double kStopBefore = 0.2; // an obstacle on the path, in addition to kKeptClear
+constexpr double kSlack = 0.08;     // how far a wall behind a corner may seem to stand in front of it
 constexpr double kShort = 0.01;
 // radians
 constexpr double kGentleCorner = 0.3;
@@ -59,7 +59,7 @@ double PathFollower::left(const Point2& position) const {
     return metres;
 }
 
-/// A corner is passed where the robot is at it, or beside it and beyond.
+/// A corner is passed when the robot is at it, or near it and beyond.
 void PathFollower::pass_corners(const Point2& position) {
     while (!has_arrived()) {
         const Point2& end = way_[passed_ + 1];

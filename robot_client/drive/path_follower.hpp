@@ -7,28 +7,28 @@
 
 namespace scanloom::robot {
 
-/// Drives along a way of straight pieces and keeps to it: it aims at a point of the piece it is on, a little ahead,
-/// and never beyond the piece's end, so that no corner is cut; at sharp corners it stops and turns. Before what stands
-/// in its way it waits, 0.2 m further off than kKeptClear (way_ahead.hpp); towards the walls beyond a corner or the end
-/// it goes on as far as that.
+/// Follows a path of straight segments. It aims at a point of the current segment, a little ahead and never beyond its
+/// end, so no corner is cut; at sharp corners it stops and turns. It stops for an obstacle on the path 0.2 m before the
+/// distance kKeptClear (way_ahead.hpp). It approaches walls beyond a corner or beyond the end up to kKeptClear.
 ///
-/// Source  the aim: Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm (CMU-RI-TR-92-01, 1992).
+/// Source: for the aim: Coulter, Implementation of the Pure Pursuit Path Tracking Algorithm (CMU-RI-TR-92-01, 1992).
 class PathFollower {
 public:
     PathFollower() = default; ///< has arrived
 
-    /// @param way  metres in the map frame; it may begin some way from the robot
+    /// @param way  the path, metres in the map frame; it may begin at some distance from the robot
     explicit PathFollower(std::vector<Point2> way);
 
     [[nodiscard]] Velocity step(const Senses& senses);
 
-    /// At the end of the way, to three centimetres; to ten where something keeps it from coming nearer.
+    /// Returns whether the robot is within three centimetres of the path's end, or within ten if something keeps it
+    /// from coming nearer.
     [[nodiscard]] bool has_arrived() const noexcept { return passed_ + 1 >= way_.size(); }
 
-    /// For how many control steps in a row something ahead has kept it from going on.
+    /// Returns for how many control steps in a row something ahead has blocked the robot.
     [[nodiscard]] int blocked_steps() const noexcept { return blocked_steps_; }
 
-    /// Metres to the end of the way.
+    /// Returns the remaining length of the path in metres.
     [[nodiscard]] double left(const Point2& position) const;
 
 private:
@@ -37,7 +37,7 @@ private:
     [[nodiscard]] bool stops_at_next_corner() const;
 
     std::vector<Point2> way_;
-    std::size_t passed_ = 0; // of its points
+    std::size_t passed_ = 0; // points of the path passed
     int blocked_steps_ = 0;
 };
 

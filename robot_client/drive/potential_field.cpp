@@ -13,7 +13,7 @@ namespace {
 constexpr double kReach = 0.5;        // rho_0, metres
 constexpr double kRepulsion = 0.002;  // eta
 constexpr double kAttraction = 1.0;   // k, for each metre
-constexpr double kDistanceMin = 0.02; // metres from the rim: nearer counts as that
+constexpr double kDistanceMin = 0.02; // metres from the rim; smaller distances count as this
 constexpr std::size_t kFieldDirections = 24;
 
 std::size_t direction_of(const Point2& offset) {

@@ -8,12 +8,12 @@
 
 namespace scanloom::robot {
 
-/// The nearest valid reading of each sector, for a sensor that looks along its robot's axis.
-/// Pre  the scan is one of the sensor's.
+/// Returns the nearest valid reading of each sector, for a sensor aligned with its robot's axis.
+/// Pre: the sensor took the scan.
 [[nodiscard]] SectorRanges sector_ranges(const Scan& scan, const Sensor& sensor);
 
-/// Where the beams of a scan ended that had a return, metres in the map frame.
-/// Pre  as above; the scan carries the robot's pose in the map frame.
+/// Returns the end points of a scan's returns, in metres in the map frame.
+/// Pre: the sensor took the scan; the scan contains the robot's pose in the map frame.
 [[nodiscard]] std::vector<Point2> obstacles_of(const Scan& scan, const Sensor& sensor);
 
 } // namespace scanloom::robot

@@ -10,11 +10,11 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kGain = 4.0;                           // radians a second for each radian
-constexpr double kHeading = 0.03;                       // radians: near enough
-constexpr double kOnTheSpot = 0.4;                      // radians: further aside a robot turns before it drives
-constexpr double kSpeedMin = 0.05;                      // metres a second, to arrive at all
-constexpr double kLookingTurn = std::numbers::pi / 2.0; // radians a second, of a full turn
+constexpr double kGain = 4.0;      // radians per second for each radian
+constexpr double kHeading = 0.03;  // radians: close enough
+constexpr double kOnTheSpot = 0.4; // radians: for larger differences the robot turns before it drives
+constexpr double kSpeedMin = 0.05; // metres per second, so that it arrives
+constexpr double kLookingTurn = std::numbers::pi / 2.0; // radians per second, of a full turn
 
 double turn_for(double aside) { return std::clamp(kGain * aside, -kEasyTurn, kEasyTurn); }
 

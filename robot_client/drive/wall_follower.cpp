@@ -13,23 +13,23 @@ constexpr double kFrontRange = 0.4;
 constexpr double kRecoveredRange = 0.4;
 constexpr double kWallRange = 0.7;
 constexpr double kWallDistance = 0.6;
-constexpr double kRoundingRadius = 0.55; // a little less than the distance, so that the wall comes near again
-// metres a second
+constexpr double kRoundingRadius = 0.55; // a little less than the wall distance, so that the wall comes near again
+// metres per second
 constexpr double kCruise = 0.4;
 constexpr double kBackOff = -0.2;
 constexpr double kRecovery = -0.08;
 constexpr double kRoundingSpeed = 0.3;
-// radians a second
+// radians per second
 constexpr double kSharpTurn = std::numbers::pi / 4.0;
 constexpr double kSearchTurn = -0.05;
-constexpr double kWallGain = 0.5; // radians a second for each metre
+constexpr double kWallGain = 0.5; // radians per second for each metre
 // control steps
 constexpr double kStepsPerSecond = 20.0;
 constexpr int kRecoverySteps = 40;
 constexpr int kBlockedStepsMax = 30;
-constexpr int kRoundingStepsMax = 180; // some three quarters of a circle
+constexpr int kRoundingStepsMax = 180; // about three quarters of a circle
 // radians
-constexpr double kIslandTurn = -2.5 * std::numbers::pi; // more than a door post asks for, coming and going
+constexpr double kIslandTurn = -2.5 * std::numbers::pi; // more than passing a door post takes, in and out
 
 } // namespace
 
@@ -56,9 +56,9 @@ Velocity WallFollower::decide(const SectorRanges& nearest) {
     }
     blocked_steps_ = 0;
     if (d_min < kBackOffRange || nearest.front < kFrontRange) {
-        if (mode_ == Mode::kLeaving) search(); // here is another wall
-        // Backing off turns left, too: straight back, a robot beside a wall keeps its distance from it and never gets
-        // free.
+        if (mode_ == Mode::kLeaving) search(); // another wall was found
+        // Turn left while backing off: a robot next to a wall that backs straight keeps its distance from the wall and
+        // never recovers.
         return {d_min < kBackOffRange ? kBackOff : 0.0, kSharpTurn};
     }
     return go_on(nearest.right);
@@ -68,7 +68,7 @@ Velocity WallFollower::go_on(double right) {
     if (mode_ == Mode::kLeaving) return {kCruise, 0.0};
     if (right < (mode_ == Mode::kRounding ? kWallDistance : kWallRange)) {
         mode_ = Mode::kFollowing;
-        // Positive turns are counter-clockwise: away from the wall when it is nearer than wanted, towards it when
+        // Positive turns are counter-clockwise: away from the wall if it is nearer than wanted, towards it if it is
         // farther. (Printed as 0.5 (d_right - 0.6), which would leave a wall that is farther than 0.6 m.)
         return {kCruise, kWallGain * (kWallDistance - right)};
     }

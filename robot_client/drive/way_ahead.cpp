@@ -8,13 +8,13 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kTouching = kBodyRadius + 0.005; // metres
-constexpr double kSecondsAhead = 0.4;             // a scan is a tenth of a second old when the next one comes
+constexpr double kSecondsAhead = 0.4;             // a scan is a tenth of a second old when the next one arrives
 
 } // namespace
 
 double free_ahead(const Senses& senses, double yaw) {
     constexpr double kNothing = std::numeric_limits<double>::infinity();
-    std::array<double, 3> nearest{kNothing, kNothing, kNothing}; // rising
+    std::array<double, 3> nearest{kNothing, kNothing, kNothing}; // ascending
     const Point2 ahead{std::cos(yaw), std::sin(yaw)};
     for (const Point2& obstacle : senses.obstacles) {
         const Point2 offset = obstacle - Point2{senses.pose.x, senses.pose.y};

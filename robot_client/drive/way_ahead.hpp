@@ -5,17 +5,17 @@
 
 namespace scanloom::robot {
 
-/// Nearer than this to anything the robot's centre does not go, metres.
+/// Smallest distance, in metres, that the robot's centre keeps from anything.
 inline constexpr double kKeptClear = kBodyRadius + 0.02;
 
-/// Metres that the body can advance straight towards `yaw` before its centre comes nearer than kKeptClear to what the
-/// scan shows; infinite where nothing is in the way. What is that near already is in the way only as far as the body
-/// would touch it. Points count where a third one agrees, so that noise stops nobody: whatever is large enough to be
-/// met near the robot has many.
+/// Returns how far, in metres, the body can move straight towards `yaw` (radians) before its centre comes nearer than
+/// kKeptClear to a point of the scan; infinite if nothing is in the way. Points that are nearer than that already count
+/// only where the body would touch them. The third-nearest distance is used, so noise does not stop the robot: any
+/// object that is large enough to matter near the robot has many points.
 [[nodiscard]] double free_ahead(const Senses& senses, double yaw);
 
-/// The most speed, metres a second, at which a robot that drives towards `yaw` has stopped in time, however late its
-/// scan.
+/// Returns the highest speed, in metres per second, from which a robot that drives towards `yaw` (radians) stops in
+/// time despite the delay of its scan.
 [[nodiscard]] double safe_speed(const Senses& senses, double yaw);
 
 } // namespace scanloom::robot

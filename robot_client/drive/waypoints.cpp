@@ -12,12 +12,12 @@ namespace scanloom::robot {
 namespace {
 
 constexpr double kArrived = 0.10;  // metres
-constexpr double kProgress = 0.10; // metres nearer, to count as some
+constexpr double kProgress = 0.10; // metres nearer that count as progress
 constexpr int kStuckSteps = 300;   // 15 seconds
 constexpr std::size_t kGivenUpTold = 5;
-constexpr double kForceMin = 1e-9; // shorter ones point nowhere
+constexpr double kForceMin = 1e-9; // a shorter force has no direction
 
-/// Of a point from the straight way between two others, metres.
+/// Returns the distance in metres of a point from the straight line between two others.
 double distance_to(const Point2& point, const Point2& from, const Point2& to) {
     const Point2 way = to - from;
     const double part = squared_norm(way) > 0.0 ? dot(point - from, way) / squared_norm(way) : 0.0;

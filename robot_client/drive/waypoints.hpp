@@ -11,21 +11,22 @@
 
 namespace scanloom::robot {
 
-/// Where a queue of waypoints is begun.
+/// Where a tour of waypoints begins.
 enum class TourStart {
-    kFirst,   ///< at the first of them
-    kNearest, ///< of a round tour: at the nearest one in sight, after a turn to look around; those before it at the end
+    kFirst,   ///< at the first waypoint
+    kNearest, ///< of a round tour: at the nearest one in sight, after a turn; the waypoints before it come at the end
 };
 
-/// Goes from waypoint to waypoint, drawn by a potential field, and turns once around itself at each. A field has places
-/// where it holds a robot; a waypoint that it comes no nearer to for 15 seconds is given up, and so it ends.
+/// Drives from waypoint to waypoint by a potential field and makes a full turn at each. A potential field has local
+/// minima that hold a robot: a waypoint is given up if the robot comes no nearer to it for 15 seconds, so the drive
+/// always ends.
 class Waypoints final : public Behaviour {
 public:
-    /// Why a waypoint could not be reached, for people; empty: nothing is known.
+    /// Returns why a waypoint could not be reached, for people; empty if the reason is not known.
     using Explain = std::function<std::string(const Point2&)>;
 
     /// @param goals    metres in the map frame
-    /// @param explain  is asked of those that were given up
+    /// @param explain  called for each waypoint that was given up
     explicit Waypoints(std::vector<Point2> goals, TourStart start = TourStart::kFirst, Explain explain = {});
 
     [[nodiscard]] Velocity step(const Senses& senses) override;
@@ -45,16 +46,16 @@ private:
 
     std::vector<Point2> goals_;
     bool is_looking_around_;
-    std::vector<Point2> seen_; // meanwhile
+    std::vector<Point2> seen_; // during the turn at the start
     NearObstacles near_;
     std::size_t next_ = 0;
     std::size_t reached_ = 0;
     std::vector<Point2> given_up_;
     Explain explain_;
-    bool is_turning_ = false; // at the next one
+    bool is_turning_ = false; // at the next waypoint
     FullTurn turn_;
     double nearest_ = 0.0;     // metres from it, so far
-    int steps_no_nearer_ = -1; // -1: has not begun to go there
+    int steps_no_nearer_ = -1; // -1: the drive to it has not begun
 };
 
 } // namespace scanloom::robot

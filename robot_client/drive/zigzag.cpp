@@ -17,10 +17,10 @@ constexpr int kLanePatienceSteps = 200;
 constexpr int kDetoursMax = 4;
 constexpr int kWaysAroundMax = 3;
 
-/// Lanes overlap by a cell: how straight they are driven does not matter then.
+/// Lanes overlap by one cell, so small deviations from a lane do not matter.
 double spacing_of(const FloorPlan& plan) { return std::max(2.0 * kBodyRadius - plan.cell_size, plan.cell_size); }
 
-/// Once every two seconds that it is blocked.
+/// Returns true once for every two seconds that the robot is blocked.
 bool is_out_of_patience(const PathFollower& follower) {
     return follower.blocked_steps() > 0 && follower.blocked_steps() % kBlockedStepsPerDetour == 0;
 }
@@ -58,9 +58,9 @@ void Zigzag::begin(const Point2& position) {
     begin_next_lane(position);
 }
 
-/// The block with the nearest end of its first or last lane; its lanes in the order from there.
+/// Chooses the block whose first or last lane has the nearest end, and orders its lanes from there.
 void Zigzag::choose_block(const Point2& position) {
-    std::vector<Point2> entries; // four of each block
+    std::vector<Point2> entries; // four for each block
     for (const Block& block : blocks_) {
         for (const Lane& lane : {block.front(), block.back()}) {
             entries.push_back(lane.west);
@@ -78,7 +78,7 @@ void Zigzag::choose_block(const Point2& position) {
 void Zigzag::begin_next_lane(const Point2& position) {
     for (;;) {
         if (lanes_.empty()) choose_block(position);
-        if (lanes_.empty()) break; // all are swept, or none that is left can be got to
+        if (lanes_.empty()) break; // all lanes are swept, or none of the rest can be reached
         const Lane lane = lanes_.front();
         lanes_.pop_front();
         const bool from_west = norm(lane.west - position) <= norm(lane.east - position);
@@ -151,14 +151,14 @@ Velocity Zigzag::go_around(const Senses& senses) {
         lanes_swept_ += 1;
         begin_next_lane(position);
         break;
-    case Detour::State::kFailed: // what moves may stand elsewhere now
+    case Detour::State::kFailed: // moving obstacles may have left
         sweep_on();
         break;
     }
     return {};
 }
 
-/// Along the lane, from wherever the robot is beside it.
+/// Continues along the lane from the robot's position next to it.
 void Zigzag::sweep_on() {
     task_ = Task::kSweep;
     follower_ = PathFollower({lane_begin_, lane_end_});

@@ -14,12 +14,13 @@
 
 namespace scanloom::robot {
 
-/// Sweeps the free cells of a known map to and fro, lane by lane, block by block, the nearest block next. What stands
-/// in a lane and not in the map stops it; it waits two seconds for it to go, then goes around it (Detour), or gives up
-/// the rest of the lane where there is no way around. On the way to a lane it goes around by another way.
+/// Sweeps the free cells of a known map back and forth, lane by lane and block by block, the nearest block next. An
+/// obstacle in a lane that is not in the map stops the robot. It waits two seconds for the obstacle to leave, then
+/// drives around it (Detour), or gives up the rest of the lane if there is no room. On the path to a lane it takes
+/// another path instead.
 class Zigzag final : public Behaviour {
 public:
-    /// Metres from what the plan knows that lanes keep.
+    /// Distance in metres that lanes keep from obstacles of the plan.
     static constexpr double kLaneClearance = kBodyRadius + 0.10;
 
     explicit Zigzag(FloorPlan plan);
@@ -29,7 +30,7 @@ public:
     [[nodiscard]] bool has_an_end() const override { return true; }
     [[nodiscard]] std::string remarks() const override;
 
-    [[nodiscard]] double coverage() const noexcept { return meter_.share(); } ///< 0 .. 1, of what it can reach
+    [[nodiscard]] double coverage() const noexcept { return meter_.share(); } ///< 0 .. 1, of what the robot can reach
     [[nodiscard]] int detours() const noexcept { return detours_; }
     [[nodiscard]] int lanes_given_up() const noexcept { return given_up_; }
 
@@ -48,17 +49,17 @@ private:
     Ground ground_;
     CoverageMeter meter_;
     std::vector<Block> blocks_; // not begun
-    std::deque<Lane> lanes_;    // of the block that is being swept, those not begun
+    std::deque<Lane> lanes_;    // lanes of the current block that are not begun
     Point2 lane_begin_{0.0, 0.0};
     Point2 lane_end_{0.0, 0.0};
     Task task_ = Task::kBegin;
     PathFollower follower_;
     std::optional<Detour> detour_;
     int lane_detours_ = 0;           // begun in this lane
-    int ways_around_ = 0;            // tried to get to this lane
-    std::vector<Point2> in_the_way_; // seen there, and not in the plan
+    int ways_around_ = 0;            // paths tried to reach this lane
+    std::vector<Point2> in_the_way_; // obstacles seen there that are not in the plan
     int lanes_swept_ = 0;
-    int detours_ = 0; // that came back to their lane
+    int detours_ = 0; // that returned to their lane
     int given_up_ = 0;
 };
 

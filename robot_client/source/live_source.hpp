@@ -34,7 +34,7 @@ public:
     /// obtained.
     virtual void stop() = 0;
 
-    /// Returns a few words for people about the source, besides its scans; may be empty.
+    /// Returns a few words for people about the source, in addition to its scans; may be empty.
     [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 

@@ -36,7 +36,7 @@ public:
     /// Returns the total number of scans of this source, or nullopt if it is endless or the number is not known.
     [[nodiscard]] virtual std::optional<std::uint64_t> scan_count() const = 0;
 
-    /// Returns a few words for people about the source, besides its scans; may be empty.
+    /// Returns a few words for people about the source, in addition to its scans; may be empty.
     [[nodiscard]] virtual std::string remarks() const { return {}; }
 };
 
