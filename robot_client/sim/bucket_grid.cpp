@@ -3,7 +3,7 @@
 namespace scanloom::robot {
 
 BucketFrame BucketFrame::over(const Box& extent, std::size_t items) {
-    constexpr double kMargin = 1e-3; // metres: nothing lies on the frame's own border
+    constexpr double kMargin = 1e-3; // metres: no shape lies on the frame's own border
     constexpr double kBucketsEachWayMax = 4096.0;
     const Box box = widened(extent, kMargin);
     const double width = box.x_max - box.x_min;

@@ -12,7 +12,7 @@
 
 namespace scanloom::robot {
 
-/// A part of the plane cut into equal squares.
+/// A part of the plane, divided into equal squares (buckets).
 struct BucketFrame {
     double x_min = 0.0; ///< metres
     double y_min = 0.0;
@@ -20,10 +20,10 @@ struct BucketFrame {
     int columns = 0;
     int rows = 0;
 
-    /// Covers `extent` with about two buckets for each item.
+    /// Covers `extent` with about two buckets per item.
     [[nodiscard]] static BucketFrame over(const Box& extent, std::size_t items);
 
-    /// Of any coordinate; those beyond the frame have columns and rows beyond its own.
+    /// Returns the column or row of any coordinate; coordinates outside the frame give columns and rows outside it.
     [[nodiscard]] int column_of(double x) const noexcept { return static_cast<int>(std::floor((x - x_min) / side)); }
     [[nodiscard]] int row_of(double y) const noexcept { return static_cast<int>(std::floor((y - y_min) / side)); }
     [[nodiscard]] Box box_of(int column, int row) const noexcept {
@@ -34,9 +34,9 @@ struct BucketFrame {
     }
 };
 
-/// Which shapes touch which bucket, so that only those near a ray or a point need be looked at. A shape stands in every
-/// bucket that it touches, or comes near enough to that rounding could say so.
-/// Cost  in memory, the shapes and as often as they reach into another bucket.
+/// Index of the shapes that touch each bucket, so that only the shapes near a ray or a point need to be checked. A
+/// shape is stored in every bucket that it touches or that is within rounding error. Memory: the shapes, each once for
+/// every bucket it is in.
 template <class Shape>
 class BucketGrid {
 public:
@@ -58,14 +58,14 @@ public:
 
     [[nodiscard]] const BucketFrame& frame() const noexcept { return frame_; }
 
-    /// Pre  0 <= column < frame().columns, rows likewise.
+    /// Pre: 0 <= column < frame().columns, and likewise for rows.
     [[nodiscard]] std::span<const Shape> in(int column, int row) const noexcept {
         const std::size_t bucket = frame_.index_of(column, row);
         return std::span(shapes_).subspan(begins_[bucket], begins_[bucket + 1] - begins_[bucket]);
     }
 
-    /// Calls visit(shape) for shapes at growing distances from a point, some of them more than once: at least for all
-    /// within reach() metres, which is asked again and again and may shrink meanwhile.
+    /// Calls visit(shape) for shapes at increasing distances from a point, for some of them more than once, and at
+    /// least for all within reach() metres. reach() is called repeatedly and may decrease.
     template <class Reach, class Visit>
     void visit_outwards(const Point2& point, Reach&& reach, Visit&& visit) const {
         if (shapes_.empty()) return;
@@ -74,7 +74,7 @@ public:
         const Box home = frame_.box_of(column, row);
         const double to_border =
             std::min({point.x - home.x_min, home.x_max - point.x, point.y - home.y_min, home.y_max - point.y}) -
-            slack(); // of the bucket it is in
+            slack(); // of the point's bucket
         const int nearest_ring = std::max({0, -column, -row, column - (frame_.columns - 1), row - (frame_.rows - 1)});
         const int farthest_ring =
             std::max(std::max(column, frame_.columns - 1 - column), std::max(row, frame_.rows - 1 - row));
@@ -92,7 +92,7 @@ private:
     template <class Visit>
     void for_buckets_of(const Shape& shape, Visit&& visit) const {
         const Box bounds = bounds_of(shape);
-        // the end of a segment counts as a little farther out, as in cast_ray()
+        // The ends of a segment count as slightly farther out, as in cast_ray().
         const double near = slack() + 1e-8 * std::hypot(bounds.x_max - bounds.x_min, bounds.y_max - bounds.y_min);
         const int column_last = std::min(frame_.columns - 1, frame_.column_of(bounds.x_max + near));
         const int row_last = std::min(frame_.rows - 1, frame_.row_of(bounds.y_max + near));
@@ -103,7 +103,7 @@ private:
         }
     }
 
-    /// Calls visit(i, j) for the buckets of the frame at Chebyshev distance `ring` from one.
+    /// Calls visit(i, j) for the buckets of the frame at Chebyshev distance `ring` from the given one.
     template <class Visit>
     void for_ring(int column, int row, int ring, Visit&& visit) const {
         const int first = std::max(0, column - ring);
@@ -119,7 +119,7 @@ private:
     }
 
     BucketFrame frame_;
-    std::vector<std::size_t> begins_; ///< where the shapes of a bucket begin, and one more
+    std::vector<std::size_t> begins_; ///< index of the first shape of each bucket, and the end
     std::vector<Shape> shapes_;       ///< bucket by bucket
 };
 

@@ -5,7 +5,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Cells of a row next to one another; the box they are in began at row `first_row`.
+/// Adjacent cells of a row; their box began at row `first_row`.
 struct Run {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -22,11 +22,11 @@ std::vector<Run> runs_of(const MapCells& map, MapCell kind, std::size_t row) {
     return runs;
 }
 
-/// Which side of a border is occupied.
+/// The occupied side of a border.
 enum class Side { kNeither, kLeft, kRight };
 
-/// The pieces of one line between cells: calls side(n) for its places n = 0, 1, ... count - 1, and draw(begin, end,
-/// side) for those places together that have the same side occupied.
+/// Divides a line between cells into segments: calls side(n) for its positions n = 0, 1, ... count - 1, and draw(begin,
+/// end, side) for each run of positions with the same occupied side.
 template <class SideOf, class Draw>
 void for_pieces(std::size_t count, SideOf&& side_of, Draw&& draw) {
     Side side = Side::kNeither;
@@ -46,7 +46,7 @@ Side side(bool left, bool right) { return left == right ? Side::kNeither : left 
 
 std::vector<Box> boxes_of(const MapCells& map, MapCell kind, const MapFrame& frame) {
     std::vector<Box> boxes;
-    std::vector<Run> open; // of the row before, from left to right
+    std::vector<Run> open; // of the previous row, from left to right
     for (std::size_t row = 0; row <= map.height(); ++row) {
         auto runs = row < map.height() ? runs_of(map, kind, row) : std::vector<Run>{};
         auto next = runs.begin();
@@ -65,10 +65,10 @@ std::vector<Box> boxes_of(const MapCells& map, MapCell kind, const MapFrame& fra
 
 std::vector<Segment> outlines_of(const MapCells& map, const MapFrame& frame) {
     std::vector<Segment> outlines;
-    const auto is_solid = [&](std::size_t column, std::size_t row) { // one row or column beyond is -1, and not solid
+    const auto is_solid = [&](std::size_t column, std::size_t row) { // one column or row outside is -1 and not solid
         return column < map.width && row < map.height() && map.cells[row * map.width + column] == MapCell::kOccupied;
     };
-    for (std::size_t row = 0; row <= map.height(); ++row) { // along x: above is left
+    for (std::size_t row = 0; row <= map.height(); ++row) { // parallel to x: above is left
         for_pieces(
             map.width, [&](std::size_t n) { return side(is_solid(n, row), is_solid(n, row - 1)); },
             [&](std::size_t begin, std::size_t end, Side occupied) {
@@ -76,7 +76,7 @@ std::vector<Segment> outlines_of(const MapCells& map, const MapFrame& frame) {
                 outlines.push_back({frame.x(begin), frame.y(row), frame.x(end), frame.y(row)});
             });
     }
-    for (std::size_t column = 0; column <= map.width; ++column) { // along y
+    for (std::size_t column = 0; column <= map.width; ++column) { // parallel to y
         for_pieces(
             map.height(), [&](std::size_t n) { return side(is_solid(column - 1, n), is_solid(column, n)); },
             [&](std::size_t begin, std::size_t end, Side occupied) {

@@ -22,15 +22,16 @@ Point2 along(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
 Cone::Cone(const Point2& apex_m, double yaw_rad, double aperture_rad)
     : apex(apex_m), yaw(yaw_rad), half(aperture_rad / 2.0), left_end(along(yaw_rad + half)),
       right_end(along(yaw_rad - half)) {
-    assert(half < std::numbers::pi / 2.0); // so that it is where two half planes overlap
+    assert(half < std::numbers::pi / 2.0); // so that the cone is the intersection of two half-planes
 }
 
 double distance_within(const Cone& cone, const Segment& segment) {
     const Point2 a = Point2{segment.ax, segment.ay} - cone.apex;
     const Point2 b = Point2{segment.bx, segment.by} - cone.apex;
-    double begin = 0.0; // of the part within, as shares of the segment
+    double begin = 0.0; // of the part inside, as shares of the segment
     double end = 1.0;
-    const auto cut = [&](double at_a, double at_b) { // keeps where a value that goes from at_a to at_b is not negative
+    const auto cut = [&](double at_a,
+                         double at_b) { // keeps the part where a value that goes from at_a to at_b is not negative
         if (at_a < 0.0 && at_b < 0.0) end = -1.0;
         if (at_a < 0.0 && at_b >= 0.0) begin = std::max(begin, at_a / (at_a - at_b));
         if (at_a >= 0.0 && at_b < 0.0) end = std::min(end, at_a / (at_a - at_b));
@@ -48,7 +49,7 @@ double distance_within(const Cone& cone, const Disc& disc) {
     if (norm(to_centre) <= disc.radius) return 0.0;
     const bool looks_at_centre = cross(cone.right_end, to_centre) >= 0.0 && cross(to_centre, cone.left_end) >= 0.0;
     if (looks_at_centre) return norm(to_centre) - disc.radius;
-    // seen from outside, a disc is the nearer the less a ray passes beside its centre
+    // From outside, the nearer a ray passes to a disc's centre, the shorter is its distance to the disc.
     return std::min(cast_ray(disc, cone.apex, cone.yaw + cone.half), cast_ray(disc, cone.apex, cone.yaw - cone.half));
 }
 

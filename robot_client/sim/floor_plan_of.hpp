@@ -5,7 +5,7 @@
 
 namespace scanloom::robot {
 
-/// The plan that a robot is given of a world that is known.
+/// Returns the floor plan of a known world for a robot.
 [[nodiscard]] FloorPlan floor_plan_of(const TruthGrid& truth);
 
 } // namespace scanloom::robot

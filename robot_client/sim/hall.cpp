@@ -4,10 +4,10 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kHallHalfWidth = 30.0; // of the hall, inside
+constexpr double kHallHalfWidth = 30.0; // half of the inner size
 constexpr double kHallHalfHeight = 20.0;
 
-/// Aisles that look all the same: racks in the west, in two blocks. In the south one is short and one was never built.
+/// Aisles that look alike: racks in the west, in two blocks. In the south block one rack is short and one is missing.
 void add_racks(std::vector<Box>& solids) {
     constexpr double kDepth = 1.2;
     for (const double x : {-27.0, -23.4, -19.8, -16.2, -12.6}) solids.push_back({x, 5.0, x + kDepth, 17.0});
@@ -25,7 +25,7 @@ void add_pillars(std::vector<Box>& solids) {
     }
 }
 
-/// Seven bays along the eastern wall; in some stands a trailer or what came with it.
+/// Seven bays along the eastern wall; some contain a trailer or its load.
 void add_loading_bays(std::vector<Box>& solids) {
     constexpr double kHalfWall = 0.15;
     for (const double y : {-15.0, -9.0, -3.0, 3.0, 9.0, 15.0}) {
@@ -59,7 +59,7 @@ void add_what_stands_about(std::vector<Box>& solids) {
 
 } // namespace
 
-// 60 x 40 m inside, around the world origin. Whatever does not touch is 1.2 m apart at least.
+// 60 x 40 m inside, around the world's origin. Objects that do not touch are at least 1.2 m apart.
 World make_hall() {
     std::vector<Box> solids;
     add_shell(solids, kHallHalfWidth, kHallHalfHeight);

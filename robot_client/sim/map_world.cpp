@@ -13,17 +13,18 @@ constexpr double kTightStart = 0.3;             // metres, of clearance
 constexpr double kPassage = kBodyRadius + 0.05; // metres around the robot's centre
 constexpr std::size_t kStartsMax = 10'000;
 
-/// Puts robots where there is room. @return whether there is.
+/// Sets the starts where there is room.
+/// @return whether there are any
 bool find_starts(World& world, const MapCells& cells, const MapFrame& frame) {
     for (const double clearance : {kStartClearance, kTightStart}) {
         const auto starts = start_cells(cells, frame.resolution, clearance, kPassage);
-        const std::size_t stride = starts.size() / kStartsMax + 1; // of a large map, some
+        const std::size_t stride = starts.size() / kStartsMax + 1; // of a large map, only some
         for (std::size_t n = 0; n < starts.size(); n += stride) {
             const std::size_t column = starts[n] % cells.width;
             const std::size_t row = starts[n] / cells.width;
             world.starts.push_back({frame.x(column), frame.y(row), frame.x(column + 1), frame.y(row + 1)});
         }
-        world.start_clearance = clearance - 1e-6; // rounding of the cells' borders
+        world.start_clearance = clearance - 1e-6; // allows for rounding of the cells' borders
         if (!world.starts.empty()) return true;
     }
     return false;

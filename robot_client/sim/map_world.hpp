@@ -9,12 +9,11 @@
 
 namespace scanloom::robot {
 
-/// A ROS map as a world. Occupied cells are solid, whole squares; unknown ones are not, rays pass through them, but
-/// a robot is not put there, and the truth of them is unknown.
-/// Beyond the map there is nothing. A robot starts where half a metre is free around it, or, in a map too narrow for
-/// that, 0.3 m, within the largest part of the map that it could drive through.
-/// Errors  kInvalidField: nowhere in the map is there room for a robot.
-/// Cost    the cells.
+/// Converts a ROS map into a world. Occupied cells are solid squares. Rays pass through unknown cells, but a robot does
+/// not start there, and their truth is unknown. There is nothing outside the map. A robot starts where half a metre
+/// around it is free, or 0.3 m in a map too narrow for that, within the largest part of the map that it can drive
+/// through. Time and memory are proportional to the number of cells.
+/// Errors: kInvalidField if no place in the map has room for a robot.
 [[nodiscard]] Result<World> world_of_map(std::string name, const RosMapDescription& map, const MapCells& cells);
 
 } // namespace scanloom::robot

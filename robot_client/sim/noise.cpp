@@ -15,7 +15,7 @@ RangeMm reading(double range, const Sensor& sensor, const std::optional<Noise>& 
     if (range >= sensor.range_max) return kNoReturn;
     if (noise) range += random.gaussian(noise->range);
     if (noise && noise->range_uniform > 0.0) range += random.uniform(0.0, noise->range_uniform);
-    // a return stays one: at least a millimetre inside the limits
+    // A return stays a return: at least one millimetre inside the limits.
     return to_range_mm(std::clamp(range, sensor.range_min + 0.001, sensor.range_max - 0.001));
 }
 

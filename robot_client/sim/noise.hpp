@@ -8,25 +8,25 @@
 
 namespace scanloom::robot {
 
-/// What the measurements of a simulated robot suffer from. Standard deviations, but for the uniform one.
+/// The noise of a simulated robot's measurements. Standard deviations, except range_uniform.
 struct Noise {
-    double range = 0.02;            ///< metres, of each return
-    double range_uniform = 0.0;     ///< metres; each return is too long by 0 up to this, all equally likely
+    double range = 0.02;            ///< metres, for each return
+    double range_uniform = 0.0;     ///< metres; each return is too long by a uniform random length up to this
     double beam_angle = 0.005;      ///< radians, of each beam's true direction
-    double odometry_forward = 0.05; ///< metres for each metre driven, within one control step
-    double odometry_turn = 0.05;    ///< radians for each radian turned
-    double odometry_drift = 0.02;   ///< radians for each metre driven
+    double odometry_forward = 0.05; ///< metres per metre driven, within one control step
+    double odometry_turn = 0.05;    ///< radians per radian turned
+    double odometry_drift = 0.02;   ///< radians per metre driven
 };
 
-/// The noise of the odometry, made larger or smaller. Pre  scale >= 0.
+/// Returns the noise with its odometry part multiplied by `scale`. Pre: scale >= 0.
 [[nodiscard]] Noise with_odometry(Noise noise, double scale);
 
-/// What a sensor reads when the first thing in a beam is `range` metres away: kNoReturn at its range_max or beyond.
-/// Noise neither makes nor takes returns: beams without one are set aside before, and a noisy return stays within the
-/// sensor's limits.
+/// Returns the reading of a sensor whose beam first hits something at `range` metres: kNoReturn at range_max or beyond.
+/// Noise neither adds nor removes returns: beams without a return are handled before, and a noisy return stays within
+/// the sensor's limits.
 [[nodiscard]] RangeMm reading(double range, const Sensor& sensor, const std::optional<Noise>& noise, Random& random);
 
-/// The direction in which a beam really looks. Draws a number only where there is noise.
+/// Returns the true direction of a beam, in radians. Draws a random number only if there is noise.
 [[nodiscard]] double true_direction(double yaw_rad, const std::optional<Noise>& noise, Random& random);
 
 } // namespace scanloom::robot

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// One axis of a ray's way through the buckets.
+/// One axis of a ray's traversal of the buckets.
 class Walk {
 public:
     Walk(double origin, double direction, double border, double side, int count)
@@ -19,7 +19,7 @@ public:
                 : direction < 0.0 ? -1
                                   : 0) {}
 
-    /// Metres along the ray to where it comes between the frame's borders, and to where it leaves them.
+    /// Narrows the interval of metres along the ray to the part between the frame's borders.
     void cut(double& begin, double& end) const {
         const double width = count_ * side_;
         if (step_ == 0) {
@@ -32,16 +32,16 @@ public:
         end = std::min(end, last);
     }
 
-    /// Pre  the ray is in the frame after `length` metres.
+    /// Pre: the ray is inside the frame after `length` metres.
     void start(double length, double direction) {
         at_ = std::clamp(static_cast<int>((origin_ + length * direction) / side_), 0, count_ - 1);
         find_next();
     }
 
     [[nodiscard]] int at() const { return at_; }
-    /// Metres along the ray to the next bucket.
+    /// Returns the distance in metres along the ray to the next bucket.
     [[nodiscard]] double next() const { return next_; }
-    /// @return whether there is a next bucket.
+    /// @return whether there is a next bucket
     bool step() {
         at_ += step_;
         find_next();
@@ -53,7 +53,7 @@ private:
     void find_next() { next_ = step_ == 0 ? kFar : length_to((step_ > 0 ? at_ + 1 : at_) * side_); }
 
     double origin_;  ///< metres from the frame's border
-    double inverse_; ///< metres along the ray for each along this axis
+    double inverse_; ///< metres along the ray per metre along this axis
     double side_;    ///< metres
     int count_;      ///< columns or rows
     int step_;       ///< -1, 0 or 1

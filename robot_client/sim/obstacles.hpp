@@ -6,25 +6,24 @@
 
 namespace scanloom::robot {
 
-/// What stands still in a world, in an order in which little need be looked at to tell what is near. All answers are
-/// those of looking at everything, bit for bit.
+/// The static obstacles of a world, indexed so that few of them need to be checked to find the near ones. All results
+/// equal those of checking every obstacle, bit for bit.
 ///
-/// Thread  any; it never changes.
+/// Threads: any thread; the object never changes.
 class Obstacles {
 public:
     Obstacles() = default;
     Obstacles(std::span<const Segment> outlines, std::span<const Box> solids) : outlines_(outlines), solids_(solids) {}
 
-    /// Metres from `origin` along `yaw_rad` to the first outline. What is farther than `range_max` may be left out:
-    /// then it is infinite.
-    /// Cost    the buckets on the ray and the outlines in them.
-    /// Source  Amanatides, Woo: A fast voxel traversal algorithm for ray tracing (1987).
+    /// Returns the distance in metres from `origin` along `yaw_rad` to the first outline. Beyond `range_max` the result
+    /// may be infinite. Time: the buckets on the ray and the outlines in them.
+    /// Source: Amanatides, Woo, A Fast Voxel Traversal Algorithm for Ray Tracing (1987).
     [[nodiscard]] double cast_ray(const Point2& origin, double yaw_rad, double range_max) const;
 
-    /// Metres to the nearest outline; infinite where there is none.
+    /// Returns the distance in metres to the nearest outline; infinite if there is none.
     [[nodiscard]] double distance(const Point2& point) const;
 
-    /// Whether a solid stands here, borders included.
+    /// Returns whether the point is in a solid, borders included.
     [[nodiscard]] bool contain(const Point2& point) const;
 
     [[nodiscard]] const BucketGrid<Segment>& outlines() const noexcept { return outlines_; }

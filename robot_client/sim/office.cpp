@@ -7,7 +7,7 @@
 namespace scanloom::robot {
 namespace {
 
-constexpr double kOfficeHalfWidth = 15.0; // of the building, inside
+constexpr double kOfficeHalfWidth = 15.0; // half of the building's inner size
 constexpr double kOfficeHalfHeight = 10.0;
 constexpr double kCorridorOuter = 4.0;  // |y| of the wall between corridor and outer rooms
 constexpr double kCorridorInner = 2.0;  // |y| of the wall between corridor and inner rooms
@@ -15,7 +15,7 @@ constexpr double kBlockHalfWidth = 9.0; // of the inner block
 constexpr double kWall = 0.15;
 constexpr double kDoor = 1.2;
 
-/// A wall along x centred on `y`, with doors centred on the given places. Places rise.
+/// Adds a wall along x, centred on `y`, with doors centred on the given positions, which must increase.
 template <std::size_t N>
 void add_wall_along_x(std::vector<Box>& solids, double y, double x_begin, double x_end, std::array<double, N> doors) {
     double x = x_begin;
@@ -30,7 +30,7 @@ void add_wall_along_y(std::vector<Box>& solids, double x, double y_begin, double
     solids.push_back({x - kWall / 2, y_begin, x + kWall / 2, y_end});
 }
 
-/// Five rooms of 6 x 6 m on each long side, a door each.
+/// Five rooms of 6 x 6 m on each long side, with one door each.
 void add_outer_rooms(std::vector<Box>& solids) {
     constexpr std::array<double, 5> kNorthDoors{-13.6, -7.6, -1.6, 4.4, 10.4};
     constexpr std::array<double, 5> kSouthDoors{-10.4, -4.4, 1.6, 7.6, 13.6};
@@ -74,7 +74,7 @@ void add_furniture(std::vector<Box>& solids) {
 
 } // namespace
 
-// 30 x 20 m inside, around the world origin: a ring of corridors, wider at its ends, around a block of inner rooms.
+// 30 x 20 m inside, around the world's origin: a ring of corridors, wider at its ends, around a block of inner rooms.
 World make_office() {
     std::vector<Box> solids;
     add_shell(solids, kOfficeHalfWidth, kOfficeHalfHeight);

@@ -12,7 +12,7 @@ double Random::uniform(double low, double high) {
     return low + (high - low) * unit;
 }
 
-// Box, Muller (1958), one of the two values: without memory, so that the state is the engine's alone.
+// Box, Muller (1958), only one of the two values: so the engine holds the whole state.
 double Random::gaussian(double sigma) {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
     return sigma * radius * std::cos(2.0 * std::numbers::pi * uniform(0.0, 1.0));

@@ -5,19 +5,19 @@
 
 namespace scanloom::robot {
 
-/// Random numbers that are the same on every machine: the engine is fixed by the C++ standard, and the
-/// distributions are made here because those of <random> differ between libraries.
+/// Random numbers that are the same on every machine. The C++ standard defines the engine; the distributions are
+/// implemented here because those of <random> differ between libraries.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-    /// Evenly spread over [low, high).
+    /// Returns a uniformly distributed number in [low, high).
     [[nodiscard]] double uniform(double low, double high);
 
-    /// Normally distributed around 0.
+    /// Returns a normally distributed number with mean 0.
     [[nodiscard]] double gaussian(double sigma);
 
-    /// Evenly spread over 0 .. count - 1. Pre: count > 0.
+    /// Returns a uniformly distributed index in 0 .. count - 1. Pre: count > 0.
     [[nodiscard]] std::size_t index(std::size_t count);
 
 private:

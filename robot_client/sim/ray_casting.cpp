@@ -6,7 +6,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Share of a segment's length by which it is taken longer at both ends: rounding must not open a corner.
+/// Each segment is extended at both ends by this share of its length, so that rounding does not open a corner.
 constexpr double kEndSlack = 1e-9;
 
 } // namespace
@@ -19,12 +19,12 @@ double cast_ray(const Segment& segment, const Ray& ray, double nearest) noexcept
     const double along_x = segment.bx - segment.ax;
     const double along_y = segment.by - segment.ay;
     const double determinant = ray.direction_x * along_y - ray.direction_y * along_x;
-    if (determinant == 0.0) return nearest; // parallel: seen edge on, its neighbours at the corners stop the ray
+    if (determinant == 0.0) return nearest; // parallel: seen edge-on; its neighbours at the corners stop the ray
     const double to_x = segment.ax - ray.origin_x;
     const double to_y = segment.ay - ray.origin_y;
     const double length_part = to_x * along_y - to_y * along_x;
     const double share_part = to_x * ray.direction_y - to_y * ray.direction_x;
-    // Most segments are behind the ray or clearly beside it, which is known without dividing.
+    // Most segments are behind the ray or clearly outside it, which can be decided without a division.
     constexpr double kClearly = 10.0 * kEndSlack;
     const double square = determinant * determinant;
     const double beside = share_part * determinant;

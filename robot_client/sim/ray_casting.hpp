@@ -6,7 +6,7 @@
 
 namespace scanloom::robot {
 
-/// A half line.
+/// A half-line.
 struct Ray {
     Ray(const Point2& from, double yaw_rad);
 
@@ -16,15 +16,16 @@ struct Ray {
     double direction_y;
 };
 
-/// Metres along the ray to the segment, where it is nearer than `nearest`; otherwise `nearest`.
-/// Exact but for rounding. The ends of a segment belong to it, so walls that meet are closed.
+/// Returns the distance in metres along the ray to the segment if it is less than `nearest`, else `nearest`. Exact
+/// except for rounding. The ends of a segment belong to it, so walls that meet are closed.
 [[nodiscard]] double cast_ray(const Segment& segment, const Ray& ray, double nearest) noexcept;
 
-/// Metres from `origin` along `yaw_rad` to the first of some segments; infinite when there is none. Looks at all of
-/// them: see Obstacles for many.
+/// Returns the distance in metres from `origin` along `yaw_rad` to the first of the segments; infinite if there is
+/// none. Checks all segments; use Obstacles for many.
 [[nodiscard]] double cast_ray(std::span<const Segment> segments, const Point2& origin, double yaw_rad);
 
-/// The same for a disc; from inside it, to where the ray leaves it.
+/// Returns the distance in metres from `origin` along `yaw_rad` to a disc; from inside it, to where the ray leaves it.
+/// Infinite if the ray misses it.
 [[nodiscard]] double cast_ray(const Disc& disc, const Point2& origin, double yaw_rad);
 
 } // namespace scanloom::robot

@@ -2,7 +2,7 @@
 
 namespace scanloom::robot {
 
-// 10 x 10 m inside, around the world origin. Furniture leaves either no gap or one a robot gets through.
+// 10 x 10 m inside, around the world's origin. Furniture leaves either no gap or one that a robot fits through.
 World make_room() {
     std::vector<Box> solids = {
         // walls, 0.2 m thick
@@ -15,7 +15,7 @@ World make_room() {
         {0.5, 4.6, 2.9, 5.0},
         {4.65, -1.5, 5.0, 0.5},
         {-4.2, -5.0, -2.4, -4.65},
-        // standing free, with wide ways around them: a table, a sofa, a pillar, an armchair, a bed
+        // free-standing, with wide passages around them: a table, a sofa, a pillar, an armchair, a bed
         {-1.2, -0.6, 0.8, 0.4},
         {-1.8, 1.8, 0.2, 2.6},
         {2.0, 1.2, 2.4, 1.6},

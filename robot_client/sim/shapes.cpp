@@ -23,7 +23,7 @@ bool touch(const Box& a, const Box& b) noexcept {
     return a.x_min <= b.x_max && b.x_min <= a.x_max && a.y_min <= b.y_max && b.y_min <= a.y_max;
 }
 
-// Separating axes: those of the box, and the normal of the segment.
+// Separating axes: those of the box and the normal of the segment.
 bool touch(const Segment& segment, const Box& box) noexcept {
     if (!touch(bounds_of(segment), box)) return false;
     const double along_x = segment.bx - segment.ax;

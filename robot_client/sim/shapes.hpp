@@ -4,7 +4,7 @@
 
 namespace scanloom::robot {
 
-/// A straight piece of something that sensors see and robots bump into. Metres, in the world frame.
+/// A straight segment that sensors see and robots collide with. Metres, in the world frame.
 struct Segment {
     double ax = 0.0;
     double ay = 0.0;
@@ -14,7 +14,7 @@ struct Segment {
     friend bool operator==(const Segment&, const Segment&) = default;
 };
 
-/// A rectangle along the axes. Metres, in the world frame.
+/// A rectangle parallel to the axes. Metres, in the world frame.
 struct Box {
     double x_min = 0.0;
     double y_min = 0.0;
@@ -28,27 +28,27 @@ struct Box {
     friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// Something round that sensors see and robots bump into. Metres, in the world frame.
+/// A disc that sensors see and robots collide with. Metres, in the world frame.
 struct Disc {
     Point2 centre{0.0, 0.0};
     double radius = 0.0;
 };
 
-/// The least box that holds the shape.
+/// Returns the smallest box that contains the shape.
 [[nodiscard]] Box bounds_of(const Segment& segment) noexcept;
 [[nodiscard]] inline const Box& bounds_of(const Box& box) noexcept { return box; }
 
-/// The least box that holds both.
+/// Returns the smallest box that contains both.
 [[nodiscard]] Box united(const Box& a, const Box& b) noexcept;
 
-/// The box with all its sides moved outwards.
+/// Returns the box with all its sides moved outwards.
 [[nodiscard]] Box widened(const Box& box, double metres) noexcept;
 
-/// Whether they have a point in common, borders included.
+/// Returns whether the shapes have a point in common, borders included.
 [[nodiscard]] bool touch(const Segment& segment, const Box& box) noexcept;
 [[nodiscard]] bool touch(const Box& a, const Box& b) noexcept;
 
-/// Metres from a point to the nearest one of the shape; 0 inside a disc.
+/// Returns the distance in metres from a point to the shape; 0 inside a disc.
 [[nodiscard]] double distance(const Segment& segment, const Point2& point);
 [[nodiscard]] double distance(const Disc& disc, const Point2& point);
 

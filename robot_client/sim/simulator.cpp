@@ -11,7 +11,7 @@ namespace scanloom::robot {
 namespace {
 
 Pose2 choose_start(const World& world, Random& random) {
-    for (;;) { // there is a free place, so this ends
+    for (;;) { // ends because a free place exists
         const Box& floor = world.starts[random.index(world.starts.size())];
         const Point2 place{random.uniform(floor.x_min, floor.x_max), random.uniform(floor.y_min, floor.y_max)};
         if (clearance(world, place) < world.start_clearance) continue;
@@ -26,8 +26,8 @@ std::vector<RangeMm> measure(const World& world, const Sensor& sensor, const Pos
                                              : listen(world, sensor, T_map_sensor, noise, random);
 }
 
-/// The sectors of a scan. Of sonars, only those whose whole cone looks ahead: what others hear may be behind the robot,
-/// and is no reason to back off.
+/// Returns the sectors of a scan. Of sonars, only those whose whole cone points ahead count: echoes of the others may
+/// come from behind the robot and are no reason to back off.
 SectorRanges sectors_of(Scan scan, const Sensor& sensor) {
     constexpr double kAhead = std::numbers::pi / 2.0 + 1e-9;
     for (std::size_t i = 0; sensor.kind == SensorKind::kSonar && i < scan.ranges.size(); ++i) {

@@ -16,48 +16,48 @@ namespace scanloom::robot {
 inline constexpr int kControlStepsPerScan = 2;                               ///< 20 Hz control, 10 Hz sensors
 inline constexpr double kScanPeriod = kControlStepsPerScan * kControlPeriod; ///< seconds
 
-/// Which pose a robot sends with its scans.
+/// The pose that a robot sends with its scans.
 enum class PoseSent {
-    kTrue,     ///< where it is
-    kOdometry, ///< where its wheels believe it is, told where it started: it drifts off
+    kTrue,     ///< the true pose
+    kOdometry, ///< the odometry from the true start on, which drifts
 };
 
 struct SimulatorOptions {
     World world;
-    std::optional<Sensor> laser; ///< absent: it has sonars
-    std::optional<Noise> noise;  ///< absent: everything is exact
+    std::optional<Sensor> laser; ///< none: the robot has sonars
+    std::optional<Noise> noise;  ///< none: all measurements are exact
     std::uint64_t seed = 1;
-    std::optional<Pose2> start;  ///< absent: a free place that the seed chooses
-    std::optional<Sensor> sonar; ///< another sensor, with an id of its own
+    std::optional<Pose2> start;  ///< none: a free place chosen by the seed
+    std::optional<Sensor> sonar; ///< a further sensor with its own id
     PoseSent pose = PoseSent::kTrue;
 };
 
-/// A robot that drives through a world and scans it. Everything follows from the options: no clock, no other
-/// randomness. People in the world walk on while it drives.
+/// A robot that drives through a world and scans it. The options determine everything: there is no clock and no other
+/// randomness. People in the world keep walking while it drives.
 ///
-/// scan.pose is what the options say, and so is Senses::pose: the map frame is that of the scans. scan.odometry is what
-/// its wheels believe, from (0, 0, 0) on. It steers by its laser; without one, by its sonars, whose echoes it takes to
-/// come from their axes, and of which those that hear what is behind it have no say in Senses::nearest.
+/// scan.pose is chosen by the options, and so is Senses::pose: the map frame is that of the scans. scan.odometry starts
+/// at (0, 0, 0). The robot steers by its laser. Without a laser it steers by its sonars and places each echo on the
+/// cone's axis; sonars whose cone includes directions behind the robot do not count in Senses::nearest.
 class Simulator {
 public:
-    /// Pre  the options hold a sensor.
+    /// Pre: the options contain a sensor.
     Simulator(SimulatorOptions options, std::unique_ptr<Behaviour> behaviour);
 
-    /// The next scan. Each sensor takes one ten times a second, all at the same moment, the laser's first; the first
-    /// ones are taken where the robot starts, at 0 s.
+    /// Returns the next scan. Each sensor scans ten times per second, all at the same time; the laser's scan comes
+    /// first. The first scans are taken where the robot starts, at 0 s.
     [[nodiscard]] Scan next_scan();
 
-    /// The sensors, in the order of their scans.
+    /// Returns the sensors, in the order of their scans.
     [[nodiscard]] const std::vector<std::shared_ptr<const Sensor>>& sensors() const noexcept { return sensors_; }
-    /// The sensor that took a scan. Pre  it is one of this simulator's.
+    /// Returns the sensor that took a scan. Pre: it is one of this simulator's.
     [[nodiscard]] const std::shared_ptr<const Sensor>& sensor_of(const Scan& scan) const;
 
-    /// The world as it is now: people have moved.
+    /// Returns the current world, in which people have moved.
     [[nodiscard]] const World& world() const noexcept { return options_.world; }
-    /// Where the robot really is.
+    /// Returns the robot's true pose.
     [[nodiscard]] const Pose2& pose() const noexcept { return pose_; }
     [[nodiscard]] const Behaviour& behaviour() const noexcept { return *behaviour_; }
-    /// Control steps in which a solid or a person kept the robot from advancing.
+    /// Returns the number of control steps in which a solid or a person blocked the robot.
     [[nodiscard]] std::uint64_t collisions() const noexcept { return collisions_; }
 
 private:

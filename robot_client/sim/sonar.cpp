@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A cone and the nearest thing found in it so far, metres; where there is none, the sensor's range.
+/// A cone and the distance in metres of the nearest point found in it so far; initially the sensor's range.
 struct Heard {
     Cone cone;
     double nearest;

@@ -6,35 +6,36 @@
 #include <cstdint>
 #include <vector>
 
-/// What a robot sees that stands still, in worlds in which a door moves: what alignments and the like are tried on.
+/// Scans of a stationary robot in worlds where a door moves: test data for scan matching.
 namespace scanloom::robot {
 
-/// The points of some turns of "lidar360", noise included, in the robot's frame.
+/// Returns the points of several turns of "lidar360" with noise, in the robot's frame.
 [[nodiscard]] std::vector<Point2> standing_capture(const World& world, const Pose2& place, int turns, Random& random);
 
-/// Where doors may stand: shut in the office's doorways and at the hall's cabin, ajar along the room's walls.
+/// Returns possible doors: closed in the office's doorways and at the hall's cabin, ajar along the room's walls.
 [[nodiscard]] std::vector<Box> doors_of(const World& world);
 
-/// The world with one more solid.
+/// Returns the world with one more solid.
 [[nodiscard]] World with_door(const World& world, const Box& door);
 
-/// A place where a robot may be put, 0.3 m from anything at least, looking anywhere.
+/// Returns a start for a robot, at least 0.3 m from anything, with a random heading.
 [[nodiscard]] Pose2 free_place(const World& world, Random& random);
 
-/// Whether nothing stands between two places, nor just behind the second.
+/// Returns whether the line between two places is free, and the space just behind the second.
 [[nodiscard]] bool sees(const World& world, const Pose2& from, const Pose2& to);
 
-inline constexpr int kAlignedTurns = 20; ///< of the lidar, in each of two places
+inline constexpr int kAlignedTurns = 20; ///< turns of the lidar in each of the two places
 
-/// A robot was in two places of a world between which a door moved.
+/// Scans of a robot from two places of a world, between which a door moved.
 struct TwoCaptures {
-    std::vector<Point2> first; ///< each in the frame of its robot
+    std::vector<Point2> first; ///< each in its robot's frame
     std::vector<Point2> second;
     Pose2 T_first_second;
 };
 
-/// Two places 0.5 to 2 m apart in any directions, each in sight of the other, with the door open in one of them.
-/// @param doors  one of them moves; none: nothing does
+/// Makes scans from two places 0.5 to 2 m apart with random headings, each in sight of the other, with the door open in
+/// one of them.
+/// @param doors  one of them moves; empty: none moves
 [[nodiscard]] TwoCaptures two_captures(const World& open, const std::vector<Box>& doors, std::uint64_t seed,
                                        int turns = kAlignedTurns);
 

@@ -8,11 +8,11 @@
 namespace scanloom::robot {
 namespace {
 
-/// How many cells away; saturates.
+/// A number of cells; saturates.
 using Steps = std::uint16_t;
 
-/// To the nearest occupied cell, of each: Chebyshev distance, which no other exceeds. Found in two passes: what is
-/// nearest lies before a cell or behind it.
+/// Returns each cell's Chebyshev distance to the nearest occupied cell; no other metric gives more. Uses two passes:
+/// the nearest occupied cell lies before a cell or behind it.
 std::vector<Steps> steps_to_solids(const MapCells& map) {
     constexpr int kFarthest = std::numeric_limits<Steps>::max();
     const auto width = static_cast<std::ptrdiff_t>(map.width);
@@ -39,10 +39,10 @@ std::vector<Steps> steps_to_solids(const MapCells& map) {
     return steps;
 }
 
-/// So many cells away that every point of one is as far from every point of the other.
+/// Returns the number of cells at which every point of one cell is at least `metres` from every point of the other.
 int steps_for(double metres, double resolution) { return static_cast<int>(std::ceil(metres / resolution - 1e-9)) + 1; }
 
-/// The open cells that four-connected ways through open ones reach from one of them; closes them.
+/// Returns the open cells connected to one of them (four neighbours), and closes them.
 std::vector<std::size_t> take_part(std::size_t seed, std::size_t width, std::vector<bool>& is_open) {
     std::vector<std::size_t> part;
     const auto reach = [&](std::size_t at) {

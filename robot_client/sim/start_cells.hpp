@@ -7,9 +7,9 @@
 
 namespace scanloom::robot {
 
-/// Free cells from all points of which `clearance_m` metres at least are free of occupied cells, in the part of the map
-/// that has most of them and through which a robot with `passage_m` around its centre can drive. Indices into
-/// map.cells, rising; empty where there are none.
+/// Returns the free cells that are at least `clearance_m` metres from occupied cells at all of their points, in the
+/// part of the map that has most of them and that a robot with `passage_m` metres around its centre can drive through.
+/// Indices into map.cells, increasing; empty if there are none.
 [[nodiscard]] std::vector<std::size_t> start_cells(const MapCells& map, double resolution, double clearance_m,
                                                    double passage_m);
 

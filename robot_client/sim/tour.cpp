@@ -3,13 +3,13 @@
 namespace scanloom::robot {
 namespace {
 
-/// Along the walls, and once in between the furniture.
+/// Along the walls, and once between the furniture.
 std::vector<Point2> room_tour() {
     return {{-3.5, -3.7}, {0.4, -3.7}, {0.5, -1.7}, {0.9, -3.5}, {3.5, -3.6}, {3.4, -0.3},
             {3.5, 3.4},   {1.2, 3.5},  {-3.2, 3.7}, {-3.4, 1.2}, {-3.4, -0.6}};
 }
 
-/// Into a room and out again: before its door, inside, before its door.
+/// Adds a visit to a room: before its door, inside, before its door again.
 void visit(std::vector<Point2>& tour, const Point2& before, const Point2& inside) {
     tour.insert(tour.end(), {before, inside, before});
 }
@@ -30,8 +30,8 @@ std::vector<Point2> office_tour() {
     return tour;
 }
 
-/// Up and down the aisles in the north, past the cabin and the loading bays, over the floor, and the aisles in the
-/// south.
+/// Up and down the aisles in the north, past the cabin and the loading bays, across the floor, and through the aisles
+/// in the south.
 std::vector<Point2> hall_tour() {
     std::vector<Point2> tour = {{-28.5, 3.5},  {-28.5, 18.5}, {-24.6, 18.5}, {-24.6, 3.5},  {-21.0, 3.5}, {-21.0, 18.5},
                                 {-17.4, 18.5}, {-17.4, 3.5},  {-13.8, 3.5},  {-13.8, 18.5}, {-8.0, 18.0}, {-8.0, 12.5}};

@@ -7,8 +7,8 @@
 
 namespace scanloom::robot {
 
-/// A round tour of one of the worlds of find_world(), from waypoint to waypoint, each in sight of the one before:
-/// metres in the world frame. Empty for a world that has none.
+/// Returns a round tour of a world of find_world(): waypoints, each in sight of the one before, in metres in the world
+/// frame. Empty if the world has no tour.
 [[nodiscard]] std::vector<Point2> tour_of(std::string_view world);
 
 } // namespace scanloom::robot

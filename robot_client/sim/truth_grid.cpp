@@ -6,10 +6,10 @@
 namespace scanloom::robot {
 namespace {
 
-/// Ways are looked for on cells of this size at most: coarser ones would close doors.
+/// Reachability is computed on cells of at most this size: larger ones would close doors.
 constexpr double kWayCellMax = 0.1; // metres
 
-/// Share of a cell by which a side counts as lying on the border of one.
+/// A side within this share of a cell from a border counts as on the border.
 constexpr double kSnapCells = 1e-6;
 
 std::int32_t first_cell(double metres, double cells_per_metre) {
@@ -31,7 +31,7 @@ TruthGrid blank_grid(const World& world, double cell_size_m) {
     return grid;
 }
 
-/// Calls visit(Truth&, index) for the cells of the grid that a box stands in.
+/// Calls visit(Truth&, index) for the cells of the grid that a box occupies.
 template <class Visit>
 void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
     const double cells_per_metre = 1.0 / grid.cell_size;
@@ -48,7 +48,7 @@ void for_cells_of(const Box& box, TruthGrid& grid, Visit&& visit) {
     }
 }
 
-/// Of a cell that holds unknown parts: no way leads through it. None is left in the end.
+/// Marks a cell with unknown parts, which cannot be passed. None remain in the result.
 constexpr Truth kClosed = static_cast<Truth>(3);
 
 void mark_unknown_and_solids(const World& world, TruthGrid& grid) {
@@ -60,7 +60,7 @@ void mark_unknown_and_solids(const World& world, TruthGrid& grid) {
     }
 }
 
-/// Frees what four-connected ways reach from the floors.
+/// Marks as free what is connected to the floors (four neighbours).
 void mark_free(const World& world, TruthGrid& grid) {
     std::vector<std::size_t> open;
     const auto reach = [&](Truth& cell, std::size_t index) {
@@ -95,7 +95,7 @@ TruthGrid truth_of(const World& world, double cell_size_m) {
         std::size_t n = 0;
         for (std::int32_t j = grid.j_begin; j < grid.j_begin + grid.height; ++j) {
             for (std::int32_t i = grid.i_begin; i < grid.i_begin + grid.width; ++i, ++n) {
-                // nothing stands in the cell, so one part of it tells for all
+                // no solid is in the cell, so one part of it decides for all
                 const bool is_reached = ways.at(i * parts, j * parts) == Truth::kFree;
                 if (grid.cells[n] == Truth::kOutside && is_reached) grid.cells[n] = Truth::kFree;
             }

@@ -9,12 +9,12 @@
 
 namespace scanloom::robot {
 
-/// The truth as the file pair of ROS map_saver: occupied, free, and unknown outside.
+/// Write the truth as the two files of ROS map_saver: occupied, free, and unknown outside.
 
-/// Binary PGM, top row first.
+/// Returns a binary PGM, top row first.
 [[nodiscard]] std::vector<std::uint8_t> truth_pgm(const TruthGrid& truth);
 
-/// The description that goes with it; `image` is its file, beside this one.
+/// Returns the YAML description. `image` is the file name of the PGM in the same folder.
 [[nodiscard]] std::string truth_yaml(const TruthGrid& truth, std::string_view image);
 
 } // namespace scanloom::robot

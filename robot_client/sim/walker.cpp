@@ -25,7 +25,7 @@ Disc body_of(const Walker& walker) {
         if (left < norm(side)) return {loop[i] + left / norm(side) * side, walker.radius};
         left -= norm(side);
     }
-    return {loop.front(), walker.radius}; // rounding: all the way round
+    return {loop.front(), walker.radius}; // due to rounding: a whole loop
 }
 
 void walk(Walker& walker, const Point2& robot, double seconds) {

@@ -13,40 +13,40 @@
 
 namespace scanloom::robot {
 
-inline constexpr double kStartClearance = 0.5; ///< metres, where there is room
+inline constexpr double kStartClearance = 0.5; ///< metres, if there is room
 
-/// A place to drive in, at one moment. Those that have a name here are closed: from any point of a floor every ray
-/// meets a solid. Maps of elsewhere may be open.
+/// The environment of a simulated robot at one time. Built-in worlds are closed: from any point of a floor every ray
+/// hits a solid. Worlds from maps may be open.
 struct World {
     std::string name;
-    std::vector<Box> solids;  ///< walls and furniture; they may overlap and then leave no gap between them
-    std::vector<Box> floors;  ///< free but for solids that stand on them, and whatever can be reached from there
-    std::vector<Box> unknown; ///< what a map does not tell of: neither solid nor free
-    std::vector<Box> starts;  ///< where a robot may be put, but for what stands there
-    double start_clearance = kStartClearance; ///< metres that are free around a robot which is put there
-    std::vector<Segment> outlines;            ///< the sides of the solids
-    std::vector<Walker> walkers;              ///< people, where they are now
-    std::shared_ptr<const Obstacles> obstacles = std::make_shared<const Obstacles>(); ///< outlines and solids, in order
+    std::vector<Box> solids;  ///< walls and furniture; overlapping ones leave no gap
+    std::vector<Box> floors;  ///< free except for solids on them; everything reachable from them is free, too
+    std::vector<Box> unknown; ///< unknown areas of a map: neither solid nor free
+    std::vector<Box> starts;  ///< where a robot may start, except where solids are
+    double start_clearance = kStartClearance; ///< metres that are free around a robot's start
+    std::vector<Segment> outlines;            ///< sides of the solids
+    std::vector<Walker> walkers;              ///< people at their current positions
+    std::shared_ptr<const Obstacles> obstacles = std::make_shared<const Obstacles>(); ///< index of outlines and solids
 };
 
-/// A world of boxes: builds their outlines. Robots may be put on any floor.
+/// Makes a world of boxes and their outlines. Robots may start on any floor.
 [[nodiscard]] World make_world(std::string name, std::vector<Box> solids, std::vector<Box> floors);
 
-/// The least box that holds all solids and floors. Pre  there are some.
+/// Returns the smallest box that contains all solids and floors. Pre: there is at least one.
 [[nodiscard]] Box bounds_of(const World& world);
 
-/// Metres from a point to the nearest outline or walker; 0 inside one.
+/// Returns the distance in metres from a point to the nearest outline or walker; 0 inside one.
 [[nodiscard]] double clearance(const World& world, const Point2& point);
 
-/// The bodies of people within `radius` metres of a place.
+/// Returns the discs of the people within `radius` metres of a place.
 [[nodiscard]] std::vector<Disc> people_near(const World& world, const Point2& place, double radius);
 
-/// Lets the walkers go on for some time, around a robot.
+/// Moves the walkers for some time, around a robot.
 void walk(World& world, const Point2& robot, double seconds);
 
-/// "room": 10 x 10 m with furniture. "room_walker": the same, and a person who walks around what stands free in it.
-/// "office": 30 x 20 m, thirteen rooms and two lounges around a ring of corridors.
-/// "hall": 60 x 40 m, pillars, racks, loading bays and what stands about: long lines of sight.
+/// "room": 10 x 10 m with furniture. "room_walker": the same with a person who walks around the free-standing
+/// furniture. "office": 30 x 20 m, thirteen rooms and two lounges around a ring of corridors. "hall": 60 x 40 m,
+/// pillars, racks, loading bays and loose objects: long lines of sight.
 [[nodiscard]] World make_room();
 [[nodiscard]] World make_room_walker();
 [[nodiscard]] World make_office();
@@ -59,7 +59,8 @@ struct NamedWorld {
 inline constexpr std::array kWorlds{NamedWorld{"room", make_room}, NamedWorld{"room_walker", make_room_walker},
                                     NamedWorld{"office", make_office}, NamedWorld{"hall", make_hall}};
 
-/// Errors  kNotFound: no world of that name; the message lists those there are.
+/// Returns a built-in world by name.
+/// Errors: kNotFound if there is no world of that name; the message lists all names.
 [[nodiscard]] Result<World> find_world(std::string_view name);
 
 } // namespace scanloom::robot
