@@ -85,7 +85,8 @@ struct CoverageOptions {
     std::vector<Point2> region;    ///< corners of a polygon, 3 to 4096; none: all free ground
 };
 
-/// Adjacent cells in one row of the map: (i, j), (i + 1, j), ... The lower corner of cell (i, j) is (i, j) * cell_size.
+/// Adjacent cells in one row of the map: (i, j), (i + 1, j), ... Cell (i, j) has its lower-left corner at (i, j) *
+/// cell_size.
 struct CellRun {
     std::int32_t j = 0;
     std::int32_t i = 0;
@@ -105,7 +106,7 @@ struct Coverage {
 struct ExplorationGoal {
     enum class Outcome {
         kGoal,          ///< `path` leads to the next goal
-        kTakenByOthers, ///< other robots have all goals that this robot can reach
+        kTakenByOthers, ///< other robots drive to all goals that this robot can reach
         kComplete,      ///< no goal can be reached any more
     };
     Outcome outcome = Outcome::kComplete;
@@ -125,7 +126,7 @@ struct LocateOptions {
     std::optional<Near> near = {}; ///< none: anywhere in the map
 };
 
-/// Position of a robot's odometry frame in the map. The pose of a scan in the map is compose(T_map_odom, T_odom_robot),
+/// Pose of a robot's odometry frame in the map. The pose of a scan in the map is compose(T_map_odom, T_odom_robot),
 /// see pose2.hpp.
 struct Location {
     Pose2 T_map_odom;
@@ -194,12 +195,12 @@ public:
     /// Plans a path that covers all free ground, or that of a region.
     [[nodiscard]] Result<Coverage> coverage(std::chrono::milliseconds patience, const CoverageOptions& options = {});
 
-    /// Finds the robot's position in the map from laser scans taken at one place. It serves robots without odometry and
+    /// Finds the robot's pose in the map from laser scans taken at one place. It serves robots without odometry and
     /// robots that lost their position. It needs no scans sent before, and does not store `scans`.
     /// @param sensor   the laser that took all of `scans`
     /// @param scans    one or more, ten are plenty, with at least kLocatePointsMin returns in total; of more than
-    ///         32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame, or the
-    ///         origin without odometry
+    ///                 32,768 returns an even selection is used. Scan::pose is the robot's pose in its odometry frame,
+    ///                 or the origin without odometry
     /// Errors: kAmbiguous if several places look alike; kUndetermined if too little of the scans is in the map;
     ///         kNothingMapped if no laser has mapped anything yet (see Scan::begins_map); otherwise as above.
     [[nodiscard]] Result<Location> locate(const std::shared_ptr<const Sensor>& sensor, std::span<const Scan> scans,

@@ -20,13 +20,13 @@ int main(int argc, char** argv) try {
     laser->range_min = 0.05;
     laser->range_max = 12.0;
 
-    const std::vector<float> metres(360, 2.0F); // from the laser's driver; here it stands in a round room
+    const std::vector<float> metres(360, 2.0F); // from the laser's driver; here as in a round room
 
     scanloom::Scan scan;
     scan.stamp = 0.0;                               // seconds
     scan.pose = {.x = 1.0, .y = 0.5, .yaw = 0.785}; // of the robot in the map: metres, radians
     scan.ranges = scanloom::to_ranges_mm(metres);
-    robot->send(laser, scan).value();               // waits for nothing: the client's own thread does the rest
+    robot->send(laser, scan).value();               // returns at once; the client's thread sends
     robot->flush(std::chrono::seconds(10)).value(); // until all is stored
     std::cout << robot->status().acknowledged << " scans are stored\n";
     robot->close(std::chrono::seconds(10)).value();
