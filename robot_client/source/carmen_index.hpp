@@ -44,7 +44,7 @@ struct CarmenIndex {
 
 /// Reads a log once.
 /// @param report   called for each malformed line in the order of the file, then once for each unread kind of laser
-///         line, then for each RAWLASER line without a pose
+///                 line, then for each RAWLASER line without a pose
 /// @param on_read  called after each chunk of the file
 /// Errors: those of LineReader; kNotFound if no line is usable; kTooLarge if there are more than 2^32 - 2 laser lines.
 [[nodiscard]] Result<CarmenIndex> index_carmen_log(const std::filesystem::path& path, const CarmenOptions& options,

@@ -15,9 +15,8 @@ namespace scanloom::robot {
 
 struct Ld06DeviceOptions {
     Ld06Endpoint endpoint;
-    std::chrono::milliseconds reopen_for{
-        60'000};                                 ///< how long to retry a failed device until it sends packets; 0: never
-    std::chrono::milliseconds silent_max{5'000}; ///< a device that sends no byte for this long counts as failed
+    std::chrono::milliseconds reopen_for{60'000}; ///< how long to reopen a failed device until it sends; 0: never
+    std::chrono::milliseconds silent_max{5'000};  ///< a device that sends no byte for this long counts as failed
     std::function<void(const std::string&)> note = [](const std::string&) {}; ///< for people
 };
 

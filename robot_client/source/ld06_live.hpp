@@ -16,10 +16,9 @@ struct Ld06LiveOptions {
     Ld06ScanOptions scan;
     Ld06Poses poses;          ///< known from the start; their times are Unix time
     int pose_descriptor = -1; ///< source of further poses (see pose_feed.hpp), owned by the reader; -1: none
-    std::chrono::milliseconds pose_wait{500};    ///< how long a scan waits for the pose after it, if more may come;
-    std::chrono::milliseconds pose_age_max{500}; ///< then it takes the newest pose if that is no older than this
-    std::chrono::milliseconds pose_ahead_max{
-        2000}; ///< how far the time of a received pose may be ahead of this machine's clock
+    std::chrono::milliseconds pose_wait{500};       ///< how long a scan waits for the pose after it, if more may come;
+    std::chrono::milliseconds pose_age_max{500};    ///< then it takes the newest pose if that is no older than this
+    std::chrono::milliseconds pose_ahead_max{2000}; ///< largest lead of a received pose over this machine's clock
 };
 
 /// Most scans that wait for next(); beyond that the oldest are dropped.

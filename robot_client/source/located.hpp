@@ -4,7 +4,7 @@
 
 namespace scanloom::robot {
 
-/// Position of a robot's odometry frame in the map, with its uncertainty.
+/// Pose of a robot's odometry frame in the map, with its uncertainty.
 struct Located {
     Pose2 T_map_odom;
     double explained = 0.0;      ///< inlier ratio: share of the observed points that match the map, 0 to 1

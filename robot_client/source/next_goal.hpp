@@ -14,7 +14,7 @@ namespace scanloom::robot {
 struct NextStop {
     enum class Outcome {
         kGoal,          ///< `path` leads to the next goal
-        kTakenByOthers, ///< other robots have all goals that this robot can reach
+        kTakenByOthers, ///< other robots drive to all goals that this robot can reach
         kComplete,      ///< no goal can be reached any more
     };
     Outcome outcome = Outcome::kComplete;

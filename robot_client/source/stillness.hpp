@@ -21,17 +21,17 @@ using TurnProfile = std::array<double, kDirections>;
 
 /// Stationary detection: decides from ranges alone whether a sensor is still where it was during the learned turns.
 ///
-/// A turn is compared, direction by direction, with the span of the learned turns. A direction has changed if its range
-/// is outside the span of the same direction and its two neighbours (the beams of a spinning sensor point elsewhere in
-/// each turn) by more than 3 cm plus 0.5 % of the range. People who walk past change some directions, a movement of the
-/// sensor changes many.
+/// A turn is compared, direction by direction, with the medians of the learned turns. A direction has changed if its
+/// range is outside the span of the medians of that direction and its two neighbours (the beams of a spinning sensor
+/// point elsewhere in each turn) by more than 3 cm plus 0.5 % of the range. People who walk past change some
+/// directions, a movement of the sensor changes many.
 ///
 /// Measured share of the directions that changed:
 ///                              stands       a person at 0.5 m, 0.8 m   moved 10 cm        turned 5 (3) degrees
 ///   a real LD06 in a room      up to 0.02                              0.38 and more      0.53 (0.33) and more
 ///   simulated, room, office    up to 0.08   up to 0.24, 0.17           19 of 20 over 0.34 0.41 (0.27) and more
 /// The real sensor was stationary; the points of its turns were shifted and rotated instead. The simulated one has 360
-/// beams, each with a sigma of 0.02 m and 0.005 rad. Along a corridor without corners, and in a hall most of which is
+/// beams, each with a sigma of 0.02 m and 0.005 rad. Along a corridor without corners, and in a hall that is mostly
 /// out of the sensor's range, a movement is detected later.
 ///
 /// Threads: one at a time.

@@ -20,14 +20,13 @@ namespace scanloom::robot {
 
 struct ConversationOptions {
     wire::Hello hello;
-    std::size_t buffer_bytes_max = std::size_t{32}
-                                   << 20;                ///< of scans not yet acknowledged; when full, the source waits
-    std::size_t batch_bytes_max = std::size_t{64} << 10; ///< of one ScanBatch of several scans
-    std::chrono::milliseconds batch_delay{0};            ///< how long a scan may wait for others to share its batch
-    bool compress = false;                               ///< compress batches if the server supports it
-    std::chrono::milliseconds welcome_timeout{10'000};   ///< from hello to welcome
-    std::chrono::milliseconds ping_after{5'000};         ///< of silence
-    std::chrono::milliseconds silence_max{15'000};       ///< then the link is considered dead
+    std::size_t buffer_bytes_max = std::size_t{32} << 20; ///< of unacknowledged scans; when full, the source waits
+    std::size_t batch_bytes_max = std::size_t{64} << 10;  ///< of one ScanBatch of several scans
+    std::chrono::milliseconds batch_delay{0};             ///< how long a scan may wait for others to share its batch
+    bool compress = false;                                ///< compress batches if the server supports it
+    std::chrono::milliseconds welcome_timeout{10'000};    ///< from hello to welcome
+    std::chrono::milliseconds ping_after{5'000};          ///< of silence
+    std::chrono::milliseconds silence_max{15'000};        ///< then the link is considered dead
 };
 
 /// The state of one connection of a Conversation.
@@ -106,7 +105,7 @@ public:
     /// welcome.
     [[nodiscard]] const std::string& session_id() const noexcept { return session_id_; }
     [[nodiscard]] bool is_welcome() const noexcept { return link_ && link_->welcomed; }
-    /// Returns since when data have been waiting without progress of the server, or nullopt if no data wait.
+    /// Returns the time of the last progress while a scan or the first welcome is awaited, else nullopt.
     [[nodiscard]] std::optional<Time> stalled_since() const;
     [[nodiscard]] std::uint64_t acknowledged() const noexcept { return buffer_.acknowledged(); }
     /// Returns the highest seq of this robot known to be in the server's maps.

@@ -12,7 +12,7 @@ inline constexpr double kCarriedMax = 100.0;
 
 /// Makes a Locate that asks the server for the robot's position, as ask_once_applied() does.
 /// @param near         where the robot stands first; each later place is within kCarriedMax of the previous result.
-///         None: anywhere in the map
+///                     None: anywhere in the map
 /// @param first_place  metres in the map frame; the assumed place if no map exists at the first request
 /// Errors: of the returned function: the server's refusal, e.g. kAmbiguous, kUndetermined or kNothingMapped;
 ///         kOverloaded if OpenRequests::kMax requests are open.

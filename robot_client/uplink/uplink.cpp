@@ -82,7 +82,7 @@ UplinkStatus Uplink::status() const {
 asio::awaitable<void> Uplink::take_from_feed() {
     const Result<> fed = co_await feed_.run(*this);
     const auto cancellation = co_await asio::this_coro::cancellation_state;
-    if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // another coroutine has set the outcome
+    if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
     if (!fed) outcome_ = fed.error();
     if (!fed && conversation_.acknowledged() == conversation_.last()) co_return;
     conversation_.end();
@@ -152,8 +152,7 @@ asio::awaitable<void> Uplink::keep_linked() {
     for (;;) {
         const wire::LinkError failure = co_await use_one_link();
         const auto cancellation = co_await asio::this_coro::cancellation_state;
-        if (cancellation.cancelled() != asio::cancellation_type::none)
-            co_return; // another coroutine has set the outcome
+        if (cancellation.cancelled() != asio::cancellation_type::none) co_return; // the outcome is already set
         conversation_.close();
         heard_.ring();
         if (conversation_.is_done()) co_return;
