@@ -16,7 +16,7 @@
 namespace scanloom::robot {
 namespace {
 
-/// Three finite numbers with commas between them.
+/// Parses three finite numbers separated by commas.
 std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
     std::array<double, 3> numbers{};
     const auto words = CLI::detail::split(text, ',');
@@ -27,14 +27,14 @@ std::optional<std::array<double, 3>> to_numbers(const std::string& text) {
     return numbers;
 }
 
-/// What is wrong with a place; empty: nothing.
+/// Returns why a place is invalid, or an empty string.
 std::string complaint_about_place(double x, double y) {
     const double farthest = std::abs(x) > std::abs(y) ? x : y;
     if (std::abs(farthest) <= kCoordinateMax) return {};
     return fmt::format("{} m is beyond the map, which reaches {} m either way", farthest, kCoordinateMax);
 }
 
-/// X,Y,YAW, the yaw as it was written.
+/// Parses X,Y,YAW; keeps the yaw as written.
 std::optional<Pose2> to_pose(const std::string& text) {
     const auto numbers = to_numbers(text);
     if (!numbers) return std::nullopt;
@@ -112,7 +112,7 @@ void add_locating(CLI::App& ld06, Ld06Options& options) {
         ->check(check_near);
 }
 
-/// What is wrong with saying where the robot is; empty: nothing.
+/// Returns why the options for the robot's place are invalid, or an empty string.
 std::string complaint_about_places(const Ld06Options& options) {
     if (options.near && !options.locate) return "ld06: --near is of --locate; give both, or neither";
     if (options.locate && !options.poses.empty()) {

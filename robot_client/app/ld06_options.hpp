@@ -14,28 +14,28 @@ class App;
 
 namespace scanloom::robot {
 
-/// What an input over the network begins with.
+/// Prefix of an input over the network.
 inline constexpr std::string_view kTcpScheme = "tcp://";
 
-/// An LD06 lidar, or what one sent; see Ld06ScanOptions for the readings.
+/// An LD06 lidar or a recording of one; see Ld06ScanOptions for the readings.
 struct Ld06Options {
     std::string input;               ///< a capture file, a serial device, or tcp://HOST:PORT
-    std::optional<Pose2> pose;       ///< of a robot that stands; else `poses`, or `locate`
+    std::optional<Pose2> pose;       ///< of a stationary robot; otherwise `poses` or `locate` is set
     std::string poses;               ///< a file of poses; "-": stdin
-    bool locate = false;             ///< the server tells the place, `pose` only that of the first if nothing is mapped
-    std::optional<wire::Near> near;  ///< with `locate`: where it must be; none: anywhere in the map
+    bool locate = false;             ///< the server localizes the lidar; `pose` is the first place if no map exists
+    std::optional<wire::Near> near;  ///< with `locate`: prior; none: anywhere in the map
     Pose2 mount;                     ///< T_robot_sensor
     std::optional<double> range_min; ///< metres
     std::optional<int> confidence_min;
     std::optional<int> median_window; ///< beams
-    double speed = 0.0;               ///< of a capture file: 0 = as fast as the server takes it, 1 = as recorded
+    double speed = 0.0;               ///< of a capture file: 0 = as fast as the server accepts scans, 1 = as recorded
     double reopen_for = 60.0;         ///< seconds
 };
 
-/// Adds the subcommand, which fills `options`.
+/// Adds the subcommand, which sets `options`.
 CLI::App* add_ld06(CLI::App& app, Ld06Options& options);
 
-/// What the parser cannot tell; empty: nothing is wrong.
+/// Returns an error that the parser cannot detect, or an empty string.
 [[nodiscard]] std::string complaint_about(const Ld06Options& options);
 
 } // namespace scanloom::robot

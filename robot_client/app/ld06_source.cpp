@@ -51,7 +51,7 @@ Result<PoseLines> read_poses(const Ld06Options& ld06, Console& console) {
     return lines;
 }
 
-/// A lidar that asks where it stands: its own poses are its origin.
+/// Adds a lidar that requests its position: its own poses are at the origin.
 void locate(PreparedSource& prepared, const Ld06Options& ld06, std::unique_ptr<LiveSource> turns, Console& console) {
     auto locating = std::make_unique<LocatingSource>(std::move(turns), ld06.pose.value_or(Pose2{}),
                                                      [&console](const std::string& text) { console.note(text); });
@@ -94,7 +94,7 @@ bool is_regular_standard_input() {
     return ::fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-/// Poses of a device that come while it is read, or that are known from the begin.
+/// Sets the poses of a device: a stream that is read with it, or poses known from the start.
 Result<> add_live_poses(const Ld06Options& ld06, Ld06LiveOptions& live, std::optional<std::size_t>& skipped,
                         Console& console) {
     if (ld06.locate) {

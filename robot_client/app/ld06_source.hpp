@@ -4,10 +4,10 @@
 
 namespace scanloom::robot {
 
-/// Opens a capture file, or prepares a live source for a device. What is wrong with lines of poses, the first few, is
-/// told to the console, and so is, later, what happens to a device; it must outlive the source.
-/// Errors  those of Ld06Capture::open() and read_pose_lines(); kNotFound: no such device; kInvalidField: options that
-///         contradict each other, and a spool for a capture file.
+/// Opens a capture file or prepares a live source for a device. Reports the first invalid lines of poses, and later
+/// events of a device, to the console, which must outlive the source.
+/// Errors: those of Ld06Capture::open() and read_pose_lines(); kNotFound if the device does not exist; kInvalidField if
+///         options contradict each other or a spool is given for a capture file.
 [[nodiscard]] Result<PreparedSource> prepare_ld06(const RobotOptions& options, const Ld06Options& ld06,
                                                   Console& console);
 

@@ -10,8 +10,8 @@
 #include <exception>
 
 int main(int argc, char** argv) try {
-    std::signal(SIGPIPE, SIG_IGN); // whoever reads what is printed may go
-    std::signal(SIGXFSZ, SIG_IGN); // a file that may grow no more is an error of its writing, which is told
+    std::signal(SIGPIPE, SIG_IGN); // the reader of the output may exit
+    std::signal(SIGXFSZ, SIG_IGN); // then exceeding the file size limit is a write error, which is reported
     scanloom::open_missing_standard_streams();
     const auto options = scanloom::robot::parse_options(argc, argv);
     if (const auto* leave = std::get_if<scanloom::Leave>(&options)) {

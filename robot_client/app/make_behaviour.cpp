@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPlanCellSize = 0.05; // metres
 
-/// Why a robot cannot be in a place, however it goes there.
+/// Returns why a robot cannot be at a place, whatever its path.
 std::string unreachable(const World& world, const Point2& place) {
     if (!bounds_of(world).contains(place)) return "outside the world";
     if (world.obstacles->contain(place)) return "inside what stands there";

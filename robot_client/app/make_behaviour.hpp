@@ -11,11 +11,11 @@ namespace scanloom::robot {
 
 struct NamedBehaviour {
     std::unique_ptr<Behaviour> behaviour;
-    std::string name; ///< with what it was made of: the same name drives the same way
+    std::string name; ///< includes the parameters: the same name drives in the same way
 };
 
-/// How a simulated robot drives that needs nobody to tell it the way.
-/// Errors  those of read_waypoints(); kInvalidField: no waypoints, and none known for the world.
+/// Makes the behaviour of a simulated robot that needs no goals from the server.
+/// Errors: those of read_waypoints(); kInvalidField if there are no waypoints and the world has no tour.
 [[nodiscard]] Result<NamedBehaviour> make_behaviour(const SimulateOptions& simulate, const World& world);
 
 } // namespace scanloom::robot

@@ -16,24 +16,24 @@ namespace scanloom::robot {
 
 struct PreparedSource {
     std::unique_ptr<Source> source;           ///< a recording or simulation, or
-    std::unique_ptr<LiveSource> live;         ///< what comes when it comes: exactly one of the two
-    std::optional<std::size_t> skipped_lines; ///< of what was read as text
+    std::unique_ptr<LiveSource> live;         ///< a live source: exactly one of the two is set
+    std::optional<std::size_t> skipped_lines; ///< of text files that were read
     double speed = 0.0;
     std::string fingerprint;              ///< for Hello.source
     std::string_view order;               ///< of a log's scans: "file" or "time", a literal; else empty
-    ExploringSource* exploring = nullptr; ///< it is `live`, and has to be told whom to ask
-    LocatingSource* locating = nullptr;   ///< likewise
-    std::optional<wire::Near> near;       ///< of `locating`: where it stands first
-    Point2 first_place{0.0, 0.0};         ///< of `locating`: where that is taken to be while nothing is mapped
-    std::optional<double> body_radius;    ///< metres, of the robot whose scans they are, where it is known
+    ExploringSource* exploring = nullptr; ///< set if it is `live`; needs ask_with()
+    LocatingSource* locating = nullptr;   ///< set if it is `live`; needs ask_with()
+    std::optional<wire::Near> near;       ///< of `locating`: prior of the first place
+    Point2 first_place{0.0, 0.0};         ///< of `locating`: the assumed first place if no map exists
+    std::optional<double> body_radius;    ///< metres, of the robot that took the scans, if known
 
-    /// Those of the source.
+    /// Returns the remarks of the source.
     [[nodiscard]] std::string remarks() const { return live ? live->remarks() : source->remarks(); }
 };
 
-/// Reads the recording or sets up the simulation. Lines of the log that cannot be used are told to the console, the
-/// first few, and whether its stamps go back. Errors  those of CarmenLog::open(), SonarLog::open(),
-/// prepare_simulation() and prepare_ld06().
+/// Opens the recording or sets up the simulation. Reports the first invalid lines of a log, and stamps that go back, to
+/// the console.
+/// Errors: those of CarmenLog::open(), SonarLog::open(), prepare_simulation() and prepare_ld06().
 [[nodiscard]] Result<PreparedSource> make_source(const RobotOptions& options, Console& console);
 
 } // namespace scanloom::robot

@@ -27,7 +27,7 @@ constexpr const char* kFooter =
     "Every option may also stand in the file of --config (TOML; those of a source in a section of its name) or in the\n"
     "environment (--cell-size as SCANLOOM_CELL_SIZE). A flag beats the environment, which beats the file.";
 
-/// As the parser fills it, before it is sorted into RobotOptions.
+/// Options as the parser sets them, before they are moved into RobotOptions.
 struct Raw {
     std::string server = "127.0.0.1:7447";
     std::string no_return;
@@ -47,7 +47,7 @@ std::string check_name(const std::string& name) {
 
 void add_link_options(CLI::App& app, RobotOptions& options, Raw& raw) {
     app.add_option("--server", raw.server, "Robot port of the server, HOST:PORT")->capture_default_str();
-    // not required() by the parser: truth needs neither
+    // not required() in the parser: truth needs neither
     app.add_option("--session", options.session, "Session to add to; made if it does not exist. Needed to stream")
         ->check(check_name);
     app.add_option("--robot", options.robot, "Name of this robot within the session. Needed to stream")
@@ -109,7 +109,7 @@ void add_wire_options(CLI::App& app, Raw& raw) {
         ->capture_default_str();
 }
 
-/// Where `raw` has another shape than `options`.
+/// Converts the parts of `raw` whose form differs from `options`.
 void sort_in(const Raw& raw, RobotOptions& options) {
     constexpr double kKibibyte = 1024.0;
     const auto bytes = [](double of) { return static_cast<std::uint64_t>(of); };
@@ -141,7 +141,7 @@ void add_scan_options(CLI::App& app, RobotOptions& options, Raw& raw) {
 
 CLI::App* add_replay(CLI::App& app, ReplayOptions& options) {
     auto* replay = app.add_subcommand("replay", "Replay a CARMEN log");
-    // not required() by the parser: an environment meant for both sources would then ask for it everywhere
+    // not required() in the parser: an environment for both sources would then require it everywhere
     replay->add_option("FILE", options.file, "CARMEN log, plain, gzip or bzip2")->configurable(false);
     replay
         ->add_option("--speed", options.speed,

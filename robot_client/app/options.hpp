@@ -17,7 +17,7 @@ namespace scanloom::robot {
 
 struct ReplayOptions {
     std::string file;
-    double speed = 0.0; ///< 0 = as fast as the server takes it, 1 = as recorded
+    double speed = 0.0; ///< 0 = as fast as the server accepts scans, 1 = as recorded
 };
 
 inline constexpr double kNoiseWidth = 0.05; ///< metres
@@ -25,7 +25,7 @@ inline constexpr double kNoiseWidth = 0.05; ///< metres
 struct SimulateOptions {
     std::string world = "office"; ///< a name, or the YAML file of a ROS map
     std::string drive = "wall_follower";
-    std::string waypoints; ///< as read_waypoints() takes them; empty: a tour of the world
+    std::string waypoints; ///< for read_waypoints(); empty: a tour of the world
     std::string noise = "none";
     std::optional<double> noise_width;    ///< metres, of uniform noise; absent: kNoiseWidth
     std::optional<double> odometry_noise; ///< a factor; absent: 1 with noise, 0 without
@@ -33,19 +33,19 @@ struct SimulateOptions {
     std::string sonar = "none";
     std::string pose = "true"; ///< or odometry
     std::uint64_t seed = 1;
-    std::optional<double> duration; ///< seconds of the simulation
+    std::optional<double> duration; ///< seconds of simulated time
     std::optional<std::uint64_t> scans;
-    double speed = 1.0; ///< 0 = as fast as the server takes it, 1 = real time
+    double speed = 1.0; ///< 0 = as fast as the server accepts scans, 1 = real time
 };
 
-/// The truth of a world, as a map in files; no server is needed.
+/// Writes the truth of a world as map files; needs no server.
 struct TruthOptions {
     std::string world;
     double cell_size = 0.05; ///< metres
-    std::string output;      ///< the files' path without .pgm and .yaml
+    std::string output;      ///< path of the files without .pgm and .yaml
 };
 
-/// A recorded ring of sonars, see SonarLog.
+/// A recording of a ring of sonars, see SonarLog.
 struct SonarReplayOptions {
     std::string measurements;
     std::string poses;
@@ -59,8 +59,8 @@ struct RobotOptions {
     std::string robot;
     std::string token_file; ///< empty: no token
     bool tls = false;
-    std::string tls_ca_file;   ///< empty: what the system trusts
-    std::string tls_cert_file; ///< that this robot shows; empty: none
+    std::string tls_ca_file;   ///< empty: the system's certificates
+    std::string tls_cert_file; ///< certificate of this robot; empty: none
     std::string tls_key_file;
     std::optional<double> cell_size;   ///< metres
     std::optional<double> range_max;   ///< metres
@@ -68,21 +68,21 @@ struct RobotOptions {
     std::optional<NoReturn> no_return;
     std::optional<std::chrono::milliseconds> give_up_after; ///< 0: never
 
-    // what waits for the server
+    // buffers
     std::filesystem::path spool; ///< empty: none
     std::uint64_t spool_bytes_max = 0;
     WhenFull when_full = WhenFull::kDropOldest;
     std::uint64_t memory_bytes_max = 0;
 
-    // how it travels
+    // transmission
     std::chrono::milliseconds batch_delay{0};
     std::uint64_t batch_bytes_max = 0;
     bool compress = false;
     std::variant<ReplayOptions, SonarReplayOptions, SimulateOptions, Ld06Options> source;
 };
 
-/// Reads the command line, SCANLOOM_* of the environment and the file of --config: a flag beats the environment,
-/// which beats the file.
+/// Reads the command line, SCANLOOM_* environment variables and the file of --config. Flags override the environment,
+/// which overrides the file.
 [[nodiscard]] std::variant<RobotOptions, TruthOptions, Leave> parse_options(int argc, const char* const* argv);
 
 } // namespace scanloom::robot

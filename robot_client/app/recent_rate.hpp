@@ -6,14 +6,14 @@
 
 namespace scanloom::robot {
 
-/// How fast a count rises, of late: an outage that is over, or a slow begin, says nothing of what is to come.
+/// Measures how fast a count has recently increased. An earlier outage or slow start does not affect the result.
 class RecentRate {
 public:
     static constexpr std::chrono::duration<double> kWindow{10.0};
 
-    /// @param now    since any moment, never less than before
-    /// @param count  the one of now
-    /// @return how much it rose in a second, over the window, or over what has passed since the first of these.
+    /// @param now    time since any fixed moment; must not decrease
+    /// @param count  the current count
+    /// @return increase per second over the window, or since the first call if that is shorter
     [[nodiscard]] double update(std::chrono::duration<double> now, std::uint64_t count);
 
 private:
@@ -22,7 +22,7 @@ private:
         std::uint64_t count;
     };
 
-    std::deque<Sample> samples_; ///< the first is the newest of those as old as the window, or the oldest
+    std::deque<Sample> samples_; ///< the first one is the newest that is at least as old as the window, or the oldest
 };
 
 } // namespace scanloom::robot

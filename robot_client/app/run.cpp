@@ -27,7 +27,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-/// What the server has from earlier runs.
+/// Returns a message about the scans that the server has from earlier runs.
 std::string resume_text(std::uint64_t stored, std::optional<std::uint64_t> scan_count) {
     if (scan_count == stored) return fmt::format("all {} scans are stored from an earlier run", stored);
     return fmt::format("continuing after scan {}: those up to it are stored from an earlier run", stored);
@@ -68,7 +68,7 @@ RecordingFeedOptions recording_options(const PreparedSource& prepared, Console& 
     return feed;
 }
 
-/// Errors  those of Spool::open().
+/// Errors: those of Spool::open().
 Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const PreparedSource& prepared, Console& console) {
     if (prepared.source) {
         return std::unique_ptr<Feed>(
@@ -89,7 +89,7 @@ Result<std::unique_ptr<Feed>> make_feed(const RobotOptions& options, const Prepa
                                                             LiveFeedOptions{options.when_full, on_resume, tell}));
 }
 
-/// The first signal ends the source, the second everything.
+/// The first signal stops the source, the second one stops everything.
 asio::awaitable<void> obey_signals(asio::io_context& io, Uplink& uplink, Console& console) {
     asio::signal_set signals(io, SIGINT, SIGTERM);
     if (std::get<0>(co_await signals.async_wait(kAwaitTuple))) co_return;
@@ -144,7 +144,7 @@ ExitCode run(const RobotOptions& options) {
     if (prepared->exploring != nullptr) prepared->exploring->ask_with(guided_by(uplink, Explore::kWayClearance));
     if (prepared->locating != nullptr)
         prepared->locating->ask_with(located_by(uplink, prepared->near, prepared->first_place));
-    std::optional<Result<>> outcome; // none where a second signal ends it
+    std::optional<Result<>> outcome; // none if a second signal ended the run
     const auto begun = std::chrono::steady_clock::now();
     asio::co_spawn(io, obey_signals(io, uplink, console), asio::detached);
     asio::co_spawn(io, show_progress(io, uplink, **feed, *prepared, console), asio::detached);

@@ -5,7 +5,8 @@
 
 namespace scanloom::robot {
 
-/// Streams until every scan is durable, SIGINT or SIGTERM. Progress and errors go to stderr, the summary to stdout.
+/// Streams until every scan is durable, or until SIGINT or SIGTERM. Writes progress and errors to stderr and the
+/// summary to stdout.
 [[nodiscard]] ExitCode run(const RobotOptions& options);
 
 } // namespace scanloom::robot

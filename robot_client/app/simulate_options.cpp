@@ -58,7 +58,7 @@ void add_noise(CLI::App& simulate, SimulateOptions& options) {
             "and turns within a control step, and 0.02 rad a metre, 2 = twice that. Default: 1 with noise, 0 "
             "without")
         ->check(check_not_negative);
-    // not checked by the parser: a SCANLOOM_POSE that is meant for another subcommand is no mistake in this one
+    // not checked in the parser: a SCANLOOM_POSE meant for another subcommand is not an error in this one
     simulate
         .add_option(
             "--pose", options.pose,
@@ -115,7 +115,7 @@ CLI::App* add_truth(CLI::App& app, TruthOptions& options) {
     truth->footer(
         "Cells that a map of ROS does not know are unknown in its truth, too, though rays of simulated robots pass\n"
         "through them as if they were free: leave them out when a map is scored against the truth.");
-    // not required() by the parser: an environment meant for several subcommands would then ask for them everywhere
+    // not required() in the parser: an environment for several subcommands would then require them everywhere
     truth->add_option("--world", options.world, world_help("Of what"))->check(check_world);
     truth->add_option("--cell-size", options.cell_size, "Metres a cell")
         ->check(check_within(0.01, 1.0))

@@ -9,11 +9,11 @@
 
 namespace scanloom::robot {
 
-/// The subcommands that simulate, and their options.
+/// Add the subcommands for simulation and truth, which set `options`.
 CLI::App* add_simulate(CLI::App& app, SimulateOptions& options);
 CLI::App* add_truth(CLI::App& app, TruthOptions& options);
 
-/// What one option alone does not show, one sentence; nothing where all is well.
+/// Returns one sentence about an error that a single option does not show, or nullopt if there is none.
 [[nodiscard]] std::optional<std::string> mistake_in(const SimulateOptions& options);
 [[nodiscard]] std::optional<std::string> mistake_in(const TruthOptions& options);
 

@@ -22,7 +22,7 @@ Result<> check_range(const Sensor& sensor) {
                              sensor.kind == SensorKind::kLaser ? "laser" : "sonar", sensor.name, sensor.range_min)};
 }
 
-/// Errors  unknown names, and a range that leaves a sensor nothing to see.
+/// Errors: unknown names, and a range that leaves a sensor nothing to measure.
 Result<> choose_sensors(const RobotOptions& options, const SimulateOptions& simulate, SimulatorOptions& simulator) {
     if (simulate.laser != "none") {
         auto laser = find_laser(simulate.laser);

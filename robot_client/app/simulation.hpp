@@ -4,9 +4,10 @@
 
 namespace scanloom::robot {
 
-/// Sets up a simulated robot. One that explores is a live source without a fingerprint: where it drives depends on what
-/// it is told.
-/// Errors  those of load_world() and make_behaviour(); an unknown sensor, or one without a range.
+/// Sets up a simulated robot. A robot that explores is a live source without a fingerprint, because its trajectory
+/// depends on the server's replies.
+/// Errors: those of load_world() and make_behaviour(); kNotFound for an unknown sensor; kInvalidField for a sensor
+///         without a range.
 [[nodiscard]] Result<PreparedSource> prepare_simulation(const RobotOptions& options, const SimulateOptions& simulate);
 
 } // namespace scanloom::robot

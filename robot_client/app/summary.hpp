@@ -16,19 +16,19 @@ struct Summary {
     std::string source;     ///< Hello.source
     std::string_view order; ///< of a log's scans: "file" or "time"; else empty
     UplinkStatus status;
-    std::optional<std::size_t> skipped_lines; ///< of logs and poses, where there are some
+    std::optional<std::size_t> skipped_lines; ///< of logs and poses, if the source has any
     std::chrono::duration<double> elapsed{};
-    std::optional<std::uint64_t> scan_count; ///< of the source, where it has an end
+    std::optional<std::uint64_t> scan_count; ///< of the source, if it ends
     std::string remarks;                     ///< of the source
-    std::string error;                       ///< why it failed; empty: it did not
+    std::string error;                       ///< why the run failed; empty if it did not
 };
 
-/// One line of JSON, without its line break. Scans are counted as in the progress, from the first of the recording or
-/// simulation: `scans` there are (of an endless one, or a sensor: were taken so far), `acknowledged` of them are
-/// stored, `stored_before` from earlier runs, and `sent` in this one; `waiting` are in the spool behind those,
-/// `dropped` were lost for want of room. `skipped_lines` and `order` are there where a source has them. A run that
-/// failed has an `error`, one sentence.
-/// Pre  nothing in the texts but the error needs escaping: valid names, a fingerprint.
+/// Returns one line of JSON, without its line break. Scans are counted as in the progress, from the first of the
+/// recording or simulation: `scans` in total (of an endless source or a sensor: taken so far), `acknowledged` stored,
+/// `stored_before` stored in earlier runs, `sent` in this run, `waiting` behind those in the spool, and `dropped` lost
+/// for lack of room. `skipped_lines` and `order` are present if the source has them. A failed run has an `error`, one
+/// sentence.
+/// Pre: no text except the error needs escaping: valid names, a fingerprint.
 [[nodiscard]] std::string summary_json(const Summary& summary);
 
 } // namespace scanloom::robot

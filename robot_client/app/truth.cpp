@@ -16,7 +16,8 @@
 namespace scanloom::robot {
 namespace {
 
-/// The folder of the files. Errors  kStoreFailed: it cannot be made.
+/// Creates the folder of the files.
+/// Errors: kStoreFailed if it cannot be created.
 Result<> make_folder(const std::string& prefix) {
     const auto folder = std::filesystem::path(prefix).parent_path();
     std::error_code failed;
@@ -37,7 +38,7 @@ Result<> write_file(const std::string& path, std::span<const char> content) {
                              path)};
 }
 
-/// Before memory is taken for the cells.
+/// Called before memory is allocated for the cells.
 Result<> check_size(const World& world, double cell_size) {
     const Box box = bounds_of(world);
     const double cells = (box.x_max - box.x_min) / cell_size * ((box.y_max - box.y_min) / cell_size);

@@ -8,13 +8,13 @@
 
 namespace scanloom::robot {
 
-/// Writes the truth of a world as PREFIX.pgm and PREFIX.yaml; makes their folder.
-/// @return  one line of JSON: the size of the map and where it is.
-/// Errors   those of load_world(); kTooLarge: of more than kRosImagePixelsMax cells; kStoreFailed: a file or folder
-///          that cannot be written or made, naming it.
+/// Writes the truth of a world as PREFIX.pgm and PREFIX.yaml; creates their folder.
+/// @return one line of JSON with the size of the map and the paths of the files
+/// Errors: those of load_world(); kTooLarge if the map has more than kRosImagePixelsMax cells; kStoreFailed if a file
+///         or folder cannot be written or created; the message names it.
 [[nodiscard]] Result<std::string> write_truth(const TruthOptions& options);
 
-/// The same as a program: the line goes to stdout, an error to stderr.
+/// Runs write_truth() as a program: prints its line to stdout or its error to stderr.
 [[nodiscard]] ExitCode run(const TruthOptions& options);
 
 } // namespace scanloom::robot

@@ -30,10 +30,10 @@ std::optional<double> as_coordinate(std::string_view text) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool is_one = error == std::errc() && end == text.data() + text.size() && std::abs(value) <= kCoordinateMax;
-    return is_one ? std::optional(value) : std::nullopt; // abs: neither NaN
+    return is_one ? std::optional(value) : std::nullopt; // the comparison also rejects NaN
 }
 
-/// "x,y" or "x y".
+/// Parses "x,y" or "x y".
 std::optional<Point2> as_waypoint(std::string_view text) {
     text = trimmed(text);
     const bool has_comma = text.find(',') != std::string_view::npos;
@@ -55,7 +55,7 @@ Result<std::vector<Point2>> read_list(std::string_view list) {
     for (std::size_t number = 1; !list.empty(); ++number) {
         const std::string_view text = list.substr(0, list.find(';'));
         list.remove_prefix(std::min(list.size(), text.size() + 1));
-        if (trimmed(text).empty() && list.empty()) break; // after the last
+        if (trimmed(text).empty() && list.empty()) break; // after the last separator
         const auto waypoint = as_waypoint(text);
         if (!waypoint) return no_waypoint("number", number, text);
         waypoints.push_back(*waypoint);

@@ -8,13 +8,13 @@
 
 namespace scanloom::robot {
 
-/// Waypoints as people write them: "x,y;x,y;...", metres, or the path of a file with one on each line: "x y" or "x,y";
-/// there empty lines and what follows a # do not count.
-/// Errors  kNotFound: a file that cannot be read; kInvalidField: what is no waypoint, with its place in the list or the
-///         line of the file; none at all, or more than 10,000.
+/// Reads waypoints from "x,y;x,y;..." in metres, or from a file given by its path with one "x y" or "x,y" per line. In
+/// a file, empty lines and text after # are ignored.
+/// Errors: kNotFound if a file cannot be read; kInvalidField if an entry is not a waypoint (with its position in the
+///         list or its line), or if there are none or more than 10,000.
 [[nodiscard]] Result<std::vector<Point2>> read_waypoints(const std::string& list);
 
-/// "x,y;x,y;...", different for different waypoints.
+/// Returns "x,y;x,y;..."; different waypoints give different texts.
 [[nodiscard]] std::string to_text(const std::vector<Point2>& waypoints);
 
 } // namespace scanloom::robot
