@@ -8,7 +8,7 @@ namespace scanloom::robot {
 
 BackgroundSync::BackgroundSync(Job sync, std::chrono::milliseconds period)
     : sync_(std::move(sync)), period_(period), thread_([this](const std::stop_token& stop) { run(stop); }) {
-    if (!sync_) sync_ = [](const FileHandle& file) { ::fdatasync(file.get()); }; // what fails is told at the next write
+    if (!sync_) sync_ = [](const FileHandle& file) { ::fdatasync(file.get()); }; // the next write reports failures
 }
 
 void BackgroundSync::wrote(const Handle& file) {
@@ -18,7 +18,7 @@ void BackgroundSync::wrote(const Handle& file) {
     news_.notify_one();
 }
 
-/// Until it is stopped and everything is synced.
+/// Runs until it is stopped and everything is synced.
 void BackgroundSync::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     for (;;) {

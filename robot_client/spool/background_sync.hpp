@@ -13,18 +13,18 @@
 
 namespace scanloom::robot {
 
-/// Has the disk keep what was written, once a second at most and on a thread of its own: an SD card takes its time. A
-/// killed program loses nothing of what it wrote; of a power cut the last second or two may be lost.
+/// Syncs written files to the disk, at most once per second and on its own thread, because an SD card is slow. A killed
+/// program loses none of its writes; a power failure may lose the last second or two.
 class BackgroundSync {
 public:
     using Handle = std::shared_ptr<const FileHandle>;
     using Job = std::function<void(const FileHandle&)>;
 
-    /// @param sync    what asks the disk; fdatasync
-    /// @param period  between two times
+    /// @param sync    function that syncs one file; default: fdatasync
+    /// @param period  time between two syncs
     explicit BackgroundSync(Job sync = {}, std::chrono::milliseconds period = std::chrono::seconds(1));
 
-    /// Something was written to the file. It is held open until that is synced.
+    /// Marks the file as written. It is kept open until it is synced.
     void wrote(const Handle& file);
 
 private:
@@ -34,7 +34,7 @@ private:
     std::chrono::milliseconds period_;
     std::mutex mutex_;
     std::condition_variable_any news_;
-    std::vector<Handle> written_; // and not synced yet; nobody goes back to an earlier file
+    std::vector<Handle> written_; // files not synced yet; an earlier file is never written again
     std::jthread thread_;         // last: it uses the others
 };
 

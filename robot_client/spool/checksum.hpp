@@ -7,7 +7,7 @@
 
 namespace scanloom::robot {
 
-/// CRC-32 (ISO-HDLC, as gzip computes it) of records and heads in spool files.
+/// Returns the CRC-32 (ISO-HDLC, as in gzip) of records and heads in spool files.
 [[nodiscard]] inline std::uint32_t checksum(std::string_view bytes) {
     return static_cast<std::uint32_t>(
         ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));

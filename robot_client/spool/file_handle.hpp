@@ -10,10 +10,11 @@
 
 namespace scanloom::robot {
 
-/// A failed call's errno as an error that names the file. `what` as in "cannot write".
+/// Returns errno of a failed call as an error that names the file.
+/// @param what  e.g. "cannot write"
 [[nodiscard]] Error file_error(std::string_view what, const std::filesystem::path& file);
 
-/// An open file descriptor, closed when it goes.
+/// An open file descriptor, closed on destruction.
 class FileHandle {
 public:
     FileHandle() = default;

@@ -12,7 +12,7 @@ namespace scanloom::robot {
 namespace {
 
 constexpr std::string_view kFormat = "scanloom-spool 2";
-constexpr std::string_view kNone = "-"; // in the place of an empty text
+constexpr std::string_view kNone = "-"; // stands for an empty text
 
 std::string content_of(const Numbering& numbering) {
     const std::string_view session = numbering.session_id.empty() ? kNone : std::string_view(numbering.session_id);
@@ -39,7 +39,7 @@ Result<std::optional<Numbering>> read_numbering(const std::filesystem::path& fil
 }
 
 Result<> write_numbering(const std::filesystem::path& file, const Numbering& numbering, Sync sync) {
-    // Of one size and in one block of the disk: it is never half written.
+    // Constant size and one block of the disk, so it is never half written.
     const std::string content = content_of(numbering);
     const std::string text = fmt::format("{}{:>10}\n", content, checksum(content));
     const FileHandle handle(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));

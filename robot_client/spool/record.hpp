@@ -10,7 +10,7 @@
 
 namespace scanloom::robot {
 
-/// A record of a file of the spool is `uint32 length, uint32 CRC-32 of the body` (as of zlib; both big-endian), then
+/// A record in a spool file is `uint32 length, uint32 CRC-32 of the body` (as in zlib; both big-endian), followed by
 /// that many bytes of a Frame: a sensor description, or a batch of one scan whose seq is the scan's number within the
 /// spool.
 inline constexpr std::size_t kRecordHeaderBytes = 8;
@@ -19,11 +19,12 @@ void append_record(const wire::Message& message, std::string& out);
 
 struct Record {
     wire::Message message;
-    std::size_t bytes = 0; ///< of the file, header included
+    std::size_t bytes = 0; ///< in the file, including the header
 };
 
-/// The record that `bytes` begins with; nothing where it is cut off, as the last one is after a power cut.
-/// Errors  kMalformed: what stands there is no record, or a damaged one.
+/// Reads the record at the beginning of `bytes`, or returns nullopt if it is truncated, as the last one is after a
+/// power failure.
+/// Errors: kMalformed if the bytes are not a record or are damaged.
 [[nodiscard]] Result<std::optional<Record>> read_record(std::string_view bytes);
 
 } // namespace scanloom::robot

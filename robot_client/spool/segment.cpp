@@ -74,7 +74,7 @@ Result<std::optional<Record>> SegmentReader::next() {
     }
 }
 
-/// @return whether there was more.
+/// @return whether more bytes were read
 Result<bool> SegmentReader::read_more() {
     buffer_.erase(0, consumed_);
     consumed_ = 0;

@@ -17,11 +17,12 @@ namespace scanloom::robot {
 /// Writes one file of the spool.
 class SegmentWriter {
 public:
-    /// Of the scan `first` and those that follow. Errors  kStoreFailed: it exists already, or cannot be made.
+    /// Creates a file for the scan numbered `first` and those after it.
+    /// Errors: kStoreFailed if the file exists already or cannot be created.
     [[nodiscard]] static Result<SegmentWriter> create(std::filesystem::path file, std::uint64_t first);
 
-    /// Appends all of `bytes`, or nothing of them.
-    /// Errors  kStoreFailed, and nothing can be appended any more where not even that could be taken back.
+    /// Appends all of `bytes` or nothing.
+    /// Errors: kStoreFailed. If a partial write could not be undone, all later calls fail, too.
     [[nodiscard]] Result<> append(std::string_view bytes);
 
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
@@ -32,24 +33,24 @@ private:
         : file_(std::move(file)), handle_(std::make_shared<const FileHandle>(std::move(handle))) {}
 
     std::filesystem::path file_;
-    std::shared_ptr<const FileHandle> handle_; ///< null: nothing can be appended any more
+    std::shared_ptr<const FileHandle> handle_; ///< null: no further writes are possible
     std::uint64_t bytes_ = 0;
 };
 
-/// Reads one file of the spool from its beginning, while it may still grow.
+/// Reads one spool file from its beginning, while it may still grow.
 class SegmentReader {
 public:
-    /// Errors  kStoreFailed: it cannot be read.
+    /// Errors: kStoreFailed if it cannot be read.
     [[nodiscard]] static Result<SegmentReader> open(std::filesystem::path file);
 
-    /// What its head said when it was opened; nothing where that is damaged.
+    /// Returns the file's head as of open(), or nullopt if it was damaged.
     [[nodiscard]] const std::optional<SentAs>& sent_as() const noexcept { return sent_as_; }
 
-    /// The next record; nothing where the file ends by now, or within a record.
-    /// Errors  kMalformed: damage, and what follows cannot be read; kStoreFailed.
+    /// Returns the next record, or nullopt if the file currently ends here or within a record.
+    /// Errors: kMalformed if the file is damaged here; the rest cannot be read. kStoreFailed.
     [[nodiscard]] Result<std::optional<Record>> next();
 
-    /// Bytes up to the end of the last record that was read.
+    /// Returns the number of bytes up to the end of the last record read.
     [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
 
 private:
@@ -59,7 +60,7 @@ private:
     std::filesystem::path file_;
     FileHandle handle_;
     std::optional<SentAs> sent_as_;
-    std::string buffer_;         // read, from position_ on; consumed_ of it are records already read
+    std::string buffer_; // bytes read, from position_ on; the first consumed_ of them are records already returned
     std::size_t consumed_ = 0;   // bytes
     std::uint64_t position_ = 0; // of buffer_[consumed_] in the file
 };

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kSuffix = ".spool";
-constexpr std::string_view kSetAside = ".unreadable"; ///< behind the name
+constexpr std::string_view kSetAside = ".unreadable"; ///< suffix of the name
 
 using Tell = std::function<void(const std::string&)>;
 
@@ -30,7 +30,7 @@ Result<std::vector<fs::path>> files_in(const fs::path& directory) {
     return files;
 }
 
-/// It counts no more, and nothing of it is lost that a person could still make out.
+/// Renames a file so that it is not read again but a person can still examine it.
 void set_aside(const fs::path& file, const std::string& why, const Tell& tell) {
     std::error_code failed;
     fs::path aside = file.string() + std::string(kSetAside);
@@ -39,7 +39,8 @@ void set_aside(const fs::path& file, const std::string& why, const Tell& tell) {
     tell(fmt::format("{}; it is left out{}", why, failed ? "" : ", as " + aside.filename().string()));
 }
 
-/// Counts the scans of a file, up to its end or to damage. Errors  kMalformed, kStoreFailed.
+/// Counts the scans of a file, up to its end or to damage.
+/// Errors: kMalformed, kStoreFailed.
 Result<SpoolFile> count(const fs::path& file, const Tell& tell) {
     auto reader = SegmentReader::open(file);
     if (!reader) return reader.error();
@@ -71,7 +72,7 @@ Result<SpoolFile> count(const fs::path& file, const Tell& tell) {
     return segment;
 }
 
-/// Less than a head: a power cut took the rest.
+/// Returns whether a file is shorter than a head, because of a power failure.
 bool is_cut_short(const fs::path& file) {
     std::error_code failed;
     const auto bytes = fs::file_size(file, failed);

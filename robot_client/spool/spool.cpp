@@ -18,8 +18,8 @@ namespace {
 constexpr std::string_view kNumberingFile = "numbering";
 constexpr std::uint64_t kSegmentsWanted = 16;
 constexpr std::uint64_t kSegmentBytesMax = std::uint64_t{4} << 20;
-constexpr const char* kNoSession = "none";                   ///< the id of none: theirs have 16 digits
-constexpr std::uint64_t kTidyBytes = std::uint64_t{1} << 20; ///< from then on the newest file may go, too
+constexpr const char* kNoSession = "none";                   ///< not a valid session id: those have 16 digits
+constexpr std::uint64_t kTidyBytes = std::uint64_t{1} << 20; ///< from this size on the newest file may be removed, too
 
 } // namespace
 
@@ -56,7 +56,7 @@ Result<> Spool::load() {
     if (!numbering) tell_(numbering.error().message + "; the scans here are taken for those of this session");
     numbering_ = numbering && *numbering ? **numbering : Numbering{};
     if (!numbering || !*numbering) {
-        // From now on it needs no room on the disk. Where there is none even now, whoever appends is told.
+        // Later writes need no more room on the disk. If there is none even now, append() reports it.
         (void)write_numbering(file, numbering_, Sync::kYes);
     }
 
@@ -76,8 +76,8 @@ Result<> Spool::load() {
     return {};
 }
 
-/// As what the scans of a file were sent can be told from the file before it or behind it. Were they not sent at all,
-/// the server will not hold that many.
+/// Derives the seqs of a file with a damaged head from the file before or after it. If its scans were not sent at all,
+/// the server has fewer scans than that.
 void Spool::mend_heads() {
     for (std::size_t i = 0; i < segments_.size(); ++i) {
         SpoolFile& segment = segments_[i];
@@ -120,7 +120,7 @@ Result<bool> Spool::append(const Observation& observation) {
         return false;
     }
     if (auto ok = writer_->append(bytes); !ok) {
-        writer_.reset(); // another file may do better
+        writer_.reset(); // another file may work
         return ok.error();
     }
     written = observation.sensor;
@@ -133,11 +133,11 @@ Result<bool> Spool::append(const Observation& observation) {
     return true;
 }
 
-/// A new file, named after the scan that is going to be its first.
+/// Starts a new file, named after the number of its first scan.
 Result<> Spool::start_segment() {
     writer_.reset();
     written_sensors_.clear();
-    if (!segments_.empty() && segments_.back().scans == 0) { // it never got its first scan
+    if (!segments_.empty() && segments_.back().scans == 0) { // its first scan was never written
         if (reading_ + 1 == segments_.size()) reader_.reset();
         remove(segments_.size() - 1);
     }
@@ -149,7 +149,7 @@ Result<> Spool::start_segment() {
     return {};
 }
 
-/// @return whether `bytes` may be written now.
+/// @return whether `bytes` may be written now
 bool Spool::make_room(std::size_t bytes) {
     while (bytes_ + bytes > options_.bytes_max) {
         if (!told_of_dropping_) {
@@ -170,7 +170,7 @@ bool Spool::make_room(std::size_t bytes) {
     return true;
 }
 
-/// Whether a segment holds no scans that were sent, and is not the one being written.
+/// Returns whether a segment has no scans that were sent and is not being written or read.
 bool Spool::may_go(std::size_t index) const noexcept {
     const bool is_written = writer_ && index + 1 == segments_.size();
     const bool is_read = index < reading_ || (index == reading_ && reader_);
@@ -193,7 +193,7 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     const bool is_same = numbering_.session_id.empty() || numbering_.session_id == session_id;
     if (auto ok = is_same ? check(durable_seq) : leave_session(); !ok) return ok;
     is_strange_ = !is_same && waiting_ > 0 && options_.poses_are_told;
-    // Whoever is refused comes back, and is still a stranger, there and anywhere.
+    // If the server refuses these scans, the next run must mark them in any session.
     const Numbering kept = is_strange_ ? Numbering{kNoSession, 0} : Numbering{std::string(session_id), durable_seq};
     if (auto ok = write_numbering(options_.directory / kNumberingFile, kept, Sync::kYes); !ok) return ok;
     numbering_ = {std::string(session_id), durable_seq};
@@ -207,7 +207,7 @@ Result<> Spool::begin(std::string_view session_id, std::uint64_t durable_seq) {
     return {};
 }
 
-/// Whether what the server holds goes together with what was sent from here.
+/// Checks whether the scans that the server has match those sent from here.
 Result<> Spool::check(std::uint64_t durable_seq) const {
     if (durable_seq < numbering_.acknowledged) {
         return Error{Errc::kConflict,
@@ -217,7 +217,7 @@ Result<> Spool::check(std::uint64_t durable_seq) const {
     }
     const auto sent = std::ranges::find_if(segments_.rbegin(), segments_.rend(),
                                            [](const SpoolFile& segment) { return segment.seq > 0; });
-    if (sent == segments_.rend() || durable_seq <= sent->last_seq()) return {}; // others' scans, or these
+    if (sent == segments_.rend() || durable_seq <= sent->last_seq()) return {}; // of another program, or of this one
     tell_(fmt::format(
         "the server holds {} scans of this robot, {} more than were sent from {}: files there have lost their "
         "ends, the disk was full, or another program sent scans under the same --robot and --session; "
@@ -233,7 +233,7 @@ Result<> Spool::follow(std::string_view session_id) {
     return write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kYes);
 }
 
-/// What the session of before did not acknowledge is as if it had never been sent.
+/// Marks the scans that the previous session did not acknowledge as never sent.
 Result<> Spool::leave_session() {
     if (waiting_ > 0) {
         tell_(fmt::format("the session is another than before; {} scans that were not acknowledged go to the new one",
@@ -284,7 +284,7 @@ Result<std::optional<Observation>> Spool::next() {
     return std::optional<Observation>{};
 }
 
-/// Begins to read segments_[reading_]. From then on its scans may have been sent, under the seqs in its head.
+/// Starts to read segments_[reading_]. From then on its scans may have been sent, under the seqs in its head.
 Result<> Spool::enter() {
     SpoolFile& segment = segments_[reading_];
     auto reader = SegmentReader::open(file_of(segment));
@@ -299,7 +299,7 @@ Result<> Spool::enter() {
     return {};
 }
 
-/// What cannot be read of the present segment is lost.
+/// Gives up the part of the current segment that cannot be read; its scans are lost.
 void Spool::leave_damaged(const std::string& why) {
     SpoolFile& segment = segments_[reading_];
     const std::uint64_t lost = segment.end() - std::max(segment.from, segment.first + read_);
@@ -308,7 +308,7 @@ void Spool::leave_damaged(const std::string& why) {
     waiting_ -= lost;
     segment.scans = read_;
     segment.from = std::min(segment.from, segment.end());
-    if (reading_ + 1 == segments_.size()) writer_.reset(); // what comes goes to another file
+    if (reading_ + 1 == segments_.size()) writer_.reset(); // new scans go to another file
 }
 
 // Acknowledged --------------------------------------------------------------------------------------------------------
@@ -317,7 +317,7 @@ void Spool::acknowledge(std::uint64_t seq) {
     if (seq > numbering_.acknowledged) {
         numbering_.acknowledged = seq;
         is_strange_ = false;
-        // Were it not written, the worst would be that another session gets scans that this one has.
+        // If this write fails, at worst another session receives scans that this one has.
         (void)write_numbering(options_.directory / kNumberingFile, numbering_, Sync::kNo);
     }
     forget_acknowledged(false);

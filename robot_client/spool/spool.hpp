@@ -19,64 +19,68 @@
 
 namespace scanloom::robot {
 
-/// What goes when there is no room for a new scan. Scans that may have been sent already never go.
+/// Which scans to drop if there is no room for a new one. Scans that may have been sent are never dropped.
 enum class WhenFull { kDropOldest, kDropNewest };
 
 struct SpoolOptions {
-    std::filesystem::path directory; ///< for one robot in one session; made where it is missing
+    std::filesystem::path directory; ///< of one robot in one session; created if missing
     std::uint64_t bytes_max = std::uint64_t{256} << 20;
-    WhenFull when_full = WhenFull::kDropOldest; ///< the oldest go by whole files, each a sixteenth of bytes_max at most
-    bool poses_are_told = false; ///< by the server, from the session's map: in another session they are of no use but
-                                 ///< to begin a map with
+    WhenFull when_full = WhenFull::kDropOldest; ///< drops whole files, each at most a sixteenth of bytes_max
+    /// Whether the server set the poses from the session's map. In another session such poses can only begin a map.
+    bool poses_are_told = false;
 };
 
-/// The scans that a robot took and the server has not acknowledged, on disk. They survive the program that took them.
+/// The scans that a robot took and the server has not acknowledged, on disk. They remain after the program ends.
 ///
 ///     acknowledged | handed out by next(), perhaps sent | waiting | what append() adds
 ///
-/// A scan is in its file before append() returns, and the disk is asked to keep it within a second or two. The scans
-/// stand in files of some MiB (see segment_head.hpp and record.hpp), each with the sensors it needs; a file goes once
-/// all of it is acknowledged. Which seqs its scans have on the server is in its head, so that the loss of one file, or
-/// of its end, changes nothing for the others. How far the server is stands in the file `numbering`.
-/// Thread  one at a time. One program at a time uses the directory.
+/// A scan is in its file before append() returns, and the file is synced to the disk within a second or two. The scans
+/// are in files of some MiB (see segment_head.hpp and record.hpp), each with the sensors that it needs. A file is
+/// removed once all of it is acknowledged. Its head contains the seqs of its scans on the server, so losing one file,
+/// or its end, does not affect the others. The file `numbering` stores how far the server is.
+/// Threads: one at a time. Only one program at a time uses the directory.
 class Spool {
 public:
     static constexpr std::uint64_t kBytesMin = std::uint64_t{1} << 20;
 
-    /// Opens what an earlier run has left. `tell` hears sentences for people: of files that are damaged, of scans that
-    /// are lost.
-    /// Errors  kStoreFailed; kConflict: another program uses the directory.
+    /// Opens the spool with the scans of earlier runs.
+    /// @param tell  receives messages for people about damaged files and lost scans
+    /// Errors: kStoreFailed; kConflict if another program uses the directory.
     [[nodiscard]] static Result<std::unique_ptr<Spool>> open(SpoolOptions options,
                                                              std::function<void(const std::string&)> tell);
 
-    /// The server holds the robot's scans up to `durable_seq`: those of them that are here are passed over. Pre: once.
-    /// In another session than before, those go that were not acknowledged in that one; where their poses were told
-    /// from its map, each as one that begins a map (Scan::begins_map), until the new one has acknowledged one of them.
-    /// Where the server holds more than was sent from here, that is told: files may have lost their ends in a power
-    /// cut, scans may have gone past a full disk, or another program sent some under the same name. What was sent then
-    /// counts as stored.
-    /// Errors  kConflict: it lost some that it had acknowledged; kStoreFailed.
+    /// Starts handing out: the server has the robot's scans up to `durable_seq`, and next() skips these. Pre: called
+    /// once.
+    ///
+    /// If the session is not the one before, the scans that were not acknowledged there are handed out. If
+    /// SpoolOptions::poses_are_told, each of them is marked as one that begins a map (Scan::begins_map) until the new
+    /// session has acknowledged one of them. If the server has more scans than were sent from here, a message reports
+    /// it: files may have lost their ends in a power failure, scans may have bypassed a full disk, or another program
+    /// sent some under the same name. The scans that may have been sent then count as stored.
+    /// Errors: kConflict if the server lost scans that it had acknowledged; kStoreFailed.
     [[nodiscard]] Result<> begin(std::string_view session_id, std::uint64_t durable_seq);
 
-    /// Errors  kStoreFailed: it could not be written.
-    /// @return whether it is kept; not if there is no room and the newest go.
+    /// Adds a scan.
+    /// @return whether it is kept; false if there is no room and the newest scans are dropped
+    /// Errors: kStoreFailed if it could not be written.
     [[nodiscard]] Result<bool> append(const Observation& observation);
 
-    /// The link goes on in a session of this id, under the same seqs: in the one before nothing had been acknowledged.
+    /// Continues in another session under the same seqs. The previous session had acknowledged nothing.
     [[nodiscard]] Result<> follow(std::string_view session_id);
 
-    /// The next scan to send; nothing while none waits. Waits for the disk once a file. Pre: begin() went well.
-    /// Errors  kStoreFailed.
+    /// Returns the next scan to send, or nullopt if none waits. Waits for the disk once per file. Pre: begin()
+    /// succeeded.
+    /// Errors: kStoreFailed.
     [[nodiscard]] Result<std::optional<Observation>> next();
 
-    /// The server holds all scans up to `seq`.
+    /// Marks all scans up to `seq` as stored by the server.
     void acknowledge(std::uint64_t seq);
 
-    /// Removes the files of acknowledged scans now that nothing is going to be appended.
+    /// Removes the files of acknowledged scans. Call it when no more scans will be appended.
     void tidy_up();
 
     [[nodiscard]] std::uint64_t waiting() const noexcept { return waiting_; } ///< scans not handed out
-    [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; } ///< scans, by this program
+    [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; } ///< scans, dropped by this program
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }     ///< of all files
     [[nodiscard]] const std::filesystem::path& directory() const noexcept { return options_.directory; }
 
@@ -116,7 +120,7 @@ private:
 
     // handing out
     Numbering numbering_;
-    bool is_strange_ = false; ///< the scans' poses were told from the map of another session than this
+    bool is_strange_ = false; ///< the poses of the scans were set from another session's map
     std::size_t reading_ = 0; ///< index of the segment to read from
     std::optional<SegmentReader> reader_;
     std::map<std::uint32_t, std::shared_ptr<const Sensor>> read_sensors_; ///< of that file
