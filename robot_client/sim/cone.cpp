@@ -30,8 +30,7 @@ double distance_within(const Cone& cone, const Segment& segment) {
     const Point2 b = Point2{segment.bx, segment.by} - cone.apex;
     double begin = 0.0; // of the part inside, as shares of the segment
     double end = 1.0;
-    const auto cut = [&](double at_a,
-                         double at_b) { // keeps the part where a value that goes from at_a to at_b is not negative
+    const auto cut = [&](double at_a, double at_b) { // keeps the part where the value is not negative
         if (at_a < 0.0 && at_b < 0.0) end = -1.0;
         if (at_a < 0.0 && at_b >= 0.0) begin = std::max(begin, at_a / (at_a - at_b));
         if (at_a >= 0.0 && at_b < 0.0) end = std::min(end, at_a / (at_a - at_b));

@@ -21,11 +21,10 @@ struct CarmenScan {
     std::uint32_t sensor = 0;        ///< 0 front (FLASER, ROBOTLASER1, RAWLASER1), 1 rear (ROBOTLASER2)
     UniformAngles angles;            ///< first beam on the right, then counter-clockwise
     std::optional<double> range_max; ///< as the line states; FLASER states none
-    std::vector<RangeMm>
-        ranges;  ///< a value that is not a finite length is kInvalidRange: in a log it is a failed reading
-    Pose2 laser; ///< FLASER: first triple; ROBOTLASER: laser pose; RAWLASER: not given
-    Pose2 robot; ///< FLASER: second triple (odometry); ROBOTLASER: robot pose; RAWLASER: not given
-    std::optional<double> stamp; ///< ipc_timestamp, else logger_timestamp, else none
+    std::vector<RangeMm> ranges;     ///< a value that is not a finite length, a failed reading, is kInvalidRange
+    Pose2 laser;                     ///< FLASER: first triple; ROBOTLASER: laser pose; RAWLASER: not given
+    Pose2 robot;                     ///< FLASER: second triple (odometry); ROBOTLASER: robot pose; RAWLASER: not given
+    std::optional<double> stamp;     ///< ipc_timestamp, else logger_timestamp, else none
 };
 
 using CarmenOdometry = StampedPose;
