@@ -9,41 +9,40 @@
 
 namespace scanloom {
 
-/// What kind of thing went wrong. HTTP statuses, wire error codes and exit codes are looked up
-/// from it in one table each; people read Error::message.
+/// The kind of a failure, for programs; people read Error::message. One table each maps it to HTTP statuses, wire error
+/// codes and exit codes.
 enum class Errc {
-    kMalformed,          ///< bytes that are not what they claim to be
-    kDamaged,            ///< bytes that were changed on the way; the same may pass when they are sent again
-    kTooLarge,           ///< a size beyond a stated limit
-    kUnsupportedVersion, ///< a protocol or format version this program does not speak
+    kMalformed,          ///< bytes that do not have the expected format
+    kDamaged,            ///< bytes that changed in transit; sending them again may succeed
+    kTooLarge,           ///< a size beyond a documented limit
+    kUnsupportedVersion, ///< a protocol or format version that this program does not support
     kInvalidField,       ///< a value out of its range; the message names the field
-    kNotFound,           ///< no such session, layer, tile, file
-    kAlreadyExists,      ///< a session of that name
-    kConflict,           ///< what contradicts what is there: other settings, another source, a damaged session
+    kNotFound,           ///< no such session, layer, tile or file
+    kAlreadyExists,      ///< a session with this name exists
+    kConflict,           ///< contradicts the present state: other settings, another source, a damaged session
     kOutOfOrder,         ///< a scan's seq is missing
-    kCreditExceeded,     ///< a robot sent more than it was allowed
+    kCreditExceeded,     ///< a robot sent more than its credit allows
     kTimeout,            ///< a deadline passed
     kReplaced,           ///< the same robot connected again
     kGone,               ///< the session was deleted while in use
-    kStoreFailed,        ///< the store could not read or write; later it may
-    kDataLoss,           ///< what was stored is damaged or missing; waiting does not mend it
+    kStoreFailed,        ///< the store could not read or write; a retry may succeed
+    kDataLoss,           ///< stored data is damaged or missing; a retry does not help
     kShuttingDown,       ///< the server is draining
     kUnauthorized,       ///< no valid token
-    kUnreachable,        ///< the peer cannot be reached, or hung up
-    kOverloaded,         ///< no room or no time for this now; later there may be
-    kFull,               ///< a session or its map holds the most it can; waiting makes no room
-    kNoPath,             ///< no way leads there; the message says what is in it
-    kAmbiguous,          ///< several answers are as good as each other; the message names two
+    kUnreachable,        ///< the peer cannot be reached or has closed the connection
+    kOverloaded,         ///< no capacity or no time for this now; a retry may succeed
+    kFull,               ///< a session or its map has reached its maximum; a retry does not help
+    kNoPath,             ///< no path leads there; the message says what blocks it
+    kAmbiguous,          ///< several answers are equally good; the message says which or in what they differ
     kUndetermined,       ///< too little is known for an answer
-    kNothingMapped,      ///< there is no map yet that could tell
-    kInternal,           ///< a fault of this program
+    kNothingMapped,      ///< there is no map yet to answer from
+    kInternal,           ///< a bug in this program
 };
 
-/// Stable lower-case name of a code, for logs and JSON ("invalid_field").
+/// Returns the stable lower-case name of a code, for logs and JSON ("invalid_field").
 [[nodiscard]] std::string_view name_of(Errc code) noexcept;
 
-/// A failure: a code for programs, one sentence for people.
-/// The sentence says what was wrong, where, and what to do about it.
+/// A failure: a code for programs and one sentence for people, which says what is wrong, where, and what to do.
 struct Error {
     Errc code;
     std::string message;
@@ -51,11 +50,11 @@ struct Error {
     friend bool operator==(const Error&, const Error&) = default;
 };
 
-/// The one way a boundary reports failure. Mark functions that return it [[nodiscard]].
+/// A value or an Error. Every function that can fail returns one; mark such functions [[nodiscard]].
 template <class T = void>
 using Result = boost::system::result<T, Error>;
 
-/// Result::value() on a failure throws this.
+/// What Result::value() throws on a failure.
 class ErrorException : public std::runtime_error {
 public:
     explicit ErrorException(const Error& error) : std::runtime_error(error.message), error_(error) {}
@@ -65,12 +64,12 @@ private:
     Error error_;
 };
 
-/// Customisation point found by boost::system::result.
+/// Customisation point of boost::system::result.
 [[noreturn]] inline void throw_exception_from_error(const Error& error, const boost::source_location&) {
     throw ErrorException(error);
 }
 
-/// The same failure with where it happened in front: "scans[3]." + "pose.x is not finite".
+/// Returns the error with `where` before its message: "scans[3]." + "pose.x is not finite".
 [[nodiscard]] inline Error prefixed(std::string_view where, Error error) {
     error.message.insert(0, where);
     return error;

@@ -14,8 +14,9 @@ namespace {
 
 constexpr std::uint32_t kPolynomial = 0x82F63B78; // Castagnoli's, lowest bit first
 
-/// table[k][b]: what byte b followed by k zero bytes adds.
-/// Source  Kounavis, Berry, Novel Table Lookup-Based Algorithms for High-Performance CRC Generation (2008): slicing by 8.
+/// table[k][b] is what byte b, followed by k zero bytes, contributes to the CRC.
+/// Source: Kounavis, Berry, Novel Table Lookup-Based Algorithms for High-Performance CRC Generation (2008), slicing by
+///         8.
 using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
 
 constexpr Tables make_tables() {
@@ -51,7 +52,7 @@ std::uint32_t by_tables(std::uint32_t crc, std::string_view bytes) {
 }
 
 #if defined(__x86_64__)
-/// The processor's own instruction, eight bytes at a time.
+/// Uses the processor's instruction, eight bytes at a time.
 [[gnu::target("sse4.2")]] std::uint32_t by_instruction(std::uint32_t crc, std::string_view bytes) {
     std::uint64_t wide = crc;
     for (; bytes.size() >= 8; bytes.remove_prefix(8)) {

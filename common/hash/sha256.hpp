@@ -10,8 +10,9 @@ struct evp_md_ctx_st; // OpenSSL's EVP_MD_CTX
 
 namespace scanloom {
 
-/// SHA-256 of bytes that come piece by piece (FIPS 180-4, computed by OpenSSL).
-/// Errors  std::runtime_error when memory is short or OpenSSL's installation lacks SHA-256.
+/// Computes the SHA-256 digest of a sequence of byte ranges, with OpenSSL.
+/// Errors: std::runtime_error if memory runs out or the OpenSSL installation lacks SHA-256.
+/// Source: FIPS 180-4.
 class Sha256 {
 public:
     Sha256();
@@ -19,7 +20,8 @@ public:
     void update(std::span<const std::byte> bytes);
     void update(std::string_view text) { update(std::as_bytes(std::span(text))); }
 
-    /// 64 lower-case digits. Once, at the end.
+    /// Finishes the digest; call it once, last.
+    /// @return 64 lower-case hexadecimal digits
     [[nodiscard]] std::string hex();
 
 private:

@@ -12,7 +12,7 @@ namespace {
 
 void append(std::string& text, const boost::json::value& value);
 
-/// Pre  it is finite.
+/// Appends a finite number.
 void append(std::string& text, double number) {
     const double size = std::abs(number);
     const bool is_plain = size == 0.0 || (1e-6 <= size && size < 1e21);

@@ -16,10 +16,10 @@
 
 namespace scanloom::net {
 
-/// A TCP connection, encrypted or not. Whoever reads and writes need not know which: it carries the frames of robots,
-/// HTTP, and the WebSockets of Beast.
+/// A TCP connection with or without TLS, for robot frames, HTTP and Beast's WebSockets. Reading and writing are the
+/// same in both cases.
 ///
-/// Thread  as of Asio's sockets: one at a time; one read and one write may be under way together.
+/// Threads: as for Asio's sockets: one at a time; one read and one write may be outstanding together.
 class LinkStream {
 public:
     using Socket = boost::asio::ip::tcp::socket;
@@ -27,7 +27,7 @@ public:
     enum class Role { kServer, kClient };
 
     explicit LinkStream(Socket socket) : stream_(std::move(socket)) {}
-    /// OpenSSL keeps what it needs of `tls`, which may go.
+    /// Creates an encrypted connection. `tls` may be destroyed afterwards: OpenSSL keeps what it needs.
     LinkStream(Socket socket, boost::asio::ssl::context& tls) : stream_(Tls(std::move(socket), tls)) {}
 
     [[nodiscard]] executor_type get_executor() { return socket().get_executor(); }
@@ -42,38 +42,43 @@ public:
         socket().close(ignored);
     }
 
-    /// Of a client: the server has to prove that it is `host`. Pre: before async_handshake().
+    /// Requires, on a client, that the server's certificate is valid for `host`, a DNS name or an IP address.
+    /// Has no effect without TLS. Call it before async_handshake().
     void expect_host(const std::string& host);
 
-    /// Of a client whose handshake failed: what was wrong with the server's certificate, as OpenSSL numbers it
-    /// (X509_V_ERR_...); 0 where nothing was.
+    /// Returns, on a client whose handshake failed, OpenSSL's result of verifying the server's certificate
+    /// (X509_V_ERR_...); 0 if the certificate is valid or the connection is not encrypted.
     [[nodiscard]] long verify_result() const;
 
-    /// Must be done before anything is read or written. Completes at once where nothing is encrypted.
+    /// Performs the TLS handshake. Required before the first read or write; completes at once without TLS.
     template <class Token>
     auto async_handshake(Role role, Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
             [this, role](auto handler) { start_handshake(role, std::move(handler)); }, token);
     }
 
-    /// Nothing more is written. Without TLS's own goodbye: the frames of the link say where it ends, so that cutting it
-    /// short fools nobody.
+    /// Shuts down the sending side without TLS's close_notify alert. The robot link does not need the alert: its frames
+    /// say where it ends, so the peer detects a truncated connection.
     void shutdown_send() {
         boost::system::error_code ignored;
         socket().shutdown(Socket::shutdown_send, ignored);
     }
 
-    /// Nothing more is written, and the peer can tell that from a connection that was cut: TLS's own goodbye, which the
-    /// peer should return. Then what is left may be read from the socket itself.
+    /// Shuts down the sending side with TLS's close_notify alert, so that the peer can distinguish the end from a
+    /// truncated connection, and waits for the peer's alert. Afterwards the caller may read what is left from socket().
+    /// Without TLS it only shuts down the sending side.
     template <class Token>
     auto async_farewell(Token&& token) {
         return boost::asio::async_initiate<Token, void(boost::system::error_code)>(
             [this](auto handler) { start_farewell(std::move(handler)); }, token);
     }
 
-    /// What the socket takes at once, without waiting; nothing where it would have to be encrypted first.
-    /// Pre     the socket does not block.
-    /// Errors  would_block where it takes nothing now.
+    /// Writes what the socket accepts without waiting. With TLS it writes nothing, because the bytes would have to be
+    /// encrypted first.
+    /// @param buffers  the bytes to write
+    /// @param failed   receives the error; would_block if the socket accepts nothing now
+    /// @return number of bytes written
+    /// Precondition: the socket is in non-blocking mode.
     template <class Buffers>
     std::size_t try_write(const Buffers& buffers, boost::system::error_code& failed) {
         return try_write_pieces(pieces_of<boost::asio::const_buffer>(buffers), failed);
@@ -93,7 +98,7 @@ public:
             pieces_of<boost::asio::const_buffer>(buffers));
     }
 
-    /// Closes the connection in good order, as a WebSocket does (async_teardown() of Beast).
+    /// Closes the connection in an orderly way after a WebSocket (Beast's async_teardown()).
     template <class Handler>
     void async_teardown(boost::beast::role_type role, Handler handler) {
         const executor_type executor = boost::asio::get_associated_executor(handler, get_executor());
@@ -105,7 +110,7 @@ private:
     using Done = boost::asio::any_completion_handler<void(boost::system::error_code)>;
     using Transferred = boost::asio::any_completion_handler<void(boost::system::error_code, std::size_t)>;
 
-    /// The first buffers of a sequence that are not empty: what is read or written next.
+    /// The first non-empty buffers of a sequence, for the next read or write.
     template <class Buffer>
     using Pieces = boost::container::static_vector<Buffer, 16>;
 
@@ -120,8 +125,8 @@ private:
         return pieces;
     }
 
-    // Compiled once, in link_stream.cpp: Asio's operations over TLS are many lines, and each handler would have its
-    // own.
+    // Compiled once, in link_stream.cpp: Asio's TLS operations are large templates, and each handler type would get a
+    // copy of its own.
     void start_handshake(Role role, Done done);
     void start_farewell(Done done);
     void start_teardown(boost::beast::role_type role, const executor_type& executor, Done done);

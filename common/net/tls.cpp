@@ -66,21 +66,22 @@ Result<TlsContext> client_tls(const std::string& ca_file, const CertificateFiles
 
 namespace {
 
-/// Of TLS 1.2; those of 1.3 are all good.
+/// The ciphers for TLS 1.2. All ciphers of TLS 1.3 are acceptable.
 constexpr const char* kCiphers = "ECDHE+AESGCM:ECDHE+CHACHA20";
 
-/// A renegotiation costs whoever asks for it much less than the server. A ticket would go on to be good after the
-/// certificates were read again.
+/// Disables renegotiation, which costs the client that requests it much less than the server, and session tickets,
+/// which would stay valid after the certificates are reloaded.
 void harden(SSL_CTX* context) {
     SSL_CTX_set_options(context, SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_TICKET | SSL_OP_NO_COMPRESSION |
                                      SSL_OP_CIPHER_SERVER_PREFERENCE | SSL_OP_PRIORITIZE_CHACHA);
     SSL_CTX_set_num_tickets(context, 0);
     SSL_CTX_set_session_cache_mode(context, SSL_SESS_CACHE_OFF);
-    SSL_CTX_set_mode(context, SSL_MODE_RELEASE_BUFFERS); // thousands of connections are quiet most of the time
+    SSL_CTX_set_mode(context, SSL_MODE_RELEASE_BUFFERS); // thousands of connections are idle most of the time
     SSL_CTX_set_cipher_list(context, kCiphers);
 }
 
-/// Whoever can read it can pass for the server. A group may, as Debian's ssl-cert does.
+/// Checks who can read the key file, as every reader can impersonate the server. Its group may, as with Debian's
+/// ssl-cert.
 Result<> check_guarded(const std::string& key_file) {
     using std::filesystem::perms;
     std::error_code failed;
@@ -92,7 +93,8 @@ Result<> check_guarded(const std::string& key_file) {
                              key_file)};
 }
 
-/// Names who signed, too: a browser that has several certificates asks for one of theirs.
+/// Requires client certificates. Clients also receive the names of the CAs, so that a browser with several certificates
+/// offers those that these CAs signed.
 Result<> ask_clients(ssl::context& context, const std::string& ca_file) {
     boost::system::error_code failed;
     context.load_verify_file(ca_file, failed);
@@ -116,7 +118,7 @@ Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& 
 
 namespace {
 
-/// 0: none of OpenSSL's.
+/// Returns OpenSSL's reason for the error; 0 if it is not an error of OpenSSL.
 int reason_of(const boost::system::error_code& failed) noexcept {
     if (failed.category() != boost::asio::error::get_ssl_category()) return 0;
     return ERR_GET_REASON(static_cast<unsigned long>(failed.value()));

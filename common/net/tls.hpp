@@ -12,43 +12,52 @@ namespace scanloom::net {
 
 using TlsContext = std::shared_ptr<boost::asio::ssl::context>;
 
-/// A certificate that is shown, in PEM; none where `certificate_file` is empty.
+/// The PEM files of the certificate that this side presents; it presents none if `certificate_file` is empty.
 struct CertificateFiles {
-    std::string certificate_file; ///< the certificate, then those that lead to one that is trusted
-    std::string key_file;         ///< its private key, without a password; empty: in the same file
+    std::string certificate_file; ///< the certificate, then its intermediate certificates
+    std::string key_file;         ///< its private key, without a password; empty: in certificate_file
 };
 
-/// For a client that checks whom it speaks to. TLS 1.2 at least.
-/// @param ca_file  PEM, whose certificates are trusted; empty: those that the system trusts.
-/// @param shown    to servers that want to know whom they speak to.
-/// Errors  kNotFound: a file cannot be read, or is no such thing; kConflict: the key is another certificate's.
+/// Creates the TLS context of a client that verifies the server's certificate. Requires TLS 1.2 or later.
+/// @param ca_file  PEM file of the trusted CA certificates; empty: those of the system
+/// @param shown    the certificate for servers that request one
+/// @return the context
+/// Errors: kNotFound if a file cannot be read or does not hold a PEM certificate or key; kConflict if the key does not
+///         belong to the certificate.
 [[nodiscard]] Result<TlsContext> client_tls(const std::string& ca_file, const CertificateFiles& shown = {});
 
-/// For a server. TLS 1.2 at least, with keys that are of no use to whoever gets hold of the server's later. Every
-/// handshake is a whole one, and each connection has one: there are no tickets, and nobody may ask for another.
-/// @param client_ca_file  PEM: clients must show a certificate that one of these signed; empty: they need none.
-/// Errors  as client_tls(); kInvalidField: others than the owner of the key's file may write to it, or others than he
-///         and its group may read it.
+/// Creates the TLS context of a server. Requires TLS 1.2 or later.
+///
+/// All ciphers have forward secrecy: recorded connections cannot be decrypted with a private key that leaks later. Each
+/// connection has exactly one full handshake: there are no session tickets and no renegotiation.
+/// @param shown           the server's certificate
+/// @param client_ca_file  PEM file of CA certificates: a client must present a certificate that one of them signed;
+///                        empty: clients need no certificate
+/// @return the context
+/// Errors: those of client_tls(); kInvalidField if the permissions of the key file let its group write to it or let
+///         other users access it.
 [[nodiscard]] Result<TlsContext> server_tls(const CertificateFiles& shown, const std::string& client_ca_file = {});
 
-/// What is wrong with a client's certificate.
+/// Why a server rejects a client's certificate.
 enum class ClientFault {
-    kMissing, ///< it showed none
-    kForeign, ///< nobody who is trusted signed it, or it is not valid now
+    kMissing, ///< the client presented none
+    kForeign, ///< no trusted CA signed it, or it is not valid at this time
 };
 
-/// Whether a server's handshake failed because of the client's certificate.
+/// Returns why the client's certificate made a server's handshake fail; nullopt if the handshake failed otherwise.
 [[nodiscard]] std::optional<ClientFault> client_fault_of(const boost::system::error_code& failed) noexcept;
 
-/// Whether a server's handshake failed because what arrived is plain HTTP.
+/// Returns whether a server's handshake failed because the client sent plain HTTP.
 [[nodiscard]] bool is_plain_http(const boost::system::error_code& failed) noexcept;
 
-/// Whether a server has refused the certificate that a client showed, or that it showed none: of TLS 1.3 the client
-/// hears that after its handshake, from the first reading.
+/// Returns whether a server rejected the client's certificate, or rejected that the client presented none. With TLS 1.3
+/// the client gets this error after its handshake, from its first read.
 [[nodiscard]] bool is_refused_certificate(const boost::system::error_code& failed) noexcept;
 
-/// Why a client's handshake failed and what to do, for people.
+/// Explains to people why a client's handshake failed and what to do.
+/// @param failed         the error of the handshake
 /// @param verify_result  LinkStream::verify_result()
+/// @return one sentence
 [[nodiscard]] std::string handshake_text(const boost::system::error_code& failed, long verify_result);
 
 } // namespace scanloom::net

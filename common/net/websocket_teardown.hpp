@@ -6,16 +6,16 @@
 
 #include <utility>
 
-/// What a WebSocket of Beast looks for beside the stream that it goes over (argument-dependent lookup).
+/// Functions that Beast's WebSocket finds for its stream type by argument-dependent lookup.
 namespace scanloom::net {
 
-/// Closes the connection in good order.
+/// Closes the connection in an orderly way.
 template <class Handler>
 void async_teardown(boost::beast::role_type role, LinkStream& stream, Handler&& handler) {
     stream.async_teardown(role, std::forward<Handler>(handler));
 }
 
-/// Closes it when the WebSocket's patience is over.
+/// Closes the connection at once, when a timeout of the WebSocket expires.
 inline void beast_close_socket(LinkStream& stream) { stream.close(); }
 
 } // namespace scanloom::net
