@@ -27,7 +27,7 @@ Result<double> number(const YAML::Node& node, std::string_view key) {
     return value;
 }
 
-/// Leaves the value where the key is absent.
+/// Reads a number; leaves `value` unchanged if the key is absent.
 Result<> read_number(const YAML::Node& yaml, const char* key, double& value) {
     const auto node = yaml[key];
     if (!node) return {};
@@ -62,7 +62,7 @@ Result<> read_mode(const YAML::Node& yaml, RosMapDescription& map) {
         const auto value = negate.IsScalar() ? negate.Scalar() : "";
         map.negate = value == "1";
         const bool is_number = value == "0" || value == "1";
-        // nav2 takes YAML's words for truth values, too: true, no, Off and so on.
+        // nav2 also accepts YAML's words for booleans: true, no, Off and so on.
         if (!is_number && !YAML::convert<bool>::decode(negate, map.negate)) {
             return bad_key("negate", "is neither 0 nor 1, true nor false");
         }
@@ -88,7 +88,7 @@ Result<> read_image(const YAML::Node& yaml, RosMapDescription& map) {
     return {};
 }
 
-/// YAML forbids a key given twice; yaml-cpp lets it pass.
+/// YAML forbids duplicate keys; yaml-cpp accepts them.
 Result<> check_unique(const YAML::Node& yaml) {
     std::set<std::string> keys;
     for (const auto& entry : yaml) {
@@ -124,7 +124,7 @@ Result<RosMapDescription> read(const YAML::Node& yaml) {
     return map;
 }
 
-/// As a YAML scalar: as it is where that is plain, otherwise in quotes.
+/// Returns the text as a YAML scalar, quoted if it needs quotes.
 std::string scalar(std::string_view text) {
     const bool is_plain = std::ranges::all_of(text, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';
@@ -154,8 +154,8 @@ Result<RosMapDescription> parse_ros_yaml(std::string_view text) {
 }
 
 std::string ros_yaml(std::string_view image, double resolution, double origin_x, double origin_y) {
-    // 15 digits drop the last bits' noise of cell * cell_size: -5.05, not -5.050000000000001.
-    // Unknown is p = 50 / 255 = 0.19608 to those who load it: just above free_thresh.
+    // 15 digits hide the rounding error of cell * cell_size: -5.05, not -5.050000000000001.
+    // Programs that load the map compute p = 50 / 255 = 0.19608 for unknown cells: just above free_thresh.
     return fmt::format("image: {}\n"
                        "mode: trinary\n"
                        "resolution: {:.15g}\n"

@@ -10,7 +10,7 @@
 namespace scanloom {
 namespace {
 
-constexpr std::string_view kWhiteSpace = " \t\n\v\f\r"; // as in any locale
+constexpr std::string_view kWhiteSpace = " \t\n\v\f\r"; // independent of the locale
 
 Error malformed(std::string_view what) { return {Errc::kMalformed, fmt::format("the map's image {}", what)}; }
 
@@ -18,7 +18,7 @@ std::string_view text_of(std::span<const std::uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A number after white space and comments, taken off the front.
+/// Removes a number, and the white space and comments before it, from the front of `rest`.
 std::optional<std::int64_t> take_number(std::string_view& rest) {
     for (;;) {
         rest.remove_prefix(std::min(rest.find_first_not_of(kWhiteSpace), rest.size()));
@@ -32,10 +32,10 @@ std::optional<std::int64_t> take_number(std::string_view& rest) {
     return value;
 }
 
-/// The pixels of a PGM, one after the other from the top left.
+/// Reads the pixels of a PGM in order, from the top left.
 class Pixels {
 public:
-    /// Errors  as those of read_ros_pgm().
+    /// Errors: those of read_ros_pgm().
     static Result<Pixels> open(std::string_view file) {
         if (!file.starts_with("P2") && !file.starts_with("P5")) return malformed("is not a PGM (P2 or P5)");
         Pixels pixels;
@@ -60,7 +60,7 @@ public:
     [[nodiscard]] std::size_t height() const noexcept { return height_; }
     [[nodiscard]] std::uint16_t white() const noexcept { return white_; }
 
-    /// The next row, from the top. Pre  there is one.
+    /// Reads the next row, from the top. Precondition: a row is left.
     Result<> read_row(std::span<std::uint16_t> greys) {
         for (std::uint16_t& grey : greys) {
             const auto value = is_plain_ ? take_number(rest_) : take_bytes();
@@ -75,9 +75,9 @@ public:
     }
 
 private:
-    /// Errors  kMalformed: less than what the header tells of, known before memory is taken for it.
+    /// Errors: kMalformed if the file is shorter than its header says, detected before memory is allocated for it.
     Result<> skip_to_first() {
-        if (is_plain_) { // a digit and a space for each
+        if (is_plain_) { // at least a digit and a space per pixel
             if (rest_.size() < 2 * width_ * height_) return malformed("is damaged: it ends before its last pixel");
             return {};
         }
