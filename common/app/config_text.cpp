@@ -12,7 +12,7 @@ namespace {
 
 Error fault(std::size_t line, std::string_view what) { return {Errc::kMalformed, fmt::format("{}: {}", line, what)}; }
 
-/// @return where the string that begins at `begin` is over; nothing when its line ends first.
+/// Returns the position after the string that begins at `begin`; nullopt if its line ends first.
 std::optional<std::size_t> end_of_string(std::string_view text, std::size_t begin) {
     const char quote = text[begin];
     for (std::size_t at = begin + 1; at < text.size() && text[at] != '\n'; ++at) {
@@ -22,7 +22,7 @@ std::optional<std::size_t> end_of_string(std::string_view text, std::size_t begi
     return std::nullopt;
 }
 
-/// Whether what stands at `at`, behind a string or an array, may stand there.
+/// Returns whether the text at `at` may follow a string or an array.
 bool is_separated(std::string_view text, std::size_t at) {
     const auto next = text.find_first_not_of(" \t\r", at);
     return next == std::string_view::npos || std::string_view("\n#,]=").find(text[next]) != std::string_view::npos;
@@ -33,7 +33,7 @@ bool is_separated(std::string_view text, std::size_t at) {
 Result<std::string> one_line_a_setting(std::string_view toml) {
     std::string settings;
     std::size_t line = 1;
-    std::vector<std::size_t> open; // lines of the brackets that are not closed yet
+    std::vector<std::size_t> open; // line numbers of the brackets that are not closed yet
     for (std::size_t at = 0; at < toml.size();) {
         const char c = toml[at];
         std::size_t end = at + 1;

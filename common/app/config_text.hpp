@@ -9,18 +9,20 @@
 
 namespace scanloom {
 
-/// A TOML file as CLI11 reads it without mistakes: no comments, every array on one line. By itself CLI11 takes what is
-/// not closed for closed, lines after an array for a part of it, and a '#' within a string for a comment.
+/// Rewrites a TOML file so that CLI11 reads it correctly: without comments and with every array on one line.
 ///
-/// Errors  kMalformed: a string or an array that is not closed, or with something behind it; the message begins with
-///         the number of the line.
+/// CLI11 alone accepts strings and arrays that are not closed, takes the lines after an array for a part of it, and
+/// takes a '#' in a string for the start of a comment.
+///
+/// Errors: kMalformed if a string or an array is not closed, or is not followed by a separator; the message begins with
+///         the line number.
 [[nodiscard]] Result<std::string> one_line_a_setting(std::string_view toml);
 
-/// What a file of settings may have at most: who names a device or a log by mistake is told so.
+/// The largest settings file, in bytes. A device or a log that is named by mistake gives an error.
 inline constexpr std::size_t kConfigBytesMax = std::size_t{1} << 20;
 
-/// All that there is to be read.
-/// Errors  kFull: it is more than kConfigBytesMax.
+/// Reads `input` to its end.
+/// Errors: kFull if it has more than kConfigBytesMax bytes.
 [[nodiscard]] Result<std::string> read_config_text(std::istream& input);
 
 } // namespace scanloom

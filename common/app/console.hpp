@@ -8,22 +8,27 @@
 
 namespace scanloom {
 
-/// Whole seconds, rounded up, as people write a time that is left: 0:07, 12:30, 1:02:03.
+/// Formats a remaining time in whole seconds, rounded up: 0:07, 12:30, 1:02:03.
 [[nodiscard]] std::string as_clock(double seconds);
 
-/// What a program tells while it runs, on stderr. On a terminal the progress stays on one line that is written over;
-/// elsewhere it is a plain line every few seconds. No colours, so there is nothing for NO_COLOR to switch off.
-/// Nothing ever waits for a reader.
+/// Prints the progress and the notes of a running program on stderr, and never waits for a reader.
+///
+/// On a terminal the progress is one line that is overwritten; elsewhere it is a plain line every few seconds. There
+/// are no colours, so NO_COLOR has nothing to switch off.
 class Console {
 public:
     explicit Console(StandardError& out) : out_(out) {}
 
-    /// How often progress() is worth calling.
+    /// Returns how often to call progress().
     [[nodiscard]] std::chrono::milliseconds progress_period() const;
 
+    /// Replaces the progress line.
     void progress(std::string_view text);
+
+    /// Prints a line in place of the progress line.
     void note(std::string_view text);
-    /// Leaves the newest progress line standing.
+
+    /// Ends the progress line; its last text stays visible.
     void finish();
 
 private:

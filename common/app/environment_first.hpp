@@ -16,26 +16,26 @@
 #include <string_view>
 #include <vector>
 
-/// Settings of a program from three places: a flag beats the environment, which beats the file of --config.
+/// A program's settings from three sources: a flag overrides the environment, which overrides the file of --config.
 /// Only option parsers include this header.
 namespace scanloom {
 
-/// --cell-size is SCANLOOM_CELL_SIZE.
+/// Returns the name of the variable for an option: SCANLOOM_CELL_SIZE for cell-size.
 [[nodiscard]] inline std::string environment_name(std::string_view option) {
     std::string name = "SCANLOOM_";
     for (const char c : option) name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     return name;
 }
 
-/// TOML without what the environment sets: CLI11 by itself would let the file win.
+/// Reads TOML and removes the settings that the environment also has: CLI11 alone would let the file override them.
 class EnvironmentFirstToml final : public CLI::ConfigTOML {
 public:
-    /// `app` must outlive this; its configuration file is named where it is at fault.
+    /// @param app  must outlive this object; error messages name its configuration file
     explicit EnvironmentFirstToml(const CLI::App& app) : app_(app) {
-        comment('\n'); // none: they are gone before CLI11 reads a line
+        comment('\n'); // none: comments are removed before CLI11 reads a line
     }
 
-    /// Throws CLI::ConfigError where the file is no TOML.
+    /// Errors: throws CLI::ConfigError if the file is not valid TOML.
     [[nodiscard]] std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
         const auto file = read_config_text(input);
         if (!file) throw CLI::ConfigError(fmt::format("{}: {}", file_name(), file.error().message));
@@ -55,20 +55,22 @@ private:
     const CLI::App& app_;
 };
 
-/// A variable of a script that was never set must not switch off what it was to name.
+/// Rejects empty values: a script's variable that was never set must not switch off a setting.
 [[nodiscard]] inline std::string check_not_empty(const std::string& text) {
     return text.empty() ? "it is given but empty; give it a value, or leave it out" : "";
 }
 
-/// The same of the environment, whose empty settings CLI11 would not look at.
+/// Throws CLI::ValidationError if the option's environment variable is empty. CLI11 ignores empty variables.
 inline void refuse_empty_setting(const CLI::Option& option) {
     const auto name = environment_name(option.get_lnames().front());
     const char* value = std::getenv(name.c_str());
     if (value != nullptr && *value == '\0') throw CLI::ValidationError(name, check_not_empty(value));
 }
 
-/// Call it after all options and subcommands were added. Unknown settings in the file are errors of app.parse().
-/// Throws CLI::ParseError when SCANLOOM_CONFIG names no file, or a setting in the environment is empty.
+/// Makes `app` read settings from the environment and from the file of --config.
+///
+/// Call it after all options and subcommands are added. app.parse() then rejects unknown settings in the file.
+/// Errors: throws CLI::ParseError if SCANLOOM_CONFIG names a missing file or a setting in the environment is empty.
 inline void read_settings_from_environment_and_file(CLI::App& app) {
     const auto name_options = [](CLI::App& level) {
         for (CLI::Option* option : level.get_options()) {
@@ -84,7 +86,7 @@ inline void read_settings_from_environment_and_file(CLI::App& app) {
     app.config_formatter(std::make_shared<EnvironmentFirstToml>(app));
     app.allow_config_extras(CLI::config_extras_mode::error);
 
-    // CLI11 reads the file before the environment, so the name in the environment is given as the default.
+    // CLI11 reads the file before the environment, so SCANLOOM_CONFIG is the default value of --config.
     const char* file = std::getenv("SCANLOOM_CONFIG");
     const std::string default_file = file != nullptr ? file : "";
     if (!default_file.empty() && !std::filesystem::exists(default_file)) throw CLI::FileError::Missing(default_file);

@@ -4,8 +4,8 @@
 
 namespace scanloom {
 
-/// What figures of speed were measured on: "AMD EPYC 7763, 2 cores, g++ 12.2.0 with optimisation". For reports.
-/// Source  /proc/cpuinfo; a part that it does not tell is left out.
+/// Describes the machine and the build for benchmark reports: "AMD EPYC 7763, 2 cores, g++ 12.2.0 with optimisation".
+/// Leaves out the processor if /proc/cpuinfo does not name it.
 [[nodiscard]] std::string machine_description();
 
 } // namespace scanloom

@@ -22,8 +22,11 @@ std::uint64_t number_in(const fs::path& file) {
     return in >> number ? number : kNoLimit;
 }
 
-/// @param hierarchy  where the control groups are mounted
-/// @param group      of this process; folders that do not exist have no limit (a container sees its group as the root)
+/// Returns the smallest limit of a control group and of the groups that contain it; kNoLimit if there is none.
+/// @param hierarchy  folder where the control groups are mounted
+/// @param group      path of this process's group; folders that do not exist have no limit (a container sees its group
+///                   as the root)
+/// @param file       name of the file with the limit
 std::uint64_t least_limit(const fs::path& hierarchy, const fs::path& group, const char* file) {
     std::uint64_t least = number_in(hierarchy / file);
     fs::path folder = hierarchy;

@@ -6,19 +6,20 @@
 
 namespace scanloom {
 
-/// How much memory this process may use, in bytes.
+/// The memory that this process may use, in bytes.
 struct MemoryLimit {
     std::uint64_t bytes = 0; ///< the machine's memory, or the limit of its control group or of `ulimit -d`, if less
     std::uint64_t address_space = 0; ///< the limit of `ulimit -v`; the largest number if there is none
 };
 
-/// Source  sysconf(3), getrlimit(2), control_group_limit().
+/// Returns the memory limits of this process.
+/// Source: sysconf(3), getrlimit(2), control_group_limit().
 [[nodiscard]] MemoryLimit memory_limit();
 
-/// Returns the least memory limit, in bytes, of this process's control group and of the groups that contain it;
-/// nullopt if there is none.
-/// @param root  where /proc and /sys are; another for tests
-/// Source  cgroups(7); memory.max of version 2, memory.limit_in_bytes of version 1.
+/// Returns the smallest memory limit of this process's control group and of the groups that contain it.
+/// @param root  folder that contains proc/ and sys/; tests use another
+/// @return bytes; nullopt if there is no limit
+/// Source: cgroups(7): memory.max of version 2, memory.limit_in_bytes of version 1.
 [[nodiscard]] std::optional<std::uint64_t> control_group_limit(const std::filesystem::path& root = "/");
 
 } // namespace scanloom

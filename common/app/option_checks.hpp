@@ -9,11 +9,11 @@
 #include <limits>
 #include <string>
 
-/// What numbers options take, as CLI::Option::check() wants it: nothing where the text is right, else what is wrong.
+/// Checks of numbers for CLI::Option::check(): each returns an empty string if the text is valid, else what is wrong.
 /// Only option parsers include this header.
 namespace scanloom {
 
-/// CLI::Range lets NaN pass.
+/// Accepts numbers from `low` to `high`. Rejects NaN, which CLI::Range accepts.
 [[nodiscard]] inline auto check_within(double low, double high) {
     return [=](const std::string& text) {
         double value = 0.0;
@@ -22,7 +22,7 @@ namespace scanloom {
     };
 }
 
-/// The same without the lower end.
+/// Accepts numbers above `low` and up to `high`.
 [[nodiscard]] inline auto check_above_up_to(double low, double high) {
     return [=](const std::string& text) {
         double value = 0.0;
@@ -43,7 +43,7 @@ namespace scanloom {
     return fmt::format("'{}' is not 0 or more", text);
 }
 
-/// CLI11 by itself would take -1 for the largest number.
+/// Accepts whole numbers from `low` on. Rejects -1, which CLI11 alone converts to the largest number.
 [[nodiscard]] inline auto check_whole_number_from(std::uint64_t low) {
     return [=](const std::string& text) {
         std::uint64_t value = 0;

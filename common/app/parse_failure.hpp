@@ -12,7 +12,7 @@
 /// Only option parsers include this header.
 namespace scanloom {
 
-/// Why CLI11 refused flags, environment or file: one line, in words that a person who never heard of CLI11 understands.
+/// Explains in one line, without CLI11's own terms, why CLI11 rejected the flags, the environment or the file.
 [[nodiscard]] inline std::string sentence_of(const CLI::ParseError& reason) {
     std::string what = reason.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
@@ -27,12 +27,16 @@ namespace scanloom {
     return what;
 }
 
+/// Returns how a program ends after a usage error; the text refers to --help.
 [[nodiscard]] inline Leave usage_error(const CLI::App& app, std::string_view what) {
     return {kExitUsage, fmt::format("{0}: {1}; see {0} --help\n", app.get_name(), what)};
 }
 
-/// What CLI11 throws: a request for help or the version, too.
-/// @param commands  what to do there is, said to who names none
+/// Returns how a program ends after CLI11 has thrown, which it also does when help or the version is requested.
+/// @param app       the parser that has thrown
+/// @param reason    what it has thrown
+/// @param commands  error text for a command line that names no subcommand
+/// @return exit code and output
 [[nodiscard]] inline Leave leave_for(const CLI::App& app, const CLI::ParseError& reason,
                                      std::string_view commands = "") {
     if (reason.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {

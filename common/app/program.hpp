@@ -3,22 +3,22 @@
 #include <string>
 #include <string_view>
 
-/// What every program of the project shares with its user.
+/// What all programs of the project have in common for their users.
 namespace scanloom {
 
-/// As CMake's project() has it; set by the build.
+/// The version in CMake's project(); the build defines it.
 inline constexpr std::string_view kVersion = SCANLOOM_VERSION;
 
 enum ExitCode : int {
     kExitDone = 0,
     kExitFailed = 1,
-    kExitUsage = 2, ///< flags, environment or configuration file
+    kExitUsage = 2, ///< wrong flags, environment or configuration file
 };
 
-/// Instead of running: how the program ends at once, and what it says.
+/// How a program ends instead of running: exit code and output.
 struct Leave {
     ExitCode code = kExitDone;
-    std::string text; ///< whole lines, for stdout when the code is kExitDone, or else for stderr
+    std::string text; ///< whole lines, for stdout if the code is kExitDone, else for stderr
 };
 
 } // namespace scanloom

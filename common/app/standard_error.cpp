@@ -15,9 +15,9 @@
 namespace scanloom {
 namespace {
 
-/// Opens a pipe or a terminal once more. O_NONBLOCK belongs to what is opened, not to the number, and that is shared
-/// with the programs that gave it to us: it must not be set on theirs. Where this is impossible (a socket, a terminal
-/// of another user) theirs will do, and has_room() is asked before each write.
+/// Opens a pipe or a terminal a second time, non-blocking. O_NONBLOCK belongs to the open file, which is shared with
+/// the programs that passed the descriptor on, so it must not be set on theirs. If the file cannot be opened (a socket,
+/// a terminal of another user), returns `descriptor`; has_room() is then checked before each write.
 int opened_anew(int descriptor) {
     struct stat status {};
     const bool may_wait = fstat(descriptor, &status) == 0 && (S_ISFIFO(status.st_mode) || isatty(descriptor) == 1);
@@ -27,7 +27,7 @@ int opened_anew(int descriptor) {
     return own >= 0 ? own : descriptor;
 }
 
-/// True where PIPE_BUF bytes can be written without waiting, if no other program is faster.
+/// Returns whether PIPE_BUF bytes can be written without waiting, unless another program writes first.
 bool has_room(int descriptor) {
     pollfd room{descriptor, POLLOUT, 0};
     return poll(&room, 1, 0) == 1 && (room.revents & POLLOUT) != 0;
@@ -61,7 +61,7 @@ void StandardError::write(std::string_view line) {
     if (!put(line)) ++dropped_;
 }
 
-/// False when not all of it could be written at once.
+/// Returns false if not all of the text could be written at once.
 bool StandardError::put(std::string_view text) {
     while (!text.empty()) {
         if (descriptor_ == given_ && !has_room(given_)) return false;

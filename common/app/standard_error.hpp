@@ -6,11 +6,13 @@
 
 namespace scanloom {
 
-/// Writes lines for people and never waits: what cannot be written at once, because nobody empties the pipe or the
-/// terminal stands still, is dropped. The next line that can be written comes after one that tells how many were lost.
+/// Writes lines for people and never waits.
 ///
-/// Errors  none that anybody could be told.
-/// Thread  any.
+/// Drops a line that cannot be written at once, because the reader of the pipe is too slow or the terminal is stopped.
+/// Before the next line that can be written it writes how many lines were dropped.
+///
+/// Errors: not reported.
+/// Threads: any thread.
 class StandardError {
 public:
     explicit StandardError(int descriptor);
@@ -18,10 +20,10 @@ public:
     StandardError(const StandardError&) = delete;
     StandardError& operator=(const StandardError&) = delete;
 
-    /// One line with its ending, or a piece of one that is going to be written over.
+    /// Writes a line with its line ending, or a partial line that will be overwritten.
     void write(std::string_view line);
 
-    /// True for a terminal on which lines can be written over and coloured.
+    /// Returns whether this is a terminal that supports overwriting and colours.
     [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
 
 private:
@@ -35,7 +37,7 @@ private:
     bool is_at_line_start_ = true;
 };
 
-/// The standard error of this program; everything it says while it runs goes here.
+/// Returns the standard error of this program, which takes all output for people while it runs.
 [[nodiscard]] StandardError& standard_error();
 
 } // namespace scanloom

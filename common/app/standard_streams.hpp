@@ -2,9 +2,9 @@
 
 namespace scanloom {
 
-/// Opens /dev/null in the place of standard input, output and error where they came closed. Otherwise the next file or
-/// socket would take their numbers, and what is printed would go into it. Call it before anything else in main().
-/// Throws std::system_error where that cannot be done.
+/// Opens /dev/null as standard input, output or error if the program was started with it closed. Otherwise the next
+/// file or socket would get its number and receive what is printed. Call it before anything else in main().
+/// Errors: throws std::system_error if /dev/null cannot be opened.
 void open_missing_standard_streams();
 
 } // namespace scanloom

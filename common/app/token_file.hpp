@@ -6,8 +6,8 @@
 
 namespace scanloom {
 
-/// The first line of a token file; empty where no file is named.
-/// Errors  kNotFound: it cannot be read, or its first line is empty.
+/// Reads the first line of a token file; returns an empty string if `path` is empty.
+/// Errors: kNotFound if the file cannot be read or its first line is empty.
 [[nodiscard]] Result<std::string> read_token(const std::string& path);
 
 } // namespace scanloom

@@ -7,7 +7,7 @@
 
 namespace scanloom {
 
-/// A point in whole millimetres, as the readings are that it comes from.
+/// A point in whole millimetres, the unit of the readings.
 struct PointMm {
     std::int32_t x = 0;
     std::int32_t y = 0;
@@ -15,7 +15,8 @@ struct PointMm {
     friend bool operator==(const PointMm&, const PointMm&) = default;
 };
 
-/// The nearest one; `metres` within 2e6 of the origin, as far as millimetres can be counted.
+/// Rounds a point to millimetres.
+/// Precondition: each coordinate is within 2e6 m of the origin, so that it fits 32 bits.
 [[nodiscard]] inline PointMm in_millimetres(const Point2& metres) noexcept {
     return {static_cast<std::int32_t>(std::lround(metres.x * 1000.0)),
             static_cast<std::int32_t>(std::lround(metres.y * 1000.0))};

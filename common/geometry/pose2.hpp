@@ -7,14 +7,14 @@
 
 namespace scanloom {
 
-/// The same direction in (-pi, pi].
+/// Returns the same direction in (-pi, pi].
 [[nodiscard]] inline double normalize_angle(double angle_rad) noexcept {
     const double wrapped = std::remainder(angle_rad, 2.0 * std::numbers::pi);
     return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
 
-/// A pose in the plane, and the rigid transform it stands for: `T_a_b` takes points of frame b
-/// into frame a. Metres; radians counter-clockwise, kept in (-pi, pi] by compose() and inverse().
+/// A pose in the plane and the rigid transform that it represents: `T_a_b` transforms points from frame b to frame a.
+/// Metres; radians counter-clockwise. compose() and inverse() return a yaw in (-pi, pi].
 struct Pose2 {
     double x = 0.0;
     double y = 0.0;
@@ -27,7 +27,7 @@ struct Pose2 {
     return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
 }
 
-/// T_a_c = T_a_b * T_b_c.
+/// Returns T_a_c = T_a_b * T_b_c.
 [[nodiscard]] inline Pose2 compose(const Pose2& T_a_b, const Pose2& T_b_c) noexcept {
     const double c = std::cos(T_a_b.yaw);
     const double s = std::sin(T_a_b.yaw);
@@ -35,14 +35,14 @@ struct Pose2 {
             normalize_angle(T_a_b.yaw + T_b_c.yaw)};
 }
 
-/// T_b_a of T_a_b.
+/// Returns T_b_a.
 [[nodiscard]] inline Pose2 inverse(const Pose2& T_a_b) noexcept {
     const double c = std::cos(T_a_b.yaw);
     const double s = std::sin(T_a_b.yaw);
     return {-c * T_a_b.x - s * T_a_b.y, s * T_a_b.x - c * T_a_b.y, normalize_angle(-T_a_b.yaw)};
 }
 
-/// A point of frame b, in frame a.
+/// Transforms a point from frame b to frame a.
 [[nodiscard]] inline Point2 transform(const Pose2& T_a_b, const Point2& point_b) noexcept {
     const double c = std::cos(T_a_b.yaw);
     const double s = std::sin(T_a_b.yaw);
