@@ -16,11 +16,11 @@ struct UniformAngles {
     friend bool operator==(const UniformAngles&, const UniformAngles&) = default;
 };
 
-/// An angle for each beam, radians in the sensor frame, for beams that are not evenly spaced.
+/// One angle per beam, for beams that are not evenly spaced. Radians in the sensor frame.
 using ExplicitAngles = std::vector<double>;
 
-/// Beam i points along unit * steps[i], radians in the sensor frame: what a spinning sensor gives that measures its
-/// angles in whole steps. From one beam to the next a difference of steps fits 32 bits.
+/// Beam i points along unit * steps[i], for spinning sensors that measure angles in whole steps. Radians in the sensor
+/// frame. The difference between the steps of successive beams fits 32 bits.
 struct SteppedAngles {
     double unit = 0.0;
     std::vector<std::int32_t> steps;
@@ -28,12 +28,13 @@ struct SteppedAngles {
     friend bool operator==(const SteppedAngles&, const SteppedAngles&) = default;
 };
 
-/// Where the beams of a scan point.
+/// The directions of the beams of a scan.
 using BeamAngles = std::variant<UniformAngles, ExplicitAngles, SteppedAngles>;
 
 [[nodiscard]] std::size_t beam_count(const BeamAngles& angles) noexcept;
 
-/// Direction of beam `index` < beam_count(angles), radians in the sensor frame, not normalised.
+/// Returns the direction of a beam, in radians in the sensor frame, not normalised.
+/// Precondition: index < beam_count(angles).
 [[nodiscard]] double beam_angle(const BeamAngles& angles, std::size_t index) noexcept;
 
 } // namespace scanloom

@@ -4,7 +4,7 @@
 
 namespace scanloom {
 
-/// Which layer tells free cells from occupied ones.
+/// The layer that decides which cells are free and which are occupied.
 enum class ClassSource : std::uint8_t { kOccupancy, kHimm };
 
 } // namespace scanloom

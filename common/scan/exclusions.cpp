@@ -41,7 +41,7 @@ Result<> Exclusions::add(Revision revision, const ExclusionLifted& lifted) {
 }
 
 bool Exclusions::cover(Revision revision, const ScanPose& scan) const noexcept {
-    if (revision >= revision_) return false; // newer than all of them
+    if (revision >= revision_) return false; // newer than all exclusions
     return std::ranges::any_of(all_, [&](const Exclusion& one) {
         return one.lifted == 0 && revision < one.since && scan.robot == one.excluded.robot &&
                std::visit([&](const auto& range) { return has(range, scan); }, one.excluded.scans);

@@ -9,16 +9,18 @@
 
 namespace scanloom {
 
-/// Which scans of a log are integrated: a scan further than max_jump from its robot's newest integrated scan, and from
-/// its robot's scan before it, is left out. So one pose that is wrong costs one scan, and a robot that was carried
-/// elsewhere one, too. Distances are those of poses in the map frame, without yaw.
+/// Leaves out scans whose pose has jumped.
+///
+/// A scan is not integrated if it is further than max_jump both from its robot's newest integrated scan and from its
+/// robot's previous scan. Therefore one wrong pose costs one scan, and so does carrying the robot to another place.
+/// Distances are between positions in the map frame; the yaw does not count.
 class JumpFilter {
 public:
-    /// What decides about a robot's next scan.
+    /// The state that decides on a robot's next scan.
     struct Robot {
-        std::optional<Point2> integrated; ///< place of the newest integrated scan
-        std::optional<Point2> newest;     ///< place of the newest scan
-        std::uint64_t left_out = 0;       ///< scans
+        std::optional<Point2> integrated; ///< position of the newest integrated scan
+        std::optional<Point2> newest;     ///< position of the newest scan
+        std::uint64_t left_out = 0;       ///< number of scans left out
 
         friend bool operator==(const Robot&, const Robot&) = default;
     };
@@ -28,10 +30,10 @@ public:
 
     [[nodiscard]] bool is_on() const noexcept { return max_jump_m_ > 0.0; }
 
-    /// Whether the robot's next scan, if it is taken at that place, is integrated.
+    /// Returns whether the robot's next scan is integrated if it is taken at `place` (metres, map frame).
     [[nodiscard]] bool integrates(RobotIndex robot, const Point2& place) const noexcept;
 
-    /// The robot's next scan. @return integrates() of it
+    /// Adds the robot's next scan, taken at `place` (metres, map frame), and returns whether it is integrated.
     bool take(RobotIndex robot, const Point2& place);
 
     [[nodiscard]] Robot state(RobotIndex robot) const { return robot < robots_.size() ? robots_[robot] : Robot{}; }
@@ -41,7 +43,7 @@ private:
     [[nodiscard]] Robot& robot_at(RobotIndex robot);
 
     double max_jump_m_;
-    std::vector<Robot> robots_; // by RobotIndex; none beyond the last that took a scan
+    std::vector<Robot> robots_; // by RobotIndex, up to the last robot with a scan
 };
 
 } // namespace scanloom

@@ -11,19 +11,19 @@
 
 namespace scanloom {
 
-/// A robot's number within its session, 0, 1, 2, ... in order of joining.
+/// A robot's number within its session: 0, 1, 2, ... in order of joining.
 using RobotIndex = std::uint32_t;
 
-/// Number of entries in a session's log up to and including one of them: the first entry has
-/// revision 1. Also the state of a map after folding that entry.
+/// The number of entries in a session's log up to and including one of them: the first entry has revision 1. Also
+/// identifies the state of a map after that entry is applied.
 using Revision = std::uint64_t;
 
-/// A robot's first appearance; or again, with another body, or as long as it has no scans with another source.
+/// A robot joins the session. It may join again with another body radius or, while it has no scans, another source.
 struct RobotJoined {
     RobotIndex robot = 0;
     std::string name;
     std::string source = {}; ///< identifies a recording or simulation, so that no other continues it; empty: none
-    std::optional<double> body_radius = {}; ///< metres, above 0, at most kBodyRadiusMax; nothing: not stated
+    std::optional<double> body_radius = {}; ///< metres, above 0, at most kBodyRadiusMax; nullopt: not stated
 
     friend bool operator==(const RobotJoined&, const RobotJoined&) = default;
 };
@@ -42,7 +42,7 @@ struct ScanTaken {
     friend bool operator==(const ScanTaken&, const ScanTaken&) = default;
 };
 
-/// What decides whether a scan is integrated: when and where its robot took it.
+/// When and where a robot took a scan, which decides whether the scan is integrated.
 struct ScanPose {
     RobotIndex robot = 0;
     std::uint64_t seq = 0;
@@ -56,7 +56,7 @@ struct ScanPose {
     return {taken.robot, taken.scan.seq, taken.scan.stamp, taken.scan.pose};
 }
 
-/// From one stamp to another, in seconds, both included.
+/// A range of stamps in seconds, both ends included.
 struct StampRange {
     double from = 0.0;
     double to = 0.0;
@@ -64,7 +64,7 @@ struct StampRange {
     friend bool operator==(const StampRange&, const StampRange&) = default;
 };
 
-/// From one seq to another, both included.
+/// A range of sequence numbers, both ends included.
 struct SeqRange {
     std::uint64_t from = 0;
     std::uint64_t to = 0;
@@ -72,16 +72,16 @@ struct SeqRange {
     friend bool operator==(const SeqRange&, const SeqRange&) = default;
 };
 
-/// An operator excludes scans of a robot from the maps: those in the range that are before this entry in the log.
+/// An operator excludes scans of a robot from the maps: those in the range whose log entries precede this one.
 struct ScansExcluded {
-    std::uint64_t id = 0; ///< from 1, rising within the session
+    std::uint64_t id = 0; ///< starts at 1 and rises within the session
     RobotIndex robot = 0;
     std::variant<StampRange, SeqRange> scans;
 
     friend bool operator==(const ScansExcluded&, const ScansExcluded&) = default;
 };
 
-/// The exclusion of that id has no effect any more.
+/// An operator lifts the exclusion with this id: it has no effect any more.
 struct ExclusionLifted {
     std::uint64_t id = 0;
 

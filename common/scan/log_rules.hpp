@@ -14,57 +14,58 @@
 
 namespace scanloom {
 
-/// A sensor as a log entry described it. The description is shared, never changed.
+/// A sensor as described by a log entry. The description is shared and never changes.
 struct KnownSensor {
-    Revision revision = 0; ///< of that entry, or of a checkpoint after it
+    Revision revision = 0; ///< of that entry, or of a later checkpoint
     std::shared_ptr<const Sensor> sensor;
 };
 
-/// A robot as the entries of a log describe it, up to one of them.
+/// A robot as described by the entries of a log up to one of them.
 struct LoggedRobot {
     std::string name;
     std::string source;                           ///< RobotJoined::source
     std::optional<double> body_radius;            ///< RobotJoined::body_radius
-    std::uint64_t last_seq = 0;                   ///< of its newest scan; 0: it has none
+    std::uint64_t last_seq = 0;                   ///< of its newest scan; 0 if it has none
     std::map<std::uint32_t, KnownSensor> sensors; ///< by id
 
-    /// Whether it may join again with that source: all scans of a robot are of one source.
+    /// Returns whether the robot may join again with this source: all scans of a robot come from one source.
     [[nodiscard]] bool accepts(const std::string& other_source) const {
         return last_seq == 0 || source == other_source;
     }
 
     [[nodiscard]] bool is_next(std::uint64_t seq) const noexcept { return seq == last_seq + 1; }
 
-    /// Null: it has described no such sensor.
+    /// Returns the sensor with this id; nullptr if the robot has not described it.
     [[nodiscard]] const KnownSensor* find_sensor(std::uint32_t id) const noexcept {
         const auto found = sensors.find(id);
         return found == sensors.end() ? nullptr : &found->second;
     }
 };
 
-/// Decides which entry may follow which in a session's log, and holds what that depends on.
+/// Decides which entry may come next in a session's log, and keeps the state that this depends on.
 class LogRules {
 public:
     LogRules() = default;
 
-    /// After the entry of that revision, as a checkpoint stores it.
+    /// Restores the state after the entry with this revision from a checkpoint.
     LogRules(Revision revision, std::vector<LoggedRobot> robots, Exclusions exclusions)
         : revision_(revision), robots_(std::move(robots)), exclusions_(std::move(exclusions)) {}
 
-    /// Checks whether the entry can be the next one.
-    /// Errors  kMalformed: it cannot, which only happens in a damaged log.
+    /// Checks whether `entry` can be the next one.
+    /// Errors: kMalformed if it cannot, which happens only in a damaged log.
     [[nodiscard]] Result<> check(const LogEntry& entry) const;
 
-    /// Adds the next entry. Pre  check() accepts it.
+    /// Applies the next entry. Precondition: check(entry) succeeds.
     void apply(const LogEntry& entry);
 
-    /// check(), and where that succeeds apply().
+    /// Checks the next entry and applies it if check() succeeds.
+    /// Errors: those of check().
     [[nodiscard]] Result<> add(const LogEntry& entry);
 
-    /// Of the newest entry.
+    /// Returns the revision of the newest entry.
     [[nodiscard]] Revision revision() const noexcept { return revision_; }
 
-    /// By RobotIndex.
+    /// Returns the robots, by RobotIndex.
     [[nodiscard]] const std::vector<LoggedRobot>& robots() const noexcept { return robots_; }
 
     [[nodiscard]] const Exclusions& exclusions() const noexcept { return exclusions_; }

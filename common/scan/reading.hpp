@@ -7,20 +7,21 @@
 
 namespace scanloom {
 
-/// Which readings of a sensor mean what.
+/// How the readings of a sensor are interpreted.
 struct ReadingRules {
     double range_min = 0.0;      ///< metres
     double range_max = 0.0;      ///< metres
-    bool drop_no_return = false; ///< beams without a return show nothing
+    bool drop_no_return = false; ///< whether beams without a return are ignored
 };
 
-/// What one beam shows: everything up to `metres` is free, and where it is a hit, there is something.
+/// What one beam shows: free space up to `metres`, and an obstacle there if `is_hit`.
 struct Reading {
     double metres = 0.0;
     bool is_hit = false;
 };
 
-/// Nothing for a beam that shows nothing: an invalid reading, or one below range_min.
+/// Interprets the reading of one beam.
+/// @return nullopt if the beam shows nothing: the reading is invalid, below range_min, or a no-return that is dropped
 [[nodiscard]] inline std::optional<Reading> reading_of(RangeMm range, const ReadingRules& rules) noexcept {
     if (range == kInvalidRange) return std::nullopt;
     const double metres = range == kNoReturn ? rules.range_max : range * 0.001;

@@ -11,40 +11,41 @@
 
 namespace scanloom {
 
-/// A reading in whole millimetres: one of the two marks below, or a length.
+/// A reading in whole millimetres, or one of the two special values below.
 using RangeMm = std::uint32_t;
 inline constexpr RangeMm kInvalidRange = 0;        ///< no valid reading
 inline constexpr RangeMm kNoReturn = 0xFFFF'FFFFU; ///< nothing within the sensor's range_max
 
-/// Rounds a reading once, where it enters the system (on the robot): NaN, zero and negative lengths
-/// become kInvalidRange, +inf and lengths beyond 4,294,967 m kNoReturn.
+/// Rounds a reading in metres to millimetres. Readings are rounded once, where they enter the system (on the robot).
+/// @return kInvalidRange for NaN, zero and negative lengths; kNoReturn for +inf and lengths beyond 4,294,967 m
 [[nodiscard]] RangeMm to_range_mm(double range_m) noexcept;
 
-/// The same of each reading of a scan: `scan.ranges = to_ranges_mm(metres)`.
+/// Applies to_range_mm() to each reading of a scan: `scan.ranges = to_ranges_mm(metres)`.
 [[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const float> ranges_m);
 [[nodiscard]] std::vector<RangeMm> to_ranges_mm(std::span<const double> ranges_m);
 
 /// One sweep of one sensor, taken from one pose. Metres and radians, counter-clockwise.
 ///
-/// Frames  map: fixed, and one for all robots of a session; robot: x ahead, y to the left, its origin wherever its pose
-///         is meant; odom: fixed where the odometry began. T_a_b is the pose of b in frame a.
+/// Frames: map is fixed and common to all robots of a session. robot has x ahead and y to the left; its origin is the
+///         point that the robot's pose refers to. odom is fixed where the odometry began. T_a_b is the pose of b in
+///         frame a.
 struct Scan {
-    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1; robot::Client numbers them
+    std::uint64_t seq = 0;                  ///< per (session, robot), from 1, rising by 1; robot::Client assigns it
     double stamp = 0.0;                     ///< seconds since the epoch, or since the robot's own start
     std::uint32_t sensor = 0;               ///< Sensor::id
-    Pose2 pose;                             ///< T_map_robot, as well as the robot knows: the map is woven from it
-    std::optional<Pose2> odometry;          ///< T_odom_robot, kept for whoever corrects poses later
-    std::vector<RangeMm> ranges;            ///< one a beam
-    std::vector<std::uint32_t> intensities; ///< empty, or one a beam; the sensor's own scale
-    std::optional<BeamAngles> angles;       ///< only where they differ from the sensor's
-    bool begins_map = false; ///< people said the pose, nothing being mapped: to be taken only if that holds
+    Pose2 pose;                             ///< T_map_robot as the robot knows it: the map is built with it
+    std::optional<Pose2> odometry;          ///< T_odom_robot, stored so that poses can be corrected later
+    std::vector<RangeMm> ranges;            ///< one per beam
+    std::vector<std::uint32_t> intensities; ///< empty, or one per beam; the sensor's own scale
+    std::optional<BeamAngles> angles;       ///< only if they differ from the sensor's
+    bool begins_map = false; ///< people chose the pose because nothing was mapped; rejected if something is
 
     friend bool operator==(const Scan&, const Scan&) = default;
 };
 
-/// Where the beams of `scan` point: its own angles, or its sensor's, cut or continued to the
-/// number of its ranges when they are uniform.
-/// Pre  validated: explicit angles have one entry per range.
+/// Returns the directions of the beams of `scan`: its own angles, or its sensor's. Uniform angles of the sensor are
+/// shortened or continued to the number of ranges.
+/// Precondition: the scan is validated: explicit angles have one entry per range.
 [[nodiscard]] BeamAngles angles_of(const Scan& scan, const Sensor& sensor);
 
 } // namespace scanloom

@@ -8,8 +8,8 @@
 
 namespace scanloom {
 
-/// How a session is asked to turn scans into maps; what is absent takes the default.
-/// Meaning, units, ranges and defaults: server/mapping/map_config.hpp, which checks them.
+/// The requested settings of a session's maps; an absent setting takes its default. server/mapping/map_config.hpp
+/// documents the meaning, unit, range and default of each, and validates them.
 struct SessionOptions {
     std::optional<double> cell_size;
 
