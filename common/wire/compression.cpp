@@ -9,7 +9,7 @@ namespace scanloom::wire {
 namespace {
 
 constexpr int kLevel = 3;               // zstd's own default
-constexpr std::size_t kFieldBytes = 16; // around the compressed bytes
+constexpr std::size_t kFieldBytes = 16; // of protobuf around the compressed bytes
 
 Error malformed(std::string_view what) {
     return {Errc::kMalformed, fmt::format("compressed_scan_batch.zstd {}", what)};
@@ -45,7 +45,7 @@ Result<ScanBatch> decompress(const CompressedScanBatch& batch) {
         return Error{Errc::kTooLarge, fmt::format("compressed_scan_batch.size is {}, at most {} are allowed",
                                                   batch.size, kFrameBytesMax)};
     }
-    // Asked before anything is allocated: a few bytes can stand for gigabytes.
+    // Checked before memory is allocated: a few bytes can expand to gigabytes.
     if (ZSTD_getFrameContentSize(batch.zstd.data(), batch.zstd.size()) != batch.size) {
         return malformed("is no Zstandard frame that states the size of compressed_scan_batch.size");
     }

@@ -9,8 +9,8 @@
 
 namespace scanloom::wire {
 
-/// Compresses frames with scan batches for slow links. Keeps its tables between them: some hundred KiB.
-/// Thread  one at a time.
+/// Compresses frames with scan batches, for slow links. Keeps its tables between frames: some hundred KiB.
+/// Threads: one at a time.
 class Compressor {
 public:
     Compressor();
@@ -18,7 +18,9 @@ public:
     Compressor(Compressor&&) noexcept;
     Compressor& operator=(Compressor&&) noexcept;
 
-    /// `body` is a frame without its length prefix; nothing where it would not become smaller.
+    /// Compresses a frame.
+    /// @param body  the frame without its length prefix
+    /// @return the batch; nullopt if the frame would not become smaller
     [[nodiscard]] std::optional<CompressedScanBatch> compress(std::string_view body);
 
 private:
@@ -26,12 +28,12 @@ private:
     std::unique_ptr<Context> context_;
 };
 
-/// Bytes that such a batch counts for among those under way: the frame it holds, with a length prefix.
+/// Returns the bytes of credit that the batch uses: the size of the frame that it holds, with a length prefix.
 [[nodiscard]] std::size_t bytes_under_way(const CompressedScanBatch& batch) noexcept;
 
-/// The batch that was compressed, checked as by decode(). Nothing larger than kFrameBytesMax is ever made of it.
-/// Errors  kTooLarge; kMalformed: no Zstandard frame, or of another size than it says, or with something else than a
-///         scan batch in it; those of decode().
+/// Decompresses a batch and validates it as decode() does. Never decompresses to more than kFrameBytesMax.
+/// Errors: kTooLarge if the batch states a larger size; kMalformed if it is not a Zstandard frame, has a size that
+///         differs from the stated one, or does not hold a scan batch; those of decode().
 [[nodiscard]] Result<ScanBatch> decompress(const CompressedScanBatch& batch);
 
 } // namespace scanloom::wire

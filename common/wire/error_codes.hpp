@@ -4,12 +4,12 @@
 
 #include "scanloom/v1/frame.pb.h"
 
-/// What went wrong, as the wire numbers it.
+/// Converts between Errc and the error codes of the wire.
 namespace scanloom::wire {
 
 [[nodiscard]] v1::ErrorCode to_code(Errc errc) noexcept;
 
-/// A code of a newer version is kInternal: the sentence beside it tells.
+/// Returns kInternal for the code of a newer version; the message that comes with it explains the failure.
 [[nodiscard]] Errc to_errc(v1::ErrorCode code) noexcept;
 
 } // namespace scanloom::wire

@@ -25,7 +25,7 @@ std::optional<std::uint64_t> take_varint(std::string_view& bytes) {
     return std::nullopt;
 }
 
-/// Whether the message's one field fills these bytes: then what follows is no part of it that looks like a checksum.
+/// Returns whether these bytes are exactly one field: then what follows is not a part of it that looks like a checksum.
 bool is_one_field(std::string_view bytes) {
     const auto tag = take_varint(bytes);
     const auto size = take_varint(bytes);

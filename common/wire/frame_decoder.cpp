@@ -14,10 +14,10 @@ namespace scanloom::wire {
 
 namespace {
 
-/// What HTTP begins with, requests and answers. As lengths of frames all of these are a gigabyte or more.
+/// The first bytes of HTTP requests and responses. As frame lengths, all of them are a gigabyte or more.
 constexpr std::string_view kHttp[] = {"GET ", "HEAD", "POST", "PUT ", "DELE", "OPTI", "PATC", "CONN", "TRAC", "HTTP"};
 
-/// The type and the major version of TLS's first record (RFC 8446, section 5.1). As a length it is 369 MB.
+/// The type and the major version of TLS's first record (RFC 8446, section 5.1). As a frame length it is 369 MB.
 constexpr std::string_view kTlsHandshake = "\x16\x03";
 
 void append_length(std::string& out, std::size_t bytes) {
@@ -88,7 +88,8 @@ Result<std::optional<std::string_view>> FrameDecoder::next() {
     return std::optional(body);
 }
 
-/// Where frames have had checksums, damage to the field's own tag shows as one that is missing.
+/// Checks the checksum of a body. A missing one is an error after earlier frames had one, as damage to the field's tag
+/// makes the field look absent.
 Result<> FrameDecoder::check(std::string_view body) {
     const Checksum checksum = checksum_of(body);
     if (checksum == Checksum::kRight) has_checksums_ = true;

@@ -12,7 +12,7 @@
 namespace scanloom::wire {
 namespace {
 
-constexpr int kLayersMax = 16; // four, and some more of a viewer that says one twice
+constexpr int kLayersMax = 16; // four, and some more for a viewer that sends duplicates
 
 void write(const TileChanges& changes, v1::TileChanges& out) {
     out.set_layer(static_cast<v1::Layer>(changes.layer));

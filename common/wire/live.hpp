@@ -11,16 +11,15 @@
 #include <string_view>
 #include <vector>
 
-/// The messages of the viewers' WebSocket (proto/scanloom/v1/live.proto, where each field is explained) as plain
-/// values.
+/// The messages of the viewers' WebSocket as plain values. proto/scanloom/v1/live.proto documents each field.
 namespace scanloom::wire {
 
-/// As proto/ numbers them.
+/// With the numbers of live.proto.
 enum class LiveLayer : std::uint8_t { kOccupancy = 1, kHimm = 2, kSonar = 3, kClassification = 4 };
 enum class LiveState : std::uint8_t { kOk = 1, kFailed = 2, kDraining = 3 };
 
 struct LiveRequest {
-    std::vector<LiveLayer> layers; ///< as they were sent, perhaps more than once
+    std::vector<LiveLayer> layers; ///< as sent; may contain duplicates
     bool points = false;
     bool landmarks = false;
 
@@ -39,7 +38,7 @@ struct ScanPoints {
     SensorKind kind = SensorKind::kLaser;
     double stamp = 0.0;
     Pose2 origin;                ///< T_map_sensor
-    std::vector<PointMm> points; ///< less the origin, along the map's axes; up to kRangeMax away
+    std::vector<PointMm> points; ///< relative to the origin, along the map's axes; up to kRangeMax away
 };
 
 struct RobotUpdate {
@@ -50,7 +49,7 @@ struct RobotUpdate {
     double stamp = 0.0;
     std::uint64_t scan_count = 0;
     std::uint64_t last_seq = 0;
-    std::vector<PointMm> trail; ///< in the map frame; up to kCoordinateMax, so that differences fit, too
+    std::vector<PointMm> trail; ///< map frame; within kCoordinateMax, so that differences fit, too
     std::uint64_t trail_from = 0;
     std::optional<ScanPoints> scan;
     std::optional<double> body_radius; ///< metres
@@ -98,12 +97,15 @@ struct LiveEvent {
     std::optional<LandmarkChanges> landmarks;
 };
 
+/// Serializes an event as the body of a binary WebSocket message.
 [[nodiscard]] std::string encode(const LiveEvent& event);
 
-/// Reads what a viewer sent, and checks all of it.
-/// Errors  kMalformed: no LiveRequest; kInvalidField: a field or layer of no version that this program knows;
-///         kTooLarge: more than 16 layers. The sentence fits into a close frame: 123 bytes.
-/// Thread  any.
+/// Parses and validates a viewer's request.
+/// @param body  the body of a binary WebSocket message
+/// @return the request
+/// Errors: kMalformed if it is not a LiveRequest; kInvalidField if it has a field or a layer that this program does not
+///         know; kTooLarge if it has more than 16 layers. The message fits into a close frame: 123 bytes.
+/// Threads: any thread.
 [[nodiscard]] Result<LiveRequest> decode_live_request(std::string_view body);
 
 } // namespace scanloom::wire

@@ -63,7 +63,7 @@ struct EntryToProto {
 };
 
 Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
-    if (!is_valid_name(proto.name())) return damaged("a log entry"); // names are written into logs and files' names
+    if (!is_valid_name(proto.name())) return damaged("a log entry"); // names are used in log output and file names
     RobotJoined joined{proto.robot(), proto.name(), proto.source()};
     if (proto.has_body_radius()) {
         if (!is_body_radius(proto.body_radius())) return damaged("a log entry");
@@ -73,7 +73,7 @@ Result<LogEntry> read_robot_joined(const v1::RobotJoined& proto) {
 }
 
 Result<LogEntry> read_scan_taken(const v1::ScanTaken& proto) {
-    const bool is_packed = !proto.packed_ranges().empty(); // not before format 2 of the store
+    const bool is_packed = !proto.packed_ranges().empty(); // since format 2 of the store
     if (is_packed && !proto.scan().ranges().empty()) return damaged("a log entry");
     auto ranges = is_packed ? unpack_ranges(proto.packed_ranges()) : std::nullopt;
     if (is_packed && !ranges) return damaged("a log entry");
@@ -100,7 +100,7 @@ Result<LogEntry> read_scans_excluded(const v1::ScansExcluded& proto) {
     ScansExcluded excluded{proto.id(), proto.robot(), {}};
     if (proto.has_stamps()) {
         const StampRange range{proto.stamps().from(), proto.stamps().to()};
-        if (!(range.from <= range.to)) return damaged("a log entry"); // nor is NaN
+        if (!(range.from <= range.to)) return damaged("a log entry"); // also rejects NaN
         excluded.scans = range;
     } else {
         const SeqRange range{proto.seqs().from(), proto.seqs().to()};
@@ -177,7 +177,7 @@ std::string encode_session(const SessionRecord& record) {
 Result<SessionRecord> decode_session(std::string_view bytes) {
     v1::SessionRecord proto;
     if (!proto.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return damaged("a session");
-    if (!is_valid_name(proto.name())) return damaged("a session"); // a path, or lines of a log, are nobody's name
+    if (!is_valid_name(proto.name())) return damaged("a session"); // rejects paths and line breaks
     auto options = from_proto(proto.config());
     if (!options) return options.error();
     return SessionRecord{proto.name(),        proto.created(),    *options,

@@ -9,37 +9,43 @@
 #include <string>
 #include <string_view>
 
-/// The store's bytes (proto/scanloom/v1/log.proto) as plain values.
+/// Converts between the bytes in the store (proto/scanloom/v1/log.proto) and plain values.
 namespace scanloom::wire {
 
-/// A session as the store lists it.
+/// The record of a session in the store.
 struct SessionRecord {
     std::string name;
     double created = 0.0;          ///< seconds since the epoch
-    SessionOptions options;        ///< fully resolved when the session was created
-    std::uint32_t map_patches = 0; ///< entries that an import begins its log with
-    std::string created_by;        ///< name of the token it was made with; empty: there was none
-    std::uint64_t chunks_max = 0;  ///< that its maps may have; 0: as many as any may
+    SessionOptions options;        ///< with all defaults filled in when the session was created
+    std::uint32_t map_patches = 0; ///< number of entries of an import at the start of its log
+    std::string created_by;        ///< name of the token that created it; empty: no token
+    std::uint64_t chunks_max = 0;  ///< chunks that its maps may have; 0: as many as any session
 
     friend bool operator==(const SessionRecord&, const SessionRecord&) = default;
 };
 
-/// A scan's ranges are packed (packed_ranges.hpp).
+/// Serializes an entry; the ranges of a scan are packed (packed_ranges.hpp).
 [[nodiscard]] std::string encode_entry(const LogEntry& entry);
 [[nodiscard]] std::string encode_session(const SessionRecord& record);
 
-/// Errors  kMalformed, kInvalidField: the entry was not written by this program or is damaged.
+/// Parses what encode_entry() has written.
+/// Errors: kMalformed or kInvalidField if the bytes are damaged or were written by another program.
 [[nodiscard]] Result<LogEntry> decode_entry(std::string_view bytes);
+
+/// Parses what encode_session() has written.
+/// Errors: kMalformed or kInvalidField if the bytes are damaged or were written by another program.
 [[nodiscard]] Result<SessionRecord> decode_session(std::string_view bytes);
 
-/// When and where a scan was taken, several times as fast as decode_entry(): its ranges are not read. Nothing for an
-/// entry of another kind.
-/// Errors  as of decode_entry().
+/// Parses only when and where a scan was taken. This is several times as fast as decode_entry(), because the ranges are
+/// not read.
+/// @param bytes  an entry of any kind
+/// @return robot, seq, stamp and pose of the scan; nullopt if the entry is not a scan
+/// Errors: those of decode_entry().
 [[nodiscard]] Result<std::optional<ScanPose>> decode_scan_pose(std::string_view bytes);
 
-/// The same entry as whoever knows nothing but the messages reads it: with the ranges in the scan, as they also were
+/// Converts an entry for readers that know only the messages of log.proto: with the ranges in the scan, where they were
 /// before format 2 of the store.
-/// Errors  kMalformed, as of decode_entry().
+/// Errors: kMalformed if the bytes are damaged or were written by another program.
 [[nodiscard]] Result<std::string> plain_entry(std::string_view bytes);
 
 } // namespace scanloom::wire

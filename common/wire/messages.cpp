@@ -20,7 +20,7 @@
 namespace scanloom::wire {
 namespace {
 
-/// Protobuf would write a line to stderr for every bad string that anyone sends; decode() reports them already.
+/// Silences protobuf, which writes a line to stderr for every invalid string received; decode() reports them already.
 [[maybe_unused]] auto* const kEarlierLogHandler = google::protobuf::SetLogHandler(nullptr);
 
 constexpr std::size_t kClientBytesMax = 128;
@@ -32,7 +32,7 @@ Result<> check_name(std::string_view field, std::string_view name) {
         fmt::format("{} is not a valid name; use 1 to {} characters of A-Z a-z 0-9 _ -", field, kNameBytesMax));
 }
 
-/// Text that appears in logs.
+/// Checks text that appears in logs.
 Result<> check_text(std::string_view field, std::string_view text, std::size_t bytes_max) {
     if (text.size() > bytes_max) {
         return Error{Errc::kTooLarge,

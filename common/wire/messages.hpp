@@ -15,8 +15,8 @@
 #include <variant>
 #include <vector>
 
-/// The frames of the robot link (proto/scanloom/v1/frame.proto) as plain values.
-/// Protobuf stops here: nothing outside common/wire sees its types.
+/// The frames of the robot link as plain values. proto/scanloom/v1/frame.proto documents each field.
+/// Code outside common/wire does not use protobuf's types.
 namespace scanloom::wire {
 
 inline constexpr std::uint32_t kProtocolVersion = 1;
@@ -28,7 +28,7 @@ struct Hello {
     std::string token;
     std::optional<SessionOptions> create;
     std::string client;
-    std::string source;                ///< what is streamed, if it can be streamed again; see frame.proto
+    std::string source;                ///< identifies what is streamed, if it can be streamed again; see frame.proto
     std::optional<double> body_radius; ///< metres, above 0, at most kBodyRadiusMax
 
     friend bool operator==(const Hello&, const Hello&) = default;
@@ -47,7 +47,7 @@ struct Welcome {
     std::uint64_t last_durable_seq = 0;
     Limits limits;
     std::uint64_t credit_bytes = 0;
-    bool zstd = false; ///< whether CompressedScanBatch is understood
+    bool zstd = false; ///< whether the server accepts CompressedScanBatch
 
     friend bool operator==(const Welcome&, const Welcome&) = default;
 };
@@ -58,7 +58,7 @@ struct ScanBatch {
     friend bool operator==(const ScanBatch&, const ScanBatch&) = default;
 };
 
-/// A ScanBatch for slow links: see common/wire/compression.hpp.
+/// A compressed ScanBatch for slow links; see common/wire/compression.hpp.
 struct CompressedScanBatch {
     std::uint32_t size = 0; ///< bytes of the frame body it holds
     std::string zstd;
@@ -74,7 +74,7 @@ struct Ack {
     friend bool operator==(const Ack&, const Ack&) = default;
 };
 
-/// An Error frame: the failure, and whether the same Hello may succeed later.
+/// An Error frame: the failure, and whether a retry with the same Hello may succeed.
 struct LinkError {
     Error error;
     bool retryable = false;
@@ -100,12 +100,12 @@ struct Goodbye {
     friend bool operator==(const Goodbye&, const Goodbye&) = default;
 };
 
-/// Where a robot's odometry frame is, as the server has found it.
+/// The pose of a robot's odometry frame in the map, as the server has estimated it.
 struct Correction {
     Pose2 T_map_odom;
     std::uint64_t revision = 0;
-    double explained = 0.0;      ///< part of what the robot saw, 0 to 1
-    double position_sigma = 0.0; ///< metres, in the direction least known
+    double explained = 0.0;      ///< inlier ratio of the robot's points in the map, 0 to 1
+    double position_sigma = 0.0; ///< metres, in the most uncertain direction
     double yaw_sigma = 0.0;      ///< radians
 
     friend bool operator==(const Correction&, const Correction&) = default;
@@ -114,19 +114,20 @@ struct Correction {
 inline constexpr std::size_t kPathPointsMax = 65'000; ///< so that every path fits a frame
 inline constexpr std::size_t kRegionPointsMax = 4096;
 
-/// Straight from point to point; metres, in the map frame.
+/// Straight lines from point to point. Metres, map frame.
 struct Path {
     std::vector<Point2> points; ///< at least 1
     double length = 0.0;
-    double cost = 0.0; ///< length, metres in danger counting 1 + danger_cost
+    double cost = 0.0; ///< length, but a metre in danger counts 1 + danger_cost
 
     friend bool operator==(const Path&, const Path&) = default;
 };
 
-/// Requests and replies are matched by `id`. What of a request is no point is checked by whoever meets it.
+/// Asks for the cheapest path. A reply has the `id` of its request. decode() validates only the points of a request;
+/// handlers validate the rest.
 struct PlanRequest {
     std::uint64_t id = 0;
-    std::optional<Point2> start; ///< none: where the robot's newest scan was taken
+    std::optional<Point2> start; ///< nullopt: where the robot's newest scan was taken
     Point2 goal{0.0, 0.0};
     bool allow_unknown = false;
     std::optional<double> body_radius; ///< metres
@@ -138,7 +139,7 @@ struct PlanRequest {
 struct PlanReply {
     std::uint64_t id = 0;
     std::uint64_t revision = 0; ///< of the maps
-    Result<Path> path;          ///< or why there is none
+    Result<Path> path;          ///< the path, or why there is none
 
     friend bool operator==(const PlanReply&, const PlanReply&) = default;
 };
@@ -147,7 +148,7 @@ struct GoalRequest {
     std::uint64_t id = 0;
     std::optional<Point2> start;
     std::optional<double> body_radius;   ///< metres
-    std::uint32_t frontier_size_min = 0; ///< cells; 0: as many as the body is wide
+    std::uint32_t frontier_size_min = 0; ///< cells; 0: the width of the body
 
     friend bool operator==(const GoalRequest&, const GoalRequest&) = default;
 };
@@ -156,10 +157,10 @@ enum class Exploration : std::uint8_t { kGoal = 1, kTakenByOthers = 2, kComplete
 
 struct Goal {
     Exploration exploration = Exploration::kComplete;
-    std::optional<Path> path;     ///< with kGoal: to where to stand
+    std::optional<Path> path;     ///< with kGoal: leads to where to stand
     std::optional<Point2> target; ///< with kGoal: the frontier's cell nearest to there, to look at
-    std::uint32_t given_up = 0;   ///< frontier cells that count no more, as robots looked at them in vain
-    bool in_danger = false;       ///< where to stand is in danger: there was no other place
+    std::uint32_t given_up = 0;   ///< frontier cells that no longer count, because robots could not observe them
+    bool in_danger = false;       ///< whether the place to stand is in danger, as there is no other
 
     friend bool operator==(const Goal&, const Goal&) = default;
 };
@@ -177,12 +178,12 @@ struct CoverageRequest {
     std::optional<Point2> start;
     std::optional<double> body_radius; ///< metres
     std::optional<double> spacing;     ///< metres
-    std::vector<Point2> region;        ///< corners of a polygon; none: all free ground that the start is part of
+    std::vector<Point2> region;        ///< corners of a polygon; empty: all free ground around the start
 
     friend bool operator==(const CoverageRequest&, const CoverageRequest&) = default;
 };
 
-/// Cells side by side in a row of a map: (i, j), (i + 1, j) ...
+/// Adjacent cells in a row of a map: (i, j), (i + 1, j), ...
 struct CellRun {
     std::int32_t j = 0;
     std::int32_t i = 0;
@@ -191,7 +192,7 @@ struct CellRun {
     friend bool operator==(const CellRun&, const CellRun&) = default;
 };
 
-/// The path's points and the runs are kPathPointsMax together at most.
+/// A path that covers free ground. Its points and the runs together are at most kPathPointsMax.
 struct Coverage {
     Path path;
     double free_area = 0.0;           ///< square metres
@@ -213,10 +214,10 @@ struct CoverageReply {
 inline constexpr std::size_t kLocatePointsMin = 20;
 inline constexpr std::size_t kLocatePointsMax = 32'768; ///< so that every request fits a frame
 
-/// Around a point of the map, along each axis.
+/// A square around a point of the map.
 struct Near {
     Point2 point{0.0, 0.0};
-    double radius = 0.0; ///< metres
+    double radius = 0.0; ///< metres, along each axis
 
     friend bool operator==(const Near&, const Near&) = default;
 };
@@ -224,8 +225,8 @@ struct Near {
 struct LocateRequest {
     std::uint64_t id = 0;
     std::vector<PointMm> points; ///< odometry frame, within kCoordinateMax
-    Point2 from{0.0, 0.0};       ///< metres, odometry frame: where they were seen from
-    std::optional<Near> near;    ///< none: anywhere
+    Point2 from{0.0, 0.0};       ///< metres, odometry frame: from where they were observed
+    std::optional<Near> near;    ///< nullopt: anywhere
 
     friend bool operator==(const LocateRequest&, const LocateRequest&) = default;
 };
@@ -242,23 +243,24 @@ using Message = std::variant<Hello, Welcome, Sensor, ScanBatch, Ack, LinkError, 
                              PlanRequest, PlanReply, GoalRequest, GoalReply, CoverageRequest, CoverageReply,
                              CompressedScanBatch, LocateRequest, LocateReply>;
 
-/// Name of the frame a message travels in, as proto/ spells it ("scan_batch").
+/// Returns the name of the frame of a message, as in frame.proto ("scan_batch").
 [[nodiscard]] std::string_view name_of(const Message& message) noexcept;
 
-/// Reads one frame body (without its length prefix) and checks every value in it.
-/// Post    poses, angles, lengths and stamps are finite and within common/scan/limits.hpp;
-///         names are valid; every scan has as many intensities and explicit angles as ranges,
-///         and no beam beyond a full turn.
-/// Errors  kMalformed: not a Frame, or one without a body; kInvalidField, kTooLarge: the message
-///         names the field, as in "scan_batch.scans[3].pose.x is nan".
-/// Thread  any.
+/// Parses one frame body and validates every value in it.
+/// @param body  the frame without its length prefix
+/// @return a message in which poses, angles, lengths and stamps are finite and within common/scan/limits.hpp, names are
+///         valid, and every scan has as many intensities and explicit angles as ranges, and no beam beyond a full turn
+/// Errors: kMalformed if it is not a Frame or has no body; kInvalidField or kTooLarge if a value is invalid: the
+///         message then names the field, as in "scan_batch.scans[3].pose.x is nan".
+/// Threads: any thread.
 [[nodiscard]] Result<Message> decode(std::string_view body);
 
-/// Appends the message to `out` as a frame, length prefix and checksum included.
+/// Appends the message to `out` as a frame with its length prefix and checksum.
 void encode(const Message& message, std::string& out);
 
-/// Checks that a scan fits the sensor it names: explicit angles of the sensor need as many ranges,
-/// uniform ones must not exceed a full turn.
+/// Checks that a scan without angles of its own fits its sensor: if the sensor has explicit or stepped angles, the scan
+/// needs as many ranges; if the angles are uniform, the beams must not exceed a full turn.
+/// Errors: kInvalidField if it does not fit.
 [[nodiscard]] Result<> check_scan(const Scan& scan, const Sensor& sensor);
 
 } // namespace scanloom::wire

@@ -20,7 +20,7 @@ static_assert(kBeamsMax <= 0xffff);
 
 constexpr std::size_t kPaddedMax = (kBeamsMax + kBlock - 1) / kBlock * kBlock;
 
-/// The numbers of a block. Always all of them, so that the compiler makes a few instructions of each loop below.
+/// The numbers of a block. Its size is fixed, so that the compiler turns each loop below into a few instructions.
 using Block = std::span<std::uint32_t, kBlock>;
 using ConstBlock = std::span<const std::uint32_t, kBlock>;
 
@@ -64,14 +64,14 @@ void load(const char* in, std::uint8_t width, Block block) {
     if (width == 4) load<std::uint32_t>(in, block);
 }
 
-/// The same of a block that ends with the bytes, maybe early.
+/// Loads a block near the end of the bytes, which may be shorter than a full block.
 void load_last(std::string_view bytes, std::uint8_t width, Block block) {
     std::array<char, kBlock * sizeof(std::uint32_t)> padded{};
     std::memcpy(padded.data(), bytes.data(), std::min(bytes.size(), padded.size()));
     load(padded.data(), width, block);
 }
 
-/// Differences, zigzag, of as many beams as whole blocks have; none behind the end.
+/// Computes the zigzag-encoded differences for whole blocks; after the last range they are 0.
 void fold_differences(std::span<const RangeMm> ranges, std::span<std::uint32_t> differences) {
     differences[0] = zigzag(ranges[0]);
     for (std::size_t i = 1; i < ranges.size(); ++i) differences[i] = zigzag(ranges[i] - ranges[i - 1]);

@@ -12,28 +12,32 @@
 #include <span>
 #include <string_view>
 
-/// What requests and replies of all kinds are made of, between protobuf and values.
-/// The checks name the field as they are told it is called.
+/// Converts the parts that requests and replies have in common between protobuf messages and plain values.
+/// An error of a check names its `field`.
 namespace scanloom::wire {
 
-/// Finite, and within kCoordinateMax.
+/// Checks that a coordinate is finite and within kCoordinateMax.
+/// Errors: kInvalidField.
 [[nodiscard]] Result<> check_coordinate(std::string_view field, double metres);
+
+/// Checks both coordinates of a point with check_coordinate().
 [[nodiscard]] Result<> check(std::string_view field, const v1::Point& point);
 
-/// Of lengths, costs and areas: finite, and not negative.
+/// Checks that a length, a cost or an area is finite and not negative.
+/// Errors: kInvalidField.
 [[nodiscard]] Result<> check_size(std::string_view field, double size);
 
 [[nodiscard]] Point2 value_of(const v1::Point& point);
 [[nodiscard]] Error value_of(const v1::Refusal& refusal);
 
-/// Of a reply that says neither what was found nor why nothing was.
+/// Returns the error for a reply that has neither a result nor a refusal.
 [[nodiscard]] Error without_outcome();
 
-/// x and y of each point less those of the one before it, of the first less (0, 0): neighbours are near one another,
-/// and their differences take a byte or two each.
+/// Points as differences: x and y of the first point, then x and y of each point minus those of the previous one.
+/// Successive points are close to each other, so that a difference takes one or two bytes.
 using Differences = google::protobuf::RepeatedField<std::int32_t>;
 
-/// Points up to kCoordinateMax from the origin either way.
+/// Appends the differences of the points. Precondition: the points are within kCoordinateMax.
 void append_differences(std::span<const PointMm> points, Differences& out);
 
 void write_point(const Point2& point, v1::Point& out);

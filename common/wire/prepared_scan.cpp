@@ -20,7 +20,7 @@ namespace {
 
 using google::protobuf::io::CodedOutputStream;
 
-// What precedes a field on the wire: its number, and how it is written.
+// The tag before a field on the wire: the number and the wire type of the field.
 constexpr std::uint32_t kVarint = 0, kFixed64 = 1, kDelimited = 2;
 constexpr std::uint8_t tag(int field, std::uint32_t type) {
     return static_cast<std::uint8_t>(static_cast<std::uint32_t>(field) << 3 | type);
@@ -35,7 +35,7 @@ std::size_t varint_size(std::uint64_t value) { return CodedOutputStream::VarintS
 
 std::size_t delimited_size(std::size_t content) { return kTagBytes + varint_size(content) + content; }
 
-/// Protobuf leaves out a field that is 0, but not -0.
+/// Returns whether protobuf writes the field: it omits 0, but not -0.
 bool is_written(double stamp) { return std::bit_cast<std::uint64_t>(stamp) != 0; }
 
 std::size_t scan_size(const NumberedScan& numbered) {

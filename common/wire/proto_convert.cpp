@@ -64,7 +64,7 @@ Result<> check_angles(const BeamAngles& angles) {
     return std::visit([](const auto& spacing) { return check_spacing(spacing); }, angles);
 }
 
-/// Errors  kInvalidField: a sum that 32 bits do not hold.
+/// Errors: kInvalidField if a sum of steps does not fit 32 bits.
 Result<BeamAngles> read_stepped(const v1::SteppedAngles& proto) {
     SteppedAngles stepped{proto.unit(), {}};
     stepped.steps.reserve(static_cast<std::size_t>(proto.deltas_size()));

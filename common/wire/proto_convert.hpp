@@ -6,13 +6,13 @@
 
 #include "scanloom/v1/scan.pb.h"
 
-/// Between protobuf messages and values, shared by messages.cpp and log_codec.cpp.
-/// `from_proto` checks every value; the error names the field relative to the message.
+/// Converts sensors, scans and poses between protobuf messages and plain values, for frames and log entries.
+/// from_proto() validates every value; the error names the field relative to the message.
 namespace scanloom::wire {
 
 [[nodiscard]] Result<Sensor> from_proto(const v1::SensorDescription& description);
 [[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan);
-/// With ranges that came another way, in place of its own.
+/// Converts a scan whose ranges are given separately, in place of its own.
 [[nodiscard]] Result<Scan> from_proto(const v1::Scan& scan, std::vector<RangeMm> ranges);
 [[nodiscard]] Result<Pose2> from_proto(const v1::Pose2& pose);
 

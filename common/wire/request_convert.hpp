@@ -5,8 +5,8 @@
 
 #include "scanloom/v1/frame.pb.h"
 
-/// Requests for ways and their replies, between protobuf and values.
-/// `from_proto` checks every point; the error names the field relative to the message.
+/// Converts requests for paths, goals and coverage, and their replies, between protobuf messages and plain values.
+/// from_proto() validates every point; the error names the field relative to the message.
 namespace scanloom::wire {
 
 [[nodiscard]] Result<PlanRequest> from_proto(const v1::PlanRequest& request);
@@ -16,7 +16,7 @@ namespace scanloom::wire {
 [[nodiscard]] Result<CoverageRequest> from_proto(const v1::CoverageRequest& request);
 [[nodiscard]] Result<CoverageReply> from_proto(const v1::CoverageReply& reply);
 
-/// Pre  of a path: at most kPathPointsMax points; of a region: at most kRegionPointsMax.
+/// Precondition: a path has at most kPathPointsMax points, a region at most kRegionPointsMax.
 void to_proto(const PlanRequest& request, v1::PlanRequest& out);
 void to_proto(const PlanReply& reply, v1::PlanReply& out);
 void to_proto(const GoalRequest& request, v1::GoalRequest& out);

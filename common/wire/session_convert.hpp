@@ -5,11 +5,11 @@
 
 #include "scanloom/v1/session.pb.h"
 
-/// How sessions are configured, between protobuf and values.
+/// Converts the settings of sessions between protobuf messages and plain values.
 namespace scanloom::wire {
 
-/// Ranges are for the session to check.
-/// Errors  kInvalidField: a choice that this program does not know.
+/// Does not check the ranges of the settings; the session does.
+/// Errors: kInvalidField if an enumeration has a value that this program does not know.
 [[nodiscard]] Result<SessionOptions> from_proto(const v1::SessionConfig& config);
 
 void to_proto(const SessionOptions& options, v1::SessionConfig& out);
