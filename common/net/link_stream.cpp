@@ -17,7 +17,7 @@ void LinkStream::expect_host(const std::string& host) {
     boost::asio::ip::make_address(host, is_name);
     SSL* ssl = tls->native_handle();
     if (is_name) {
-        SSL_set_tlsext_host_name(ssl, host.c_str()); // RFC 6066 forbids to send addresses
+        SSL_set_tlsext_host_name(ssl, host.c_str()); // RFC 6066 forbids sending addresses
         SSL_set1_host(ssl, host.c_str());
     } else {
         X509_VERIFY_PARAM_set1_ip_asc(SSL_get0_param(ssl), host.c_str());

@@ -44,13 +44,13 @@ enum class ClientFault {
     kForeign, ///< no trusted CA signed it, or it is not valid at this time
 };
 
-/// Returns why the client's certificate made a server's handshake fail; nullopt if the handshake failed otherwise.
+/// Returns why the client's certificate made a server's handshake fail; nullopt if it failed for another reason.
 [[nodiscard]] std::optional<ClientFault> client_fault_of(const boost::system::error_code& failed) noexcept;
 
 /// Returns whether a server's handshake failed because the client sent plain HTTP.
 [[nodiscard]] bool is_plain_http(const boost::system::error_code& failed) noexcept;
 
-/// Returns whether a server rejected the client's certificate, or rejected that the client presented none. With TLS 1.3
+/// Returns whether a server rejected the client because of its certificate, or because it presented none. With TLS 1.3
 /// the client gets this error after its handshake, from its first read.
 [[nodiscard]] bool is_refused_certificate(const boost::system::error_code& failed) noexcept;
 
