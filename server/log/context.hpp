@@ -6,22 +6,22 @@
 #include <string_view>
 #include <utility>
 
-/// Lines of the log that say, besides their sentence, whom they are about: a sentence for people, fields for programs.
+/// Writes log lines that have a sentence for people and, for programs, fields with the session, robot and peer.
 namespace scanloom::log {
 
-/// Empty where it is about none, or not known.
+/// The session, robot and peer of a log line. A field is empty if it does not apply or is unknown.
 struct Context {
     std::string_view session{};
     std::string_view robot{};
-    std::string_view peer{}; ///< address, perhaps with a port
+    std::string_view peer{}; ///< address, optionally with a port
 };
 
-/// That of the line which this thread is writing at the moment, for formatters.
+/// Returns the context of the line that the calling thread is writing. For formatters.
 [[nodiscard]] const Context& current() noexcept;
 
 namespace detail {
 
-/// As long as it lives, this is the context of what its thread writes.
+/// Sets the context of the calling thread's log lines for the lifetime of the scope.
 class Scope {
 public:
     explicit Scope(const Context& context) noexcept;
