@@ -7,11 +7,11 @@
 
 namespace scanloom::metrics {
 
-/// A value that is read when it is asked for, rather than counted: one family of one metric.
+/// Returns a family of one metric whose value is read at the time of the scrape instead of being counted.
 [[nodiscard]] prometheus::MetricFamily gauge_now(std::string name, std::string help, double value);
 [[nodiscard]] prometheus::MetricFamily counter_now(std::string name, std::string help, double value);
 
-/// The text that Prometheus scrapes, format 0.0.4.
+/// Returns the families in the Prometheus text format 0.0.4.
 [[nodiscard]] std::string to_text(const std::vector<prometheus::MetricFamily>& families);
 
 } // namespace scanloom::metrics

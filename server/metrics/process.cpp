@@ -22,7 +22,7 @@ struct ProcessStat {
     double resident_pages = 0.0;
 };
 
-/// The program's name, field 2, may hold anything but ends at the last parenthesis.
+/// Field 2, the program's name, may contain any character; it ends at the last parenthesis.
 std::optional<ProcessStat> read_stat(const std::filesystem::path& proc) {
     std::ifstream file(proc / "self/stat");
     std::string line;
@@ -44,7 +44,7 @@ std::optional<ProcessStat> read_stat(const std::filesystem::path& proc) {
     return stat;
 }
 
-/// When the machine started, seconds since the epoch.
+/// Returns the boot time of the machine, in seconds since the epoch.
 std::optional<double> boot_time(const std::filesystem::path& proc) {
     std::ifstream file(proc / "stat");
     std::string line;
