@@ -9,12 +9,15 @@
 
 namespace scanloom::sockets {
 
-/// Accepts until the acceptor is closed, and hands over each socket, which has a strand of its own as its executor.
+/// Accepts connections until the acceptor is closed. Passes each socket to `take`; the socket's executor is a new
+/// strand.
 ///
-/// Whatever fails, accepting or `take`, costs one connection and a short pause, in which memory or descriptors may come
-/// free; it is logged, with `what` it was ("a robot").
-/// Pre     acceptor, io and what `take` refers to outlive the coroutine.
-/// Thread  to be spawned on the acceptor's executor; `take` is called there.
+/// A failure of accepting or of `take` is logged, loses one connection, and is followed by a pause of 100 ms in which
+/// memory or descriptors may be released.
+/// @param what  kind of peer, for the log ("a robot")
+/// @param take  called on the acceptor's executor
+/// Pre: acceptor, io and everything that `take` refers to outlive the coroutine.
+/// Threads: spawn it on the acceptor's executor.
 [[nodiscard]] boost::asio::awaitable<void> accept_each(boost::asio::ip::tcp::acceptor& acceptor,
                                                        boost::asio::io_context& io, std::string_view what,
                                                        std::function<void(boost::asio::ip::tcp::socket)> take);

@@ -14,9 +14,11 @@
 
 namespace scanloom::sockets {
 
-/// Does `work` on `executor`, then goes on where it was with what that returned, or throws what it threw. Waits in one
-/// queue at `executor` once: asio::co_spawn() waits there a second time when the work is done.
-/// @param work returns what is default-constructible and movable
+/// Runs `work` on `executor`, then resumes on the coroutine's own executor with the result of `work`, or rethrows its
+/// exception.
+///
+/// It waits in the queue of `executor` once; asio::co_spawn() would wait there a second time when the work is done.
+/// @param work  its result is default-constructible and movable
 template <class Work>
 boost::asio::awaitable<std::invoke_result_t<Work&>> compute_on(boost::asio::any_io_executor executor, Work work) {
     namespace asio = boost::asio;

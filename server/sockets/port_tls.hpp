@@ -12,23 +12,26 @@
 
 namespace scanloom::sockets {
 
-/// What the TLS of a port is made of, in PEM; no certificate: the port speaks plainly.
+/// The PEM files of a port's TLS. Without a certificate the port uses plain TCP.
 struct TlsFiles {
     std::filesystem::path certificate;
     std::filesystem::path key;
-    std::filesystem::path client_ca; ///< who signed the certificates of clients; empty: they need none
+    std::filesystem::path client_ca; ///< CA of client certificates; empty: clients need no certificate
 
     [[nodiscard]] bool is_given() const noexcept { return !certificate.empty(); }
 };
 
-/// The TLS of a listening port: its files as they were read last. Connections keep those with which they began.
-/// Thread  any.
+/// The TLS settings of a listening port, as last read from its files. Open connections keep the settings they started
+/// with.
+/// Threads: any thread.
 class PortTls {
 public:
-    /// Errors  those of net::server_tls().
+    /// Reads the files.
+    /// Errors: those of net::server_tls().
     [[nodiscard]] static Result<std::shared_ptr<PortTls>> open(TlsFiles files);
 
-    /// Errors  those of net::server_tls(); then what was read before stays in force.
+    /// Reads the files again, for new connections.
+    /// Errors: those of net::server_tls(); the previous settings then stay in force.
     [[nodiscard]] Result<> read_again();
 
     [[nodiscard]] net::TlsContext in_force() const;
@@ -42,7 +45,8 @@ private:
     net::TlsContext context_;
 };
 
-/// What a connection that was accepted is read from. `tls`: null where the port speaks plainly.
+/// Returns the stream that an accepted connection is read from and written to.
+/// @param tls  null if the port uses plain TCP
 [[nodiscard]] net::LinkStream stream_over(boost::asio::ip::tcp::socket socket,
                                           const std::shared_ptr<const PortTls>& tls);
 

@@ -4,8 +4,9 @@
 
 namespace scanloom::sockets {
 
-/// Runs the context's work until there is none or it is stopped. What a handler throws ends that handler only: it is
-/// logged, and the others go on. Thread: any number of them may run one context.
+/// Runs the context until it has no more work or is stopped. An exception from a handler is logged and ends only that
+/// handler.
+/// Threads: any number of threads may run one context.
 void run_to_the_end(boost::asio::io_context& io) noexcept;
 
 } // namespace scanloom::sockets

@@ -6,13 +6,15 @@
 
 namespace scanloom::sockets {
 
-/// How many of a kind there may be at once. Nobody waits for a slot: who gets none says so.
-/// Thread  any.
+/// A semaphore without waiting: limits how many uses of a resource may exist at once. A caller that gets no slot
+/// refuses its request.
+/// Threads: any thread.
 class Slots {
 public:
     explicit Slots(std::size_t count) : free_(std::make_shared<std::atomic<std::ptrdiff_t>>(count)) {}
 
-    /// A slot, free again when its last copy is gone; null when all are taken.
+    /// Takes a slot, which is released with the last copy of the returned pointer.
+    /// @return null if all slots are taken
     [[nodiscard]] std::shared_ptr<const void> try_take() const {
         if (free_->fetch_sub(1) > 0) return {free_.get(), [free = free_](const void*) { free->fetch_add(1); }};
         free_->fetch_add(1);

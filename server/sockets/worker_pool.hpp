@@ -9,16 +9,16 @@
 
 namespace scanloom::sockets {
 
-/// Threads that run what is posted to their executor. An exception ends the task that throws it and is logged;
-/// boost::asio::thread_pool ends the process.
+/// A pool of threads that run the tasks posted to its executor. An exception from a task is logged and ends only that
+/// task; with boost::asio::thread_pool it would end the process.
 class WorkerPool {
 public:
     using executor_type = boost::asio::io_context::executor_type;
 
-    /// Throws std::system_error if the system has no more threads.
+    /// Starts `threads` threads. Throws std::system_error if the system cannot create them.
     explicit WorkerPool(std::size_t threads);
 
-    /// Drops what has not begun, and waits for what has.
+    /// Drops tasks that have not started, and waits for running tasks.
     ~WorkerPool();
 
     WorkerPool(const WorkerPool&) = delete;
@@ -26,7 +26,8 @@ public:
 
     [[nodiscard]] executor_type get_executor() noexcept { return io_.get_executor(); }
 
-    /// Waits until everything that was posted is done. Not from one of its threads.
+    /// Waits until all posted tasks are done, then ends the threads.
+    /// Threads: not from a thread of this pool.
     void join();
 
 private:
