@@ -4,20 +4,23 @@
 
 namespace scanloom::access {
 
-/// How much of something may pass in a time: a leaky bucket that holds what flows in a second.
-/// Times   seconds of a clock that is never put back.
+/// A token bucket whose capacity is the amount of one second. It may be overdrawn.
+/// All times are in seconds of a monotonic clock.
 class Bucket {
 public:
-    /// Full at first. `rate` is what flows in a second; infinite: nothing is held back.
+    /// Creates a full bucket.
+    /// @param rate  amount per second; infinity means no limit
     Bucket(double rate, double now) noexcept : rate_(rate), left_(rate), seen_(now) {}
 
-    /// Takes so much, whether it is there or not. @return seconds until it would have been.
+    /// Takes `amount` even if the bucket holds less.
+    /// @return seconds until the missing amount has flowed in; 0 if nothing was missing
     [[nodiscard]] double take(double amount, double now) noexcept {
         refill(now);
         left_ -= amount;
         return left_ >= 0.0 ? 0.0 : -left_ / rate_;
     }
 
+    /// Changes the rate from `now` on. The bucket keeps its content, up to the new capacity.
     void set_rate(double rate, double now) noexcept {
         refill(now);
         rate_ = rate;
@@ -33,7 +36,7 @@ private:
     }
 
     double rate_;
-    double left_; // below 0: owed
+    double left_; // below 0: overdrawn
     double seen_;
 };
 

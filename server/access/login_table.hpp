@@ -8,23 +8,26 @@
 
 namespace scanloom::access {
 
-/// Browsers that are signed in: of each only a hash of what its cookie holds, and whose token it was signed in with.
-/// The token's secret is in neither.
+/// The browsers that are signed in. For each it keeps a hash of the cookie's value and the hash of the token that was
+/// used to sign in, never the token's secret.
 ///
-/// Bounds  kLoginsMax; of one token kLoginsOfTokenMax. One more, and the one that was used longest ago is forgotten.
-/// Times   seconds of a clock that is never put back.
+/// Bounds: kLoginsMax in total, kLoginsOfTokenMax per token. Beyond either, the least recently used login is removed.
+/// All times are in seconds of a monotonic clock.
 class LoginTable {
 public:
     static constexpr std::size_t kLoginsMax = 4096;
     static constexpr std::size_t kLoginsOfTokenMax = 64;
-    static constexpr double kIdleSeconds = 12.0 * 3600.0; ///< unused for so long, it is over
+    static constexpr double kIdleSeconds = 12.0 * 3600.0; ///< a login expires when unused for longer
 
-    /// `cookie` is a new secret_of() random bits.
+    /// Signs a browser in.
+    /// @param cookie  a new secret_of() random bits
     void open(std::string_view cookie, const std::string& token_hash, double now);
 
-    /// The hash of the token that was signed in with; nothing when it is over.
+    /// Records a use of the login.
+    /// @return the hash of the token that was used to sign in, or nullopt if the login is unknown or has expired
     [[nodiscard]] std::optional<std::string> use(std::string_view cookie, double now);
 
+    /// Signs the browser out.
     void close(std::string_view cookie);
 
     [[nodiscard]] std::size_t size() const noexcept { return logins_.size(); }

@@ -17,7 +17,7 @@ bool matches(std::string_view pattern, std::string_view name) noexcept {
     constexpr auto kNone = std::string_view::npos;
     std::size_t at = 0;       // in the pattern
     std::size_t star = kNone; // the last '*' passed
-    std::size_t tried = 0;    // where what follows it was tried to begin
+    std::size_t tried = 0;    // where the text after that '*' was last assumed to begin
     for (std::size_t i = 0; i < name.size();) {
         if (at < pattern.size() && pattern[at] == '*') {
             star = at++;
@@ -25,7 +25,7 @@ bool matches(std::string_view pattern, std::string_view name) noexcept {
         } else if (at < pattern.size() && (pattern[at] == '?' || pattern[at] == name[i])) {
             ++at;
             ++i;
-        } else if (star != kNone) { // that '*' stands for one character more; an earlier one never has to
+        } else if (star != kNone) { // the last '*' takes one more character; an earlier '*' never has to
             at = star + 1;
             i = ++tried;
         } else {

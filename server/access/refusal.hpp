@@ -10,18 +10,18 @@ enum class Port { kRobot, kHttp };
 
 inline constexpr std::array kPorts = {Port::kRobot, Port::kHttp};
 
-/// Why somebody is not let in, or may not do what he asks.
+/// Why a connection or a request is refused.
 enum class Reason {
-    kNoToken,            ///< none was sent where one is needed
-    kUnknownToken,       ///< what was sent is no token that is in force
-    kWrongRole,          ///< it is not for that
-    kWrongSession,       ///< it is not for that session
-    kForeignPage,        ///< a browser that is signed in asks for somebody else's page
-    kForeignHost,        ///< a name by which this server does not go, as when a page rebinds its own
-    kLimit,              ///< it has all that it may have
-    kRevoked,            ///< its token is no longer in force, while it was in use
-    kNoCertificate,      ///< none was shown where one is needed
-    kForeignCertificate, ///< what was shown, nobody who is trusted here signed, or it is not valid now
+    kNoToken,            ///< no token was sent and one is required
+    kUnknownToken,       ///< the token that was sent is not in force
+    kWrongRole,          ///< the token's role does not permit the action
+    kWrongSession,       ///< the token is not for that session
+    kForeignPage,        ///< a page of another site sent the request from a browser that is signed in here
+    kForeignHost,        ///< the request names a host that is not this server's, as in DNS rebinding
+    kLimit,              ///< a limit of the token is reached
+    kRevoked,            ///< the token in use no longer permits it
+    kNoCertificate,      ///< no client certificate was sent and one is required
+    kForeignCertificate, ///< the client certificate was not signed by the configured CA, or is not valid now
 };
 
 inline constexpr std::array kReasons = {
@@ -47,13 +47,13 @@ inline constexpr std::array kReasons = {
     return "unknown";
 }
 
-/// Somebody was not let in.
+/// One refused connection or request.
 struct Refusal {
     Port port = Port::kRobot;
     Reason reason = Reason::kNoToken;
     std::string who;     ///< address, without a port
-    std::string token;   ///< its name; empty: not known
-    std::string session; ///< as it was asked for, unchecked; empty: none
+    std::string token;   ///< the token's name; empty: not known
+    std::string session; ///< as the client sent it, not validated; empty: none
 
     friend bool operator==(const Refusal&, const Refusal&) = default;
 };

@@ -29,7 +29,8 @@ std::vector<RefusalTable::Line> RefusalTable::due(double now) {
     return lines;
 }
 
-/// Once a second at most: tells what has waited long enough, and forgets who was not refused meanwhile.
+/// Appends the lines that are due, and removes entries without refusals since their last line. Runs at most once per
+/// second.
 void RefusalTable::sweep(double now, std::vector<Line>& lines) {
     if (now - swept_ < 1.0) return;
     swept_ = now;

@@ -11,18 +11,18 @@
 
 namespace scanloom::access {
 
-/// What is told of refusals: of each address and reason the first at once, and then one line a minute at most, with how
-/// many there were since. So nobody fills a log by being refused.
+/// Limits the log lines about refusals, so that refused clients cannot fill the log. For each address, port and reason
+/// the first refusal is reported at once, and later ones in at most one line per minute with their count.
 ///
-/// Bounds  kAddressesMax pairs of address and reason are kept apart; those beyond are told together, as of kOthers.
-/// Times   seconds of a clock that is never put back.
+/// Bounds: kAddressesMax entries. Refusals beyond are reported together, with the address kOthers.
+/// All times are in seconds of a monotonic clock.
 class RefusalTable {
 public:
     static constexpr std::size_t kAddressesMax = 1024;
     static constexpr double kPauseSeconds = 60.0;
     static constexpr std::string_view kOthers = "others";
 
-    /// The newest of some refusals that are alike.
+    /// A log line about refusals with the same address, port and reason.
     struct Line {
         Refusal newest;
         std::uint64_t count = 0; ///< since the last line
@@ -30,21 +30,22 @@ public:
         friend bool operator==(const Line&, const Line&) = default;
     };
 
-    /// Takes a refusal in. @return what is to be told now.
+    /// Records a refusal.
+    /// @return the lines to log now
     [[nodiscard]] std::vector<Line> note(Refusal refusal, double now);
 
-    /// What has waited long enough to be told, also where nobody is refused any more. Call it now and then.
+    /// Returns the lines that are due. Call it periodically, so that they appear even if no further refusal occurs.
     [[nodiscard]] std::vector<Line> due(double now);
 
-    /// What is not told yet, at the end.
+    /// Returns the lines that have not been reported. Call it before destruction.
     [[nodiscard]] std::vector<Line> rest();
 
 private:
     using Key = std::tuple<std::string, Port, Reason>;
     struct Kept {
         Refusal newest;
-        double told = 0.0;        // when
-        std::uint64_t untold = 0; // since then
+        double told = 0.0;        // time of the last line
+        std::uint64_t untold = 0; // refusals since then
     };
 
     void sweep(double now, std::vector<Line>& lines);

@@ -6,11 +6,11 @@
 
 namespace scanloom::access {
 
-/// What a token is for.
+/// The set of actions that a token permits.
 enum class Role {
-    kRobot,    ///< robot links: sends scans, creates its sessions; over HTTP: has goals assigned
-    kViewer,   ///< reads over HTTP; has ways planned, which changes nothing
-    kOperator, ///< everything: as robots and viewers do, and creates, imports and deletes
+    kRobot,    ///< on robot links: sends scans, creates its sessions; over HTTP: requests goals
+    kViewer,   ///< over HTTP: reads, and plans paths, which changes nothing
+    kOperator, ///< everything that robots and viewers may do; also creates, imports and deletes
 };
 
 inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperator};
@@ -31,16 +31,16 @@ inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperat
     return std::nullopt;
 }
 
-/// On robot links.
+/// Returns whether the role permits robot links.
 [[nodiscard]] constexpr bool may_drive(Role role) noexcept { return role != Role::kViewer; }
 
-/// Over HTTP, without changing anything.
+/// Returns whether the role permits HTTP requests that change nothing.
 [[nodiscard]] constexpr bool may_look(Role role) noexcept { return role != Role::kRobot; }
 
-/// Over HTTP: to assign goals to robots.
+/// Returns whether the role permits assigning goals to robots over HTTP.
 [[nodiscard]] constexpr bool may_guide(Role role) noexcept { return role != Role::kViewer; }
 
-/// Over HTTP.
+/// Returns whether the role permits HTTP requests that change something.
 [[nodiscard]] constexpr bool may_change(Role role) noexcept { return role == Role::kOperator; }
 
 } // namespace scanloom::access

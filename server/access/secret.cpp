@@ -12,7 +12,7 @@ constexpr std::string_view kLowerDigits = "0123456789abcdef";
 constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
 constexpr std::size_t kHashDigits = 64;
 
-/// So many digits behind the prefix are no accident.
+/// This many digits after the prefix are taken for a secret.
 constexpr std::size_t kTellingDigits = 8;
 
 } // namespace

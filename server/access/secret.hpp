@@ -5,24 +5,25 @@
 #include <string>
 #include <string_view>
 
-/// Secrets: what the holder of a token sends.
+/// Secrets: the text by which a client proves that it holds a token.
 namespace scanloom::access {
 
-/// "scanloom_" and 64 hexadecimal digits, of 256 bits that nobody can guess.
+/// Returns "scanloom_" and 64 hexadecimal digits.
 ///
-/// It is longer than any name, so none can pass for a session's or a robot's; and it shows what it is, so that logs can
-/// be kept free of it, and those who search repositories for secrets find it.
+/// A secret is longer than any valid name, so it cannot be mistaken for a session or robot name. The prefix makes
+/// secrets recognizable, so that logs can be cleaned of them and secret scanners find them in repositories.
+/// @param random  256 unpredictable bits
 [[nodiscard]] std::string secret_of(const std::array<std::byte, 32>& random);
 
-/// SHA-256, 64 lower-case digits. A slow hash, as passwords need, would guard nothing more: there is no dictionary of
-/// 256 random bits.
+/// Returns the SHA-256 of the secret as 64 lower-case hexadecimal digits. A slow password hash would add no protection,
+/// because 256 random bits cannot be guessed from a dictionary.
 [[nodiscard]] std::string hash_of(std::string_view secret);
 
-/// Whether it is what hash_of() returns.
+/// Returns whether the text has the form that hash_of() returns.
 [[nodiscard]] bool is_hash(std::string_view text) noexcept;
 
-/// The text with every secret in it, also one that was cut short, as "scanloom_...". For logs: strangers send secrets
-/// where none belongs.
+/// Returns the text with every secret, even a truncated one, replaced by "scanloom_...". For logs, because clients may
+/// send a secret in a field that is logged.
 [[nodiscard]] std::string without_secrets(std::string_view text);
 
 } // namespace scanloom::access

@@ -10,12 +10,12 @@
 
 namespace scanloom::access {
 
-/// Who holds the secret may do this. The secret itself is not here: the server never keeps it.
+/// What the holder of a secret is permitted to do. The secret itself is not stored: the server keeps only its hash.
 struct Token {
-    std::string name; ///< for logs and for what was made with it: [A-Za-z0-9_-]{1,64}
+    std::string name; ///< in logs and in sessions created with the token: [A-Za-z0-9_-]{1,64}
     std::string hash; ///< hash_of() the secret
     Role role = Role::kViewer;
-    std::vector<std::string> sessions; ///< patterns of their names
+    std::vector<std::string> sessions; ///< patterns of session names
     Limits limits;
 
     friend bool operator==(const Token&, const Token&) = default;
@@ -23,13 +23,13 @@ struct Token {
 
 using TokenRef = std::shared_ptr<const Token>;
 
-/// Whether one of its patterns matches the name.
+/// Returns whether one of the token's patterns matches the session's name.
 [[nodiscard]] bool is_for(const Token& token, std::string_view session) noexcept;
 
-/// Whether it is for every session, also for what concerns all of them.
+/// Returns whether the token is for every session, and so for actions that concern all sessions.
 [[nodiscard]] bool is_for_all(const Token& token) noexcept;
 
-/// Whoever comes where nothing is guarded: an operator of everything, without a name.
+/// Returns the token that every client has if the server has no tokens: an operator for all sessions, without a name.
 [[nodiscard]] const TokenRef& anybody();
 
 } // namespace scanloom::access

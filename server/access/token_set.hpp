@@ -8,20 +8,22 @@
 
 namespace scanloom::access {
 
-/// The tokens that are in force. Immutable.
+/// An immutable set of tokens.
 class TokenSet {
 public:
     TokenSet() = default;
 
-    /// Pre: all names and all hashes differ, and each hash is_hash().
+    /// Pre: all names differ, all hashes differ, and each hash satisfies is_hash().
     explicit TokenSet(std::vector<TokenRef> tokens) : tokens_(std::move(tokens)) {}
 
-    /// The token of the secret; null when there is none.
-    /// Cost  that of one hash and of one comparison with every token, the same whatever is sent: how long it takes
-    ///       tells nothing.
+    /// Finds the token of the secret.
+    /// @return null if there is none
+    /// Cost: one hash, and one comparison with every token. The time does not depend on the secret and so reveals
+    ///       nothing.
     [[nodiscard]] TokenRef find(std::string_view secret) const;
 
-    /// The same by hash_of() the secret.
+    /// Finds the token by hash_of() its secret.
+    /// @return null if there is none
     [[nodiscard]] TokenRef find_hash(std::string_view hash) const;
 
     [[nodiscard]] const std::vector<TokenRef>& tokens() const noexcept { return tokens_; }

@@ -15,14 +15,15 @@
 
 namespace scanloom::access {
 
-/// toml++ relies on more than it has checked.
+/// Thrown where an assertion of toml++ fails.
 struct ParserIsAstray {};
 [[noreturn]] void give_up_parsing() { throw ParserIsAstray(); }
 
 } // namespace scanloom::access
 
-// What toml++ 3.3 asserts does not hold of every file (its pull request 301 mends one such place), and without
-// assertions it takes what it asserts for given. So they are on here, of this file alone, and end the parsing.
+// Some assertions of toml++ 3.3 fail for malformed files (its pull request 301 fixes one such place), and without
+// assertions it relies on their conditions. Therefore they are enabled in this file only, and a failed one ends the
+// parsing.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_EXCEPTIONS 0
@@ -37,7 +38,7 @@ constexpr std::array<std::string_view, 5> kKeys = {"name", "sha256", "role", "se
 constexpr std::size_t kTokensMax = 10'000;
 constexpr std::size_t kPatternsMax = 256;
 
-/// A limit that is a whole number, by its key.
+/// The key and upper bound of a limit that is a whole number.
 struct Count {
     std::string_view key;
     std::size_t Limits::*limit;
@@ -56,7 +57,7 @@ Error fault(const toml::source_region& where, std::string_view what, Errc code =
     return {code, fmt::format("{}: {}", where.begin.line, what)};
 }
 
-/// Where a comment begins in a line, or its end. Texts of several lines are none of ours.
+/// Returns where a comment begins in the line, or the line's length. Multi-line strings are not supported.
 std::size_t comment_in(std::string_view line) {
     char quote = '\0';
     for (std::size_t at = 0; at < line.size(); ++at) {
@@ -76,10 +77,10 @@ std::size_t comment_in(std::string_view line) {
 
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
 
-/// The same file as toml++ 3.3 can read it: some letters beyond ASCII take it to undefined behaviour (its issues 190
-/// and 295). Of those there are none but in comments.
+/// Returns the text without non-ASCII characters, because some of them lead toml++ 3.3 to undefined behaviour (its
+/// issues 190 and 295). They are allowed in comments only, and replaced there.
 Result<std::string> fit_for_parser(std::string_view toml) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"; // some editors put it first
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF"; // some editors write it
     if (toml.starts_with(kByteOrderMark)) toml.remove_prefix(kByteOrderMark.size());
     std::string fit;
     for (std::size_t number = 1; !toml.empty(); ++number) {
@@ -87,7 +88,7 @@ Result<std::string> fit_for_parser(std::string_view toml) {
         std::string line(toml.substr(0, end));
         const auto comment = line.begin() + static_cast<std::ptrdiff_t>(comment_in(line));
         if (!std::all_of(line.begin(), comment, is_ascii)) {
-            return Error{Errc::kMalformed, // not the line itself: a secret may stand there
+            return Error{Errc::kMalformed, // without the line itself: it may contain a secret
                          fmt::format("{}: there are letters beyond ASCII, which only comments may have", number)};
         }
         std::replace_if(comment, line.end(), std::not_fn(is_ascii), '?');
@@ -97,7 +98,7 @@ Result<std::string> fit_for_parser(std::string_view toml) {
     return fit;
 }
 
-/// What stands in the file, fit for a message.
+/// Returns text of the file in quotes, shortened and printable, for a message.
 std::string shown(std::string_view text) {
     constexpr std::size_t kShown = 64;
     std::string result = "'";
@@ -216,7 +217,7 @@ Result<Token> read_token(const toml::table& table) {
     return token;
 }
 
-/// Two would be told apart by nothing, in the log or by what is sent.
+/// Names must differ because logs identify a token by its name; hashes, because clients are identified by their secret.
 Result<> check_different(const toml::table& table, const Token& token, const std::vector<TokenRef>& others) {
     for (const auto& other : others) {
         if (other->name == token.name) {
@@ -274,7 +275,7 @@ Result<TokenSet> parse_tokens(std::string_view toml) {
                                                shown(key.str())));
     }
     const auto* tables = root.get_as<toml::array>("token");
-    if (tables == nullptr || tables->empty()) { // most likely by accident
+    if (tables == nullptr || tables->empty()) { // probably a mistake
         return Error{Errc::kInvalidField, "1: there is no [[token]] in it; `scanloom-server token` prints one to add"};
     }
     return read_tokens(*tables);

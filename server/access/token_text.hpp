@@ -6,23 +6,24 @@
 #include <string>
 #include <string_view>
 
-/// Tokens as text, in TOML.
+/// Reads and writes tokens as TOML.
 namespace scanloom::access {
 
-/// Reads what --tokens names:
+/// Parses the file of --tokens:
 ///
 ///     [[token]]
 ///     name = "depot-robots"
 ///     sha256 = "9f86d081..."                # of the secret
 ///     role = "robot"                        # or viewer, operator
 ///     sessions = ["depot-*", "test"]        # patterns
-///     limits = { connections = 8, sensors = 4 }   # those of Limits; what is left out has its default
+///     limits = { connections = 8, sensors = 4 }   # the members of Limits; omitted ones have their defaults
 ///
-/// Errors  kMalformed: no TOML; kInvalidField: a key that is missing, unknown or wrong, a name or hash that is there
-///         twice. The message begins with the line's number and a colon.
+/// Errors: kMalformed if the text is not TOML or has non-ASCII characters outside comments; kInvalidField if it has no
+///         [[token]] or more than 10 000, if a key is missing, unknown or has an invalid value, or if two tokens have
+///         the same name or hash. The message begins with the line number and a colon.
 [[nodiscard]] Result<TokenSet> parse_tokens(std::string_view toml);
 
-/// The lines to add for it; limits as they are by themselves are left out.
+/// Returns the lines that add the token to the file. Limits equal to their defaults are omitted.
 [[nodiscard]] std::string text_of(const Token& token);
 
 } // namespace scanloom::access
