@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kBetweenStrangers = 1.0; // seconds
 
-/// What a stranger may have written is told only where it is a name, which holds neither spaces nor lines.
+/// Returns text from a client only if it is a valid name, which has neither spaces nor line breaks.
 std::string_view name_or(std::string_view text, std::string_view otherwise) {
     if (text.empty()) return "-";
     return is_valid_name(text) ? text : otherwise;

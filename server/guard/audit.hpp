@@ -12,43 +12,46 @@
 
 namespace scanloom::guard {
 
-/// Seconds of a clock that is never put back.
+/// Returns the time of a monotonic clock, in seconds.
 [[nodiscard]] double steady_seconds();
 
-/// Tells the log who was refused and counts it. Secrets are never given to it.
+/// The audit log: counts refusals and logs them. It never receives secrets.
 ///
-/// A line: event=refused port=robot who=10.0.0.7 token=depot reason=wrong_session session=lab count=1
-/// Thread  any.
+/// A line reads: event=refused port=robot who=10.0.0.7 token=depot reason=wrong_session session=lab count=1
+/// Threads: any thread.
 class Audit {
 public:
+    /// @param now  a monotonic clock, in seconds
     explicit Audit(metrics::RefusalCounters& counters, std::function<double()> now = steady_seconds)
         : counters_(counters), now_(std::move(now)) {}
 
-    /// What was not told yet is told in the end.
+    /// Logs the refusals that were not logged yet.
     ~Audit();
     Audit(const Audit&) = delete;
     Audit& operator=(const Audit&) = delete;
 
+    /// Counts the refusal, and logs it as RefusalTable allows.
     void note(access::Refusal refusal);
 
-    /// Of who comes without a certificate that is asked for.
+    /// Counts and logs a client without a valid certificate.
+    /// @param who  the client's address, without a port
     void note(access::Port port, const std::string& who, net::ClientFault fault);
 
-    /// Tells what has waited long enough. Call it now and then.
+    /// Logs the lines that are due. Call it periodically.
     void tell_what_is_due();
 
-    /// Of a link that ended before anybody was let in: whether the log is told. A line a second at most, so that nobody
-    /// fills a disk by knocking.
-    /// @return how many have not been told since the last one; nothing: nor is this one.
+    /// Decides whether to log the end of a connection that was never admitted. At most one per second is logged, so
+    /// that such connections cannot fill the disk.
+    /// @return how many were not logged since the last line, or nullopt if this one is not to be logged either
     [[nodiscard]] std::optional<std::uint64_t> take_line_of_stranger();
 
 private:
     metrics::RefusalCounters& counters_;
     std::function<double()> now_;
-    std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards the following members
     access::RefusalTable table_;
-    std::optional<double> stranger_told_; // when
-    std::uint64_t strangers_untold_ = 0;  // since
+    std::optional<double> stranger_told_; // time of the last such line
+    std::uint64_t strangers_untold_ = 0;  // connections since then
 };
 
 } // namespace scanloom::guard

@@ -37,11 +37,11 @@ bool permits(const Token& token, Purpose purpose) {
 } // namespace
 
 struct Gate::Ledger : std::enable_shared_from_this<Gate::Ledger> {
-    /// Robots of one token that have links, and how many: one that connects again has two for a while.
+    /// The connected robots of one token, with their number of links: a robot that reconnects briefly has two.
     using Robots = std::map<std::string, std::size_t>;
 
     mutable std::mutex mutex;
-    std::shared_ptr<const access::TokenSet> tokens; // none: everybody is let in
+    std::shared_ptr<const access::TokenSet> tokens; // null: every client is admitted
     std::map<const Pass*, std::weak_ptr<Pass>> passes;
     std::map<std::string, Robots, std::less<>> connected; // by the token's hash
 
@@ -86,7 +86,7 @@ struct Gate::Ledger : std::enable_shared_from_this<Gate::Ledger> {
 
 namespace {
 
-/// Why the token may not be used for that, if it may not.
+/// Returns why the token does not permit the purpose, or nullopt if it does.
 std::optional<Denied> objection(const TokenRef& token, Purpose purpose, const std::string& session) {
     if (!permits(*token, purpose)) {
         return denied(Reason::kWrongRole, token,
@@ -121,7 +121,7 @@ Admitted<std::shared_ptr<Pass>> Gate::let_drive(std::string_view secret, const s
     const auto admitted = admit(secret);
     if (!admitted) return admitted.error();
     const std::lock_guard lock(ledger_->mutex);
-    const auto token = found(ledger_->tokens, (*admitted)->hash); // others may be in force by now
+    const auto token = found(ledger_->tokens, (*admitted)->hash); // the tokens may have been replaced meanwhile
     if (!token) return unknown(secret);
     if (auto why = objection(token, Purpose::kDrive, session)) return *why;
     const std::string user = session + "/" + robot;
@@ -150,7 +150,8 @@ void Gate::replace(access::TokenSet tokens) {
             changes.emplace_back(std::move(pass), std::move(token));
         }
     }
-    for (auto& [pass, token] : changes) pass->change(std::move(token)); // no lock is held: who is told may ask again
+    for (auto& [pass, token] : changes)
+        pass->change(std::move(token)); // without the lock: the callback may call the gate
 }
 
 } // namespace scanloom::guard

@@ -12,10 +12,10 @@
 
 namespace scanloom::guard {
 
-/// Not let in: why, for the log and for whoever is refused.
+/// Why a client was refused: the reason and token for the log, the error for the client.
 struct Denied {
     access::Reason reason = access::Reason::kNoToken;
-    std::string token; ///< its name; empty: not known
+    std::string token; ///< the token's name; empty: not known
     Error error;
 };
 
@@ -26,32 +26,40 @@ using Admitted = boost::system::result<T, Denied>;
     throw ErrorException(denied.error);
 }
 
-/// The tokens in force, and who was let in with them.
+/// Authenticates clients by their tokens, and grants passes for robot links and live viewers.
 ///
-/// Without tokens everybody is let in, as access::anybody().
-/// Thread  any; no call waits for anything but another one.
+/// Without tokens every client is admitted, with the token access::anybody().
+/// Threads: any thread; calls wait only for each other.
 class Gate {
 public:
     Gate();
     explicit Gate(access::TokenSet tokens);
 
+    /// Returns whether the server has no tokens, so that every client is admitted.
     [[nodiscard]] bool is_open() const;
 
-    /// The token of the secret.
+    /// Returns the token of the secret.
+    /// Errors: kNoToken if the secret is empty; kUnknownToken if its token is not in force.
     [[nodiscard]] Admitted<access::TokenRef> admit(std::string_view secret) const;
 
-    /// The same by the secret's hash; null when it is not in force.
+    /// Returns the token by its secret's hash, or null if it is not in force.
     [[nodiscard]] access::TokenRef find_hash(std::string_view hash) const;
 
-    /// Lets the robot of this name have a link to the session, which need not exist. Until the pass is gone, it counts
-    /// as one of the token's connections; several of one robot, of which the session keeps the newest, count once.
+    /// Permits the robot a link to the session, which need not exist.
+    ///
+    /// The pass counts as one of the token's connections until it is destroyed. Several passes for one robot in one
+    /// session count once, because the session keeps only the robot's newest link.
+    /// Errors: those of admit(); kWrongRole or kWrongSession if the token does not permit it; kLimit if the token's
+    ///         `connections` are used up.
     [[nodiscard]] Admitted<std::shared_ptr<Pass>> let_drive(std::string_view secret, const std::string& session,
                                                             const std::string& robot);
 
-    /// Lets somebody who was admitted watch the session.
+    /// Permits an admitted client to watch the session.
+    /// Errors: kUnknownToken if the token is no longer in force; kWrongRole or kWrongSession if it does not permit it.
     [[nodiscard]] Admitted<std::shared_ptr<Pass>> let_watch(const access::TokenRef& token, const std::string& session);
 
-    /// From now on these are in force. Passes that they do not allow end; the others go on with the token's new limits.
+    /// Replaces the tokens in force. Passes that the new tokens do not permit end; the other passes get their token's
+    /// new limits.
     void replace(access::TokenSet tokens);
 
 private:

@@ -13,18 +13,23 @@
 
 namespace scanloom::guard {
 
-/// Browsers that are signed in, while this program runs.
-/// Thread  any.
+/// The browsers that are signed in, until this program ends.
+/// Threads: any thread.
 class Logins {
 public:
+    /// @param now  a monotonic clock, in seconds
     explicit Logins(std::function<double()> now = steady_seconds) : now_(std::move(now)) {}
 
-    /// @return what the browser's cookie is to hold.
+    /// Signs a browser in with the token.
+    /// @return the value for the browser's cookie
+    /// Errors: std::runtime_error if the system has no random bits.
     [[nodiscard]] std::string open(const access::Token& token);
 
-    /// The token, as it is in force now; null when the browser is signed in no more, or the token is gone.
+    /// Records a use of the login, and returns its token as it is in force now.
+    /// @return null if the login is unknown or has expired, or if the token is no longer in force
     [[nodiscard]] access::TokenRef find(std::string_view cookie, const Gate& gate);
 
+    /// Signs the browser out.
     void close(std::string_view cookie);
 
 private:

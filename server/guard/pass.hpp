@@ -9,24 +9,25 @@
 
 namespace scanloom::guard {
 
-/// What a pass is for.
+/// What a pass permits.
 enum class Purpose {
     kDrive, ///< a robot's link
-    kWatch, ///< a viewer, live
+    kWatch, ///< a live viewer
 };
 
-/// Leave to use a session for a while, for as long as the tokens in force allow it. Gate gives them out.
-/// Thread  any.
+/// Permission to use a session while the tokens in force allow it. Granted by Gate.
+/// Threads: any thread.
 class Pass {
 public:
     Pass(access::TokenRef token, Purpose purpose, std::string session, std::string user)
         : purpose_(purpose), session_(std::move(session)), user_(std::move(user)), hash_(token->hash),
           token_(std::move(token)) {}
 
-    /// The token as it is in force now; null when it allows this no more.
+    /// Returns the token as it is in force now, or null if it no longer permits this use.
     [[nodiscard]] access::TokenRef token() const;
 
-    /// From now on `told` is called, from any thread, when token() has become another; at once when it has already.
+    /// Sets the callback for changes of token(). It is called from any thread after each replacement of the tokens, and
+    /// at once if one has happened already.
     void when_changed(const std::function<void()>& told);
 
     [[nodiscard]] Purpose purpose() const noexcept { return purpose_; }
@@ -34,16 +35,16 @@ public:
     [[nodiscard]] const std::string& user() const noexcept { return user_; }
     [[nodiscard]] const std::string& hash() const noexcept { return hash_; }
 
-    /// For the gate.
+    /// Sets the token and calls the callback. Only for Gate.
     void change(access::TokenRef token);
 
 private:
     const Purpose purpose_;
     const std::string session_;
-    const std::string user_; // tells the robots of one token apart
+    const std::string user_; // distinguishes the robots of one token
     const std::string hash_;
 
-    mutable std::mutex mutex_; // guards what follows, held for a copy only
+    mutable std::mutex mutex_; // guards the following members; held only to copy them
     access::TokenRef token_;
     bool changed_ = false;
     std::function<void()> told_;

@@ -4,8 +4,8 @@
 
 namespace scanloom::guard {
 
-/// A new secret, of 256 random bits of the system.
-/// Errors  std::runtime_error: the system has none.
+/// Creates a secret from 256 random bits of the system.
+/// Errors: std::runtime_error if the system has none.
 [[nodiscard]] std::string random_secret();
 
 } // namespace scanloom::guard

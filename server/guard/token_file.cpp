@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kBytesMax = std::size_t{4} << 20;
 
-/// An open file; closed with it.
+/// An open file descriptor, closed by the destructor.
 class Opened {
 public:
     explicit Opened(const std::filesystem::path& path)
@@ -40,7 +40,7 @@ Error unreadable(const std::filesystem::path& path, int why) {
             fmt::format("{}: the tokens cannot be read: {}", path.string(), std::generic_category().message(why))};
 }
 
-/// Of the file that is open, not of the path: nobody can exchange it in between.
+/// Checks the open file, not the path, so that the file cannot be replaced between the check and the read.
 Result<> check_file(const std::filesystem::path& path, int descriptor) {
     struct stat facts {};
     if (::fstat(descriptor, &facts) != 0) return unreadable(path, errno);

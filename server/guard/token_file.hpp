@@ -7,9 +7,10 @@
 
 namespace scanloom::guard {
 
-/// Reads the file of --tokens, as access::parse_tokens() describes it.
-/// Errors  kNotFound: it cannot be read; kInvalidField: others than its owner may write to it, and so let themselves in;
-///         kTooLarge: more than 4 MiB; those of parse_tokens(). The message begins with the path.
+/// Reads the file of --tokens, in the format of access::parse_tokens().
+/// Errors: kNotFound if the path cannot be read or is not a regular file; kInvalidField if users other than its owner
+///         may write to it, and so grant themselves access; kTooLarge if it is larger than 4 MiB; those of
+///         parse_tokens(). The message begins with the path.
 [[nodiscard]] Result<access::TokenSet> read_tokens(const std::filesystem::path& path);
 
 } // namespace scanloom::guard
