@@ -22,7 +22,7 @@ struct Limits {
 /// The smallest `bytes_per_second` that a token file may have.
 inline constexpr double kBytesPerSecondMin = 1024.0;
 
-/// Returns the limits that apply if the server has no tokens: no token limits except those of the protocol.
+/// Returns the limits that apply if the server has no tokens: only those of the protocol.
 [[nodiscard]] constexpr Limits no_limits() noexcept {
     Limits limits;
     limits.connections = limits.sessions = std::numeric_limits<std::size_t>::max();

@@ -37,7 +37,7 @@ bool permits(const Token& token, Purpose purpose) {
 } // namespace
 
 struct Gate::Ledger : std::enable_shared_from_this<Gate::Ledger> {
-    /// The connected robots of one token, with their number of links: a robot that reconnects briefly has two.
+    /// The connected robots of one token, with their number of links: a robot that reconnects has two for a short time.
     using Robots = std::map<std::string, std::size_t>;
 
     mutable std::mutex mutex;
@@ -150,8 +150,8 @@ void Gate::replace(access::TokenSet tokens) {
             changes.emplace_back(std::move(pass), std::move(token));
         }
     }
-    for (auto& [pass, token] : changes)
-        pass->change(std::move(token)); // without the lock: the callback may call the gate
+    // Without the lock: the callback may call the gate.
+    for (auto& [pass, token] : changes) pass->change(std::move(token));
 }
 
 } // namespace scanloom::guard
