@@ -11,28 +11,30 @@
 
 namespace scanloom::ingest {
 
-/// What a link may send, as the limits of its token have it.
-/// Times   seconds of a clock that is never put back.
+/// Applies the limits of a token to what its link sends.
+/// All times are in seconds of a monotonic clock.
 class Allowance {
 public:
-    /// Anybody's, until there is a token.
+    /// Starts with the limits of access::anybody(), until set_token() is called.
     explicit Allowance(double now);
 
-    /// From now on this token's limits hold.
+    /// Applies the limits of `token` from now on.
     void set_token(access::TokenRef token, double now);
     [[nodiscard]] const access::Token& token() const noexcept { return *token_; }
 
-    /// The robot has described these before.
+    /// Sets the ids of the sensors that the robot has already described.
     void set_sensors(std::set<std::uint32_t> sensors) { sensors_ = std::move(sensors); }
 
-    /// Counts a sensor that is described among the robot's.
-    /// Errors  kTooLarge: a sensor too many, a scan with too many beams.
+    /// Checks a message against the limits. The sensor of a description counts as one of the robot's sensors.
+    /// Errors: kTooLarge if the robot has more sensors, or a scan more beams, than the token allows.
     [[nodiscard]] Result<> check(const wire::Message& message);
 
-    /// Bytes to be read at once, at most so many: few enough that a pause after them is a second at most.
+    /// Returns how many bytes to read at once: at most `bytes`, and few enough that the pause after them is at most one
+    /// second.
     [[nodiscard]] std::size_t read_max(std::size_t bytes) const noexcept;
 
-    /// So many were read. @return seconds in which no more may be.
+    /// Records a read of `bytes`.
+    /// @return how long to pause before the next read, in seconds
     [[nodiscard]] double pause_after(std::size_t bytes, double now) noexcept;
 
 private:

@@ -10,11 +10,11 @@
 namespace scanloom::ingest {
 namespace {
 
-/// Pongs and refusals that a robot has not read.
+/// Bound on the bytes of pongs and refusals that a robot has not read.
 constexpr std::size_t kSmallAnswerBytesMax = std::size_t{64} << 10;
 
-/// Sensor descriptions under way besides the credit, which is for scans: twice what 64 sensors of 4096 explicit
-/// angles take.
+/// Bound on the bytes of sensor descriptions that are not durable yet, in addition to the credit for scans: twice the
+/// size of the descriptions of 64 sensors with 4096 explicit angles each.
 constexpr std::size_t kDescriptionBytesMax = std::size_t{4} << 20;
 
 } // namespace
@@ -80,7 +80,7 @@ Result<> Dialogue::charge_batch(std::size_t bytes) {
                              under_way_ - described_, credit_bytes_)};
 }
 
-/// Descriptions need no credit, but what waits for the disk is bounded all the same.
+/// Sensor descriptions need no credit, but the bytes that wait for the disk must be bounded.
 Result<> Dialogue::charge_description(std::size_t bytes) {
     under_way_ += bytes;
     described_ += bytes;

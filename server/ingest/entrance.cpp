@@ -25,7 +25,7 @@ asio::awaitable<Found> create(const wire::Hello& hello, session::SessionRegistry
     co_return created;
 }
 
-/// SessionRegistry::wake() for a coroutine, which goes on where it was.
+/// Calls SessionRegistry::wake(), and resumes with its result on the coroutine's own executor.
 asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& sessions) {
     const auto executor = co_await asio::this_coro::executor;
     co_return co_await asio::async_initiate<const asio::use_awaitable_t<>&, void(Found)>(
@@ -38,7 +38,7 @@ asio::awaitable<Found> woken(const std::string& name, session::SessionRegistry& 
         asio::use_awaitable);
 }
 
-/// Why there is no such session to be served.
+/// Returns the error for the robot if the session could not be loaded.
 Error absence_of(const std::string& name, const session::SessionRegistry& sessions, const Error& why) {
     const auto damaged = sessions.damaged();
     const auto damage = damaged.find(name);
@@ -48,7 +48,7 @@ Error absence_of(const std::string& name, const session::SessionRegistry& sessio
             Errc::kNotFound,
             fmt::format("hello.session is '{}', which does not exist; create it first, or send hello.create", name)};
     }
-    if (damage->second.code == Errc::kOverloaded) return damage->second; // nothing is wrong with it
+    if (damage->second.code == Errc::kOverloaded) return damage->second; // it is not damaged
     return {Errc::kConflict,
             fmt::format("hello.session is '{}', whose log is damaged; delete the session first, or choose another name",
                         name)};
@@ -62,7 +62,7 @@ asio::awaitable<Found> session_for(const wire::Hello& hello, session::SessionReg
     if (!session && session.error().code == Errc::kNotFound && hello.create) {
         auto created = co_await create(hello, sessions, maker, std::move(may_wait));
         if (created || created.error().code != Errc::kAlreadyExists) co_return created;
-        session = co_await woken(hello.session, sessions); // another robot was quicker
+        session = co_await woken(hello.session, sessions); // another robot created it first
     }
     if (!session) co_return absence_of(hello.session, sessions, session.error());
     if (hello.create) {

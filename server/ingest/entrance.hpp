@@ -10,18 +10,20 @@
 
 #include <memory>
 
-/// From a hello to the session it names.
+/// Finds, creates and joins the session that a hello names.
 namespace scanloom::ingest {
 
-/// The session that the hello names, made when there is none and the hello says how.
-/// Making waits for the disk, on `may_wait`; the session is then the maker's.
-/// Errors  kNotFound; kConflict: it has other settings than hello.create, or is damaged; kOverloaded: it is not loaded
-///         for want of memory; those of SessionRegistry::create() but kAlreadyExists.
+/// Returns the session that the hello names. Creates it if it does not exist and the hello has `create`.
+/// @param maker     counts as the creator of a new session
+/// @param may_wait  runs the creation, which waits for the disk
+/// Errors: kNotFound if the session does not exist and the hello has no `create`; kConflict if its settings differ from
+///         hello.create, or its log is damaged; kOverloaded if there is not enough memory to load it; those of
+///         SessionRegistry::create() except kAlreadyExists.
 [[nodiscard]] boost::asio::awaitable<Result<std::shared_ptr<session::Session>>>
 session_for(const wire::Hello& hello, session::SessionRegistry& sessions, const session::Maker& maker,
             boost::asio::any_io_executor may_wait);
 
-/// Session::join() for a coroutine, which goes on where it was.
+/// Calls Session::join(), and resumes with its result on the coroutine's own executor.
 [[nodiscard]] boost::asio::awaitable<Result<session::Joined>> join(session::Session& session, const wire::Hello& hello,
                                                                    std::shared_ptr<session::RobotListener> listener);
 

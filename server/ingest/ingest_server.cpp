@@ -13,7 +13,7 @@ namespace scanloom::ingest {
 namespace asio = boost::asio;
 namespace {
 
-/// Links beyond the limit that are open at the same time to say so; more are closed without a word.
+/// Bound on connections beyond the limit that stay open to receive the Error; more are closed without one.
 constexpr std::size_t kTurnedAwayMax = 64;
 
 wire::LinkError too_many(std::size_t links) {
@@ -81,7 +81,7 @@ void IngestServer::begin(const std::shared_ptr<Guest>& guest) {
         asio::bind_executor(strand, [this, guest](std::exception_ptr) { leave(guest); }));
 }
 
-/// Who came first and still says nothing is the least likely to be a robot.
+/// Closes the oldest connection without a hello, as the one that is least likely to be a robot.
 void IngestServer::make_room_for_greeting() {
     if (count(Standing::kGreeting) < config_.greeting_max) return;
     const auto oldest = greeting_.front();

@@ -16,36 +16,39 @@ namespace scanloom::ingest {
 
 struct IngestConfig {
     LinkConfig link;
-    std::size_t links_max = 10'000;                        ///< that said hello; more are refused with an Error
-    std::size_t greeting_max = 256;                        ///< that did not yet; one more, and the oldest is cut off
-    std::shared_ptr<const sockets::PortTls> tls = nullptr; ///< none: robots speak plainly
+    std::size_t links_max = 10'000;                        ///< that sent a hello; more are refused with an Error
+    std::size_t greeting_max = 256;                        ///< without a hello; beyond it, the oldest is closed
+    std::shared_ptr<const sockets::PortTls> tls = nullptr; ///< null: robots connect without TLS
 };
 
-/// Listens for robots and serves each on a link of its own.
+/// Listens for robots and serves each connection with a RobotLink.
 ///
-/// Connections on which no hello was said have a limit of their own, so that silent ones keep no robot out: a robot
-/// greets at once. Those who say hello at the same moment may pass links_max, by greeting_max at most.
-/// Sessions that robots ask for are made one at a time: however many wait for theirs, they leave the rest of
-/// LinkServices::may_wait to others.
-/// Thread  the io_context's; start() and stop() from any.
+/// Connections that have not sent a hello have their own limit, so that silent connections cannot keep robots out: a
+/// robot sends its hello at once. Connections that send it at the same moment may exceed links_max, by at most
+/// greeting_max.
+///
+/// Sessions that robots create are created one at a time. However many robots wait for theirs, they occupy one thread
+/// of LinkServices::may_wait.
+/// Threads: those of the io_context; start() and stop() from any thread.
 class IngestServer {
 public:
-    /// Throws boost::system::system_error when the endpoint cannot be listened on.
+    /// Opens the port. Throws boost::system::system_error if the server cannot listen on the endpoint.
     IngestServer(boost::asio::io_context& io, const boost::asio::ip::tcp::endpoint& endpoint, LinkServices services,
                  const IngestConfig& config);
 
-    /// The port listened on, also when 0 was asked for.
+    /// Returns the port that the server listens on; the actual one if the endpoint's port is 0.
     [[nodiscard]] std::uint16_t port() const { return port_; }
 
+    /// Starts accepting connections.
     void start();
 
-    /// Accepts no more. Links end when their sessions close.
+    /// Stops accepting connections. Links end when their sessions close.
     void stop();
 
 private:
     enum class Standing { kGreeting, kServed, kLeaving };
 
-    /// A connection that is open.
+    /// An open connection.
     struct Guest {
         std::shared_ptr<RobotLink> link;
         Standing standing;

@@ -12,17 +12,20 @@
 
 namespace scanloom::ingest {
 
-/// Writes what is in a link's outbox to its stream.
-/// Thread  the stream's executor, a strand.
+/// Writes the content of a link's outbox to its stream.
+/// Threads: the stream's executor, a strand.
 class LinkWriter {
 public:
-    /// Both must outlive this. `told` is called with the durable_seq of each ack that is handed to the socket.
+    /// @param stream  outlives this object
+    /// @param outbox  outlives this object
+    /// @param told    called with the durable_seq of each ack that is passed to the socket
     LinkWriter(net::LinkStream& stream, Outbox& outbox, std::function<void(std::uint64_t)> told);
 
-    /// Writes until nothing is left, unless it does so already. `owner` keeps all alive meanwhile.
+    /// Starts writing until the outbox is empty, unless a write is already running.
+    /// @param owner  keeps this object and its stream alive during the write
     void start(std::shared_ptr<void> owner);
 
-    /// Returns when all is written, or the connection has failed.
+    /// Returns when the outbox is written, or the connection has failed.
     [[nodiscard]] boost::asio::awaitable<void> emptied();
 
 private:
@@ -32,7 +35,7 @@ private:
     Outbox& outbox_;
     std::function<void(std::uint64_t)> told_;
     bool writing_ = false;
-    boost::asio::steady_timer emptied_; // never runs out; cancelled when there is nothing left
+    boost::asio::steady_timer emptied_; // never expires; cancelled when the write ends
 };
 
 } // namespace scanloom::ingest

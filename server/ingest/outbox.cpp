@@ -6,7 +6,7 @@ namespace scanloom::ingest {
 
 void Outbox::send(const wire::Message& message) {
     if (closed_) return;
-    put_ack(); // what was acknowledged first is told first
+    put_ack(); // an ack that came first is sent first
     wire::encode(message, bytes_);
     added_();
 }

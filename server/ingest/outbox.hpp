@@ -13,44 +13,48 @@
 
 namespace scanloom::ingest {
 
-/// What a link still has to write to its robot, in order; of acks only the newest. Answers to requests, which may be
-/// long, come one by one when nothing else waits.
+/// Queues the frames that a link has to write to its robot, in order. Of several acks only the newest is kept. Replies
+/// to requests, which may be long, follow one at a time when nothing else waits.
 ///
-/// Queue   "link's outbox": pongs and refusals, which whoever reads bounds by waiting(); answers, by
-///         answers_waiting(); and one ack.
-/// Thread  one at a time.
+/// Queue: "link's outbox": pongs and refusals, which the caller bounds by waiting(); replies, by answers_waiting(); and
+///        one ack.
+/// Threads: one at a time.
 class Outbox {
 public:
-    /// What is written at once.
+    /// The bytes of one write.
     struct Piece {
         std::string bytes;
-        std::shared_ptr<const void> kept{};         ///< until it is written
+        std::shared_ptr<const void> kept{};         ///< released when the bytes are written
         std::optional<std::uint64_t> durable_seq{}; ///< of the newest ack in it
     };
 
-    /// `added` is called whenever there is something to write, perhaps in addition to more.
+    /// @param added  called after every addition, also while the outbox is not empty
     explicit Outbox(std::function<void()> added) : added_(std::move(added)) {}
 
+    /// Appends a message, after the ack that waits, if any.
     void send(const wire::Message& message);
+
+    /// Appends bytes that are not a frame.
     void send_bytes(std::string_view bytes);
 
-    /// Replaces an ack that was not taken yet.
+    /// Queues an ack. It replaces an earlier one that still waits.
     void acknowledge(const wire::Ack& ack);
 
-    /// Sends a whole frame after all else. `kept` is let go of when it was written.
+    /// Queues the frame of a reply, which is written when nothing else waits.
+    /// @param kept  released when the frame is written
     void answer(std::string frame, std::shared_ptr<const void> kept);
 
-    /// Nothing may follow what is in it.
+    /// Ignores all further additions.
     void close() { closed_ = true; }
 
-    /// Takes what is next. Acks that come until then collapse into the newest. Nothing: all was taken.
+    /// Takes the next piece to write, or nullopt if the outbox is empty.
     [[nodiscard]] std::optional<Piece> next();
 
-    /// Answers that were not taken yet. The one being written is not among them: the robot may have read the whole of
-    /// it, and ask the next, before this side hears that it was written.
+    /// Returns the number of replies that were not taken yet. The reply being written does not count: the robot may
+    /// have read all of it, and sent its next request, before the write completes here.
     [[nodiscard]] std::size_t answers_waiting() const noexcept { return answers_.size(); }
 
-    /// Bytes that were not taken yet.
+    /// Returns how many bytes, without replies and the ack that waits, were not taken yet.
     [[nodiscard]] std::size_t waiting() const noexcept { return bytes_.size(); }
 
 private:

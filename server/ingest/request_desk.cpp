@@ -22,7 +22,7 @@ std::optional<Error> RequestDesk::ask(Asker asker, Request request, Done done) {
     return std::nullopt;
 }
 
-/// While the server shuts down no search is begun: it would have to be waited for.
+/// Starts no search while the server shuts down, because shutdown would have to wait for it.
 wire::Message RequestDesk::meet(const Request& request, const Asker& asker) const {
     if (services_.sessions.is_draining())
         return refusal_of(request, {Errc::kShuttingDown, "the server is shutting down"});

@@ -14,26 +14,30 @@
 
 namespace scanloom::ingest {
 
-/// Meets the requests of all links, away from the I/O threads.
+/// Answers the requests of all links on other threads than those for I/O.
 ///
-/// Queue   "requests of links": at most kRequestsMax for ways and kLocatingMax for where a robot is, from being asked
-///         until the reply was written; one more is refused.
-/// Thread  any; it must outlive the work on its executor.
+/// Queue: "requests of links": at most kRequestsMax for paths and kLocatingMax for relocalization, from ask() until the
+///        reply is written; further ones are refused.
+/// Threads: any thread. It must outlive the work on its executors.
 class RequestDesk {
 public:
     static constexpr std::size_t kRequestsMax = 256;
-    static constexpr std::size_t kLocatingMax = 32; ///< more would wait for minutes
+    static constexpr std::size_t kLocatingMax = 32; ///< with more, a request would wait for minutes
 
-    /// Takes the frame of the reply, and a slot to be kept until that was written. Called once, on the executor.
+    /// Receives the frame of the reply, and a slot to be kept until the frame is written. Called once, on the executor
+    /// of the request.
     using Done = std::function<void(std::string frame, std::shared_ptr<const void> slot)>;
 
-    /// `planning` has one thread: a search may take half a gigabyte. `locating` has one, too: where a robot is takes
-    /// seconds, and others wait for their ways.
+    /// @param planning      has one thread, because a search may take half a gigabyte of memory
+    /// @param locating      has one thread; separate, because a relocalization takes seconds in which planned paths
+    ///                      would have to wait
+    /// @param requests_max  bound on requests for paths that are not answered yet
     RequestDesk(boost::asio::any_io_executor planning, boost::asio::any_io_executor locating, Services services,
                 std::size_t requests_max = kRequestsMax)
         : planning_(std::move(planning)), locating_(std::move(locating)), services_(services), slots_(requests_max) {}
 
-    /// @return kOverloaded when it cannot be taken now; `done` is not called then.
+    /// Queues a request.
+    /// @return kOverloaded if too many requests wait; `done` is not called then
     [[nodiscard]] std::optional<Error> ask(Asker asker, Request request, Done done);
 
 private:

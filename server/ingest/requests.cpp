@@ -15,7 +15,7 @@
 namespace scanloom::ingest {
 namespace {
 
-/// What each kind of request is answered by.
+/// Build the reply to each kind of request.
 wire::PlanReply reply(const wire::PlanRequest& to, Revision revision, Result<wire::Path> path) {
     return {to.id, revision, std::move(path)};
 }
@@ -29,7 +29,7 @@ wire::LocateReply reply(const wire::LocateRequest& to, Revision revision, Result
     return {to.id, revision, std::move(correction)};
 }
 
-/// Of cells by rows.
+/// Joins adjacent cells of a row into runs. The cells are sorted by rows.
 std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
     std::vector<wire::CellRun> runs;
     for (const grid::Cell cell : cells) {
@@ -40,7 +40,9 @@ std::vector<wire::CellRun> runs_of(std::span<const grid::Cell> cells) {
     return runs;
 }
 
-/// Errors  kTooLarge: it would fit no frame, with so much beside it.
+/// Converts a path for the wire.
+/// @param beside  number of cell runs in the same reply
+/// Errors: kTooLarge if the path and the runs do not fit into one frame.
 Result<wire::Path> to_wire(planning::Path path, std::size_t beside = 0) {
     if (path.points.size() + beside > wire::kPathPointsMax) {
         return Error{Errc::kTooLarge,
@@ -51,7 +53,7 @@ Result<wire::Path> to_wire(planning::Path path, std::size_t beside = 0) {
     return wire::Path{std::move(path.points), path.length_m, path.cost};
 }
 
-/// Searches one snapshot from one place.
+/// Answers requests from one snapshot and one start point.
 struct Search {
     const Asker& asker;
     const mapping::Snapshot& maps;
@@ -59,7 +61,7 @@ struct Search {
     const guide::Patience may_go_on;
     const Point2& start;
 
-    /// The body that is asked for, else the asker's own.
+    /// Uses the requested body radius (m), or else the robot's own.
     [[nodiscard]] planning::PassabilityOptions passability_of(const std::optional<double>& body_radius) const {
         planning::PassabilityOptions options;
         const auto& own = maps.robots.at(asker.robot).body_radius;
@@ -83,7 +85,7 @@ struct Search {
         if (request.frontier_size_min > 0) options.frontier_size_min = request.frontier_size_min;
         auto next = goals.next(asker.session, maps, asker.robot, start, guide::GoalBook::Clock::now(), options);
         if (!next) return next.error();
-        const auto given_up = static_cast<std::uint32_t>(next->given_up); // a book keeps fewer
+        const auto given_up = static_cast<std::uint32_t>(next->given_up); // fits: GoalBook keeps fewer
         if (next->outcome == planning::Exploration::kTakenByOthers) {
             return wire::Goal{wire::Exploration::kTakenByOthers, std::nullopt, std::nullopt, given_up};
         }
@@ -110,7 +112,7 @@ struct Search {
     }
 };
 
-/// The way that whoever looks on is shown as the robot's.
+/// Returns the path that live viewers show for the robot.
 std::optional<guide::Way> way_of(const Result<wire::Path>& path, Revision revision) {
     if (!path) return std::nullopt;
     return guide::Way{guide::WayKind::kPlan, path->points, path->length, revision};
@@ -131,7 +133,7 @@ wire::Message reply_from(const Kind& request, const Asker& asker, const Services
         start = Point2{pose->x, pose->y};
     }
     auto found = Search{asker, *maps, goals, guide::Patience(services.sessions), *start}(request);
-    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // of goals the book knows
+    if constexpr (!std::is_same_v<Kind, wire::GoalRequest>) { // the goal book already knows the paths to goals
         goals.ways().give_way(asker.session, asker.robot, way_of(found, maps->revision), guide::WayBook::Clock::now());
     }
     return reply(request, maps->revision, std::move(found));

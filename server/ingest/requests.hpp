@@ -12,34 +12,36 @@
 #include <optional>
 #include <variant>
 
-/// What robots ask for on their links, and the replies.
+/// Requests that robots send on their links, and the replies.
 namespace scanloom::ingest {
 
 using Request = std::variant<wire::PlanRequest, wire::GoalRequest, wire::CoverageRequest, wire::LocateRequest>;
 
-/// Nothing when the message is no request, which it then still is.
+/// Moves the request out of the message. Returns nullopt, and leaves the message unchanged, if it is not a request.
 [[nodiscard]] std::optional<Request> as_request(wire::Message&& message);
 
-/// Who asks.
+/// The robot that sent a request.
 struct Asker {
     std::shared_ptr<session::Session> session;
     RobotIndex robot = 0;
-    /// Set when its link is closed: nobody waits for the reply any more.
+    /// Set when the link is closed, so that the reply is no longer needed.
     std::shared_ptr<const std::atomic<bool>> is_gone = std::make_shared<const std::atomic<bool>>(false);
 };
 
-/// Who meets them. All outlive whoever has this.
+/// The objects that answer requests. All outlive this struct and its copies.
 struct Services {
     guide::GoalBook& goals;
     guide::Locator& locator;
     const session::SessionRegistry& sessions;
 };
 
-/// Searches the session's newest maps: takes milliseconds, and seconds where they are huge.
-/// Post  the reply fits a frame.
+/// Answers the request from the session's newest maps. Takes milliseconds; seconds if the maps are huge or the robot is
+/// to be relocalized.
+/// Post: the reply fits into one frame.
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] wire::Message reply_to(const Request& request, const Asker& asker, const Services& services);
 
-/// The reply to a request that is not met.
+/// Returns the reply that refuses the request with `why`.
 [[nodiscard]] wire::Message refusal_of(const Request& request, const Error& why);
 
 } // namespace scanloom::ingest

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kReadBytes = std::size_t{64} << 10;
 
-/// Requests that were not refused and whose replies are not written yet.
+/// Bound on a link's accepted requests whose replies have not been taken for writing.
 constexpr std::size_t kRequestsUnderWayMax = 4;
 
 Error closed_by_robot() { return {Errc::kUnreachable, "the robot closed the connection"}; }
@@ -78,7 +78,8 @@ asio::awaitable<void> RobotLink::turn_away(wire::LinkError why) {
     hang_up();
 }
 
-/// @return whether frames can be read and written.
+/// Does the TLS handshake, if the port uses TLS.
+/// @return whether frames can be read and written
 asio::awaitable<bool> RobotLink::shake_hands() {
     const auto [failed] = co_await stream_.async_handshake(
         net::LinkStream::Role::kServer, asio::bind_cancellation_slot(stop_reading_.slot(), kAwaitTuple));
@@ -89,7 +90,7 @@ asio::awaitable<bool> RobotLink::shake_hands() {
     co_return false;
 }
 
-/// The conversation, in the order in which it happens.
+/// Runs the whole link, step by step.
 asio::awaitable<Result<>> RobotLink::serve() {
     const bool is_open = co_await shake_hands();
     if (!is_open) co_return Error{Errc::kUnreachable, "the TLS handshake failed"};
@@ -101,7 +102,7 @@ asio::awaitable<Result<>> RobotLink::serve() {
                         fmt::format("the first frame is a {}; a hello is expected", wire::name_of(*first))};
     }
     if (greeted_) greeted_();
-    deadline_ = std::chrono::steady_clock::time_point::max(); // what is waited for now is our disk, not the robot
+    deadline_ = std::chrono::steady_clock::time_point::max(); // the next wait is for our disk, not for the robot
     if (auto entered = co_await enter(std::move(*hello)); !entered) co_return entered.error();
     while (!dialogue_.said_goodbye()) {
         expect_something_within(config_.idle_deadline);
@@ -112,8 +113,8 @@ asio::awaitable<Result<>> RobotLink::serve() {
     co_return co_await settle();
 }
 
-/// What was submitted before the goodbye is acknowledged after it, and what was asked is answered. How long that takes
-/// is our matter.
+/// Waits after a goodbye until all submitted scans are acknowledged and all requests answered. There is no deadline,
+/// because the wait does not depend on the robot.
 asio::awaitable<Result<>> RobotLink::settle() {
     deadline_ = std::chrono::steady_clock::time_point::max();
     while ((dialogue_.has_under_way() || asked_ > 0) && !ended_by_) co_await settled_.async_wait(kAwaitTuple);
@@ -121,7 +122,8 @@ asio::awaitable<Result<>> RobotLink::settle() {
     co_return Result<>();
 }
 
-/// Before the session is looked for: who is not let in is not told which there are.
+/// Authenticates the robot before the session is looked up, so that a refused client does not learn which sessions
+/// exist.
 Result<> RobotLink::let_in(const wire::Hello& hello) {
     auto pass = services_.gate.let_drive(hello.token, hello.session, hello.robot);
     if (!pass) {
@@ -138,7 +140,7 @@ Result<> RobotLink::let_in(const wire::Hello& hello) {
     return {};
 }
 
-/// The tokens in force may be others by now.
+/// Applies the token of the pass, which may have changed. Ends the link if the pass is no longer valid.
 void RobotLink::look_at_pass() {
     if (!pass_) return;
     if (auto token = pass_->token()) {
@@ -200,8 +202,8 @@ asio::awaitable<Result<wire::Message>> RobotLink::receive() {
     }
 }
 
-/// What is not read fills the buffers between here and the robot, which then has to wait. It is not to blame for that,
-/// so its deadline waits, too.
+/// Pauses reading, so that the buffers on the way from the robot fill up and the robot has to wait. The pause is not
+/// the robot's fault, so its deadline moves by the same time.
 asio::awaitable<void> RobotLink::hold_back(double seconds) {
     if (ended_by_) co_return;
     const auto pause =
@@ -221,11 +223,11 @@ Result<> RobotLink::handle(wire::Message message) {
     }
     if (auto ok = allowance_.check(message); !ok) return over_limit(ok.error());
     if (auto request = as_request(std::move(message))) return ask(std::move(*request));
-    // NOLINTNEXTLINE(bugprone-use-after-move): as_request() leaves a message that is no request as it was
+    // NOLINTNEXTLINE(bugprone-use-after-move): as_request() leaves a message that is not a request unchanged
     return dialogue_.handle(std::move(message), frame_bytes_, read_, shared_from_this());
 }
 
-/// A request that cannot be taken now is refused at once; the link goes on.
+/// Passes a request to the desk. A request that cannot be accepted now is refused at once; the link continues.
 Result<> RobotLink::ask(Request request) {
     if (auto ok = dialogue_.check_small_answers(); !ok) return ok;
     const std::size_t under_way = asked_ + outbox_.answers_waiting();
@@ -257,7 +259,7 @@ void RobotLink::answer(std::string frame, std::shared_ptr<const void> slot) {
     settled_.cancel();
 }
 
-/// The audit hears of it, and the robot.
+/// Records a refusal because of a token limit in the audit log. Returns the error for the robot.
 Error RobotLink::over_limit(Error error) const {
     note_refusal(access::Reason::kLimit, allowance_.token().name, pass_->session());
     return error;

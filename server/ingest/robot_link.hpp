@@ -33,12 +33,13 @@ namespace scanloom::ingest {
 
 struct LinkConfig {
     std::chrono::steady_clock::duration hello_deadline = std::chrono::seconds(5);
-    std::chrono::steady_clock::duration idle_deadline = std::chrono::seconds(60); ///< a quiet robot sends pings
+    std::chrono::steady_clock::duration idle_deadline = std::chrono::seconds(60); ///< an idle robot sends pings
     std::chrono::steady_clock::duration farewell_deadline = std::chrono::seconds(2);
-    std::size_t credit_bytes = std::size_t{2} << 20; ///< of ScanBatch frames under way; more than one frame
+    std::size_t credit_bytes = std::size_t{2}
+                               << 20; ///< of ScanBatch frames that are not durable yet; more than one frame
 };
 
-/// What a link reaches of the server.
+/// The parts of the server that a link uses.
 struct LinkServices {
     session::SessionRegistry& sessions;
     boost::asio::any_io_executor may_wait; ///< for work that waits for the disk
@@ -48,13 +49,14 @@ struct LinkServices {
     guard::Audit& audit;
 };
 
-/// One robot's connection, from the hello to the farewell.
+/// One robot's connection, from the hello to its end.
 ///
-/// hello -> the gate lets the robot in -> the session is found or made and joined -> welcome -> sensor descriptions and
-/// scan batches go to the session, acks come back; requests go to the desk, replies come back -> goodbye, after which
-/// what is under way is still acknowledged; an error; or the end of the connection. A fault ends this link with an
-/// Error frame and disturbs no other.
-/// Thread  run() and everything private on the stream's strand; the listener's calls from any thread.
+/// After the hello, the gate admits the robot, the session is found or created, and the robot joins it and receives a
+/// welcome. Then sensor descriptions and scan batches go to the session, which returns acks, and requests go to the
+/// desk, which returns replies. The link ends with a goodbye, after which pending scans are still acknowledged; with an
+/// error; or with the end of the connection. An error is sent to the robot in an Error frame and does not affect other
+/// links.
+/// Threads: run() and all private members on the stream's strand; the listener's functions from any thread.
 class RobotLink : public session::RobotListener, public std::enable_shared_from_this<RobotLink> {
 public:
     /// Pre: the stream's executor is a strand.
@@ -62,16 +64,17 @@ public:
 
     [[nodiscard]] boost::asio::any_io_executor executor() { return stream_.get_executor(); }
 
-    /// `told` is called once when the robot has said hello, on the link's strand. Pre: before run().
+    /// Sets the callback for the robot's hello. It is called once, on the link's strand. Pre: called before run().
     void when_greeted(std::function<void()> told) { greeted_ = std::move(told); }
 
-    /// Closes the connection without a word; run() ends. Thread: any.
+    /// Closes the connection without an Error frame; run() ends.
+    /// Threads: any thread.
     void cut_off();
 
-    /// Serves the robot to the end. Never throws.
+    /// Serves the robot until the link ends. Never throws.
     boost::asio::awaitable<void> run();
 
-    /// Only tells the robot why it is not served, in place of run(). Never throws.
+    /// Sends the robot the reason why it is not served. Called instead of run(). Never throws.
     boost::asio::awaitable<void> turn_away(wire::LinkError why);
 
     void on_durable(std::uint64_t durable_seq, std::size_t bytes) override;
@@ -107,34 +110,34 @@ private:
     LinkServices services_;
     LinkConfig config_;
     std::string address_; // of the peer
-    std::string peer_;    // with its port
+    std::string peer_;    // address with the port
     std::function<void()> greeted_;
 
     wire::FrameDecoder decoder_{wire::kFrameBytesMaxBeforeHello};
-    std::size_t frame_bytes_ = 0;       // of the frame last received, with its length prefix
-    std::shared_ptr<guard::Pass> pass_; // from the hello on
-    Allowance allowance_;               // as its token was when it last allowed this
+    std::size_t frame_bytes_ = 0;       // of the last frame received, with its length prefix
+    std::shared_ptr<guard::Pass> pass_; // set by the hello
+    Allowance allowance_;               // with the token that last permitted the link
     std::string robot_;
-    std::size_t asked_ = 0; // requests that are being met
+    std::size_t asked_ = 0; // requests that the desk has not answered yet
     std::shared_ptr<std::atomic<bool>> is_gone_ =
-        std::make_shared<std::atomic<bool>>(false); // closed: for who meets them
-    bool parting_ = false;                          // nothing more is said or heard
+        std::make_shared<std::atomic<bool>>(false); // the link is closed; read by the desk
+    bool parting_ = false;                          // no more messages are queued or read
 
-    std::chrono::steady_clock::time_point read_; // when bytes were read off the socket last
+    std::chrono::steady_clock::time_point read_; // when bytes were last read from the socket
 
     Outbox outbox_;
     LinkWriter writer_;
-    Dialogue dialogue_;                   // from the welcome on
-    boost::asio::steady_timer held_back_; // until more may be read
-    boost::asio::steady_timer settled_;   // never runs out; cancelled when nothing is under way any more
+    Dialogue dialogue_;                   // used after the robot has joined
+    boost::asio::steady_timer held_back_; // expires when more may be read
+    boost::asio::steady_timer settled_;   // never expires; cancelled to let settle() check again
 
-    std::optional<Error> ended_by_; // why the link ends, when not by the peer
+    std::optional<Error> ended_by_; // why this side ends the link, if it does
     boost::asio::cancellation_signal stop_reading_;
     boost::asio::steady_timer deadline_timer_;
     std::chrono::steady_clock::time_point deadline_;
 };
 
-/// Whether the same hello may succeed later.
+/// Returns whether the same hello may succeed later.
 [[nodiscard]] bool is_retryable(Errc code) noexcept;
 
 } // namespace scanloom::ingest

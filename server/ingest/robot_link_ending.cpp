@@ -5,12 +5,12 @@
 #include <boost/asio/detached.hpp>
 #include <fmt/format.h>
 
-/// When a link ends, how the robot is told, and how the log is.
+/// The end of a RobotLink: deadlines, the last message to the robot, and the log line.
 namespace scanloom::ingest {
 namespace asio = boost::asio;
 namespace {
 
-constexpr std::size_t kUnheardBytes = std::size_t{64} << 10; // read at once and thrown away
+constexpr std::size_t kUnheardBytes = std::size_t{64} << 10; // size of a read whose bytes are discarded
 
 std::string in_http(std::string_view sentence) {
     return fmt::format("HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain; charset=utf-8\r\n"
@@ -25,22 +25,22 @@ void RobotLink::end(const Error& error) {
     ended_by_ = error;
     settled_.cancel();
     held_back_.cancel();
-    stop_reading_.emit(asio::cancellation_type::terminal); // wakes receive(); what is being written is finished
+    stop_reading_.emit(asio::cancellation_type::terminal); // ends receive(); a running write is completed
 }
 
-/// Tells the robot why.
+/// Sends the robot the reason, then ends the connection.
 asio::awaitable<void> RobotLink::farewell(wire::LinkError why) {
     ended_by_ = why.error;
     if (!dialogue_.is_welcome() && decoder_.holds_http()) {
-        outbox_.send_bytes(in_http(why.error.message)); // who speaks HTTP reads no frames
+        outbox_.send_bytes(in_http(why.error.message)); // an HTTP client cannot read frames
     } else {
         outbox_.send(why);
     }
     co_await part();
 }
 
-/// Finishes what is being written, and waits for the robot to hang up: closing at once with its bytes unread would
-/// reset the connection and take the last frame with it.
+/// Writes the rest of the outbox, and waits for the robot to close the connection. Closing it at once, with the robot's
+/// bytes unread, would reset the connection and lose the last frame.
 asio::awaitable<void> RobotLink::part() {
     parting_ = true;
     expect_something_within(config_.farewell_deadline);
@@ -49,7 +49,7 @@ asio::awaitable<void> RobotLink::part() {
     co_await let_hang_up();
 }
 
-/// What was said last must have been read by then, be it TLS's own alert.
+/// Waits, within the deadline, until the robot closes the connection, so that it can read the last frame or TLS alert.
 asio::awaitable<void> RobotLink::let_hang_up() {
     parting_ = true;
     expect_something_within(config_.farewell_deadline);
@@ -75,17 +75,18 @@ void RobotLink::start_watch() {
 
 void RobotLink::expect_something_within(std::chrono::steady_clock::duration time) {
     deadline_ = std::chrono::steady_clock::now() + time;
-    if (deadline_ < deadline_timer_.expiry()) deadline_timer_.cancel(); // sooner than the watch would look
+    if (deadline_ < deadline_timer_.expiry()) deadline_timer_.cancel(); // earlier than the timer expires
 }
 
-/// One timer a link, looked at when it runs out: a busy link moves only a time point.
+/// Ends the link when its deadline has passed. There is one timer per link, checked when it expires: a busy link only
+/// moves a time point.
 asio::awaitable<void> RobotLink::watch_deadline() {
     const auto self = shared_from_this();
     while (stream_.is_open()) {
         deadline_timer_.expires_at(deadline_);
         co_await deadline_timer_.async_wait(kAwaitTuple);
         if (!stream_.is_open() || std::chrono::steady_clock::now() < deadline_) continue;
-        if (ended_by_ || parting_) { // the farewell took too long
+        if (ended_by_ || parting_) { // the robot did not close the connection in time
             stream_.close();
             co_return;
         }

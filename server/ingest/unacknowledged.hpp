@@ -9,10 +9,11 @@
 
 namespace scanloom::ingest {
 
-/// The scans of one link that were read and are not acknowledged yet: how many the server has of them, and how long
-/// each waited. A batch counts as acknowledged when the last of its scans is.
-/// Queue   one entry a batch; bounded by the link's credit.
-/// Thread  one at a time.
+/// Measures the scans of one link that were read and are not acknowledged yet: their number, and how long each waits
+/// for its ack. A batch counts as acknowledged when its last scan is.
+///
+/// Queue: one entry per batch; bounded by the link's credit.
+/// Threads: one at a time.
 class Unacknowledged {
 public:
     using Time = std::chrono::steady_clock::time_point;
@@ -21,13 +22,16 @@ public:
     Unacknowledged(const Unacknowledged&) = delete;
     Unacknowledged& operator=(const Unacknowledged&) = delete;
 
-    /// What is left will not be acknowledged: the link has ended.
+    /// Subtracts the remaining scans from the counters. They are not acknowledged, because the link has ended.
     ~Unacknowledged();
 
-    /// A batch whose last byte was read off the link at `read`.
+    /// Adds a batch.
+    /// @param last_seq  sequence number of its last scan
+    /// @param scans     number of its scans
+    /// @param read      when its last byte was read from the link
     void add(std::uint64_t last_seq, std::size_t scans, Time read);
 
-    /// An ack of all up to durable_seq was handed to the socket.
+    /// Records that an ack of all scans up to durable_seq was passed to the socket.
     void acknowledge(std::uint64_t durable_seq, Time now);
 
 private:
