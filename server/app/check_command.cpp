@@ -18,10 +18,10 @@
 namespace scanloom::app {
 namespace {
 
-/// Told on standard error each time so many entries and parts have been read.
+/// Progress is printed each time this many entries and parts have been read.
 constexpr std::uint64_t kTellEvery = 100'000;
 
-/// What has been found so far.
+/// Prints the findings, and counts them for the summary.
 class Findings {
 public:
     void whole(const session::SessionCheck& session) {
@@ -42,7 +42,7 @@ public:
         damaged_.push_back(boost::json::object{{"reason", why.message}});
     }
 
-    /// The last line.
+    /// Prints the summary, as the last line.
     [[nodiscard]] ExitCode conclude(double seconds) const {
         const boost::json::object summary{{"event", "checked"},
                                           {"sessions", sessions_},
@@ -64,7 +64,7 @@ private:
     boost::json::array damaged_;
 };
 
-/// Says how far the check is.
+/// Prints the progress of the check.
 class Progress {
 public:
     Result<> operator()(std::size_t bytes) {
@@ -99,7 +99,7 @@ void check_sessions(store::AtRest& store, session::CheckDepth depth, Findings& f
     }
 }
 
-/// What no session needs any more, too: merging tables reads it.
+/// Checks all tables of the store. Data that no session needs any more counts, because merging tables reads it.
 void check_tables(const std::filesystem::path& store, Findings& findings) {
     for (const auto& table : store::regular_files(store, ".sst")) {
         if (const auto whole = store::check_table(table); !whole) findings.store_damaged(whole.error());
@@ -114,7 +114,7 @@ ExitCode check_store(const ServerOptions& options) {
     Findings findings;
     if (!store) {
         if (store.error().code != Errc::kStoreFailed &&
-            store.error().code != Errc::kDataLoss) { // nothing could be looked at
+            store.error().code != Errc::kDataLoss) { // the store could not be examined
             standard_error().write(fmt::format("scanloom-server: {}\n", store.error().message));
             return kExitFailed;
         }

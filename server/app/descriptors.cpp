@@ -9,8 +9,8 @@
 namespace scanloom::app {
 namespace {
 
-constexpr std::uint64_t kKept = 350;      // RocksDB keeps up to 256 files open
-constexpr std::uint64_t kTurnedAway = 64; // connections that are only told why they are not served
+constexpr std::uint64_t kKept = 350;      // RocksDB has up to 256 files open
+constexpr std::uint64_t kTurnedAway = 64; // connections that are open only to receive the reason of a refusal
 constexpr std::uint64_t kAtLeast = 8;
 
 } // namespace
@@ -27,7 +27,8 @@ ConnectionLimits limits_within(std::uint64_t descriptors) noexcept {
     const ConnectionLimits wished;
     const auto kept = kKept + kTurnedAway;
     const auto free = descriptors > kept ? descriptors - kept : 0;
-    // Those who greet count twice: all of them may say hello at once, and as many new ones come.
+    // Connections without a hello count twice: all of them may send it at once while the same number of new ones
+    // arrive.
     if (free >= wished.robots + 2 * wished.greeting + wished.http) return wished;
     ConnectionLimits limits;
     limits.http = std::clamp<std::uint64_t>(free / 4, kAtLeast, wished.http);

@@ -57,9 +57,9 @@ int run(const app::ServerOptions& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-    ::umask(077);                                     // what robots saw is for the owner of the store alone
-    std::signal(SIGPIPE, SIG_IGN);                    // whoever reads what is printed may go
-    const auto hangup = std::signal(SIGHUP, SIG_IGN); // until the server listens for it
+    ::umask(077);                                     // only the owner of the store may read the robots' data
+    std::signal(SIGPIPE, SIG_IGN);                    // the reader of the output may exit
+    const auto hangup = std::signal(SIGHUP, SIG_IGN); // until the server handles it
     try {
         open_missing_standard_streams();
         const auto options = app::read_options(argc, argv);

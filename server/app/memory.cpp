@@ -15,7 +15,7 @@ constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
 constexpr std::uint64_t kMapMemoryMin = 64 * kMib;
 constexpr std::size_t kStackBytes = 1 << 20;
 
-// Code and stacks after save_address_space() 260 MiB, RocksDB 128, and what requests need for a moment.
+// Code and stacks after save_address_space() take 260 MiB, RocksDB 128; the rest is for requests while they run.
 constexpr std::uint64_t kFixedAddressSpace = 448 * kMib;
 
 bool is_limited(const MemoryLimit& limit) { return limit.address_space != std::numeric_limits<std::uint64_t>::max(); }
@@ -30,14 +30,15 @@ MapMemory default_map_memory(const MemoryLimit& limit) {
     return {.maps = whole_mib(available / 2), .weaves = whole_mib(available / 4)};
 }
 
-/// With maps that take at least what is given, of an address space that large.
+/// Returns the address space that the server needs, in bytes, with at least `maps` for maps and replay jobs.
 static std::uint64_t needed_with(const ServerOptions& options, MapMemory maps) {
-    const auto stacks = 3 * options.threads * kStackBytes; // what grows with --threads
+    const auto stacks = 3 * options.threads * kStackBytes; // grows with --threads
     return kFixedAddressSpace + stacks + options.tile_cache_bytes + std::max(options.map_memory_bytes, maps.maps) +
            std::max(options.weave_memory_bytes, maps.weaves);
 }
 
-/// A limit that is enough: with a greater one, maps by default take more.
+/// Returns a limit of the address space that suffices. It is found iteratively because a greater limit also increases
+/// the default memory for maps.
 static std::uint64_t enough_for(const ServerOptions& options, const MemoryLimit& limit) {
     auto enough = needed_with(options, {});
     for (;;) {

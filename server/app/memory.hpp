@@ -22,11 +22,12 @@ struct MapMemory {
 [[nodiscard]] MapMemory default_map_memory(const MemoryLimit& limit);
 
 /// Checks that maps, replay jobs and cached tiles of `options` fit into the address space.
-/// Errors  kInvalidField: `ulimit -v` is too low; the message has the limit and what the server needs.
+/// Errors: kInvalidField if `ulimit -v` is too low; the message contains the limit and the size that the server needs.
 [[nodiscard]] Result<> check_address_space(const ServerOptions& options, const MemoryLimit& limit);
 
-/// Where the address space is limited, has glibc reserve less of it: with one heap for all threads and stacks of 1 MiB
-/// an idle server takes 260 MiB instead of 950 (VmPeak in /proc/PID/status). Call before the first thread is started.
+/// If the address space is limited, makes glibc reserve less of it: with one heap for all threads and stacks of 1 MiB
+/// an idle server takes 260 MiB instead of 950 (VmPeak in /proc/PID/status).
+/// Pre: no thread has been started.
 void save_address_space(const MemoryLimit& limit);
 
 } // namespace scanloom::app

@@ -28,7 +28,7 @@ constexpr const char* kFooter =
     "(--log-level as SCANLOOM_LOG_LEVEL).\nA flag beats the environment, which beats the file.\n"
     "`scanloom-server token --help` says how tokens are made.";
 
-// With 16 MiB, scans that filled a disk of 200 MiB left RocksDB without room for a table, with 32 they did not.
+// When scans filled a disk of 200 MiB, RocksDB had no room for a table with a reserve of 16 MiB, and had it with 32.
 constexpr double kDiskReserveMibMin = 32.0;
 constexpr double kTileCacheMibMax = 1024.0 * 1024.0;
 
@@ -36,14 +36,14 @@ constexpr double kMapMemoryMibMin = 64.0;
 constexpr double kMapMemoryMibMax = 1024.0 * 1024.0 * 1024.0;
 constexpr double kIdleAfterMax = 365.0 * 24 * 3600;
 
-/// As the parser fills it, before it is settled.
+/// The settings as parsed, before they are validated and converted.
 struct Raw {
     std::string listen = "127.0.0.1:7447";
     std::string http = "127.0.0.1:8080";
     std::string store;
-    std::string check;   ///< empty: serve, as the next
-    std::string restore; ///< "newest", or an id
-    std::string tokens;  ///< empty: not given, as the next
+    std::string check;   ///< "log" or "deep"; empty: not given
+    std::string restore; ///< "newest", or an id; empty: not given
+    std::string tokens;  ///< empty: not given; so for `web`
     std::string web;
     std::vector<std::string> proxies;
     double tile_cache_mib = 64.0;
@@ -53,7 +53,7 @@ struct Raw {
     double idle_after = 600.0;
 };
 
-/// Beside the build's programs, or where a package puts it.
+/// Returns where a package installs the viewer, if it exists there; otherwise its place in the build directory.
 std::filesystem::path default_web() {
     std::error_code ignored;
     const auto programs = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
@@ -61,8 +61,8 @@ std::filesystem::path default_web() {
     return std::filesystem::exists(installed, ignored) ? installed : programs.parent_path() / "web";
 }
 
-/// @param port  how the options of this port begin
-/// @param who   comes to it
+/// @param port  prefix of the port's options
+/// @param who   the clients of the port, for the help text
 void add_tls_options(CLI::App& app, sockets::TlsFiles& files, const std::string& port, const std::string& who) {
     auto* certificate = app.add_option(
         port + "-tls-cert", files.certificate,
@@ -156,7 +156,8 @@ void add_options(CLI::App& app, ServerOptions& options, Raw& raw) {
                  "Listen beyond this machine, although nothing guards a port: anybody there may send and read");
 }
 
-/// What was named has to be there; what was not may be missing.
+/// Sets the directory of the viewer. A directory that was named must have an index.html; the default one may be
+/// missing.
 Result<> settle_web(const std::string& named, ServerOptions& options) {
     options.web = named.empty() ? default_web() : std::filesystem::path(named);
     std::error_code ignored;
@@ -280,13 +281,13 @@ Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text) {
 
 namespace {
 
-/// A port that others can reach, and what stands before it.
+/// A port, and what protects it.
 struct Guard {
     const char* flag;
     const boost::asio::ip::tcp::endpoint& endpoint;
     bool has_tokens;
     const sockets::TlsFiles& tls;
-    const char* remedy; ///< what else would guard it
+    const char* remedy; ///< the settings that would protect it, for a message
 
     [[nodiscard]] bool is_reached() const { return !endpoint.address().is_loopback(); }
 };

@@ -17,51 +17,55 @@
 
 namespace scanloom::app {
 
-/// What the program is started for.
+/// What the program does after it has started.
 enum class Task {
     kServe,
     kCheck,     ///< reads all of a store that no server has open
-    kCheckMaps, ///< and weaves every log anew
-    kRepair,    ///< writes what is intact of a store into another
-    kRestore,   ///< writes a store as a backup has it
+    kCheckMaps, ///< as kCheck, and computes the maps of every log again and compares them
+    kRepair,    ///< writes the intact parts of a store to a new store
+    kRestore,   ///< writes the store of a backup to an empty directory
 };
 
-/// What scanloom-server can be told, by flag, SCANLOOM_* variable or TOML file, in that order.
+/// The settings of scanloom-server, from flags, SCANLOOM_* variables and a TOML file, in order of precedence.
 struct ServerOptions {
     Task task = Task::kServe;
-    boost::asio::ip::tcp::endpoint listen; ///< robots
-    boost::asio::ip::tcp::endpoint http;   ///< people and programs
+    boost::asio::ip::tcp::endpoint listen; ///< for robots
+    boost::asio::ip::tcp::endpoint http;   ///< for browsers and API clients
     std::filesystem::path store;
-    std::filesystem::path repaired;      ///< the store that --repair makes
-    std::filesystem::path backups;       ///< where backups are made; empty: nowhere
-    std::size_t backups_kept = 7;        ///< the newest
-    std::optional<std::uint32_t> backup; ///< to restore; nothing: the newest
+    std::filesystem::path repaired;      ///< the store that --repair creates
+    std::filesystem::path backups;       ///< directory of the backups; empty: backups are disabled
+    std::size_t backups_kept = 7;        ///< number of backups kept, the newest ones
+    std::optional<std::uint32_t> backup; ///< id of the backup to restore; nullopt: the newest
     std::filesystem::path web;           ///< the viewer's files
-    std::filesystem::path tokens;        ///< who may do what; empty: everybody may do everything
+    std::filesystem::path tokens;        ///< file of the tokens; empty: every client may do everything
     sockets::TlsFiles robot_tls;
     sockets::TlsFiles http_tls;
-    std::vector<std::string> http_hosts;                ///< names by which the HTTP port is asked, besides localhost
-    std::vector<boost::asio::ip::address> http_proxies; ///< not bounded in connections as other addresses are
-    std::size_t threads = 1;                            ///< that weave, and as many that answer requests
+    std::vector<std::string> http_hosts; ///< accepted host names of the HTTP port, in addition to localhost
+    std::vector<boost::asio::ip::address> http_proxies; ///< addresses without the per-address connection limit
+    std::size_t threads = 1;                            ///< that integrate scans; the same number answers requests
     std::size_t tile_cache_bytes = std::size_t{64} << 20;
     std::uint64_t disk_reserve_bytes = std::uint64_t{256} << 20;
-    std::size_t map_memory_bytes = std::size_t{1} << 30;   ///< of the maps of all sessions that are in memory
-    std::size_t weave_memory_bytes = std::size_t{1} << 29; ///< of the maps woven anew from all logs
-    std::chrono::milliseconds idle_after{600'000};         ///< without use, a session leaves memory
+    std::size_t map_memory_bytes = std::size_t{1} << 30;   ///< for the maps of all sessions in memory
+    std::size_t weave_memory_bytes = std::size_t{1} << 29; ///< for the maps of all replay jobs
+    std::chrono::milliseconds idle_after{600'000};         ///< an unused session is evicted after this time
     std::string log_level = "info";
     std::string log_format = "text"; ///< or "json"
-    bool insecure = false;           ///< listen beyond loopback without a guard
+    bool insecure = false;           ///< allow to listen beyond loopback without tokens or TLS
 };
 
+/// Reads and validates the settings.
+/// @return the settings, or what to print before the program exits: help, the version, a usage error, a new token
 [[nodiscard]] std::variant<ServerOptions, Leave> read_options(int argc, const char* const* argv);
 
-/// "127.0.0.1:8080", "[::1]:0". Errors: kInvalidField.
+/// Parses an address and port, such as "127.0.0.1:8080" or "[::1]:0".
+/// Errors: kInvalidField if the text has another form.
 [[nodiscard]] Result<boost::asio::ip::tcp::endpoint> parse_endpoint(const std::string& text);
 
-/// Errors  kInvalidField: an endpoint beyond loopback that nothing guards, without --insecure.
+/// Checks that every port that other machines can reach is protected, unless --insecure is given.
+/// Errors: kInvalidField if an endpoint is not on loopback and has neither tokens nor TLS.
 [[nodiscard]] Result<> check_guarded(const ServerOptions& options);
 
-/// What others can do all the same, a sentence each: for whoever starts the server.
+/// Returns warnings for the operator, one sentence each, about access that the settings leave open to others.
 [[nodiscard]] std::vector<std::string> guard_warnings(const ServerOptions& options);
 
 } // namespace scanloom::app

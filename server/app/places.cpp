@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without links, as far as it is there; without a slash at the end.
+/// Returns the absolute path, with the symbolic links of its existing part resolved, and without a slash at the end.
 fs::path place_of(const fs::path& directory) {
     std::error_code problem;
     auto place = fs::weakly_canonical(fs::absolute(directory), problem);
@@ -21,7 +21,7 @@ fs::path place_of(const fs::path& directory) {
 
 bool is_same(const fs::path& one, const fs::path& other) {
     std::error_code none;
-    return one == other || fs::equivalent(one, other, none); // by another way: mounted twice
+    return one == other || fs::equivalent(one, other, none); // equivalent under two paths if mounted twice
 }
 
 bool is_at_or_in(const fs::path& inner, const fs::path& outer) {

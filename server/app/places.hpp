@@ -5,9 +5,9 @@
 
 namespace scanloom::app {
 
-/// A store, what it is repaired into, and its backups are three places, none within another: what is written to one
-/// would lie among the files of the other. Symbolic links are followed.
-/// Errors  kInvalidField.
+/// Checks that the store, its repaired copy and its backups are separate directories, none inside another, so that
+/// files written to one cannot get among the files of another. Follows symbolic links.
+/// Errors: kInvalidField if two of them are the same, or one contains another.
 [[nodiscard]] Result<> check_places(const ServerOptions& options);
 
 } // namespace scanloom::app

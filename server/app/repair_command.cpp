@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// NEW with something behind its name, also where that ends with a slash.
+/// Returns the directory's path with `ending` appended to its name, also if the path ends with a slash.
 fs::path beside(const fs::path& directory, const char* ending) {
     const auto absolute = fs::absolute(directory).lexically_normal();
     auto path = absolute.has_filename() ? absolute : absolute.parent_path();
@@ -34,7 +34,7 @@ std::string line_of(const session::RepairedSession& session) {
     return line + "\n";
 }
 
-/// Of all sessions together.
+/// Totals over all sessions.
 struct Sum {
     std::uint64_t sessions = 0;
     std::uint64_t kept = 0;
@@ -52,7 +52,7 @@ struct Sum {
     }
 };
 
-/// What is left of the sessions, into a store that is closed in the end.
+/// Writes the intact entries of all sessions to the new store, and closes it.
 Result<Sum> save(const store::Salvage& salvage, const store::UnfinishedStore& to, const fs::path& lost) {
     const auto repaired = to.open_log();
     if (!repaired) return repaired.error();

@@ -5,9 +5,10 @@
 
 namespace scanloom::app {
 
-/// `scanloom-server --repair NEW --store OLD`: writes whatever is intact of OLD into NEW, and changes nothing of OLD.
-/// Says a line a session, and at the end one of JSON.
-/// @return kExitFailed where NEW could not be made; loss is no failure.
+/// Runs `scanloom-server --repair NEW --store OLD`: writes the intact parts of OLD to NEW, without changing OLD.
+///
+/// Prints one line per session and a final line of JSON.
+/// @return kExitFailed if NEW could not be created; lost entries are not a failure
 [[nodiscard]] ExitCode repair_store(const ServerOptions& options);
 
 } // namespace scanloom::app

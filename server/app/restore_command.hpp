@@ -5,8 +5,8 @@
 
 namespace scanloom::app {
 
-/// `scanloom-server --restore ID`: writes a store as a backup has it into an empty directory, and says so in a line of
-/// JSON.
+/// Runs `scanloom-server --restore ID`: writes the store of a backup to an empty directory, and prints a line of JSON.
+/// @return kExitFailed if the store could not be restored
 [[nodiscard]] ExitCode restore_store(const ServerOptions& options);
 
 } // namespace scanloom::app

@@ -23,29 +23,29 @@ namespace scanloom::app {
 namespace asio = boost::asio;
 namespace {
 
-/// For everything: whoever has not taken the last answer by then is cut off. Who supervises servers kills those
-/// that take longer than ten seconds to stop.
+/// Time limit of the whole shutdown; clients that have not read their last answer by then are disconnected. Service
+/// managers kill servers that take longer than ten seconds to stop.
 constexpr auto kPatience = std::chrono::seconds(9);
 
-/// For the sessions to weave and acknowledge what they were given; the rest stays in the log for the next start,
-/// or with the robots.
+/// Time limit for integrating and acknowledging submitted scans at shutdown. The remaining scans are in the log for the
+/// next start, or the robots still have them.
 constexpr auto kWeavingPatience = std::chrono::seconds(5);
 
-/// Sessions leave memory so much later than they might, at most.
+/// Interval of tidy_up(), and so the longest delay before an idle session is evicted.
 constexpr auto kTidyEvery = std::chrono::seconds(1);
 
 double seconds_since_epoch() {
     return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Tiles that are kept are answered there: one core alone would not do where there are two.
+/// Returns the number of I/O threads. They answer cached tiles, so one thread would be too few on two cores.
 std::size_t io_threads_for(std::size_t threads) { return std::min(threads, std::max<std::size_t>(2, 1 + threads / 4)); }
 
 std::string text_of(const asio::ip::tcp::endpoint& endpoint) {
     return fmt::format("{}:{}", endpoint.address().to_string(), endpoint.port());
 }
 
-/// Null where none is asked for.
+/// Returns null if the port does not use TLS.
 Result<std::shared_ptr<sockets::PortTls>> tls_of(const sockets::TlsFiles& files) {
     if (!files.is_given()) return std::shared_ptr<sockets::PortTls>();
     return sockets::PortTls::open(files);
@@ -80,7 +80,7 @@ Server::Server(const ServerOptions& options, const ConnectionLimits& limits, std
       hangup_(io_, SIGHUP), patience_(io_), weaving_patience_(io_), tidying_(asio::make_strand(io_)) {}
 
 Server::~Server() {
-    // Nothing may run any more when the parts go, last part first.
+    // No task may run while the members are destroyed, in reverse order.
     io_.stop();
     join_pools();
 }
@@ -88,7 +88,7 @@ Server::~Server() {
 void Server::join_pools() {
     check_.stop();
     checking_.join();
-    weaves_.stop(); // nobody waits for them any more
+    weaves_.stop(); // their results are no longer needed
     telling_.join();
     showing_.join();
     awaiting_.join();
@@ -126,7 +126,7 @@ Result<std::unique_ptr<Server>> Server::open(const ServerOptions& options, const
                      options.web.string());
     }
     access::TokenSet tokens;
-    if (!options.tokens.empty()) { // before anything is made
+    if (!options.tokens.empty()) { // before anything is created
         auto read = guard::read_tokens(options.tokens);
         if (!read) return prefixed("--tokens ", read.error());
         tokens = std::move(*read);
@@ -219,7 +219,7 @@ Result<> Server::run() {
         check_.start();
         announce();
     }
-    threads.clear(); // joins: until drain() has let everything come to its end
+    threads.clear(); // joins the I/O threads, which end when drain() has finished
     join_pools();
     spdlog::info("stopped");
     if (const auto failure = log_->stats().last_error) return Error{Errc::kStoreFailed, *failure};
@@ -240,16 +240,16 @@ void Server::wait_for_signal() {
     signals_->async_wait([this](const boost::system::error_code& error, int) {
         if (error) return;
         signals_->async_wait([this](const boost::system::error_code& cancelled, int) {
-            if (!cancelled) sessions_.hurry(); // asked twice
+            if (!cancelled) sessions_.hurry(); // second signal
         });
         drain();
     });
 }
 
-/// From time to time, as long as the server runs.
+/// Does periodic maintenance until the server drains.
 void Server::tidy_up() {
     if (sessions_.is_draining()) return;
-    asio::post(reading_.get_executor(), [this] { // who changes a session may wait for what this sets off
+    asio::post(reading_.get_executor(), [this] { // not on changing_: its tasks may wait for work started here
         tell_of_failed_store();
         if (log_->try_again()) spdlog::info("the store {} has been opened again", options_.store.string());
         sessions_.tidy();
@@ -261,7 +261,7 @@ void Server::tidy_up() {
     });
 }
 
-/// Once for each failure: where no robot sends, no session learns of it.
+/// Logs each failure of the store once. Sessions notice a failure only when a robot sends scans.
 void Server::tell_of_failed_store() {
     const auto failure = log_->stats().last_error;
     const bool was_known = store_has_failed_.exchange(failure.has_value());
@@ -281,7 +281,8 @@ void Server::wait_for_hangup() {
     });
 }
 
-/// Whoever wrote the file may have made a mistake: then those that are let in stay.
+/// Reads the tokens again. If the file is invalid, the previous tokens stay in force, so that admitted clients stay
+/// connected.
 void Server::read_tokens_again() {
     auto tokens = guard::read_tokens(options_.tokens);
     if (!tokens) {
@@ -292,7 +293,7 @@ void Server::read_tokens_again() {
     gate_.replace(std::move(*tokens));
 }
 
-/// Connections that are open go on with what they began with.
+/// Reads the certificates again, for new connections. Open connections keep the settings they started with.
 void Server::read_certificates_again() {
     for (const auto& [flag, tls] : {std::pair("--robot-tls-cert", robot_tls_), {"--http-tls-cert", http_tls_}}) {
         if (!tls) continue;
@@ -304,8 +305,8 @@ void Server::read_certificates_again() {
     }
 }
 
-/// Stops accepting robots; lets every session make durable and acknowledge what it was given, for a while; then
-/// stops serving. When nothing is left to do, the io_context runs dry and run() returns.
+/// Stops accepting robots, gives every session limited time to make its submitted scans durable and acknowledge them,
+/// then stops serving. When no work is left, the io_context ends and run() returns.
 void Server::drain() {
     spdlog::info("draining: acknowledging what is durable");
     tell_service_manager("STOPPING=1");

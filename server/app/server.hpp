@@ -27,38 +27,39 @@
 
 namespace scanloom::app {
 
-/// The parts of scanloom-server, and what connects them.
+/// Creates and connects the parts of scanloom-server, and owns its threads.
 ///
-///   io             sockets: frames and requests come in, answers go out; health and the viewer's files
+///   io             sockets: receives frames and requests, sends answers; health and the viewer's files
 ///   weaving        the sessions' strands: everything that changes a map
-///   serving        answers made from a part of a snapshot
-///   survey         answers made from a whole snapshot: one at a time, as they may take a second
-///   paths          paths of robots, likewise: read from a log where they are long
+///   serving        answers from a part of a snapshot
+///   survey         answers from a whole snapshot: one at a time, because each may take a second
+///   paths          trajectories of robots, one at a time; long ones are read from the log
 ///   logs           logs, piece by piece
-///   reweaving      maps woven once more, with other settings: with a lower priority than all else
-///   awaiting       answers that wait for such maps
-///   planning       ways through maps, for robots and people: one search at a time
-///   locating       robots that ask where they are: one at a time
-///   changing       creating and deleting sessions, excluding scans, making backups: waits for the disk and for strands
+///   reweaving      replay jobs, with a lower priority than all other work
+///   awaiting       answers that wait for replay jobs
+///   planning       path planning for robots and API clients: one search at a time
+///   locating       relocalization of robots: one at a time
+///   changing       creates and deletes sessions, excludes scans, makes backups: waits for the disk and for strands
 ///   checkpointing  writes checkpoints: waits for the disk
-///   reading        sessions that come back to memory: reads them from the store; from time to time, sends idle ones
-///   away checking       reads the sessions that the start left in the store: behind all others, at a bounded rate
+///   reading        loads sessions from the store; periodically evicts idle ones
+///   checking       checks the sessions that startup did not read, after all other work and at a bounded rate
 ///   telling        metrics
-///   showing        what viewers are told live: one event at a time, as snapshots are read for it
+///   showing        encodes live events for viewers: one at a time, because each reads a snapshot
 ///
-/// Thread  open() and run() from the main thread.
+/// Threads: open() and run() from the main thread.
 class Server {
 public:
-    /// Opens the store and the ports. Errors: one sentence that says what to do.
+    /// Opens the store and the ports.
+    /// Errors: those of the parts that cannot be opened; the message is one sentence that says what to do.
     [[nodiscard]] static Result<std::unique_ptr<Server>> open(const ServerOptions& options,
                                                               const ConnectionLimits& limits = {},
                                                               const store::OpenStore& open_log = store::open_rocksdb);
 
     ~Server();
 
-    /// Recovers the sessions, says that it is ready, serves until SIGTERM or SIGINT, drains. SIGHUP has it read the
-    /// tokens and the certificates again.
-    /// Errors  kStoreFailed: the sessions cannot be listed, or the store failed meanwhile.
+    /// Recovers the sessions, reports that the server is ready, serves until SIGTERM or SIGINT, and drains. On SIGHUP
+    /// it reads the tokens and the certificates again.
+    /// Errors: kStoreFailed if the sessions cannot be listed, or the store has failed since.
     [[nodiscard]] Result<> run();
 
 private:
@@ -79,19 +80,19 @@ private:
     ServerOptions options_;
     ConnectionLimits limits_;
     std::unique_ptr<store::ReopeningLog> log_;
-    std::unique_ptr<store::Backups> backups_; // null: none are kept
+    std::unique_ptr<store::Backups> backups_; // null: backups are disabled
     metrics::Metrics metrics_;
     guard::Gate gate_;
     guard::Audit audit_;
     guard::Logins logins_;
-    // The links left open in `io_` hold sessions, whose strands live in `weaving_`: io_ goes first.
+    // Links left open in `io_` hold sessions whose strands run on `weaving_`, so io_ must be destroyed first.
     sockets::WorkerPool weaving_;
     sockets::WorkerPool serving_;
     sockets::WorkerPool survey_{1};
     sockets::WorkerPool paths_{1};
     sockets::WorkerPool logs_{1};
     sockets::WorkerPool reweaving_{2};
-    sockets::WorkerPool awaiting_{http::ServerConfig{}.weaves_max}; // each only waits
+    sockets::WorkerPool awaiting_{http::ServerConfig{}.weaves_max}; // each thread only waits
     sockets::WorkerPool planning_{1};
     sockets::WorkerPool locating_{1};
     sockets::WorkerPool changing_{2};
@@ -108,7 +109,7 @@ private:
     guide::Locator locator_;
     ingest::RequestDesk desk_;
     http::Api api_;
-    std::shared_ptr<sockets::PortTls> robot_tls_; // none: the port speaks plainly, as the next
+    std::shared_ptr<sockets::PortTls> robot_tls_; // null: the port does not use TLS; so for http_tls_
     std::shared_ptr<sockets::PortTls> http_tls_;
     std::unique_ptr<ingest::IngestServer> ingest_;
     std::shared_ptr<http::Server> http_;
@@ -117,7 +118,7 @@ private:
     boost::asio::steady_timer patience_;
     boost::asio::steady_timer weaving_patience_;
     boost::asio::steady_timer tidying_;
-    std::atomic<bool> store_has_failed_ = false; // and the log says why
+    std::atomic<bool> store_has_failed_ = false; // and the failure was logged
 };
 
 } // namespace scanloom::app

@@ -21,18 +21,19 @@ class StandardErrorSink final : public spdlog::sinks::base_sink<std::mutex> {
     void sink_it_(const spdlog::details::log_msg& message) override {
         spdlog::memory_buf_t text;
         formatter_->format(message, text);
-        const auto plain = access::without_secrets({text.data(), text.size()}); // whoever sent one where none belongs
+        const auto plain =
+            access::without_secrets({text.data(), text.size()}); // a client may have sent one in a logged field
         if (!standard_error().is_terminal()) {
             standard_error().write(plain);
             return;
         }
-        const auto begin = message.color_range_start; // which is before the message, and so before any secret
+        const auto begin = message.color_range_start; // the range is before the message, and so before any secret
         const auto end = message.color_range_end;
         standard_error().write(fmt::format("{}{}{}\x1b[0m{}", plain.substr(0, begin), colour_of(message.level),
                                            plain.substr(begin, end - begin), plain.substr(end)));
     }
 
-    void flush_() override {} // nothing is kept back
+    void flush_() override {} // lines are not buffered here
 };
 
 } // namespace

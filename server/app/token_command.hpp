@@ -6,8 +6,9 @@
 
 namespace scanloom::app {
 
-/// `scanloom-server token ...`: makes a secret and says once what it is, with the lines for the file of --tokens.
-/// Nothing where another thing was asked for.
+/// Runs `scanloom-server token ...`: creates a secret, and returns it as text to print once, with the lines for the
+/// file of --tokens.
+/// @return nullopt if the first argument is not `token`
 [[nodiscard]] std::optional<Leave> token_command(int argc, const char* const* argv);
 
 } // namespace scanloom::app

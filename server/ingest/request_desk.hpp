@@ -14,7 +14,7 @@
 
 namespace scanloom::ingest {
 
-/// Answers the requests of all links on other threads than those for I/O.
+/// Answers the requests of all links outside the I/O threads.
 ///
 /// Queue: "requests of links": at most kRequestsMax for paths and kLocatingMax for relocalization, from ask() until the
 ///        reply is written; further ones are refused.
