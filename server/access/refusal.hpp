@@ -6,6 +6,7 @@
 
 namespace scanloom::access {
 
+/// The port on which a refusal happened.
 enum class Port { kRobot, kHttp };
 
 inline constexpr std::array kPorts = {Port::kRobot, Port::kHttp};

@@ -24,6 +24,7 @@ inline constexpr std::array kRoles = {Role::kRobot, Role::kViewer, Role::kOperat
     return "unknown";
 }
 
+/// Returns the role of that name, or nullopt if there is none.
 [[nodiscard]] constexpr std::optional<Role> role_of(std::string_view name) noexcept {
     for (const Role role : kRoles) {
         if (name_of(role) == name) return role;

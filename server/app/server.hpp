@@ -33,7 +33,7 @@ namespace scanloom::app {
 ///   weaving        the sessions' strands: everything that changes a map
 ///   serving        answers from a part of a snapshot
 ///   survey         answers from a whole snapshot: one at a time, because each may take a second
-///   paths          trajectories of robots, one at a time; long ones are read from the log
+///   paths          trajectories and landmarks, one at a time: long ones are read from the log
 ///   logs           logs, piece by piece
 ///   reweaving      replay jobs, with a lower priority than all other work
 ///   awaiting       answers that wait for replay jobs

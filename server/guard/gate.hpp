@@ -32,7 +32,10 @@ using Admitted = boost::system::result<T, Denied>;
 /// Threads: any thread; calls wait only for each other.
 class Gate {
 public:
+    /// Creates a gate without tokens.
     Gate();
+
+    /// Creates a gate with tokens; an empty set admits no client.
     explicit Gate(access::TokenSet tokens);
 
     /// Returns whether the server has no tokens, so that every client is admitted.

@@ -14,6 +14,7 @@
 
 namespace scanloom::ingest {
 
+/// Settings of an IngestServer.
 struct IngestConfig {
     LinkConfig link;
     std::size_t links_max = 10'000;                        ///< that sent a hello; more are refused with an Error

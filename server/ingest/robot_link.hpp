@@ -31,10 +31,11 @@
 
 namespace scanloom::ingest {
 
+/// Settings of a RobotLink.
 struct LinkConfig {
-    std::chrono::steady_clock::duration hello_deadline = std::chrono::seconds(5);
-    std::chrono::steady_clock::duration idle_deadline = std::chrono::seconds(60); ///< an idle robot sends pings
-    std::chrono::steady_clock::duration farewell_deadline = std::chrono::seconds(2);
+    std::chrono::steady_clock::duration hello_deadline = std::chrono::seconds(5);    ///< from accepting to the hello
+    std::chrono::steady_clock::duration idle_deadline = std::chrono::seconds(60);    ///< an idle robot sends pings
+    std::chrono::steady_clock::duration farewell_deadline = std::chrono::seconds(2); ///< for the robot to hang up
     std::size_t credit_bytes = std::size_t{2}
                                << 20; ///< of ScanBatch frames that are not durable yet; more than one frame
 };

@@ -42,6 +42,7 @@ void write(spdlog::level::level_enum level, const Context& context, fmt::format_
 
 } // namespace detail
 
+/// Logs a line of level info with the fields of `context`. Threads: any thread; warn() and error() likewise.
 template <class... Args>
 void info(const Context& context, fmt::format_string<Args...> format, Args&&... args) {
     detail::write(spdlog::level::info, context, format, std::forward<Args>(args)...);

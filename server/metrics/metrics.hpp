@@ -88,6 +88,7 @@ public:
     [[nodiscard]] HttpCounters& http() noexcept { return http_; }
     [[nodiscard]] RefusalCounters& refusals() noexcept { return refusals_; }
 
+    /// Returns the current values of all families.
     [[nodiscard]] std::vector<prometheus::MetricFamily> collect() const;
 
 private:

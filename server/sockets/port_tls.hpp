@@ -34,6 +34,7 @@ public:
     /// Errors: those of net::server_tls(); the previous settings then stay in force.
     [[nodiscard]] Result<> read_again();
 
+    /// Returns the settings for new connections.
     [[nodiscard]] net::TlsContext in_force() const;
     [[nodiscard]] const TlsFiles& files() const noexcept { return files_; }
 
