@@ -16,33 +16,41 @@
 
 namespace scanloom::session {
 
-/// Reads the sessions that a start left in the store, one after another, and tells which of them are damaged: nobody
-/// would know before somebody asks for them. Entries are read and decoded as by CheckDepth::kLog, and nothing is woven.
-/// Thread  any.
+/// Checks the sessions that were not loaded at startup, one after another, and reports the damaged ones.
+///
+/// Without it, the damage of a session is found only when a client requests the session. Checks with CheckDepth::kLog:
+/// entries are read and decoded, and no map is computed.
+/// Threads: any thread.
 class BackgroundCheck {
 public:
-    static constexpr double kBytesPerSecond = 50e6; ///< so that robots' writes do not wait for the disk
+    static constexpr double kBytesPerSecond = 50e6; ///< leaves disk time for the writes of robots' scans
 
-    /// @param checking  where it runs, and waits: an executor of its own. All must outlive this.
+    /// The log, the registry and the executor must outlive this object.
+    ///
+    /// @param checking  runs the check, which blocks; must not be used for anything else
+    /// @param bytes_per_second  bound of the read rate
     BackgroundCheck(store::ScanLog& log, const SessionRegistry& sessions, boost::asio::any_io_executor checking,
                     double bytes_per_second = kBytesPerSecond);
 
-    /// Begins with what is asleep now. To be called once, after SessionRegistry::recover().
+    /// Starts checking the sessions that are not in memory at this time. Call once, after SessionRegistry::recover().
     void start();
 
-    /// Has it end at its next entry, for good.
+    /// Ends the check at its next entry. It cannot be started again.
     void stop();
 
-    /// Somebody else could not read the log of this session: kDataLoss is damage from now on, other reasons are logged.
+    /// Records that another reader failed to read the log of a session.
+    ///
+    /// @param why  kDataLoss marks the session as damaged; other errors are only logged
     void note(store::SessionId id, const Error& why);
 
-    /// What was found and is still there: name and reason. These sessions are served as far as they can be.
+    /// Returns the damaged sessions that still exist, with the reason for each, by name. The parts of these sessions
+    /// that can be read are still served.
     [[nodiscard]] std::map<std::string, Error> damaged() const;
 
-    /// Sessions that have been read to their end.
+    /// Returns the number of sessions that were checked to their end.
     [[nodiscard]] std::uint64_t checked() const;
 
-    /// Waits until all have been, or stop().
+    /// Waits until all sessions are checked or stop() was called.
     void wait() const;
 
 private:
@@ -60,8 +68,8 @@ private:
     store::ScanLog& log_;
     const SessionRegistry& sessions_;
     const boost::asio::any_io_executor checking_;
-    ReadRate rate_;            // the check's own
-    mutable std::mutex mutex_; // guards what follows
+    ReadRate rate_;            // used by the checking thread only
+    mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable changed_;
     bool stopped_ = false;
     bool done_ = false;

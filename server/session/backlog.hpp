@@ -11,26 +11,26 @@
 
 namespace scanloom::session {
 
-/// One entry that a robot gave, checked, on its way into the log and the maps.
+/// A validated entry from a robot that is not yet in the log and the maps.
 struct Submitted {
     RobotIndex robot = 0;
-    std::optional<LogEntry> entry; ///< nothing: what was sent is known already and only holds credit
+    std::optional<LogEntry> entry; ///< nullopt: a duplicate that is not stored and only holds credit
     mapping::Reach reach;          ///< of a scan
-    std::size_t bytes = 0;         ///< of credit, given back when the entry is in the maps
+    std::size_t bytes = 0;         ///< credit that is returned when the entry is in the maps
 };
 
-/// Entries that are appended at once and then woven.
+/// Entries that are appended to the log together and then applied.
 struct Group {
     std::vector<Submitted> entries;
-    std::int64_t chunks = 0; ///< at most as many chunks of the map will be new
-    double work = 0.0;       ///< as Reach::work
+    std::int64_t chunks = 0; ///< upper bound of the map chunks that the group creates
+    double work = 0.0;       ///< in the unit of Reach::work
 };
 
-/// Bounds of a group: of the wait for its ack, and of what a restart has to weave again.
+/// Bounds of a group. They limit the wait for an acknowledgement and the work that a restart repeats.
 inline constexpr std::size_t kGroupEntriesMax = 256;
 inline constexpr double kGroupWorkMax = mapping::kScanWorkMax;
 
-/// Entries that wait for the log. Bounded by the links' credits.
+/// Queue of entries that wait to be appended to the log. Its size is bounded by the credit of the links.
 class Backlog {
 public:
     void add(Submitted entry) { waiting_.push_back(std::move(entry)); }
@@ -39,13 +39,14 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return waiting_.size(); }
     [[nodiscard]] const Submitted& front() const { return waiting_.front(); }
 
-    /// Takes the next group, of which no more than `room` chunks can be new; empty when already the
-    /// first entry could need more.
+    /// Removes and returns the next group, which creates at most `room` chunks. The group is empty if the first entry
+    /// alone might create more.
     [[nodiscard]] Group next_group(std::int64_t room);
 
-    /// Pre: it was the last group taken.
+    /// Puts the group back to the front. It must be the group that next_group() returned last.
     void put_back(Group group);
 
+    /// Removes all entries of the robot.
     void drop(RobotIndex robot);
     void clear() { waiting_.clear(); }
 

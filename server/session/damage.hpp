@@ -7,7 +7,7 @@
 
 namespace scanloom::session {
 
-/// What an entry of a log that cannot be read, though its checksum is right, says of the log.
+/// Returns the error (kDataLoss) for a log entry that has a correct checksum but cannot be decoded.
 [[nodiscard]] inline Error damaged_entry(Revision revision, const Error& why) {
     return {Errc::kDataLoss, fmt::format("log entry {}: {}", revision, why.message)};
 }

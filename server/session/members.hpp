@@ -18,61 +18,70 @@
 
 namespace scanloom::session {
 
-/// A link that waits until what the robot's earlier links submitted is in the maps.
+/// A new link that waits until the entries of the robot's earlier links are in the maps.
 struct Joining {
     Newcomer who;
     std::shared_ptr<RobotListener> listener;
     std::function<void(Result<Joined>)> done;
 };
 
-/// The robots of a session, their links, and what each of them has sent: only entries that can follow
-/// in the log come out of here.
-/// Thread  the session's strand; is_connected() and connected() any.
+/// Robot sequencer: checks the order and the duplicates of the entries that a session's robots send on their links.
+///
+/// Every entry that it returns can be appended to the log in the order of the calls.
+/// Threads: the session's strand; is_connected() and connected() any thread.
 class Members {
 public:
-    /// Both must outlive this.
+    /// `info` and `counters` must outlive this object.
     Members(const SessionInfo& info, SessionCounters& counters) : info_(info), counters_(counters) {}
 
-    /// Takes the log's word for what each robot has sent: whatever is not durable is forgotten.
+    /// Resets all robots to the state of the log and forgets entries that are not durable.
     void restore(const mapping::ProjectionState& state);
 
     [[nodiscard]] bool is_connected(RobotIndex robot) const;
 
-    /// By RobotIndex; those beyond the end are not connected.
+    /// Returns whether each robot is connected, by RobotIndex. Robots beyond the end are not connected.
     [[nodiscard]] std::vector<bool> connected() const;
 
-    /// Rises whenever a robot's link comes or goes.
+    /// Returns a number that increases each time a robot connects or disconnects.
     [[nodiscard]] std::uint64_t connection_changes() const noexcept { return connection_changes_; }
 
-    /// Lets the link in as soon as nothing of the robot's earlier ones is under way; these fail.
-    /// @return the entry that makes the robot known, if it is not as it says it is.
+    /// Connects a robot, and fails its earlier link with kReplaced. Calls `joining.done` when all entries of the
+    /// earlier links are in the maps.
+    /// @return the entry to append if the robot is new or its properties have changed
     [[nodiscard]] std::optional<Submitted> join(Joining joining);
 
     void leave(const std::shared_ptr<RobotListener>& listener);
 
-    /// @return what to append; nothing from a link that is not a robot's. A fault fails the link.
+    /// Checks the description of a sensor. An invalid one fails the link.
+    /// @param bytes  credit to return when the description is in the maps
+    /// @return the entries to append; empty if `from` is not the link of a robot
     [[nodiscard]] std::vector<Submitted> describe(const std::shared_ptr<RobotListener>& from, Sensor sensor,
                                                   std::size_t bytes);
-    /// @param is_mapped  whether anything of the session is in the maps yet
+
+    /// Checks scans and drops duplicates. An invalid scan fails the link; the scans before it are accepted.
+    /// @param bytes  credit to return when the scans are in the maps
+    /// @param is_mapped  whether the maps of the session contain anything yet
+    /// @return the entries to append; empty if `from` is not the link of a robot
     [[nodiscard]] std::vector<Submitted> take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
                                               std::size_t bytes, bool is_mapped);
 
-    /// The group is in the maps: tells the links, gives back their credit, lets in who waited for that.
+    /// Acknowledges a group that is in the maps: calls on_durable() of the links and admits the links that waited for
+    /// it.
     void release(const Group& group);
 
-    /// Fails the robot's link and forgets whatever of it is not in the state.
+    /// Fails the robot's link and forgets the robot's entries that are not in `state`.
     void refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state);
 
     void fail_all(const Error& error);
 
 private:
     struct Member {
-        LoggedRobot robot; // as the log will have it when all that was submitted is in it
+        LoggedRobot robot; // as in the log after all submitted entries are appended
         std::shared_ptr<RobotListener> listener;
         std::optional<Joining> joining;
         std::size_t under_way = 0; // entries submitted and not released
         std::uint64_t durable_seq = 0;
-        std::uint64_t showed_seq = 0; // of the first scan taken here that shows anything; 0: there is none
+        std::uint64_t showed_seq = 0; // of the first scan accepted here that can change a cell; 0: none
     };
 
     [[nodiscard]] RobotIndex index_of(const Member& member) const;

@@ -6,14 +6,14 @@
 
 namespace scanloom::session {
 
-/// The pages (mapping::kPageBytes) that some maps may take together. A chunk is a page.
-/// Thread  any.
+/// Memory budget shared by several maps, counted in pages of mapping::kPageBytes. A chunk is one page.
+/// Threads: any thread.
 class PageBudget {
 public:
     explicit PageBudget(std::size_t pages_max)
         : pages_max_(static_cast<std::int64_t>(pages_max)), free_(static_cast<std::int64_t>(pages_max)) {}
 
-    /// All or none. Pre: pages >= 0.
+    /// Takes `pages` (>= 0) if that many are free. @return whether they were taken; if not, none were
     [[nodiscard]] bool take(std::int64_t pages) noexcept {
         auto free = free_.load();
         while (pages <= free) {
@@ -22,12 +22,13 @@ public:
         return false;
     }
 
-    /// Also where there are not as many: of what is there already. Nothing can be taken until it is made up for.
+    /// Takes `pages` even if fewer are free, for maps that are in memory already. free() may become negative; take()
+    /// then fails until enough pages are given back.
     void take_anyway(std::int64_t pages) noexcept { free_ -= pages; }
 
     void give_back(std::int64_t pages) noexcept { free_ += pages; }
 
-    /// Less than nothing where more was taken anyway.
+    /// Returns the number of free pages; negative if take_anyway() exceeded the budget.
     [[nodiscard]] std::int64_t free() const noexcept { return free_; }
     [[nodiscard]] std::int64_t used() const noexcept { return pages_max_ - free_; }
     [[nodiscard]] std::int64_t pages_max() const noexcept { return pages_max_; }

@@ -11,8 +11,9 @@
 
 namespace scanloom::session {
 
-/// What one map has taken of the budgets that it shares with others, the same of each; given back when this goes.
-/// Thread  one.
+/// The pages that one map has taken from several shared budgets, the same number from each. Gives them back in the
+/// destructor.
+/// Threads: one.
 class PageShare {
 public:
     explicit PageShare(std::vector<std::shared_ptr<PageBudget>> budgets) : budgets_(std::move(budgets)) {}
@@ -20,9 +21,9 @@ public:
     PageShare& operator=(const PageShare&) = delete;
     ~PageShare() { give_back(taken_); }
 
-    /// Of every budget, or of none. Pre: pages >= 0.
+    /// Takes `pages` (>= 0) from every budget, or from none if one of them has too few. @return whether they were taken
     [[nodiscard]] bool take(std::int64_t pages) noexcept {
-        if (pages == 0) return true; // however much was taken anyway
+        if (pages == 0) return true; // even if the free count is negative
         for (auto budget = budgets_.begin(); budget != budgets_.end(); ++budget) {
             if ((*budget)->take(pages)) continue;
             while (budget != budgets_.begin()) (*--budget)->give_back(pages);
@@ -32,6 +33,7 @@ public:
         return true;
     }
 
+    /// Takes `pages` from every budget, even if fewer are free. See PageBudget::take_anyway().
     void take_anyway(std::int64_t pages) noexcept {
         for (const auto& budget : budgets_) budget->take_anyway(pages);
         taken_ += pages;
@@ -44,14 +46,14 @@ public:
 
     void give_back_all() noexcept { give_back(taken_); }
 
-    /// What can be taken at this moment, for all that others do meanwhile.
+    /// Returns how many pages take() can take, at least 0. Other threads may change this at any time.
     [[nodiscard]] std::int64_t free() const noexcept {
         auto free = std::numeric_limits<std::int64_t>::max();
         for (const auto& budget : budgets_) free = std::min(free, budget->free());
         return std::max<std::int64_t>(0, free);
     }
 
-    /// What there is of the smallest budget in all.
+    /// Returns the total size of the smallest budget, in pages.
     [[nodiscard]] std::int64_t most() const noexcept {
         auto most = std::numeric_limits<std::int64_t>::max();
         for (const auto& budget : budgets_) most = std::min(most, budget->pages_max());

@@ -6,12 +6,12 @@
 
 namespace scanloom::session {
 
-/// A mutex that is waited for no longer than one may: std::timed_mutex, but seen by ThreadSanitizer, which in GCC 12
-/// knows nothing of that one's waiting. For std::unique_lock with a duration.
-/// Thread  any.
+/// A mutex with a timed lock, for std::unique_lock with a duration. Replaces std::timed_mutex, whose timed wait
+/// ThreadSanitizer of GCC 12 does not support.
+/// Threads: any thread.
 class PatientMutex {
 public:
-    /// Whether it is had now.
+    /// Waits up to `patience` for the mutex. @return whether the caller holds it
     [[nodiscard]] bool try_lock_for(std::chrono::milliseconds patience) {
         std::unique_lock lock(mutex_);
         if (!is_free_again_.wait_for(lock, patience, [&] { return !is_taken_; })) return false;
@@ -19,7 +19,7 @@ public:
         return true;
     }
 
-    /// Pre  the caller has it.
+    /// Releases the mutex, which the caller must hold.
     void unlock() {
         {
             const std::lock_guard lock(mutex_);

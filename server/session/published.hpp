@@ -10,15 +10,15 @@
 
 namespace scanloom::session {
 
-/// The newest maps of a session: put here by its writer, read by everybody.
+/// The newest maps of a session, written by one thread and read by many.
 ///
-/// The writer may take them back for a moment, to fold into chunks that nobody looks at without copying them first.
-/// Whoever asks then waits for the next ones, so that what was acknowledged before is always in what get() returns.
-/// They are not taken back again before everybody who waited has them.
+/// The writer may withdraw the maps for a moment to change chunks in place, without a copy, while no reader holds them.
+/// Readers then wait for the next maps, so the result of get() always contains the scans that were acknowledged before
+/// the call. The maps are not withdrawn again until all waiting readers have received them.
 class Published {
 public:
-    /// The newest maps; null before the first set().
-    /// Thread  any; waits for a set() where they were taken back.
+    /// Returns the newest maps; null before the first set(). Waits for the next set() while the maps are withdrawn.
+    /// Threads: any thread that may block for about a millisecond.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> get() const {
         std::unique_lock lock(mutex_);
         ++waiting_;
@@ -27,21 +27,22 @@ public:
         return maps_;
     }
 
-    /// The same for threads that may not wait: null where they were taken back.
-    /// Thread  any.
+    /// Returns the newest maps; null before the first set() or while the maps are withdrawn. Does not wait.
+    /// Threads: any thread.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_get() const {
         const std::lock_guard lock(mutex_);
         return maps_;
     }
 
-    /// Whether anybody waits for them.
-    /// Thread  any.
+    /// Returns whether a thread waits in get().
+    /// Threads: any thread.
     [[nodiscard]] bool is_waited_for() const {
         const std::lock_guard lock(mutex_);
         return waiting_ > 0;
     }
 
-    /// Thread  the writer's.
+    /// Publishes maps.
+    /// Threads: the writer's.
     void set(std::shared_ptr<const mapping::Snapshot> maps) {
         {
             const std::lock_guard lock(mutex_);
@@ -51,8 +52,8 @@ public:
         is_there_.notify_all();
     }
 
-    /// Puts others in the place of maps that were taken back; does nothing where they are there.
-    /// Thread  the writer's.
+    /// Publishes `maps` if the maps are withdrawn; otherwise does nothing.
+    /// Threads: the writer's.
     void fall_back_to(std::shared_ptr<const mapping::Snapshot> maps) noexcept {
         {
             const std::lock_guard lock(mutex_);
@@ -63,21 +64,24 @@ public:
         is_there_.notify_all();
     }
 
-    /// Lets go of the maps, unless somebody else holds them or has waited for them and is still on the way.
-    /// Post    when true: whoever asks waits until set(), which is to follow in about a millisecond.
-    /// Thread  the writer's, which must not get() until then.
+    /// Withdraws the maps and releases them, unless a reader holds them or still waits in get().
+    ///
+    /// After a return of true, get() waits until set() or fall_back_to(), which must follow within about a millisecond.
+    /// The writer must not call get() until then.
+    /// @return whether the maps were withdrawn
+    /// Threads: the writer's.
     [[nodiscard]] bool take_back() {
-        std::shared_ptr<const mapping::Snapshot> last; // goes after the lock
+        std::shared_ptr<const mapping::Snapshot> last; // destroyed after the lock is released
         const std::lock_guard lock(mutex_);
         if (waiting_ > 0 || maps_.use_count() != 1)
-            return false; // copies are made under the lock: nobody else can come by one
+            return false; // readers copy the pointer under the lock, so the count cannot rise here
         last.swap(maps_);
         taken_back_ = true;
         return true;
     }
 
 private:
-    mutable std::mutex mutex_; // guards what follows, held for a copy only
+    mutable std::mutex mutex_; // guards the members below; held briefly
     mutable std::condition_variable is_there_;
     std::shared_ptr<const mapping::Snapshot> maps_;
     bool taken_back_ = false;

@@ -6,14 +6,14 @@
 
 namespace scanloom::session {
 
-/// So many bytes a second, of whoever waits as long as it is told to; what was not read meanwhile is not made up for.
+/// Limits a read rate if the caller waits until the returned times. Unused time is not saved for later bursts.
 class ReadRate {
 public:
     using Time = std::chrono::steady_clock::time_point;
 
     explicit ReadRate(double bytes_per_second) : bytes_per_second_(bytes_per_second) {}
 
-    /// So many bytes have been read. @return when to go on.
+    /// Records a read of `bytes`. @return the time of the next read
     [[nodiscard]] Time after(std::size_t bytes, Time now) {
         const std::chrono::duration<double> worth(static_cast<double>(bytes) / bytes_per_second_);
         due_ = std::max(due_, now) + std::chrono::duration_cast<Time::duration>(worth);

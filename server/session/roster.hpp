@@ -19,81 +19,93 @@
 
 namespace scanloom::session {
 
-/// What is known of one session, awake or not.
+/// One entry of the list of sessions, in memory or not.
 struct Listed {
     SessionInfo info;
     std::shared_ptr<Session> session; ///< null: not in memory
-    Summary summary;                  ///< of one that is not
+    Summary summary;                  ///< only if it is not in memory
 };
 
-/// A session that is to be read from the store.
+/// A session that must be loaded from the store.
 struct Resting {
     SessionInfo info;
-    std::size_t pages = 0; ///< that its maps will take
+    std::size_t pages = 0; ///< that its maps will need
 };
 
-/// Which sessions there are, which of them are in memory (awake), and who waits for those that are not.
+/// Session cache: the list of all sessions, which of them are in memory, and the callers that wait for the others.
 ///
-/// A session is awake, or asleep, or on its way from one to the other, or to its end. Whoever holds an awake one keeps
-/// it so: only those that nobody holds but this are put to sleep. What is on its way belongs to who set it off; all
-/// others wait until it has arrived.
-/// Thread  any. Nothing here waits but leave(). What is to be called is called without a lock, before the call returns.
+/// A session is in memory (awake), evicted (asleep), or in transition: being loaded, evicted or deleted. Only sessions
+/// without an owner outside the cache are evicted, so holding a session keeps it in memory. A transition belongs to the
+/// caller that started it; all other callers wait until it ends.
+/// Threads: any thread. Only leave() and settle() block. Callbacks run before the call returns, without a lock held.
 class Roster {
 public:
     using Clock = std::chrono::steady_clock;
     using Woken = std::function<void(Result<std::shared_ptr<Session>>)>;
 
-    /// The session, if it is awake; it has been used at `now`. Null: it is not, or there is none.
+    /// Returns the session if it is in memory and sets its time of last use to `now`; otherwise null.
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name, Clock::time_point now) const;
 
-    /// Whether there is such a session and it is not awake.
+    /// Returns whether the session exists and is not in memory.
     [[nodiscard]] bool must_be_waited_for(std::string_view name) const;
 
     [[nodiscard]] bool contains(std::string_view name) const;
     [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const;
     [[nodiscard]] std::optional<Listed> listed(std::string_view name) const;
 
-    /// By rising name.
+    /// Returns the sessions in memory, sorted by name.
     [[nodiscard]] std::vector<std::shared_ptr<Session>> awake() const;
+
+    /// Returns all sessions, sorted by name.
     [[nodiscard]] std::vector<Listed> all() const;
 
-    /// Pre: there is none of that name.
+    /// Adds a session that is in memory, last used at `now`. No session of that name may exist.
     void add(std::shared_ptr<Session> session, Clock::time_point now);
+
+    /// Adds a session that is not in memory. No session of that name may exist.
     void add(SessionInfo info, Summary summary);
 
-    /// Gives the session to `woken`: at once where it is awake (or null: there is none), else when it will be.
-    /// @return a session that slept: the caller has to read it, and to say arrived().
+    /// Passes the session to `woken`: immediately if it is in memory, otherwise when it has been loaded.
+    ///
+    /// @param woken  called once: with the session, with null if it does not exist, or with the error of failed() or
+    ///               remove()
+    /// @return a session that the caller must load and then report with arrived() or failed(), if any
     [[nodiscard]] std::optional<Resting> want(std::string_view name, Clock::time_point now, Woken woken);
 
-    /// Sends to sleep, until they have `pages_wanted` pages, sessions that nobody holds and that were not used after
-    /// `used_until`, the least recently used first.
-    /// @return those: the caller has to close them and to say arrived().
+    /// Starts to evict sessions, the least recently used first, until they have `pages_wanted` pages together.
+    ///
+    /// Only sessions without an owner outside the cache that were not used after `used_until` are evicted.
+    /// @return the sessions, which the caller must close and then report with arrived()
     [[nodiscard]] std::vector<std::shared_ptr<Session>> send_to_sleep(Clock::time_point used_until,
                                                                       std::size_t pages_wanted);
 
-    /// Sends to sleep those that have failed, whoever holds them. @return as send_to_sleep().
+    /// Starts to evict all sessions that have failed, even if they have other owners.
+    /// @return the sessions, which the caller must close and then report with arrived()
     [[nodiscard]] std::vector<std::shared_ptr<Session>> send_failed_to_sleep();
 
-    /// The session is awake.
+    /// Ends a load: the session is in memory. Passes it to the waiting callers.
     void arrived(std::shared_ptr<Session> session, Clock::time_point now);
 
-    /// The session is asleep. @return it again where somebody wants it meanwhile, as want().
+    /// Ends an eviction: the session is not in memory.
+    /// @return the session if a caller has requested it in the meantime, to be loaded as after want()
     [[nodiscard]] std::optional<Resting> arrived(const std::string& name, Summary summary);
 
-    /// It could not be woken: who waits for it is told. It stays asleep.
+    /// Ends a load that failed: passes `why` to the waiting callers. The session stays evicted.
     void failed(const std::string& name, const Error& why);
 
-    /// Waits until the session is not on its way, and then sends it to its end.
-    /// @return as it was before; nothing: there is none. The caller has to say remove() or stay().
+    /// Waits until the session is in no transition, then starts to delete it, or to change it while it is closed.
+    /// @return the session in its state before; nullopt if it does not exist. The caller must end the transition with
+    /// remove(), stay() or arrived().
     [[nodiscard]] std::optional<Listed> leave(std::string_view name);
 
-    /// Gone: those who wait for it are told `why`.
+    /// Removes the session from the list and passes `why` to the waiting callers.
     void remove(std::string_view name, const Error& why);
 
-    /// After leave(): it is as before. @return as want().
+    /// Ends the transition of leave() without a change.
+    /// @return a session to load, as want()
     [[nodiscard]] std::optional<Resting> stay(std::string_view name);
 
-    /// Waits until none is on its way.
+    /// Waits until no session is in transition.
     void settle() const;
 
 private:
@@ -102,8 +114,8 @@ private:
     struct Entry {
         SessionInfo info;
         State state = State::kAsleep;
-        std::shared_ptr<Session> session; // also on its way to sleep, or to its end
-        Summary summary;                  // of what is not awake
+        std::shared_ptr<Session> session; // also while it is being evicted or deleted
+        Summary summary;                  // of a session that is not in memory
         mutable std::atomic<Clock::rep> used = 0;
         std::vector<Woken> waiting;
     };
@@ -113,7 +125,7 @@ private:
     [[nodiscard]] static std::optional<Resting> wake_if_wanted(Entry& entry);
     void touch(const Entry& entry, Clock::time_point now) const;
 
-    mutable std::shared_mutex mutex_; // guards what follows, held for moments
+    mutable std::shared_mutex mutex_; // guards the entries; held briefly
     mutable std::condition_variable_any arrival_;
     Entries entries_;
 };

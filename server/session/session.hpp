@@ -26,19 +26,22 @@
 
 namespace scanloom::session {
 
-/// One session: the single writer of its log and of the maps woven from it.
+/// One session: the only writer of its log and of the maps derived from it.
 ///
-/// A scan goes down: submit() -> (strand) Members: checked against what came before -> Backlog -> appended
-/// to the ScanLog in groups -> durable -> folded into the Projection -> a new Snapshot published -> Members:
-/// on_durable(). Nothing is folded before it is durable, so that the maps never know more than the log.
-/// Folding gives way after each slice of work: one session's scans hold up no other's.
+/// The path of a scan: submit() -> (strand) Members checks order and duplicates -> Backlog -> a group is appended to
+/// the ScanLog -> the group is durable -> it is applied to the Projection -> a new Snapshot is published -> Members
+/// calls on_durable(). Entries are applied only after they are durable, so the maps never contain more than the log.
+/// The strand yields after each slice of work, so the scans of one session do not delay those of another.
 ///
-/// Thread  every public function may be called from any thread; the work happens on the strand.
+/// Threads: every public function may be called from any thread; the work runs on the strand.
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    /// A session whose projection has been recovered from the log up to its end.
-    /// `checkpointed` is the revision that its stored checkpoint holds, as in Recovered. Checkpoints are written on
-    /// `may_wait`, by default on `compute`, which they would hold up.
+    /// Creates a session from a projection of its whole log.
+    ///
+    /// @param checkpointed  revision of the stored checkpoint, as Recovered::checkpointed
+    /// @param log  must outlive the session
+    /// @param compute  applies entries
+    /// @param may_wait  writes checkpoints, which blocks; `compute` by default
     Session(SessionInfo info, mapping::Projection projection, std::optional<Revision> checkpointed, store::ScanLog& log,
             boost::asio::any_io_executor compute,
             std::shared_ptr<SessionCounters> counters = std::make_shared<SessionCounters>(),
@@ -46,68 +49,82 @@ public:
 
     [[nodiscard]] const SessionInfo& info() const noexcept { return info_; }
 
-    /// The newest maps; they hold every scan acknowledged so far. Waits about a millisecond where they are being
-    /// written.
+    /// Returns the newest maps, which contain every scan acknowledged so far. Waits about a millisecond if the maps are
+    /// being changed in place.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> snapshot() const { return published_.get(); }
 
-    /// The same for threads that may not wait: null where they are being written.
+    /// Returns the newest maps, or null if they are being changed in place. Does not wait.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> try_snapshot() const { return published_.try_get(); }
 
-    /// mapping::main_bounds_of() the newest maps. Found once for each revision: a few milliseconds.
+    /// Returns mapping::main_bounds_of() the newest maps.
+    /// Cost: a few milliseconds for the first call at each revision.
     [[nodiscard]] grid::CellBox main_bounds() const;
 
-    /// Entries that wait to be handed to the log.
+    /// Returns the number of entries that wait to be appended to the log.
     [[nodiscard]] std::size_t backlog_size() const noexcept { return backlog_size_; }
 
-    /// Why the session takes no scans until it is read from the store again, its maps being served all the same: the
-    /// log could not be written, or the memory ran out, of which scan a part may show. Nothing while all is well.
+    /// Returns the error that stopped ingestion, or nullopt if the session accepts scans.
+    ///
+    /// After a failure the session still serves its last maps but accepts no scans until it is loaded again from the
+    /// store. If memory ran out, the maps may show a partially integrated scan.
     [[nodiscard]] std::optional<Error> failure() const;
 
-    /// Why the session takes nothing more, since it is being closed: kGone, it is deleted, or kShuttingDown. Nothing
-    /// before that.
+    /// Returns why the session is closing, or nullopt if it is not: kGone if it is deleted, otherwise kShuttingDown. A
+    /// closing session accepts no further entries.
     [[nodiscard]] std::optional<Error> closing() const;
 
-    /// From now on tells `watcher` when any of what can be asked for here has changed. Whoever watches first and then
-    /// looks misses nothing.
+    /// Adds a watcher, which is notified of each change of the state that this class returns. A watcher that reads the
+    /// state after this call misses no change.
     void watch(std::weak_ptr<Watcher> watcher) { watchers_.add(std::move(watcher)); }
 
-    /// Tells the watchers that something has changed which others keep about this session.
+    /// Notifies the watchers that data which another component keeps about this session has changed.
     void tell_changed() const { watchers_.tell(); }
 
-    /// Whether the robot has a link at present.
+    /// Returns whether the robot is connected.
     [[nodiscard]] bool is_connected(RobotIndex robot) const { return members_.is_connected(robot); }
 
-    /// The same of all, by RobotIndex; those beyond the end have none.
+    /// Returns whether each robot is connected, by RobotIndex. Robots beyond the end are not connected.
     [[nodiscard]] std::vector<bool> connected() const { return members_.connected(); }
 
-    /// Makes `listener` the robot's link; an earlier link of the same robot fails with kReplaced.
-    /// `done` is called once, on the strand, when everything the robot's earlier links submitted is
-    /// durable: so last_durable_seq is exact, and no more than one link's credit is under way.
-    /// Errors  kReplaced, kConflict (the robot's scans come from another source), kGone, kStoreFailed,
-    ///         kShuttingDown, kFull.
+    /// Connects a robot to this session and replaces its previous connection, if any.
+    ///
+    /// The previous connection fails with kReplaced. `done` runs once, on the session's strand, after all entries that
+    /// the previous connections submitted are durable. Therefore Joined::last_durable_seq is exact, and the credit of
+    /// at most one connection is outstanding.
+    ///
+    /// @param listener  receives acknowledgements and errors; kept until leave() or on_failed()
+    /// @param done  receives the result, or one of
+    ///              kReplaced (a newer connection of this robot arrived first), kConflict (the robot's scans come from
+    ///              another source), kFull (the session has 1024 robots), kGone (deleted), kStoreFailed, kOverloaded,
+    ///              kShuttingDown
     void join(Newcomer who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done);
 
-    /// Describes a sensor, for the scans submitted after it. What comes from a link that has not joined
-    /// yet, or has failed, is ignored, here and below. `bytes` is given back through on_durable.
+    /// Describes a sensor, for the scans that are submitted after it.
+    ///
+    /// Ignored if `from` has not joined or has failed. An invalid description fails the link.
+    /// @param bytes  credit, returned by RobotListener::on_durable()
     void submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::size_t bytes);
 
-    /// Adds scans. Those the log already has are dropped; a missing one fails the link (kOutOfOrder),
-    /// as do a scan of a sensor that was not described or with beams that do not fit it, and one that might
-    /// need more chunks than a map may have (kFull).
+    /// Submits scans. Scans that the log already contains are dropped.
+    ///
+    /// Ignored if `from` has not joined or has failed. The link fails with kOutOfOrder if a scan is missing,
+    /// kInvalidField if its sensor was not described or its beams do not fit the sensor, and kFull if the scan might
+    /// need more chunks than a map may have.
+    /// @param bytes  credit, returned by RobotListener::on_durable()
     void submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes);
 
-    /// The link is gone; what it submitted stays.
+    /// Disconnects a link. The entries that it submitted are kept.
     void leave(std::shared_ptr<RobotListener> listener);
 
-    /// Takes nothing more; when all that was submitted is durable and folded, fails every link with
-    /// `reason`, writes a checkpoint and calls `done`.
+    /// Stops accepting entries. When all submitted entries are durable and applied, fails every link with `reason`,
+    /// writes a checkpoint and calls `done`.
     void close(Error reason, std::function<void()> done);
 
-    /// Lets close() end soon: what is not durable yet is dropped; what is durable is acknowledged, and folded by the
-    /// next recovery; no further piece of a checkpoint is written.
+    /// Makes close() end soon: drops entries that are not durable, acknowledges the durable ones, which the next
+    /// recovery applies, and writes no further piece of a checkpoint.
     void hurry();
 
-    /// Closes a session that is to be deleted: close() in a hurry.
+    /// Closes the session as close() after hurry(). Used when its maps are no longer needed.
     void discard(Error reason, std::function<void()> done);
 
 private:
@@ -144,38 +161,38 @@ private:
     // On the strand only.
     mapping::Projection projection_;
     Backlog waiting_;
-    std::deque<Group> durable_; // not folded yet; the first one may be in part
-    std::size_t folded_ = 0;    // entries of the first
+    std::deque<Group> durable_; // not applied yet; the first one may be applied in part
+    std::size_t folded_ = 0;    // applied entries of the first group
     std::vector<std::shared_ptr<const mapping::FoldedScan>> newest_scans_; // by RobotIndex; null: none yet
-    Revision appended_ = 0;                                                // newest entry handed to the log
+    Revision appended_ = 0;                                                // newest entry passed to the log
     bool appending_ = false;
-    std::int64_t chunks_under_way_ = 0; // that the groups being appended and folded may add
-    PageShare share_;                   // of the limits' budgets: what the maps take, and what is under way
-    std::size_t pages_ = 0;             // that the maps take
+    std::int64_t chunks_under_way_ = 0; // that the groups being appended or applied may create
+    PageShare share_;                   // of the limits' budgets: pages_ and chunks_under_way_
+    std::size_t pages_ = 0;             // of the maps
     std::optional<Revision> checkpointed_;
     double work_since_checkpoint_ = 0.0;
     std::size_t described_since_checkpoint_ = 0; // bytes of sensor descriptions
     bool checkpointing_ = false;
     bool final_checkpoint_tried_ = false;
-    std::optional<Error> refusing_; // why nothing more is taken
-    bool setting_back_ = false;     // to what is durable, as the log had no room for more
-    bool broken_ = false;           // the log or the memory failed: nothing more is appended, folded or written
-    std::function<void()> closed_;  // to be called when closing is done
+    std::optional<Error> refusing_; // why no more entries are accepted
+    bool setting_back_ = false;     // to the durable entries, because the log had no room for more
+    bool broken_ = false;           // the log or the memory failed: no more appending, applying or checkpoints
+    std::function<void()> closed_;  // called when closing is done
 
-    bool has_news_ = false;              // for the watchers, besides links that came or went
-    std::uint64_t connections_told_ = 0; // Members::connection_changes() that the watchers know of
+    bool has_news_ = false;              // a change to notify, not counting connections
+    std::uint64_t connections_told_ = 0; // Members::connection_changes() at the last notification
 
     mutable Watchers watchers_;
-    std::atomic<bool> hurried_ = false;         // set from any thread, as the strand may be busy
+    std::atomic<bool> hurried_ = false;         // set from any thread, because the strand may be busy
     std::atomic<std::size_t> backlog_size_ = 0; // of waiting_, for any thread
 
     Published published_;
 
-    mutable std::mutex main_bounds_mutex_; // guards what follows
+    mutable std::mutex main_bounds_mutex_; // guards the members up to main_bounds_at_
     mutable grid::CellBox main_bounds_;
     mutable std::optional<Revision> main_bounds_at_;
 
-    mutable std::mutex failure_mutex_; // guards what follows, held for a copy only
+    mutable std::mutex failure_mutex_; // guards the members below; held briefly
     std::optional<Error> failure_;
     std::optional<Error> closing_;
 };

@@ -15,43 +15,46 @@
 
 namespace scanloom::session {
 
-/// What one session may use. A fold weaves whatever the log holds: the bound is kept when scans are accepted.
+/// Resources that one session may use. They are enforced when scans are accepted; applying an entry of the log does not
+/// check them again.
 struct SessionLimits {
     std::size_t chunks_max = kMost;
 
-    static constexpr std::size_t kMost = 131'072; ///< of 64 x 64 cells: 2.5 GiB, 1.3 square kilometres at 5 cm
+    static constexpr std::size_t kMost = 131'072; ///< chunks of 64 x 64 cells: 2.5 GiB, 1.3 square km at 5 cm
 
-    std::vector<std::shared_ptr<PageBudget>> shared = {}; ///< with other sessions
+    std::vector<std::shared_ptr<PageBudget>> shared = {}; ///< budgets shared with other sessions
 
-    /// Called with the pages that the next scan may need when a budget has no room for it, and it is refused; on the
-    /// session's strand: hand over, do not block. May be empty.
+    /// Called when a scan is refused because a shared budget has no room, with the number of pages that the scan may
+    /// need. Called on the session's strand: must not block. May be empty.
     std::function<void(std::size_t)> on_short = {};
 };
 
-/// What a session is, for as long as it is in memory; all but its exclusions for as long as it exists.
+/// The fixed properties of a session. They do not change while the session exists, except for the exclusions, which do
+/// not change while it is in memory.
 struct SessionInfo {
     store::SessionId id = 0;
     std::string name;
     double created = 0.0; ///< seconds since the epoch
     mapping::MapConfig config;
-    std::string created_by;                        ///< name of the token it was made with; empty: there was none
-    std::size_t chunks_max = SessionLimits::kMost; ///< less where that token was to make only small ones
-    SharedExclusions exclusions = no_exclusions(); ///< of its log, when it was last read from the store
+    std::string created_by;                        ///< name of the token that created it; empty: no token
+    std::size_t chunks_max = SessionLimits::kMost; ///< lower if that token has a limit
+    SharedExclusions exclusions = no_exclusions(); ///< in the log when it was last read from the store
 };
 
-/// Which scans its maps hold.
+/// Returns the filter that decides which scans the session's maps contain.
 [[nodiscard]] ScanFilter scan_filter_of(const SessionInfo& info);
 
-/// Tells a session from every other, also from a deleted one of the same name and from one of another
-/// store: 16 hexadecimal digits.
+/// Returns 16 hexadecimal digits that identify a session. A deleted session of the same name, or a session of another
+/// store, has another tag.
 [[nodiscard]] std::string tag_of(const SessionInfo& info);
 
-/// What all sessions count together. Of what was submitted, each scan is one of these, or still under way. Thread: any.
+/// Counters of all sessions together. Every submitted scan is counted in exactly one of them, or is still in progress.
+/// Threads: any thread.
 struct SessionCounters {
     std::atomic<std::uint64_t> scans_applied = 0;    ///< in the log and in the map
-    std::atomic<std::uint64_t> scans_jumped = 0;     ///< in the log, left out of the map for max_jump
+    std::atomic<std::uint64_t> scans_jumped = 0;     ///< in the log, but not in the map because of max_jump
     std::atomic<std::uint64_t> scans_duplicates = 0; ///< sent again after a reconnect and dropped
-    std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or come when their link had ended; not acknowledged
+    std::atomic<std::uint64_t> scans_dropped = 0;    ///< refused, or received after their link ended; not acknowledged
 };
 
 } // namespace scanloom::session

@@ -26,108 +26,132 @@
 
 namespace scanloom::session {
 
-/// What whoever names a session that does not exist is told. `name` may be anything.
+/// Returns the error (kNotFound) for a session that does not exist.
+/// @param name  any string, also an invalid session name
 [[nodiscard]] Error no_such_session(std::string_view name);
 
-/// Where a registry has its work done, and what it may use.
+/// Executors, clocks and memory limits of a registry.
 struct RegistryConfig {
-    boost::asio::any_io_executor compute;                   ///< sessions weave
+    boost::asio::any_io_executor compute;                   ///< sessions apply entries on it
     std::function<double()> now;                            ///< seconds since the epoch, for SessionInfo::created
-    std::optional<boost::asio::any_io_executor> may_wait{}; ///< sessions write checkpoints; nothing: on `compute`
-    std::optional<boost::asio::any_io_executor> reading{};  ///< sessions are read from the store; likewise
+    std::optional<boost::asio::any_io_executor> may_wait{}; ///< sessions write checkpoints on it; default: `compute`
+    std::optional<boost::asio::any_io_executor> reading{};  ///< sessions are loaded on it; default: `compute`
 
     std::function<Roster::Clock::time_point()> clock = [] { return Roster::Clock::now(); };
 
-    /// The maps of all sessions that are in memory. Where it is used up, those that nobody uses leave; where that does
-    /// not help, scans are refused, and sessions that are asked for.
+    /// Pages of the maps of all sessions in memory. When they are used up, unused sessions are evicted. If that is not
+    /// enough, new scans and requests for sessions that are not in memory are refused.
     std::size_t pages_max = std::numeric_limits<std::int64_t>::max();
-    Roster::Clock::duration idle_after = std::chrono::minutes(10); ///< for tidy()
+    Roster::Clock::duration idle_after = std::chrono::minutes(10); ///< tidy() evicts sessions that are unused as long
 };
 
 /// All sessions by name.
 ///
-/// A session that nobody uses leaves memory, with a checkpoint at the end of its log, and is read again when somebody
-/// asks for it: robots, viewers and requests hold the session they use. What a list shows of it stays.
-/// Thread  any. create(), remove(), recover(), drain() and the wake() that returns a session wait for the disk: not on
-///         I/O threads, nor on those of the config's executors.
+/// A session without users is evicted from memory, with a checkpoint at the end of its log, and is loaded again on the
+/// next request. Robots, viewers and requests hold the session that they use. The facts that a list of sessions shows
+/// stay in memory.
+/// Threads: any thread. All functions that store, remove or wait block on the disk: create(), import_map(), exclude(),
+/// lift_exclusion(), remove(), recover(), drain() and the wake() that returns a session. Do not call these on I/O
+/// threads or on threads of the config's executors.
 class SessionRegistry {
 public:
     SessionRegistry(store::ScanLog& log, RegistryConfig config);
 
-    /// Finds all that is stored. Sessions with a checkpoint at their log's end stay there; the others are woven: newest
-    /// checkpoint, then the rest of the log. One that is damaged is left out and listed by damaged(); the others are
-    /// not held up by it. drain() stops it early and keeps what has been woven.
-    /// Errors  kStoreFailed: the sessions cannot be listed.
-    /// Pre     called once, before anything else.
+    /// Finds the stored sessions. Call once, before any other function.
+    ///
+    /// A session with a checkpoint at the end of its log stays out of memory. For the others, the newest checkpoint is
+    /// loaded and the rest of the log is replayed. A damaged session is left out and listed by damaged(); it does not
+    /// prevent the recovery of the others. drain() stops the recovery early; the entries applied so far are kept in
+    /// checkpoints.
+    /// Errors: kStoreFailed if the sessions cannot be listed.
     [[nodiscard]] Result<> recover();
 
-    /// The session, if it is in memory; null if it is not, or if there is none.
+    /// Returns the session if it is in memory; otherwise, or if it does not exist, null.
     [[nodiscard]] std::shared_ptr<Session> find(std::string_view name) const;
 
-    /// Whether there is such a session, and wake() would have to read it first.
+    /// Returns whether the session exists and wake() would have to load it first.
     [[nodiscard]] bool is_asleep(std::string_view name) const { return roster_.must_be_waited_for(name); }
 
-    /// The session, read from the store if need be. `woken` is called once, perhaps at once.
-    /// Errors  kNotFound; kOverloaded: there is no memory for it now; kStoreFailed; kShuttingDown. Of one that is
-    ///         damaged: as in damaged().
+    /// Passes the session to `woken`, after loading it from the store if necessary.
+    ///
+    /// @param woken  called once, possibly before this function returns, with the session or one of
+    ///               kNotFound, kOverloaded (no memory for it now), kStoreFailed, kShuttingDown, or the error in
+    ///               damaged() if the session is damaged
     void wake(std::string_view name, Roster::Woken woken);
+
+    /// Returns the session, after loading it from the store if necessary. Blocks until then.
+    /// Errors: those that wake() with a callback passes on.
     [[nodiscard]] Result<std::shared_ptr<Session>> wake(std::string_view name);
 
-    /// Those in memory, by rising name.
+    /// Returns the sessions in memory, sorted by name.
     [[nodiscard]] std::vector<std::shared_ptr<Session>> list() const { return roster_.awake(); }
 
-    /// All but the damaged ones, by rising name.
+    /// Returns all sessions except the damaged ones, sorted by name.
     [[nodiscard]] std::vector<Listed> all() const { return roster_.all(); }
 
-    /// Nothing: there is no such session, or it is damaged.
+    /// Returns the entry of the session in all(); nullopt if it does not exist or is damaged.
     [[nodiscard]] std::optional<Listed> listed(std::string_view name) const { return roster_.listed(name); }
+
+    /// Returns the session's properties; nullopt if it does not exist or is damaged.
     [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const { return roster_.info(name); }
 
-    /// What could not be recovered: name and reason.
+    /// Returns the sessions that could not be recovered, with the reason for each, by name.
     [[nodiscard]] std::map<std::string, Error> damaged() const;
 
-    /// Errors  kInvalidField (name or an option), kAlreadyExists, kStoreFailed, kShuttingDown; kFull: the maker has
-    ///         made as many as it may.
+    /// Creates an empty session.
+    ///
+    /// @param maker  the creator and its limits
+    /// Errors: kInvalidField if the name or an option is invalid; kAlreadyExists; kFull if the maker has reached its
+    /// limit of sessions; kStoreFailed; kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Session>> create(std::string_view name, const SessionOptions& options,
                                                           const Maker& maker = {});
 
-    /// The same, beginning with a map that was made elsewhere: its patches are the log's first entries. Where a crash
-    /// comes between, the next start removes what there is of it.
-    /// Errors  also kInvalidField, kFull: the map at these cells; kOverloaded: there is no memory for it.
+    /// Creates a session that starts with an imported map, whose patches become the first entries of the log.
+    ///
+    /// After a crash during the import, the next start removes the incomplete session.
+    /// @param patches  parts of the map, with cells of the size in `options`
+    /// Errors: those of create(); kInvalidField or kFull also if the map is invalid or too large with this cell size;
+    /// kOverloaded if there is no memory for it now.
     [[nodiscard]] Result<std::shared_ptr<Session>> import_map(std::string_view name, const SessionOptions& options,
                                                               const std::vector<MapPatch>& patches,
                                                               const Maker& maker = {});
 
-    /// Excludes scans of a robot from the session's maps by an entry of its log. The session leaves memory: robots and
-    /// viewers are asked to connect again, and its maps are computed again from the log when it is read.
-    /// Pre     the robot has joined the session.
-    /// Errors  kNotFound: no such session; kFull: Exclusions::kMost are in effect; kOverloaded, kStoreFailed: the entry
-    ///         was not stored; kShuttingDown.
+    /// Excludes scans of a robot from the session's maps by appending an entry to its log.
+    ///
+    /// Evicts the session: robots and viewers are asked to connect again, and the maps are computed again from the log
+    /// when the session is next loaded.
+    /// @param robot  a robot that has joined the session
+    /// Errors: kNotFound if there is no such session; kFull if Exclusions::kMost are in effect; kOverloaded or
+    /// kStoreFailed if the entry was not stored; kShuttingDown.
     [[nodiscard]] Result<Exclusion> exclude(std::string_view name, RobotIndex robot,
                                             const std::variant<StampRange, SeqRange>& scans);
 
-    /// Lifts an exclusion in the same way. Errors  also kNotFound: none of that id is in effect.
+    /// Lifts an exclusion by appending an entry to the log. Evicts the session as exclude() does.
+    /// Errors: those of exclude(); kNotFound also if no exclusion with that id is in effect.
     [[nodiscard]] Result<> lift_exclusion(std::string_view name, std::uint64_t id);
 
-    /// Deletes the session, its log and its maps, also a damaged one. Errors: kNotFound, kStoreFailed.
+    /// Deletes a session, damaged or not, with its log and its maps.
+    /// Errors: kNotFound, kStoreFailed.
     [[nodiscard]] Result<> remove(std::string_view name);
 
-    /// Sends to sleep whatever nobody has used for a while, and tries again to read what there was no room for. Where
-    /// the store takes changes, sessions that have failed, with it or for themselves, are read again, as after a
-    /// restart; their links and viewers are told to come back. To be called from time to time; waits for nothing.
+    /// Evicts unused sessions and retries work that was postponed. Call periodically; does not block.
+    ///
+    /// Retries the loading of sessions for which there was no memory. If the store accepts writes, reloads the sessions
+    /// that have failed, as a restart would; their robots and viewers are asked to connect again.
     void tidy();
 
-    /// Refuses new sessions, lets recover() give up, closes all, returns when everything submitted is durable.
+    /// Shuts down: refuses new sessions, stops recover() and closes all sessions. Returns when everything that was
+    /// submitted is durable.
     void drain();
 
-    /// Lets drain() end soon, as Session::hurry() says.
+    /// Makes drain() end soon. See Session::hurry().
     void hurry();
 
     [[nodiscard]] const SessionCounters& counters() const noexcept { return *factory_.counters; }
 
     [[nodiscard]] bool is_draining() const noexcept { return draining_; }
 
-    /// Of the maps that are in memory.
+    /// Returns the budget of the maps in memory.
     [[nodiscard]] const PageBudget& pages() const noexcept { return *pages_; }
 
 private:
@@ -146,10 +170,10 @@ private:
     void keep_damaged(std::string name, store::SessionId id, Error why);
     [[nodiscard]] std::optional<Error> damage_of(std::string_view name) const;
 
-    /// Somebody waits for it.
+    /// A session that was requested and must be loaded.
     struct Wanted {
         Resting resting;
-        Roster::Clock::time_point until; // and no longer, where there is no room
+        Roster::Clock::time_point until; // refused after this time if there is still no memory
     };
 
     void start_reading(const Resting& resting);
@@ -174,15 +198,15 @@ private:
     std::atomic<bool> draining_ = false;
     std::atomic<bool> hurried_ = false;
 
-    std::mutex changing_; // held over recover(), create() and remove(), which write to the store first
+    std::mutex changing_; // held during recover(), create() and remove(), which write to the store first
     Roster roster_;
 
     mutable std::shared_mutex damaged_mutex_;
     std::map<std::string, Damaged, std::less<>> damaged_;
 
-    std::mutex room_mutex_;                // guards what follows
-    std::vector<Wanted> waiting_for_room_; // to be tried again
-    std::size_t freed_pages_ = 0;          // since memory was given back to the system
+    std::mutex room_mutex_;                // guards the members below
+    std::vector<Wanted> waiting_for_room_; // to be retried
+    std::size_t freed_pages_ = 0;          // since memory was last returned to the system
 };
 
 } // namespace scanloom::session

@@ -10,18 +10,19 @@
 
 namespace scanloom::session {
 
-/// What can be told of a session without its maps.
+/// Facts about a session that is not in memory.
 struct Summary {
     std::shared_ptr<const mapping::Snapshot> facts; ///< without cells, classes and trajectories
-    std::size_t pages = 0;                          ///< Projection::page_count() of the whole
+    std::size_t pages = 0;                          ///< Projection::page_count() of the complete maps
 };
 
-/// Of a session whose maps are there.
+/// Returns the summary of a session whose maps are in memory.
 [[nodiscard]] Summary summary_of(const mapping::Snapshot& snapshot);
 
-/// Of a session as it is stored.
-/// @return nothing where its log has to be woven for that: there is no checkpoint of this version at the log's end.
-/// Errors  kStoreFailed: the store cannot be read.
+/// Reads the summary of a stored session from its checkpoint.
+/// @return nullopt if the log would have to be replayed: no checkpoint of this program's version ends at the log's end
+/// Errors: kStoreFailed if the store cannot be read.
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<std::optional<Summary>> read_summary(store::ScanLog& log, store::SessionId session,
                                                           const mapping::MapConfig& config);
 

@@ -6,20 +6,21 @@
 
 namespace scanloom::session {
 
-/// Wants to know when a session has something new to show: maps, links of robots, its own end, or what others keep
-/// about it.
+/// Interface that is notified when the visible state of a session has changed: its maps, the links of its robots, its
+/// closing or failure, or data that other components keep about the session.
 class Watcher {
 public:
     virtual ~Watcher() = default;
 
-    /// Look again when you have time. Called on the session's strand or on any thread, perhaps often: hand over, do not
-    /// block, do not throw.
+    /// Called after a change, possibly often, on the session's strand or on any other thread. Must not block.
     virtual void on_changed() noexcept = 0;
 };
 
-/// Who watches a session. They are not kept alive, and what they show of it is nobody's business here.
-/// Cost    of telling: one call for each, whatever it has missed. How many there may be is bounded by who lets them in.
-/// Thread  any.
+/// The watchers of a session, held by weak pointers.
+///
+/// Their number is not limited here: the callers that admit watchers limit it.
+/// Cost: one call of on_changed() per watcher and notification.
+/// Threads: any thread.
 class Watchers {
 public:
     void add(std::weak_ptr<Watcher> watcher) {
@@ -28,6 +29,7 @@ public:
         watchers_.push_back(std::move(watcher));
     }
 
+    /// Calls on_changed() of each watcher.
     void tell() {
         const std::lock_guard lock(mutex_);
         bool any_gone = false;
