@@ -19,8 +19,10 @@
 
 namespace scanloom::session {
 
-/// What captures are folded into: add(RobotCapture), size(), snapshot(); for people, what it is counted in; whether
-/// those that are being taken are wanted beside it.
+/// Properties of a layer that is computed from captures and has add(RobotCapture), size() and snapshot().
+///
+/// kWhat and kInstead are for error messages: what size() counts, and what to use or expect if there are too many.
+/// kSizeMax is the default bound of size(). kWithOpen selects whether Folded also contains unfinished captures.
 template <class Layer>
 struct FoldedInto;
 
@@ -42,42 +44,43 @@ struct FoldedInto<landmarks::ReferenceLayer> {
 
 template <class Layer>
 struct CaptureFoldsLimits {
-    std::size_t kept_max = 64;                          ///< sessions
-    std::size_t size_max = FoldedInto<Layer>::kSizeMax; ///< of all that are kept. One session may have as many
-    std::chrono::milliseconds patience{5'000};          ///< that a caller folds, or waits for another who does
+    std::size_t kept_max = 64;                          ///< cached sessions
+    std::size_t size_max = FoldedInto<Layer>::kSizeMax; ///< of all cached layers together, and of each one
+    std::chrono::milliseconds patience{5'000};          ///< that a call reads the log or waits for another call
 };
 
-/// What a session's captures were folded into, and what log entries they are of.
+/// A layer computed from a session's captures, up to a revision of its log.
 template <class Layer>
 struct Folded {
     decltype(std::declval<Layer&>().snapshot()) state;
-    std::vector<landmarks::RobotCapture> open; ///< those that are being taken are not in it; empty unless kWithOpen
+    std::vector<landmarks::RobotCapture> open; ///< unfinished captures, not in `state`; empty unless kWithOpen
     Revision revision = 0;
 };
 
-/// What is made of the captures of sessions when somebody asks for it: robots' scans never wait for it. The first who
-/// asks has the log folded from its beginning; what was folded is kept, and whoever asks again has only what came
-/// since.
+/// Computes a layer from the captures of a session on request, and caches it. The ingestion of scans never waits for
+/// it.
 ///
-/// The same log gives the same, whenever and in however many steps it was asked for.
-/// Memory  at most size_max, and what robots are in the middle of; the least recently asked for are forgotten, and
-///         folded anew when they are wanted. Of a session with more than size_max nothing is kept but that.
-/// Thread  any that may wait for the disk; of one session, one at a time folds.
+/// The first request of a session reads its log from the beginning; later requests read only the new entries. The
+/// result depends only on the log, not on the times and number of requests. Memory: at most size_max, plus unfinished
+/// captures. The least recently used sessions are evicted and computed again on request. For a session with more than
+/// size_max, only this fact is cached. Threads: any thread that may wait for the disk. One call at a time computes for
+/// a session; others wait for it.
 template <class Layer>
 class CaptureFolds {
 public:
     explicit CaptureFolds(store::ScanLog& log, const CaptureFoldsLimits<Layer>& limits = {})
         : log_(log), limits_(limits) {}
 
-    /// Of the log's entries up to `revision`; or up to a later one, for which somebody asked before.
-    /// @param is_wanted  asked now and then
-    /// Errors  kOverloaded: it takes longer than the caller may wait; asked again it goes on from where it is.
-    ///         kFull: there is more than size_max. kShuttingDown: it is wanted no more. kDataLoss: an entry is
-    ///         damaged. Those of ScanLog::read().
+    /// Returns the layer of the log's entries up to `revision`, or up to a later revision of an earlier request.
+    ///
+    /// @param is_wanted  called from time to time; false cancels the request
+    /// Errors: kOverloaded if it takes longer than the limit `patience` or memory ran out; after a timeout, the next
+    /// request continues where this one stopped. kFull if the layer has more than size_max. kShuttingDown if is_wanted
+    /// returned false. kDataLoss if an entry is damaged. Those of ScanLog::read().
     [[nodiscard]] Result<Folded<Layer>> up_to(const SessionInfo& session, Revision revision,
                                               const std::function<bool()>& is_wanted);
 
-    /// The session is deleted: forgets it.
+    /// Removes a deleted session from the cache.
     void remove(store::SessionId session);
 
 private:
@@ -86,12 +89,12 @@ private:
             : session(of.id), exclusions(of.exclusions->revision()), captures(scan_filter_of(of)) {}
 
         const store::SessionId session;
-        const Revision exclusions; // Exclusions::revision() of those that were applied
+        const Revision exclusions; // Exclusions::revision() of the applied exclusions
         PatientMutex mutex;
-        landmarks::SessionCaptures captures; // whoever has the mutex
-        Layer layer;                         // likewise
-        bool is_full = false;                // likewise: has had more than there may be
-        std::size_t size = 0;                // whoever has that of all
+        landmarks::SessionCaptures captures; // guarded by mutex
+        Layer layer;                         // guarded by mutex
+        bool is_full = false;                // guarded by mutex; the layer exceeded size_max
+        std::size_t size = 0;                // guarded by CaptureFolds::mutex_
     };
 
     [[nodiscard]] std::shared_ptr<Kept> find_or_begin(const SessionInfo& session);
@@ -102,14 +105,14 @@ private:
     store::ScanLog& log_;
     const CaptureFoldsLimits<Layer> limits_;
     std::mutex mutex_;
-    std::list<std::shared_ptr<Kept>> kept_; // the last used first
+    std::list<std::shared_ptr<Kept>> kept_; // most recently used first
 };
 
-/// The landmarks of sessions.
+/// Landmarks of sessions.
 using LandmarkFolds = CaptureFolds<landmarks::LandmarkLayer>;
 using FoldedLandmarks = Folded<landmarks::LandmarkLayer>;
 
-/// What robots can be found in.
+/// Reference points of sessions, in which robots are localized.
 using ReferenceFolds = CaptureFolds<landmarks::ReferenceLayer>;
 
 extern template class CaptureFolds<landmarks::LandmarkLayer>;

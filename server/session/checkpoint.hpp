@@ -11,60 +11,67 @@
 #include <string_view>
 #include <vector>
 
-/// What a projection keeps in the store, so that recovery folds only the rest of the log.
+/// The checkpoint of a projection in the store. With it, recovery replays only the rest of the log.
 ///
-/// Parts, in the order in which the store visits them, integers little-endian:
-///   format                   weaving version, version of the parts
+/// Parts, in the order in which the store visits them; integers are little-endian:
+///   format                   mapping::kWeavingVersion, version of the parts
 ///   head                     revision, bounds, pages
-///   head/exclusions          what Exclusions holds, and how many scans of each robot they leave out; only where there
-///                            are any
+///   head/exclusions          the Exclusions and the number of scans of each robot that they leave out; only if there
+///                            are exclusions
 ///   robot/<index>            last seq, scan count, revision, stamp and pose of the newest scan, if any, name, a zero
 ///                            byte, source
 ///   sensor/<index>/<id>      a SensorDescribed entry, encoded as in the log
 ///   weave/laser/<chunk>      revision and cells of one chunk, layer by layer, compressed
 ///   weave/sonar/<chunk>      revision and cells of one chunk, compressed
-/// <index> and the like are fixed-width hexadecimal. Where the robots were is in the log alone (old_paths.hpp).
+/// <index>, <id> and <chunk> are fixed-width hexadecimal numbers. Trajectories are stored only in the log
+/// (old_paths.hpp).
 ///
-/// Written in pieces of 4 MiB, uncompressed: the format first, then chunks. What depends on the revision comes last and
-/// at once: head, robots, and the sensors described since the last checkpoint. Whatever a crash leaves is usable:
-/// chunks may then be newer than the head, and a chunk knows by its revision which entries of the log it holds already.
+/// A checkpoint is written in pieces of 4 MiB, measured before compression: the format first, then the chunks. The
+/// parts that must agree on the revision are the last piece: head, robots, and the sensors described since the last
+/// checkpoint. A checkpoint that a crash interrupted is usable: its chunks may be newer than its head, and the revision
+/// of a chunk tells which entries of the log it contains.
 namespace scanloom::session {
 
-/// Writes the parts that changed after `since`; for none all of them, in place of whatever was there.
-/// Pre     snapshot and state were taken at the same revision.
-/// Errors  kStoreFailed; kShuttingDown: `stop` became true between two pieces; kOverloaded: memory ran out.
-/// Thread  any but the store's; waits for the disk.
+/// Writes the parts that changed after `since`. Without `since`, replaces the whole checkpoint.
+///
+/// @param snapshot,state  taken at the same revision
+/// @param stop  checked between two pieces
+/// Errors: kStoreFailed; kShuttingDown if `stop` became true; kOverloaded if memory ran out.
+/// Threads: any thread except the store's; waits for the disk.
 [[nodiscard]] Result<> write_checkpoint(store::ScanLog& log, store::SessionId session,
                                         const mapping::Snapshot& snapshot, const mapping::ProjectionState& state,
                                         std::optional<Revision> since, const std::atomic<bool>& stop);
 
-/// Rebuilds a projection from the parts of a checkpoint, fed one by one in rising order of keys.
+/// Restores a projection from the parts of a checkpoint.
 class CheckpointReader {
 public:
     explicit CheckpointReader(const mapping::MapConfig& config) : projection_(config) {}
 
-    /// Errors  kMalformed: the part is damaged; kUnsupportedVersion: it was woven by another version,
-    ///         whose maps may differ. Either way: weave from the log instead.
+    /// Adds the next part, in ascending order of keys. After an error, replay the whole log instead.
+    /// Errors: kMalformed if the part is damaged; kUnsupportedVersion if it was written by another version, whose maps
+    /// may differ.
     [[nodiscard]] Result<> add(std::string_view key, std::string_view value);
 
-    /// The projection as of the checkpoint; a blank one when there was no part.
-    /// Errors  kMalformed: parts are missing.
+    /// Returns the projection at the revision of the checkpoint; an empty one if no part was added.
+    /// Errors: kMalformed if parts are missing.
     [[nodiscard]] Result<mapping::Projection> finish() &&;
 
-    /// Whether what was read is as this program writes it; else it is written anew as a whole.
+    /// Returns whether the parts have the format that this program writes. If not, the next checkpoint must replace the
+    /// whole one.
     [[nodiscard]] bool is_newest_format() const noexcept;
 
-    /// All parts with this key and behind it are sensors and cells.
+    /// The first key after the parts of the state. Parts from this key on are sensors and cells.
     static constexpr std::string_view kAfterState = "sensor/";
 
-    /// The checkpoint's state, without sensors, when the parts before kAfterState are in; a blank one when there was no
-    /// part. Nothing where it does not tell all of it: it was written by an earlier version.
+    /// Returns the state without sensors, after all parts before kAfterState were added; an empty one if no part was
+    /// added.
+    /// @return nullopt if the checkpoint was written in an earlier format, which does not contain the whole state
     [[nodiscard]] std::optional<mapping::ProjectionState> state() &&;
 
 private:
     using Numbers = std::vector<std::uint32_t>; // those in a key
 
-    /// A kind of part, told by how its key begins; `add` is false when the part is damaged.
+    /// A kind of part, identified by the prefix of its key. `add` returns false if the part is damaged.
     struct Kind {
         std::string_view prefix;
         std::size_t numbers;
@@ -88,7 +95,7 @@ private:
     std::vector<std::uint64_t> excluded_; // scans, by robot
     std::uint32_t parts_version_ = 0;
     bool has_format_ = false;
-    bool weaving_ = false; // the state is complete and in the projection
+    bool weaving_ = false; // the state is complete and was passed to the projection
 };
 
 } // namespace scanloom::session

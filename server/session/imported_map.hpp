@@ -11,15 +11,16 @@
 
 namespace scanloom::session {
 
-/// The pages that an imported map takes at most.
+/// Returns an upper bound of the pages that an imported map needs.
 [[nodiscard]] std::size_t pages_of_imported(const mapping::MapConfig& config, const std::vector<MapPatch>& patches);
 
-/// The maps of a session that begins with an imported map.
-/// @param share  takes the pages of each patch before the patch is integrated, so that no more memory is used than maps
-/// may
-///               have; keeps those of the result
-/// Errors  kInvalidField, kFull: the map fits into no session, or into none of this maker. kOverloaded: not into the
-///         memory for maps that is free now.
+/// Creates the maps of a session that starts with an imported map.
+///
+/// @param share  takes the pages of each patch before the patch is integrated, so the memory for maps is never
+/// exceeded;
+///               contains the pages of the result afterwards
+/// Errors: kInvalidField if the map has no cells or a patch is too large; kFull if the map exceeds the limits of a
+/// session, of the creator, or of the memory for maps; kOverloaded if it exceeds the memory for maps that is free now.
 [[nodiscard]] Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,
                                                              const std::vector<MapPatch>& patches, const Maker& maker,
                                                              PageShare& share);

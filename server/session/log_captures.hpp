@@ -8,16 +8,18 @@
 
 namespace scanloom::session {
 
-/// A capture that has ended. An error ends the reading.
+/// Called for each capture that is complete. An error ends the reading.
 using VisitCapture = std::function<Result<>(const landmarks::RobotCapture&)>;
 
-/// Asked now and then, as a long log takes seconds; an error ends the reading.
+/// Called from time to time with the last revision read, because a long log takes seconds. An error ends the reading.
 using AskWhetherToGoOn = std::function<Result<>(Revision read)>;
 
-/// Cuts captures from a session's log, from where `captures` stands up to `until`, and goes on from there another time.
-/// Most scans of a robot that drives are only looked at for where they were taken.
-/// Errors  those of the two; kDataLoss: an entry is damaged; those of ScanLog::read(). What was read until then is in.
-/// Thread  any that may wait for the disk.
+/// Reads the captures of a session's log from captures.revision() up to `until`. A later call continues there.
+///
+/// Of most scans of a moving robot, only the pose is decoded.
+/// @param captures  advanced by each entry read, also if the reading ends with an error
+/// Errors: those of `visit` and `ask`; kDataLoss if an entry is damaged; those of ScanLog::read().
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<> read_captures(store::ScanLog& log, store::SessionId session,
                                      landmarks::SessionCaptures& captures, Revision until, const VisitCapture& visit,
                                      const AskWhetherToGoOn& ask);

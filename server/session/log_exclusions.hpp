@@ -9,13 +9,14 @@
 
 namespace scanloom::session {
 
-/// Asked before each entry is read, with its scan, if it is one: false ends the reading before it.
+/// Called before each entry with its revision and, if it is a scan, the scan's pose. False ends the reading before it.
 using ReadsOn = std::function<bool(Revision, const std::optional<ScanPose>&)>;
 
-/// Reads all exclusions of a session's log, from its beginning to where `reads_on` ends it, or to its end. Ranges of
-/// scans are not read: a million scans take about two seconds.
-/// Errors  kDataLoss, kMalformed: an entry is damaged; those of ScanLog::read().
-/// Thread  any that may wait for the disk.
+/// Reads all exclusions of a session's log, from its start until `reads_on` returns false, or to its end.
+///
+/// Cost: about two seconds per million scans, whose ranges are not decoded.
+/// Errors: kDataLoss or kMalformed if an entry is damaged; those of ScanLog::read().
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<Exclusions> read_exclusions(store::ScanLog& log, store::SessionId session,
                                                  const ReadsOn& reads_on);
 

@@ -9,29 +9,33 @@
 #include <functional>
 #include <vector>
 
-/// The parts of robots' paths that are in memory no more, which is bounded: what the log tells of them.
+/// Reads the old parts of robots' trajectories from the log. The maps keep only a bounded number of points in memory.
 namespace scanloom::session {
 
-/// Points of all robots together that are told at once, at most: up to 40 MiB while they are read, and 30 MiB of text
-/// that is made of them.
+/// Upper bound of the points of all robots that are returned at once. They take up to 40 MiB while they are read, and
+/// 30 MiB as text.
 inline constexpr std::size_t kPathPointsMax = std::size_t{1} << 19;
 
+/// Points of trajectories that are no longer in memory.
 struct OldPaths {
-    std::vector<std::vector<mapping::TrajectoryPoint>> robots; ///< by RobotIndex, each by rising revision
+    std::vector<std::vector<mapping::TrajectoryPoint>> robots; ///< by RobotIndex, each in ascending order of revisions
 
-    /// With what the trajectories keep, the paths are whole up to here: to the revision of the maps, unless there were
-    /// more points. What they keep beyond it is not to be told.
+    /// Up to this revision, these points and those in the maps are complete. It is the revision of the maps, unless
+    /// there were too many points. Points of the maps after it must be ignored.
     Revision until = 0;
 };
 
-/// How many points after `since` the log has that `maps` does not keep, at most.
+/// Returns an upper bound of the points after `since` that are in the log but not in `maps`.
 [[nodiscard]] std::size_t count_old_points(const mapping::Snapshot& maps, Revision since);
 
-/// These points, or the first of them: until so many that together with those that are kept they are `points_max`.
-/// Cost    reads the log from `since` to where all that follows is kept.
-/// @param is_wanted asked now and then, as this may take seconds
-/// Errors  as of ScanLog::read(); kDataLoss: an entry is damaged; kShuttingDown: it is wanted no more.
-/// Thread  any that may wait for the disk.
+/// Reads the points after `since` that are not in `maps`. Stops early if they and the points in `maps` would be more
+/// than `points_max`; see OldPaths::until.
+///
+/// Cost: reads the log up to the first revision from which `maps` has all points; from its start if the filter of scans
+/// depends on earlier scans (max_jump), otherwise from `since`.
+/// @param is_wanted  called from time to time, because this may take seconds; false cancels
+/// Errors: those of ScanLog::read(); kDataLoss if an entry is damaged; kShuttingDown if is_wanted returned false.
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<OldPaths> read_old_paths(store::ScanLog& log, store::SessionId session,
                                               const mapping::Snapshot& maps, Revision since,
                                               const std::function<bool()>& is_wanted,

@@ -8,22 +8,24 @@
 #include <string_view>
 #include <type_traits>
 
-/// Plain values as the bytes of a checkpoint's part, and back.
+/// Encodes and decodes plain values in the parts of a checkpoint.
 namespace scanloom::session {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are written in the machine's own order");
 
+/// Appends the bytes of `value`.
 template <class Value>
 void put(std::string& out, const Value& value) {
     static_assert(std::is_trivially_copyable_v<Value>);
     out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// Takes values off the front of a part; fails for good when it is too short.
+/// Reads values from the front of a part. After the first value that does not fit, failed() stays true.
 class PartReader {
 public:
     explicit PartReader(std::string_view bytes) : rest_(bytes) {}
 
+    /// Removes and returns the next value; a zero value if too few bytes are left.
     template <class Value>
     Value take() {
         static_assert(std::is_trivially_copyable_v<Value>);
@@ -37,10 +39,12 @@ public:
         return value;
     }
 
-    /// So many bytes, or all that are left.
+    /// Removes `bytes` bytes, or all that are left.
     void skip(std::size_t bytes) { rest_.remove_prefix(std::min(bytes, rest_.size())); }
 
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
+
+    /// Returns whether all bytes were read and no value was missing.
     [[nodiscard]] bool complete() const noexcept { return !failed_ && rest_.empty(); }
     [[nodiscard]] bool failed() const noexcept { return failed_; }
 

@@ -9,13 +9,13 @@
 struct ZSTD_CCtx_s;
 struct ZSTD_DCtx_s;
 
-/// The parts of a checkpoint that are worth compressing, by Zstandard at its fastest. The store compresses nothing
-/// itself: most of what it holds are scans, whose ranges are packed already.
+/// Compression of a checkpoint's chunks by Zstandard at its fastest level. The store itself does not compress, because
+/// most of its data are scans, whose ranges are packed already.
 namespace scanloom::session {
 
-/// Keeps its tables from part to part: some hundred KiB.
-/// Errors  std::bad_alloc: memory ran out.
-/// Thread  one at a time.
+/// Compresses parts. Keeps tables of a few hundred KiB between parts.
+/// Throws std::bad_alloc if memory ran out.
+/// Threads: one at a time.
 class PartCompressor {
 public:
     PartCompressor();
@@ -29,13 +29,15 @@ private:
     std::unique_ptr<ZSTD_CCtx_s, Free> context_;
 };
 
-/// Errors  std::bad_alloc: memory ran out.
-/// Thread  one at a time.
+/// Decompresses parts.
+/// Throws std::bad_alloc if memory ran out.
+/// Threads: one at a time.
 class PartDecompressor {
 public:
     PartDecompressor();
 
-    /// The bytes again; nothing where they are damaged or more than `bytes_max`, which are never allocated.
+    /// Returns the original bytes; nullopt if they are damaged or more than `bytes_max`. Never allocates more than
+    /// `bytes_max`.
     [[nodiscard]] std::optional<std::string> decompressed(std::string_view bytes, std::size_t bytes_max);
 
 private:

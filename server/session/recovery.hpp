@@ -9,20 +9,23 @@
 
 namespace scanloom::session {
 
-/// A session woven again, up to the end of its log.
+/// A projection that was recovered from the store.
 struct Recovered {
     mapping::Projection projection;
-    /// Revision of the checkpoint it began from, 0 if there was none; nothing if there is one that cannot be used, or
-    /// that an earlier version wrote in another format: the next one takes its place.
+    /// Revision of the checkpoint that it started from; 0 if there was none. Nullopt if the stored checkpoint cannot be
+    /// used or has the format of an earlier version; the next checkpoint must replace it.
     std::optional<Revision> checkpointed{};
-    std::optional<Error> checkpoint_rejected{}; ///< why the whole log was folded instead
-    bool complete = true;                       ///< false: `stop` became true before the log's end
+    std::optional<Error> checkpoint_rejected{}; ///< why the whole log was replayed instead
+    bool complete = true;                       ///< false: `stop` became true before the end of the log
 };
 
-/// Newest checkpoint, then the rest of the log; the whole log where the checkpoint cannot be used, or where the rest
-/// excludes scans that are in it.
-/// Errors  kDataLoss, kMalformed: the log is damaged; the message names the entry. kStoreFailed.
-///         kOverloaded: memory ran out.
+/// Recovers a session from its newest checkpoint and the rest of its log. Replays the whole log if the checkpoint
+/// cannot be used or if the rest of the log excludes scans that are in it.
+///
+/// @param stop  checked from time to time
+/// Errors: kDataLoss or kMalformed if the log is damaged, with the entry in the message; kStoreFailed; kOverloaded if
+/// memory ran out.
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                         const std::atomic<bool>& stop);
 

@@ -10,21 +10,22 @@
 
 namespace scanloom::session {
 
-/// What became of a session's log.
+/// The result of repairing one session.
 struct RepairedSession {
     std::string name;            ///< see repaired_names()
-    std::uint64_t kept = 0;      ///< entries
-    std::uint64_t stood_in = 0;  ///< scans that are lost, see Rescue
-    std::uint64_t missing = 0;   ///< entries between others that are nowhere; what is lost of the end cannot be told
-    std::uint64_t set_aside = 0; ///< entries that are intact and cannot be woven, in `aside`
-    std::filesystem::path aside; ///< empty: there are none
+    std::uint64_t kept = 0;      ///< entries copied to the new store
+    std::uint64_t stood_in = 0;  ///< lost scans that were replaced by empty ones; see Rescue
+    std::uint64_t missing = 0;   ///< lost entries between other entries; those lost at the end are unknown
+    std::uint64_t set_aside = 0; ///< entries in the file `aside`
+    std::filesystem::path aside; ///< empty: no such file
 };
 
-/// Writes what is left of a session into another store, and what cannot be woven any more into a file of the directory
-/// `aside`, as GET .../log has it: entries in Protocol Buffers, each behind its length.
-/// @param record  nothing: it is lost, and all entries are set aside.
-/// @param name    in the other store, and of the file.
-/// Errors  kStoreFailed: the new store, or the file, cannot be written.
+/// Copies the remaining entries of a session to another store. Entries that can no longer be applied are written to a
+/// file in the directory `aside`, in the format of GET .../log: Protocol Buffers messages, each after its length.
+///
+/// @param record  nullopt: the record is lost; all entries are written to the file
+/// @param name  of the session in the other store, and of the file
+/// Errors: kStoreFailed if the new store or the file cannot be written; those of Salvage::read().
 [[nodiscard]] Result<RepairedSession> repair_session(const store::Salvage& from, store::SessionId id,
                                                      const std::optional<std::string>& record, const std::string& name,
                                                      store::ScanLog& to, const std::filesystem::path& aside);

@@ -8,10 +8,12 @@
 
 namespace scanloom::session {
 
-/// Each session's name in a repaired store, no two the same: its own; "session-7" for session 7, whose record is lost
-/// or cannot be decoded. Where several have one name, as one that was removed came back, the newest keeps it, and the
-/// others have their id behind it: "kitchen-7".
-/// @param records  by id, as store::Salvage finds them; nothing: it is lost.
+/// Returns a unique name for each session of a repaired store.
+///
+/// A session keeps its name; session 7 becomes "session-7" if its record is lost or cannot be decoded. If several
+/// sessions have the same name, because a removed one was recovered, the newest keeps it, and the ids are appended to
+/// the others: "kitchen-7".
+/// @param records  by id, as found by store::Salvage; nullopt: lost
 [[nodiscard]] std::map<store::SessionId, std::string>
 repaired_names(const std::map<store::SessionId, std::optional<std::string>>& records);
 

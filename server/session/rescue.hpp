@@ -9,28 +9,26 @@
 
 namespace scanloom::session {
 
-/// Makes a log that can be woven of what is left of one: its intact entries, in order, with others missing between
-/// them.
+/// Log reconstruction: makes a valid log from the intact entries of a damaged one.
 ///
-/// A scan must follow the scan before it, or nothing behind a lost one could be kept. So each scan that is missing is
-/// stood in for by one of its number that shows nothing, at the pose of the next: maps are those of the scans that are
-/// left, and a robot that comes back goes on behind the last one, as if none had been lost. Numbering the scans anew
-/// instead would have a recording sent again in part, and mapped twice. Robots are numbered anew, which only the log
-/// knows of.
+/// The sequence numbers of a robot's scans must have no gaps, so each lost scan is replaced by an empty scan with its
+/// number, at the pose of the next scan. The maps are then those of the remaining scans, and a robot that reconnects
+/// continues after the last scan. New numbers for the scans would not work: a client would send part of a recording
+/// again, and it would be mapped twice. Robots do get new indices, which are used only in the log.
 ///
-/// What cannot be woven any more is for the caller to set aside: scans and sensors of a robot whose joining is lost,
-/// scans of a sensor whose description is lost. That a sensor was described again, otherwise, cannot be seen where that
-/// entry is lost, unless the scan does not fit.
+/// Some entries cannot be applied without a lost one: scans and sensors of a robot whose RobotJoined entry is lost, and
+/// scans of a sensor whose description is lost. The caller stores them elsewhere. If a later description of the same
+/// sensor is lost, this is detected only if the scan does not fit the earlier description.
 class Rescue {
 public:
-    /// An entry of the old log, by rising revision.
-    /// @return what takes its place in the new one; nothing: it cannot be woven.
+    /// Adds an intact entry of the old log, in ascending order of revisions.
+    /// @return the entries to append to the new log; empty if the entry cannot be applied
     [[nodiscard]] std::vector<LogEntry> add(Revision revision, LogEntry entry);
 
-    /// So many scans were stood in for.
+    /// Returns the number of lost scans that were replaced by empty ones.
     [[nodiscard]] std::uint64_t stood_in() const noexcept { return stood_in_; }
 
-    /// Of the old log, up to the last one added.
+    /// Returns the number of entries that are missing in the old log before the last one added.
     [[nodiscard]] std::uint64_t missing() const noexcept { return missing_; }
 
 private:
@@ -40,7 +38,7 @@ private:
 
     LogRules rules_;
     std::map<RobotIndex, RobotIndex> robots_;                        // old to new
-    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by the new
+    std::map<std::pair<RobotIndex, std::uint32_t>, Sensor> sensors_; // by new index and sensor id
     Revision last_ = 0;
     std::uint64_t missing_ = 0;
     std::uint64_t stood_in_ = 0;

@@ -11,29 +11,28 @@
 
 namespace scanloom::session {
 
-/// How much of a session is looked at.
+/// How much of a session is checked.
 enum class CheckDepth {
-    kLog,        ///< every entry: checksum, decoding, and that each can follow; of the checkpoint the checksums
-    kCheckpoint, ///< also the parts of the checkpoint, decoded as a start does
-    kMaps,       ///< also the maps: those of the whole log are those of the checkpoint and the rest
+    kLog,        ///< each entry: checksum, decoding and order; of the checkpoint only the checksums
+    kCheckpoint, ///< also the checkpoint: its parts are decoded as in a recovery
+    kMaps,       ///< also the maps: the whole log gives the same maps as the checkpoint and the rest of the log
 };
 
-/// What was found of one session.
+/// The result of checking one session.
 struct SessionCheck {
-    std::string name;            ///< "#7" for session 7, where its record cannot be read
-    Revision entries = 0;        ///< that are whole, from the first on
-    std::optional<Error> damage; ///< the first there is; nothing: it is whole
+    std::string name;            ///< "#7" for session 7 if its record cannot be read
+    Revision entries = 0;        ///< intact entries from the start of the log
+    std::optional<Error> damage; ///< the first damage found; nullopt: the session is intact
 };
 
-/// Called with the bytes read after each entry and each part of a checkpoint; its error ends the check.
+/// Called after each entry and each part of a checkpoint with the number of bytes read. An error ends the check.
 using CheckPace = std::function<Result<>(std::size_t bytes)>;
 
-/// Reads a session as it is stored, damaged or not.
+/// Checks a stored session. A checkpoint of an earlier version is no damage, because the log can be replayed.
 ///
-/// A checkpoint of an earlier version is no damage: the log is woven anew. Memory: nothing of note for kLog; for the
-/// others the session's maps, for kMaps twice.
-/// Errors  those of `pace`, and nothing else: what is wrong with the session is in the answer.
-/// Thread  any; waits for the disk.
+/// Memory: negligible for kLog; the session's maps for kCheckpoint; twice as much for kMaps.
+/// Errors: those of `pace` only; damage is part of the result.
+/// Threads: any thread that may wait for the disk.
 [[nodiscard]] Result<SessionCheck> check_session(store::ScanLog& log, const store::StoredSession& stored,
                                                  CheckDepth depth, const CheckPace& pace);
 

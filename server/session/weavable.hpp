@@ -6,10 +6,13 @@
 
 namespace scanloom::session {
 
-/// Whether a session with the projection's settings would have taken this entry of another session's log. Robots are
-/// told when they send it; whoever weaves it once more is told here, by the robot's and the sensor's names.
-/// Pre     the projection holds the entries before it. One that cannot follow them passes: folding tells.
-/// Errors  kInvalidField: the cells are too small for it.
+/// Checks whether a session with the projection's settings would have accepted a log entry. Links check this when a
+/// robot sends the entry; this function checks it for replay jobs, whose settings may differ. Its errors name the robot
+/// and the sensor.
+///
+/// Does not check whether the entry can follow the earlier ones; Projection::fold() does.
+/// @param projection  contains the entries before it
+/// Errors: kInvalidField if the cells are too small for the range of the sensor or the size of the scan or map.
 [[nodiscard]] Result<> check_weavable(const mapping::Projection& projection, const LogEntry& entry);
 
 } // namespace scanloom::session

@@ -18,35 +18,37 @@
 
 namespace scanloom::session {
 
-/// The maps of a session made once more from its log: with other settings, or as they were at some time. They are
-/// those that a session would have which was created with these settings and given this log.
+/// Replay job: computes the maps of a session again from its log, with other settings or up to an earlier moment. The
+/// result equals the maps of a session that was created with these settings and received the same log.
 ///
-/// A weave has a target, an entry of the log. One that follows its session is given a later target whenever it is asked
-/// for again, and goes on from where it is: no entry is folded twice. It works in rounds, each up to the target as it
-/// was when the round began, and shows the maps of its last round meanwhile. So whoever asks is served when his entry
-/// is in, however many ask after him.
+/// A job has a target, a revision of the log. A job that follows its session gets a later target with each new request
+/// and continues from its current state, so no entry is applied twice. It works in rounds. Each round ends at the
+/// target at the start of the round; until then, the maps of the last round are served. So a request is served when its
+/// entry is applied, even if later requests raise the target.
 ///
-/// One that has not begun may begin where another of the same session and settings stands, and then is on its own:
-/// whatever becomes of the other, nothing is missing. The maps are the same as from nothing, bit for bit.
-/// Memory  a round takes its chunks from the budget, also those of earlier maps that it has copied, to change them;
-///         where they do not fit, it shows the earlier maps no longer. What it shares with the one that it began from
-///         counts for either, as either may outlive the other.
-/// Thread  any; run() and resume() as they say.
+/// A job that has not begun can start from a copy of the state of another job with the same session and settings. It is
+/// independent of the other job afterwards. Its maps are bit for bit the same as without that start.
+/// Memory: a round takes its chunks from the budget, also the chunks of its earlier maps that it has copied to change
+/// them. If both do not fit, it releases the earlier maps. Chunks shared with the job that it started from count for
+/// both jobs, because either may outlive the other.
+/// Threads: any thread, except as stated at run() and resume().
 class Weave {
 public:
-    static constexpr double kTurnWork = 1e8; ///< as Reach::work: about a second, then others have theirs
+    static constexpr double kTurnWork = 1e8; ///< work of a turn, in the unit of Reach::work: about one second
 
     enum class State : std::uint8_t { kWaiting, kWeaving, kDone, kFailed, kCancelled };
 
     struct Progress {
         State state = State::kWaiting;
-        Revision woven = 0;               ///< entries
-        Revision target = 0;              ///< entries that are to be woven
-        std::optional<Revision> revision; ///< of the maps, once there are any
-        bool follows = false;             ///< the target can be raised
+        Revision woven = 0;               ///< applied entries
+        Revision target = 0;              ///< entries to apply
+        std::optional<Revision> revision; ///< of the finished maps, if there are any
+        bool follows = false;             ///< whether the target can be raised
         std::optional<Error> error;       ///< why it failed or was cancelled
     };
 
+    /// Creates a job that has not begun.
+    /// @param target  revision up to which entries are applied
     Weave(SessionInfo session, const WeaveRequest& request, Revision target)
         : id_(weave_id_of(session, request)), session_(std::move(session)), request_(request), target_(target) {}
 
@@ -54,51 +56,61 @@ public:
     [[nodiscard]] const SessionInfo& session() const noexcept { return session_; }
     [[nodiscard]] const WeaveRequest& request() const noexcept { return request_; }
 
-    /// Clients see it among the weaves of the session. What GET asks for is not listed: GET changes nothing that
-    /// others see. The number orders the list, the newest has the greatest; 0: not listed.
+    /// Sets the job's place in the list of the session's jobs.
+    /// @param number  the newest job has the greatest; 0: not listed. Jobs that a GET request starts are not listed,
+    ///                because GET must not change what other clients see.
     void set_listed(std::uint64_t number) noexcept { listed_ = number; }
     [[nodiscard]] std::uint64_t listed() const noexcept { return listed_; }
 
     [[nodiscard]] Progress progress() const;
 
-    /// The newest that are finished; null: none yet.
+    /// Returns the newest finished maps; null if there are none.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> maps() const;
 
-    /// Waits for maps with this entry, but no longer than `patience`.
-    /// Pre  a target up to it has been asked for. @return null: they are not there; progress() tells why.
+    /// Waits up to `patience` for maps that contain the entry `revision`.
+    /// @param revision  at most a target that was requested before
+    /// @return null if there are no such maps; progress() has the reason
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> wait(Revision revision,
                                                                 std::chrono::milliseconds patience) const;
 
-    /// Asks for maps up to `target`. @return whether nothing more is to be done for that: they are there, or whoever
-    /// weaves them goes on until they are.
+    /// Requests maps up to `target`.
+    /// @return whether they exist or a job that is not finished will compute them; if false, call resume() for a done
+    ///         job, otherwise start a new one
     [[nodiscard]] bool join(Revision target);
 
-    /// The same when it is done: gets ready for another run().
-    /// Pre  join() said no, the state is kDone, and nobody else does this. @return false: the budget has no room now.
+    /// Prepares a done job for another run() up to `target`. Call only in state kDone, after join() returned false, and
+    /// from one thread at a time.
+    /// @return false if the budget has no room now
     [[nodiscard]] bool resume(Revision target, PageBudget& budget);
 
-    /// Where another weave may begin that wants these maps up to `target`: nothing when their settings or sessions are
-    /// not the same, or this one is beyond what the other wants, has given up or has not begun, or is being run.
+    /// Returns the revision at which `other`, with the target `target`, could start from this job.
+    /// @return nullopt if the session or the settings differ, or if this job is past the end of the other, has failed,
+    ///         has not begun or is running
     [[nodiscard]] std::optional<Revision> base_for(const Weave& other, Revision target) const;
 
-    /// Whether it will stand, when it ends, where the other may begin; whether that is worth waiting for is told by
-    /// progress(). No two wait for each other, as the end of the other is later.
+    /// Returns whether `other` will be able to start from this job when this job ends. progress() shows whether waiting
+    /// for it is worthwhile. Two jobs never wait for each other, because the end of `other` is later.
     [[nodiscard]] bool leads_to(const Weave& other, Revision target) const;
 
-    /// Begins where the other stands. Pre: it has not begun, and nobody runs it or asks for this at the same time.
-    /// @return false: the other cannot be begun from, or no longer; see base_for().
+    /// Starts this job from a copy of the state of `base`. Call only before the first run(), and from one thread at a
+    /// time.
+    /// @return false if `base` is not a possible start, or no longer; see base_for()
     [[nodiscard]] bool begin_from(Weave& base);
 
-    /// Ends soon for that reason, if it has not ended yet.
+    /// Ends the job soon with the error `reason`, unless it has ended already.
     void cancel(Error reason);
 
-    /// One turn, with a priority below that of everything else: to the target as it was when the round began, or as far
-    /// as a turn goes. Ends early when it is cancelled, when the budget is used up, or when what the log holds cannot
-    /// be woven with these settings; what was woven is then given up.
-    /// Pre  never at the same time as itself. @return whether there is more to weave: to be run again.
+    /// Applies entries for one turn: up to the target of the round, or `turn_work`.
+    ///
+    /// Sets a low priority for the calling thread. The job ends early and loses its state if it is cancelled, if the
+    /// budget is used up, or if the log contains entries that cannot be applied with these settings.
+    /// @param turn_work  in the unit of Reach::work
+    /// @return whether the job must be run again
+    /// Threads: one at a time.
     [[nodiscard]] bool run(store::ScanLog& log, PageBudget& budget, double turn_work = kTurnWork);
 
-    /// Told to whoever runs it.
+    /// Returns whether the job has a state to continue from.
+    /// Threads: only the thread that may call run().
     [[nodiscard]] bool has_begun() const noexcept { return projection_.has_value(); }
 
 private:
@@ -125,28 +137,28 @@ private:
     std::atomic<bool> cancelled_ = false;
     std::atomic<std::uint64_t> listed_ = 0;
 
-    // Whoever runs it, or resumes it, alone; while nobody does, whoever has the mutex.
-    std::optional<mapping::Projection> projection_; // kept, so that it can go on, and others from it
-    std::optional<double> newest_stamp_;            // seconds, of the scans in it
-    std::int64_t claimed_ = 0;                      // chunks, of the budget; none when it has ended
-    double turn_left_ = 0.0;                        // work, as Reach::work
+    // Used by the thread in run() or resume() only; between those calls, guarded by the mutex.
+    std::optional<mapping::Projection> projection_; // kept to continue, and as a start for other jobs
+    std::optional<double> newest_stamp_;            // seconds; of the scans in the projection
+    std::int64_t claimed_ = 0;                      // chunks taken from the budget; 0 after the job has ended
+    double turn_left_ = 0.0;                        // in the unit of Reach::work
 
-    mutable std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards the members below
     mutable std::condition_variable changed_;
     State state_ = State::kWaiting;
     Revision target_;
-    std::optional<Revision> round_; // the target of a round that is not over yet
-    bool is_complete_ = false;      // nothing more can follow
+    std::optional<Revision> round_; // target of a round that is not finished
+    bool is_complete_ = false;      // the job has reached its end; no entry can follow
     std::shared_ptr<const mapping::Snapshot> maps_;
     std::optional<Error> error_;
 };
 
-/// Nothing more will happen to it unless it is asked for again.
+/// Returns whether the job does nothing more until it is requested again.
 [[nodiscard]] constexpr bool has_ended(Weave::State state) noexcept {
     return state != Weave::State::kWaiting && state != Weave::State::kWeaving;
 }
 
-/// What whoever waits for a weave of a session that is deleted is told.
+/// Returns the error (kNotFound) for clients that wait for a replay job of a session that was deleted.
 [[nodiscard]] Error session_was_deleted(const SessionInfo& session);
 
 } // namespace scanloom::session

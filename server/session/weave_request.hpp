@@ -8,15 +8,15 @@
 
 namespace scanloom::session {
 
-/// Where a weave ends; one of them at most. None: nowhere, it follows its session.
+/// The end of a replay job. At most one member has a value; if none has, the job follows its session.
 struct WeaveEnd {
-    std::optional<Revision> revision; ///< with this entry of the log
-    std::optional<double> stamp;      ///< seconds: before the first scan that was taken later
+    std::optional<Revision> revision; ///< ends after this entry of the log
+    std::optional<double> stamp;      ///< seconds; ends before the first scan with a later stamp
 
     friend bool operator==(const WeaveEnd&, const WeaveEnd&) = default;
 };
 
-/// What is to be woven of a session's log.
+/// The settings and the end of a replay job.
 struct WeaveRequest {
     mapping::MapConfig config;
     WeaveEnd end;
@@ -24,10 +24,12 @@ struct WeaveRequest {
     friend bool operator==(const WeaveRequest&, const WeaveRequest&) = default;
 };
 
-/// Tells a request from all others of all sessions: 16 hexadecimal digits. How far the session is makes no difference.
+/// Returns 16 hexadecimal digits that identify a request among those of all sessions. They do not depend on the current
+/// revision of the session.
 [[nodiscard]] std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request);
 
-/// The entry that the maps must have at least, asked for when the session is at `newest`.
+/// Returns the revision that the maps of the request must reach.
+/// @param newest  current revision of the session
 [[nodiscard]] inline Revision target_of(const WeaveRequest& request, Revision newest) {
     return request.end.revision.value_or(newest);
 }

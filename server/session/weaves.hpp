@@ -18,64 +18,66 @@
 namespace scanloom::session {
 
 struct WeavesLimits {
-    std::size_t waiting_max = 16;          ///< weaves that have not ended
-    std::size_t kept_max = 32;             ///< ended ones
-    std::size_t chunks_max = 131'072;      ///< of all that are under way: 2.5 GiB
-    std::size_t chunks_kept_max = 131'072; ///< of all that are done: 2.5 GiB; as much as one of them can have
+    std::size_t waiting_max = 16;          ///< jobs that have not ended
+    std::size_t kept_max = 32;             ///< ended jobs
+    std::size_t chunks_max = 131'072;      ///< of all jobs that have not ended: 2.5 GiB
+    std::size_t chunks_kept_max = 131'072; ///< of all ended jobs: 2.5 GiB, the maximum of a single job
 };
 
-/// The weaves of all sessions: those that wait, those under way, and the newest of those that ended.
+/// The replay jobs of all sessions: waiting, running, and the most recently used ended jobs.
 ///
-/// One that begins does so where the furthest of those stands that hold the same map at an earlier time; if that one is
-/// still on its way to where it ends, the other begins when it is there. So whoever steps through the history of a
-/// session has each entry folded once, and going back costs no more than from the furthest that is kept before.
+/// A new job starts from the job with the same map whose state is the latest before its own end. If that job is still
+/// running, the new one waits for its end. So stepping forward through the history of a session applies each entry
+/// once, and stepping back starts from the latest kept job before that moment.
 ///
-/// Queue   "weaves": at most waiting_max that have not ended; one more is refused with kOverloaded. The least recently
-///         used of those that are done go when others need their place, those that are not listed first.
-/// Memory  each counts with all of its chunks, though those that began from each other share what neither has changed
-///         since: the bounds hold whichever of them go first.
-/// Thread  any; nothing here waits.
+/// Queue: "weaves", at most waiting_max jobs that have not ended; another one is refused with kOverloaded. Ended jobs
+/// are evicted when their place is needed, the least recently used first, and jobs that are not listed before others.
+/// Memory: each job counts with all of its chunks, even if it shares unchanged chunks with the job that it started
+/// from. So the bounds hold in whatever order jobs are evicted. Threads: any thread; nothing here blocks.
 class Weaves {
 public:
-    /// Weaving happens on `executor`, as many at a time as it has threads; one that is asked for more before its turn
-    /// is over takes another turn. The log and this must outlive what runs there.
+    /// @param log  must outlive the jobs on the executor, as must this object
+    /// @param executor  runs the jobs, as many at a time as it has threads, one turn after another
     Weaves(store::ScanLog& log, boost::asio::any_io_executor executor, const WeavesLimits& limits = {});
 
     enum class Listing { kListed, kUnlisted };
 
-    /// Starts the weave, or finds the one that is asked for again and has it go on to where the session is by now,
-    /// `newest`; one that failed or was cancelled is tried again from the start. Once listed, it stays so.
-    /// Errors  kOverloaded, kShuttingDown.
+    /// Starts a job, or continues the existing job of this request up to `newest`. A job that failed or was cancelled
+    /// is started again from the beginning.
+    ///
+    /// @param newest  current revision of the session
+    /// @param listing  kListed adds the job to list(); a listed job stays listed
+    /// Errors: kOverloaded if too many jobs have not ended or the memory for them is used up; kShuttingDown.
     [[nodiscard]] Result<std::shared_ptr<Weave>> start(const SessionInfo& session, const WeaveRequest& request,
                                                        Revision newest, Listing listing = Listing::kListed);
 
-    /// Null when there is none, or no longer.
+    /// Returns the job; null if it does not exist or was evicted.
     [[nodiscard]] std::shared_ptr<Weave> find(store::SessionId session, std::string_view id);
 
-    /// Those that are listed, the last started first.
+    /// Returns the listed jobs of a session, the last started first.
     [[nodiscard]] std::vector<std::shared_ptr<Weave>> list(store::SessionId session) const;
 
-    /// Cancels and forgets it. @return whether there was such a weave.
+    /// Cancels and removes a job. @return whether it existed
     bool remove(store::SessionId session, std::string_view id);
 
-    /// The session is deleted: cancels and forgets all of its weaves.
+    /// Cancels and removes all jobs of a deleted session.
     void remove_all(store::SessionId session);
 
-    /// How many have not ended.
+    /// Returns the number of jobs that have not ended.
     [[nodiscard]] std::size_t under_way() const;
 
-    /// Of all that are under way or kept, whatever they share.
+    /// Returns the number of chunks of all jobs. Shared chunks count more than once.
     [[nodiscard]] std::int64_t chunks() const;
 
-    /// Starts nothing more, cancels all.
+    /// Cancels all jobs. No job can be started afterwards.
     void stop();
 
 private:
-    /// Where a weave can begin.
+    /// A job that another job can start from.
     struct Start {
         std::shared_ptr<Weave> weave;
         Revision at = 0;
-        bool is_on_its_way = false; // it goes on from there, but no further than to where the other may begin
+        bool is_on_its_way = false; // it is still running, and ends where the other job can start
     };
 
     [[nodiscard]] Result<std::shared_ptr<Weave>> started(const SessionInfo& session, const WeaveRequest& request,
@@ -98,12 +100,12 @@ private:
 
     mutable std::mutex mutex_;
     bool stopped_ = false;
-    std::uint64_t listed_ = 0;                 // how often one was
-    std::list<std::shared_ptr<Weave>> weaves_; // the last used first
+    std::uint64_t listed_ = 0;                 // number of the last listed job
+    std::list<std::shared_ptr<Weave>> weaves_; // most recently used first
 
     struct Behind {
         std::shared_ptr<Weave> ahead;
-        std::shared_ptr<Weave> weave; // begins when the one ahead has ended, however it did
+        std::shared_ptr<Weave> weave; // begins when the one ahead has ended, successfully or not
     };
     std::vector<Behind> behind_;
 };
