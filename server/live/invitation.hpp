@@ -11,18 +11,18 @@
 
 namespace scanloom::live {
 
-/// To watch a session over the connection that asked for it. Holds no session: one that is deleted is gone. The book,
-/// and what finds landmarks, outlive whatever shows sessions.
+/// What a viewer needs to show a session over its connection. Does not keep the session in memory. `ways` and the
+/// LandmarkHub must outlive all viewers.
 struct Invitation {
     std::weak_ptr<session::Session> session;
     store::SessionId session_id = 0;
-    std::string name; ///< of the session, as its end is told after it is gone
+    std::string name; ///< of the session, for messages after it was deleted
     std::string tag;  ///< LiveEvent::session
     guide::WayBook& ways;
     std::shared_ptr<WatchedLandmarks> landmarks;
-    std::function<bool()> is_stored = [] { return false; }; ///< whether the session exists, in memory or not
-    std::shared_ptr<guard::Pass> pass = nullptr;            ///< by whose leave; none: nobody takes it back
-    std::function<void()> taken_back = [] {}; ///< called when the pass is no longer good, as the viewer ends
+    std::function<bool()> is_stored = [] { return false; }; ///< returns whether the session exists, in memory or not
+    std::shared_ptr<guard::Pass> pass = nullptr;            ///< permission to watch; null: it cannot be revoked
+    std::function<void()> taken_back = [] {};               ///< called when `pass` was revoked, before the viewer ends
 };
 
 } // namespace scanloom::live

@@ -13,15 +13,15 @@
 
 namespace scanloom::live {
 
-/// How landmarks are looked for.
+/// How to search for landmarks.
 struct LandmarkSearch {
-    boost::asio::any_io_executor executor; ///< where the disk may be waited for
+    boost::asio::any_io_executor executor; ///< runs the search, which waits for the disk
     std::chrono::milliseconds pause{0};    ///< LiveConfig::landmarks_pause
     std::chrono::milliseconds turn{0};     ///< LiveConfig::landmarks_turn
 };
 
-/// The landmarks of one session, found for all who watch it at once, and only while somebody does.
-/// Thread  any.
+/// The landmarks of one session. They are searched only while the session has viewers, and once for all of them.
+/// Threads: any thread.
 class WatchedLandmarks : public std::enable_shared_from_this<WatchedLandmarks> {
 public:
     using Clock = std::chrono::steady_clock;
@@ -30,11 +30,12 @@ public:
 
     struct Look {
         std::shared_ptr<const FoundLandmarks> found;        ///< null: nothing yet
-        Clock::time_point until = Clock::time_point::max(); ///< look again then, also if nobody says that it changed
+        Clock::time_point until = Clock::time_point::max(); ///< call look() again then, even without a notification
     };
 
-    /// What was found last. Where the session's log has come further, to `revision`, and it is time for that, what came
-    /// since is found on the search's executor; the session's watchers are told when it is there.
+    /// Returns the landmarks found so far. If the log has new entries and the pause is over, starts a search on the
+    /// search's executor, which notifies the session's watchers at its end.
+    /// @param revision  current revision of the session
     [[nodiscard]] Look look(const std::shared_ptr<const session::Session>& session, Revision revision,
                             const LandmarkSearch& search);
 
@@ -47,18 +48,18 @@ private:
     session::LandmarkFolds& folds_;
     std::mutex mutex_;
     std::shared_ptr<const FoundLandmarks> found_;
-    Revision searched_ = 0; // log entries in which there is nothing more to find
+    Revision searched_ = 0; // log entries that were searched completely
     bool is_finding_ = false;
-    Clock::time_point next_; // search, at the earliest
+    Clock::time_point next_; // earliest start of the next search
 };
 
-/// Those of all sessions that are watched.
-/// Thread  any.
+/// The landmarks of all sessions that have viewers.
+/// Threads: any thread.
 class LandmarkHub {
 public:
     explicit LandmarkHub(session::LandmarkFolds& folds) : folds_(folds) {}
 
-    /// The same for all who hold it at the same time.
+    /// Returns the landmarks of a session. Callers that hold the result at the same time share one object.
     [[nodiscard]] std::shared_ptr<WatchedLandmarks> of(store::SessionId session);
 
 private:

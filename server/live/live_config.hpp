@@ -5,21 +5,20 @@
 
 namespace scanloom::live {
 
-/// What bounds viewers: numbers, sizes, deadlines.
+/// Limits of viewers: numbers, sizes and timeouts.
 struct LiveConfig {
-    std::size_t viewers_max = 1000;            ///< in all; one more is answered 503
-    std::size_t viewers_per_session_max = 512; ///< likewise
+    std::size_t viewers_max = 1000;            ///< in total; another one gets the status 503
+    std::size_t viewers_per_session_max = 512; ///< another one gets the status 503
     std::size_t request_bytes_max = 64 * 1024; ///< a longer message closes the connection
-    int send_buffer_bytes = 64 * 1024; ///< of the socket (the system takes twice as many): what lies there grows old
+    int send_buffer_bytes = 64 * 1024;         ///< of the socket (the system doubles it); small, so events stay recent
 
-    std::chrono::milliseconds interval{50};           ///< from one event to the next, at least
-    std::chrono::milliseconds landmarks_pause{1'000}; ///< of a session: from one search for landmarks to the next
-    std::chrono::milliseconds landmarks_turn{
-        1'000};                                  ///< of a search through a long log; the next one goes on from there
-    std::chrono::milliseconds handshake{30'000}; ///< for a handshake of the WebSocket
-    std::chrono::milliseconds idle{300'000};     ///< without a sign of life; a ping asks for one after half of it
-    std::chrono::milliseconds write{30'000};     ///< in which an event must have gone out
-    std::chrono::milliseconds farewell{1'000};   ///< for the event under way, and for the viewer to hang up
+    std::chrono::milliseconds interval{50};           ///< minimum time between two events
+    std::chrono::milliseconds landmarks_pause{1'000}; ///< of a session: between two searches for landmarks
+    std::chrono::milliseconds landmarks_turn{1'000};  ///< maximum time of a search; the next one continues there
+    std::chrono::milliseconds handshake{30'000};      ///< for the WebSocket handshake
+    std::chrono::milliseconds idle{300'000};          ///< without received data; a ping is sent after half of it
+    std::chrono::milliseconds write{30'000};          ///< for sending one event
+    std::chrono::milliseconds farewell{1'000};        ///< for the current event and the closing handshake
 };
 
 } // namespace scanloom::live

@@ -10,15 +10,15 @@
 
 namespace scanloom::live {
 
-/// How many viewers there may be, in all and of one session. Nobody waits for a seat: who gets none says so.
-/// Thread  any.
+/// Semaphore that limits the number of viewers, in total and per session. try_take() does not wait.
+/// Threads: any thread.
 class Seats {
 public:
     explicit Seats(const LiveConfig& config)
         : taken_(std::make_shared<Taken>()), max_(config.viewers_max), max_of_session_(config.viewers_per_session_max) {
     }
 
-    /// A seat, free again when its last copy is gone; null when all are taken.
+    /// Takes a slot, which is released when the last copy of the pointer is destroyed. @return null if all are taken
     [[nodiscard]] std::shared_ptr<const void> try_take(store::SessionId session) const;
 
 private:
@@ -30,7 +30,7 @@ private:
         void give_back(store::SessionId session);
     };
 
-    std::shared_ptr<Taken> taken_; // outlives the seats
+    std::shared_ptr<Taken> taken_; // kept alive by the slots
     std::size_t max_;
     std::size_t max_of_session_;
 };

@@ -25,40 +25,40 @@
 
 namespace scanloom::live {
 
-/// One WebSocket on which a session is watched, from the handshake to the end.
+/// One live viewer: a WebSocket that shows a session, from the handshake to the close.
 ///
-/// The session says that something has changed, no more; the viewer's next event is made when the one before is
-/// written and its time has come, from what the session shows then. So a slow viewer gets the newest state, never a
-/// backlog, and costs one event's memory; the session knows nothing of it.
+/// The session only notifies the viewer of changes. The next event is created from the state of the session when the
+/// previous event is written and the interval is over. So a slow viewer gets the newest state instead of a backlog, and
+/// needs the memory of one event.
 ///
-/// Ends with one of these codes, and a reason: 1001 the server shuts down or the session is read again, 1003 a text
-/// message, 1007 no LiveRequest, 1009 a message of more than request_bytes_max, 1011 a fault of ours, 4401 its token is
-/// no longer in force, 4404 the session was deleted; without a code
-/// when the viewer hangs up, breaks the protocol of the WebSocket, or a deadline passes.
-/// Thread  everything on the socket's executor, a strand, but narrate(), which runs on `showing` while the strand's
-///         coroutine waits for it; on_changed(), stop() and abort() may be called from any.
+/// The connection is closed with a reason and one of these codes: 1001 the server shuts down or the session is
+/// reloaded, 1003 text message, 1007 invalid LiveRequest, 1009 message longer than request_bytes_max, 1011 internal
+/// error, 4401 the token is no longer valid, 4404 the session was deleted. It is closed without a code if the client
+/// disconnects or violates the WebSocket protocol, or if a timeout expires. Threads: the socket's executor, a strand.
+/// narrate() runs on `showing` while the coroutine on the strand waits for it. on_changed(), stop() and abort() may be
+/// called from any thread.
 class Viewer final : public session::Watcher, public std::enable_shared_from_this<Viewer> {
 public:
     using Upgrade = boost::beast::http::request<boost::beast::http::string_body>;
 
-    /// What all viewers share.
+    /// Shared by all viewers.
     struct Services {
         LiveConfig config;
-        boost::asio::any_io_executor showing; ///< where events are made
-        boost::asio::any_io_executor finding; ///< where landmarks are, from the disk
+        boost::asio::any_io_executor showing; ///< creates events
+        boost::asio::any_io_executor finding; ///< searches for landmarks, which waits for the disk
         metrics::LiveCounters& counters;
     };
 
-    /// `seat` is kept as long as this.
+    /// @param seat  slot of Seats, kept until the viewer is destroyed
     Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<const void> seat, Services services);
 
-    /// Answers the upgrade, tells what happens, returns when the connection is closed. Call once.
+    /// Answers the upgrade request and sends events until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
 
-    /// Says goodbye and closes, within config.farewell.
+    /// Closes the connection with code 1001, within config.farewell.
     void stop();
 
-    /// Closes at once.
+    /// Closes the connection immediately.
     void abort();
 
     void on_changed() noexcept override;
@@ -67,11 +67,11 @@ private:
     using Clock = std::chrono::steady_clock;
     using Close = boost::beast::websocket::close_reason;
 
-    /// The next event as it goes over the wire; or nothing new; or the end.
+    /// The next step of the viewer.
     struct Narration {
-        std::optional<std::string> event;
+        std::optional<std::string> event; // encoded; nullopt: nothing new
         std::optional<Close> end;
-        Clock::time_point look_again = Clock::time_point::max(); // even if nobody says that something has changed
+        Clock::time_point look_again = Clock::time_point::max(); // time of the next step, even without a notification
     };
 
     [[nodiscard]] boost::asio::awaitable<bool> accept(const Upgrade& upgrade);
@@ -88,21 +88,21 @@ private:
     void wake();
     void cut_off_after(std::chrono::milliseconds time);
 
-    boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: nothing is ever compressed
-    boost::beast::flat_buffer buffer_;                               // as long as a message may be
+    boost::beast::websocket::stream<net::LinkStream, false> stream_; // false: no compression
+    boost::beast::flat_buffer buffer_;                               // at most request_bytes_max
     Invitation invitation_;
     std::shared_ptr<const void> seat_;
     Services services_;
-    Narrator narrator_; // of whoever runs narrate()
+    Narrator narrator_; // not used by the strand while narrate() runs
     boost::asio::steady_timer turn_;
     boost::asio::steady_timer deadline_;
     Clock::time_point due_; // the next event is not sent before
     Clock::time_point look_again_ = Clock::time_point::max();
-    std::optional<Wishes> wishes_; // that the narrator does not know yet
-    bool changed_ = true;          // something may be new
+    std::optional<Wishes> wishes_; // not yet passed to the narrator
+    bool changed_ = true;          // the state may have changed since the last event
     bool reading_ = false;
     std::optional<Close> ending_;
-    std::atomic<bool> told_ = false; // on_changed() is on its way to the strand, or nobody has looked since
+    std::atomic<bool> told_ = false; // on_changed() was called since narrate() last read the state
 };
 
 } // namespace scanloom::live

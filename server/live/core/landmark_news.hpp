@@ -9,8 +9,8 @@
 
 namespace scanloom::live {
 
-/// A landmark's place among all of a session, those first that were seen longest ago. Each time that it is seen it has
-/// a place behind all others that were there before.
+/// Sort key of a session's landmarks: by the revision at which they were last seen. A landmark that is seen again moves
+/// behind all earlier ones.
 struct LandmarkPlace {
     Revision last = 0;    ///< MapLandmark::last
     std::uint64_t id = 0; ///< MapLandmark::id, plus one
@@ -22,13 +22,14 @@ struct LandmarkPlace {
     return {landmark.last, std::uint64_t{landmark.id} + 1};
 }
 
+/// New or changed landmarks.
 struct LandmarkNews {
-    std::vector<const landmarks::MapLandmark*> first; ///< by their places. Of the view
-    std::size_t following = 0;                        ///< that are news, too
+    std::vector<const landmarks::MapLandmark*> first; ///< sorted by LandmarkPlace; point into the view
+    std::size_t following = 0;                        ///< number of further ones, not in `first`
 };
 
-/// The landmarks behind `told`, the first `most` of them and how many there are besides.
-/// Cost  the blocks of landmarks that changed since.
+/// Returns the first `most` landmarks after `told`, and the number of the others.
+/// Cost: proportional to the blocks of landmarks that changed since `told`.
 [[nodiscard]] LandmarkNews news_in(const landmarks::LandmarkView& landmarks, LandmarkPlace told, std::size_t most);
 
 } // namespace scanloom::live

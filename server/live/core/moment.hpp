@@ -13,30 +13,31 @@
 
 namespace scanloom::live {
 
-/// What landmarks of a session were found. Immutable.
+/// The landmarks of a session that were found so far. Immutable.
 struct FoundLandmarks {
     landmarks::LandmarkState state;
-    Revision revision = 0; ///< log entries in which they were looked for
-    std::string refused;   ///< why no more are found; empty: they are
+    Revision revision = 0; ///< searched log entries
+    std::string refused;   ///< why the search has ended with an error; empty: it has not
 };
 
-/// All that an event is made from: a session as it is now.
+/// The state of a session from which an event is created.
 struct Moment {
     std::shared_ptr<const mapping::Snapshot> maps;
-    std::vector<bool> connected; ///< by RobotIndex; those beyond the end have no link
+    std::vector<bool> connected; ///< by RobotIndex; robots beyond the end are not connected
     wire::LiveState state = wire::LiveState::kOk;
     std::string reason;                                        ///< when the state is not kOk
     std::uint64_t goals_revision = 0;                          ///< LiveEvent::goals_revision
-    std::shared_ptr<const FoundLandmarks> landmarks = nullptr; ///< null: none yet, or nobody asked
+    std::shared_ptr<const FoundLandmarks> landmarks = nullptr; ///< null: none yet, or not subscribed
 };
 
-/// What a viewer wants to be told.
+/// The subscription of a viewer: the contents of its events.
 struct Wishes {
     std::array<bool, mapping::kLayers.size()> layers = {true, true, true, true}; ///< by mapping::Layer
     bool points = true;
     bool landmarks = false;
 };
 
+/// Returns the subscription that a request contains.
 [[nodiscard]] Wishes wishes_of(const wire::LiveRequest& request) noexcept;
 
 } // namespace scanloom::live

@@ -13,34 +13,38 @@
 
 namespace scanloom::live {
 
-/// What one event holds at most: some 450 KiB, whatever the session is.
-inline constexpr std::size_t kTilesMax = 2048;        ///< of a layer; of more it is said that everything changed
-inline constexpr std::size_t kScanPointsMax = 16'384; ///< of all robots; more scans are thinned out alike
+/// Bounds of one event, together about 450 KiB.
+inline constexpr std::size_t kTilesMax = 2048;        ///< of a layer; if more changed, the event reports "everything"
+inline constexpr std::size_t kScanPointsMax = 16'384; ///< of all robots; all scans are thinned by the same stride
 inline constexpr std::size_t kTrailMax = 256;         ///< points of a robot
-inline constexpr std::size_t kTrailsMax = 8'192;      ///< of all robots, but for one each
+inline constexpr std::size_t kTrailsMax = 8'192;      ///< of all robots, with at least one point each
 inline constexpr std::size_t kLandmarksMax = 1'024;
 
-/// Tells one viewer what is new to it, each time from the newest state: what came in between is skipped, and whoever
-/// takes in every event knows all the same what the newest snapshot shows.
+/// Event encoder of one viewer: creates events with the changes since its last event.
 ///
-/// Remembers what the viewer was told: for each layer up to which revision, for each robot up to which scan and which
-/// point of its trail. That follows the number of robots, not what happens.
-/// Cost    of an event: the chunks and robots that changed since the last.
+/// Each event is created from the newest state, and intermediate states are skipped. A client that applies every event
+/// knows the state of the newest snapshot.
+///
+/// Keeps the last sent revision of each layer, and the last sent scan and trail point of each robot. Its memory depends
+/// on the number of robots only.
+/// Cost: an event takes time in proportion to the chunks and robots that changed since the last one.
 class Narrator {
 public:
-    /// `session` as LiveEvent::session.
+    /// @param session  LiveEvent::session
     explicit Narrator(std::string session) : session_(std::move(session)) {}
 
-    /// What is told from now on. A layer that was told before goes on from there; scans are told anew.
+    /// Sets the contents of the next events. A layer that was sent before continues at its last revision; the newest
+    /// scans are sent again.
     void set_wishes(const Wishes& wishes);
 
     [[nodiscard]] bool wishes_for_landmarks() const noexcept { return wishes_.landmarks; }
 
-    /// Whether more is to be told than the last event had place for: the next one goes on, also at the same moment.
+    /// Returns whether the last event had no room for all landmarks. The next event continues, even for the same
+    /// moment.
     [[nodiscard]] bool has_more() const noexcept { return told_landmarks_.following > 0; }
 
-    /// Nothing when there is nothing new.
-    /// Pre  every moment is of the same session, and no older than the one before.
+    /// Returns the next event; nullopt if nothing has changed.
+    /// @param moment  of the same session in each call, and not older than in the call before
     [[nodiscard]] std::optional<wire::LiveEvent> next(const Moment& moment);
 
 private:
@@ -50,7 +54,7 @@ private:
         std::optional<double> body_radius;
         std::uint64_t scan_count = 0;
         std::size_t trail = 0; // points
-        Revision scan = 0;     // shown as points
+        Revision scan = 0;     // last scan sent as points
     };
 
     struct ToldSession {
@@ -62,9 +66,9 @@ private:
     };
 
     struct ToldLandmarks {
-        LandmarkPlace up_to;                // those up to there
-        std::uint64_t following = 0;        // that the last event had no place for
-        std::optional<std::string> refused; // nothing: no event was about landmarks yet
+        LandmarkPlace up_to;                // last landmark sent
+        std::uint64_t following = 0;        // landmarks that did not fit into the last event
+        std::optional<std::string> refused; // nullopt: no event contained landmarks yet
     };
 
     void tell_tiles(const mapping::Snapshot& maps, wire::LiveEvent& event);

@@ -7,9 +7,11 @@
 
 namespace scanloom::live {
 
-/// Where the beams of a scan ended at something. Of its hits the first is told, then every `stride`-th.
-/// Frames  the points are offsets from the sensor's place, along the axes of the map.
-/// Pre     stride >= 1; the scan fits its sensor.
+/// Returns the end points of the beams that hit an obstacle.
+///
+/// @param scan  a scan that fits its sensor
+/// @param stride  >= 1; the first hit and every `stride`-th one after it are returned
+/// @return offsets from the position of the sensor, along the axes of the map frame
 [[nodiscard]] wire::ScanPoints points_of(const mapping::FoldedScan& scan, std::size_t stride);
 
 } // namespace scanloom::live
