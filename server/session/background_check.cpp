@@ -16,7 +16,7 @@ namespace {
 constexpr int kNiceness = 19;
 constexpr std::chrono::seconds kWarnEvery{10};
 
-/// Of this thread: whoever weaves or answers comes first.
+/// Lowers the priority of this thread, so that ingestion and requests run first.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
 } // namespace
@@ -57,8 +57,8 @@ void BackgroundCheck::run() {
 void BackgroundCheck::check(const store::StoredSession& stored, const std::string& name) {
     const auto found =
         check_session(log_, stored, CheckDepth::kLog, [this](std::size_t bytes) { return go_on_after(bytes); });
-    if (!found) return; // stopped
-    // Deleted meanwhile, or the store failed: then it cannot be read, and may be whole.
+    if (!found) return; // stop() was called
+    // A session that was deleted in the meantime, or whose store failed, cannot be read but may be intact.
     const bool is_damage = found->damage && is_still_there(name, stored.id) && !log_.stats().last_error;
     if (is_damage) keep(name, stored.id, *found->damage);
     const std::lock_guard lock(mutex_);
@@ -66,19 +66,19 @@ void BackgroundCheck::check(const store::StoredSession& stored, const std::strin
 }
 
 void BackgroundCheck::note(store::SessionId id, const Error& why) {
-    if (log_.stats().last_error) return; // it may be whole, and that the store has failed is told
+    if (log_.stats().last_error) return; // the store failed, which is reported elsewhere; the log may be intact
     for (const auto& listed : sessions_.all()) {
         if (listed.info.id != id) continue;
         if (why.code == Errc::kDataLoss) return keep(listed.info.name, id, why);
         const std::lock_guard lock(mutex_);
         const auto now = std::chrono::steady_clock::now();
         if (now < next_warning_) return;
-        next_warning_ = now + kWarnEvery; // whoever asks may ask often
+        next_warning_ = now + kWarnEvery; // clients may request it often
         log::warn({.session = listed.info.name}, "session '{}' cannot be read: {}", listed.info.name, why.message);
     }
 }
 
-/// Logs it once.
+/// Records the damage and logs it once per session.
 void BackgroundCheck::keep(const std::string& name, store::SessionId id, const Error& why) {
     const std::lock_guard lock(mutex_);
     if (const auto known = damaged_.find(name); known != damaged_.end() && known->second.id == id) return;

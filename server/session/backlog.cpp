@@ -8,7 +8,7 @@ namespace scanloom::session {
 
 Group Backlog::next_group(std::int64_t room) {
     Group group;
-    // A robot's scans of a kind mostly overlap: one box for all of them.
+    // The scans of one robot and kind of sensor mostly overlap, so one box for all of them is a tight bound.
     std::map<std::pair<RobotIndex, SensorKind>, grid::CellBox> boxes;
     while (!waiting_.empty() && group.entries.size() < kGroupEntriesMax) {
         const Submitted& next = waiting_.front();

@@ -33,7 +33,7 @@ Result<Folded<Layer>> CaptureFolds<Layer>::up_to(const SessionInfo& session, Rev
     if (kept->is_full) return full(session);
     try {
         const auto done = go_on(*kept, revision, is_wanted);
-        if (kept->layer.size() > limits_.size_max) { // and has ever more
+        if (kept->layer.size() > limits_.size_max) { // the size never decreases, so this is final
             kept->is_full = true;
             kept->captures = landmarks::SessionCaptures(scan_filter_of(session));
             kept->layer = {};
@@ -91,7 +91,7 @@ auto CaptureFolds<Layer>::find_or_begin(const SessionInfo& session) -> std::shar
     return kept_.front();
 }
 
-/// Forgets the least recently used until the others have no more than there may be.
+/// Evicts the least recently used sessions until the others fit into size_max.
 template <class Layer>
 void CaptureFolds<Layer>::account(Kept& kept) {
     const std::lock_guard lock(mutex_);

@@ -21,15 +21,16 @@ constexpr std::string_view kLaserChunk = "weave/laser/";
 constexpr std::string_view kSonarChunk = "weave/sonar/";
 constexpr std::string_view kExclusions = "head/exclusions";
 
-// 1 had no number of its own, and chunks as they are in memory; 2 did not say how many pages a map has and where its
-// robots are, so that it has to be read to be listed; 2 and 3 had trajectories, track/<index>/<block>.
+// Version 1 had no version number and stored chunks as in memory. Version 2 lacked the number of pages and the poses of
+// the robots, so a session had to be loaded to be listed. Versions 2 and 3 stored trajectories as
+// track/<index>/<block>.
 constexpr std::uint32_t kPartsVersion = 4;
 constexpr std::uint32_t kOldestPartsVersion = 2;
 constexpr std::size_t kChunkBytesMax = sizeof(mapping::LaserChunk) + sizeof(mapping::SonarChunk);
 
 Error damaged(std::string_view key) { return {Errc::kMalformed, fmt::format("checkpoint part '{}' is damaged", key)}; }
 
-/// The hexadecimal numbers between the slashes of what follows a key's prefix.
+/// Returns the hexadecimal numbers in a key without its prefix, which are separated by slashes; nullopt if invalid.
 std::optional<std::vector<std::uint32_t>> numbers_in(std::string_view key) {
     std::vector<std::uint32_t> numbers;
     while (!key.empty()) {
@@ -60,12 +61,12 @@ std::string head_part(const mapping::ProjectionState& state) {
     return value;
 }
 
-/// An Exclusion as it is in the part.
+/// The stored form of an Exclusion.
 struct StoredExclusion {
     std::uint64_t id;
     std::uint32_t robot;
-    std::uint32_t is_of_seqs; // or of stamps
-    std::uint64_t from;       // the bits of a stamp
+    std::uint32_t is_of_seqs; // 0: a range of stamps
+    std::uint64_t from;       // sequence number, or the bits of a stamp
     std::uint64_t to;
     Revision since;
     Revision lifted;
@@ -104,10 +105,10 @@ std::string robot_part(const mapping::ProjectionState::Robot& robot) {
     std::string value;
     put(value, robot.last_seq);
     put(value, robot.scan_count);
-    if (robot.newest) put(value, *robot.newest); // there is one just when it took scans
+    if (robot.newest) put(value, *robot.newest); // present exactly if scan_count > 0
     value += robot.name + '\0' + robot.source;
     const bool has_jumps = robot.jumps.newest.has_value();
-    if (!robot.body_radius && !has_jumps) return value; // as earlier versions wrote it, which knew of neither
+    if (!robot.body_radius && !has_jumps) return value; // same bytes as in earlier versions, which had neither
     put(value += '\0', robot.body_radius.value_or(0.0));
     if (!has_jumps) return value;
     put(value, *robot.jumps.integrated);
@@ -141,13 +142,14 @@ grid::ChunkKey chunk_key_of(const std::vector<std::uint32_t>& numbers) {
     return {static_cast<std::int32_t>(numbers[0]), static_cast<std::int32_t>(numbers[1])};
 }
 
-/// Gathers parts and hands them to the store whenever a piece is full. After a failure nothing more is written.
+/// Collects parts and writes them to the store in pieces. Writes nothing more after a failure.
 class PieceWriter {
 public:
     PieceWriter(store::ScanLog& log, store::SessionId session, const std::atomic<bool>& stop)
         : log_(log), session_(session), stop_(stop) {}
 
-    /// Counts for a piece's size as much as it is uncompressed: a piece is as much of the map, however it compresses.
+    /// Adds a part that is stored compressed. Its uncompressed size counts, so a piece covers the same amount of map
+    /// whatever the compression ratio.
     void add_compressed(std::string key, std::string_view value) {
         bytes_ += key.size() + value.size();
         parts_.push_back({std::move(key), compressor_.compressed(value)});
@@ -192,7 +194,8 @@ void write_chunks(PieceWriter& out, std::string_view prefix, const View& view, R
     });
 }
 
-/// What must agree: one piece. A sensor must not be newer than the head, or earlier scans would be read as its.
+/// Writes the parts that must agree, as one piece. A stored sensor must not be newer than the head: a recovery would
+/// apply it to earlier scans.
 void write_state(PieceWriter& out, const mapping::ProjectionState& state, Revision since) {
     out.add("head", head_part(state));
     if (state.exclusions->revision() != 0) out.add(std::string(kExclusions), exclusions_part(state));
@@ -331,13 +334,13 @@ bool CheckpointReader::add_sensor(const Numbers& numbers, std::string_view value
     return true;
 }
 
-/// Of these, only the newest is wanted.
+/// Reads a block of a trajectory in an earlier format. Only the newest point is used.
 bool CheckpointReader::add_old_points(const Numbers& numbers, std::string_view value) {
     PartReader part(value);
     while (!part.complete()) {
         const auto point = part.take<mapping::TrajectoryPoint>();
         if (part.failed()) return false;
-        if (point.revision > state_.revision) continue; // comes again with its scan
+        if (point.revision > state_.revision) continue; // its scan will be replayed
         if (numbers[0] >= state_.robots.size()) return false;
         state_.robots[numbers[0]].newest = point;
     }

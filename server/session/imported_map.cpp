@@ -31,7 +31,7 @@ std::int64_t pages_of(const mapping::MapConfig& config, const MapPatch& patch) {
     return is_known ? mapping::chunk_count_of(mapping::reach_of(config, patch).cells) : 0;
 }
 
-/// @param most  pages of all maps together
+/// @param free,most  free pages and size of the memory for maps
 Error no_room(std::int64_t pages, std::int64_t free, std::int64_t most) {
     const auto mebibytes = [](std::int64_t count) {
         return count * static_cast<std::int64_t>(mapping::kPageBytes) >> 20;
@@ -52,7 +52,7 @@ std::size_t pages_of_imported(const mapping::MapConfig& config, const std::vecto
     std::int64_t pages = 0;
     grid::CellBox cells;
     for (const auto& patch : patches) {
-        pages += pages_of(config, patch); // twice those that two patches share
+        pages += pages_of(config, patch); // counts pages that two patches share twice
         cells.include(mapping::reach_of(config, patch).cells);
     }
     return static_cast<std::size_t>(std::min(pages, mapping::chunk_count_of(cells)));
@@ -73,7 +73,7 @@ Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,
             if (auto folded = projection.fold(patch); !folded) return folded.error();
             share.give_back(pages - static_cast<std::int64_t>(projection.page_count() - before));
         }
-        static_cast<void>(projection.snapshot()); // the classes are made here
+        static_cast<void>(projection.snapshot()); // computes the classes, which may run out of memory
         return projection;
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left for this map; use larger cells"};

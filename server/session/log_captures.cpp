@@ -6,7 +6,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr Revision kLookEvery = 256; // entries: milliseconds
+constexpr Revision kLookEvery = 256; // entries, which take a few milliseconds
 
 const Error kEnd{Errc::kInternal, "the end of what is to be read"};
 
@@ -25,7 +25,7 @@ Result<> read_captures(store::ScanLog& log, store::SessionId session, landmarks:
         if (!entry) return damaged_entry(revision, entry.error());
         const auto ended = captures.add(*entry);
         if (!ended) return {};
-        auto visited = visit(*ended); // which may take long
+        auto visited = visit(*ended); // may take long, so ask() follows
         return visited ? ask(revision) : visited;
     };
     if (captures.revision() >= until) return {};

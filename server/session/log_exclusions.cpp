@@ -8,7 +8,7 @@ namespace {
 
 const Error kEndOfReading{Errc::kInternal, "the end of what is to be read"};
 
-/// An entry that is no scan.
+/// Adds an entry that is not a scan.
 Result<> add_entry(Exclusions& exclusions, Revision revision, std::string_view bytes) {
     const auto entry = wire::decode_entry(bytes);
     if (!entry) return damaged_entry(revision, entry.error());

@@ -9,7 +9,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr std::size_t kRobotsMax = 1024; // of one session
+constexpr std::size_t kRobotsMax = 1024; // per session
 
 Error begun_already(const std::string& robot, const std::string& session) {
     return {Errc::kConflict,
@@ -82,7 +82,8 @@ std::optional<Submitted> Members::join(Joining joining) {
     return entry;
 }
 
-/// Scans are told apart by their number alone: those of another recording would be taken for the rest of this one.
+/// Checks that a robot continues with the same source. Scans are identified by their sequence number only, so the scans
+/// of another recording would be taken for the rest of this one.
 Result<> Members::check_source(const Member& member, const std::string& source) const {
     const LoggedRobot& robot = member.robot;
     if (robot.accepts(source)) return {};
@@ -93,7 +94,7 @@ Result<> Members::check_source(const Member& member, const std::string& source) 
                              robot.last_seq, robot.name, info_.name, in_words(robot.source), in_words(source))};
 }
 
-/// Lets the link in that waits to become the robot's, once nothing of the earlier ones is under way.
+/// Admits the link that waits to join, if all entries of the robot's earlier links are in the maps.
 void Members::admit(Member& member) {
     if (!member.joining || member.under_way > 0) return;
     const auto joining = *std::exchange(member.joining, std::nullopt);
@@ -146,7 +147,7 @@ void Members::set_connected(const Member& member, bool connected) {
     connected_[index_of(member)] = connected;
 }
 
-// What they send
+// Entries
 
 std::vector<Submitted> Members::describe(const std::shared_ptr<RobotListener>& from, Sensor sensor, std::size_t bytes) {
     std::vector<Submitted> entries;
@@ -170,7 +171,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
                                      std::size_t bytes, bool is_mapped) {
     std::vector<Submitted> entries;
     Member* member = member_of(from);
-    if (member == nullptr) { // the link was cut or replaced while they came: the robot will send them again
+    if (member == nullptr) { // the link failed or was replaced; the robot sends them again
         counters_.scans_dropped += scans.size();
         return entries;
     }
@@ -178,7 +179,7 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
     std::size_t n = 0;
     for (; n < scans.size() && !fault; ++n) {
         Scan& scan = scans[n];
-        if (scan.seq <= member->robot.last_seq) { // sent again after a reconnect: the log has it
+        if (scan.seq <= member->robot.last_seq) { // sent again after a reconnect
             ++counters_.scans_duplicates;
             continue;
         }
@@ -196,10 +197,10 @@ std::vector<Submitted> Members::take(const std::shared_ptr<RobotListener>& from,
         entries.push_back(submitted(*member, ScanTaken{index_of(*member), std::move(scan)}, 0));
         entries.back().reach = reach;
     }
-    if (fault) counters_.scans_dropped += scans.size() - (n - 1); // the faulty one, and those behind it
+    if (fault) counters_.scans_dropped += scans.size() - (n - 1); // the invalid scan and those after it
     if (entries.empty()) entries.push_back(submitted(*member, std::nullopt, 0));
-    entries.back().bytes = bytes;     // given back when the whole frame is in the maps
-    if (fault) fail(*member, *fault); // the scans before it have been received and count as such
+    entries.back().bytes = bytes;     // returned when the whole frame is in the maps
+    if (fault) fail(*member, *fault); // the scans before it are accepted
     return entries;
 }
 
@@ -216,17 +217,17 @@ Result<> Members::check_next(const Member& member, const Scan& scan, bool is_map
         return Error{Errc::kInvalidField,
                      fmt::format("sensor is {}, which was not described; send a SensorDescription first", scan.sensor)};
     }
-    if (scan.begins_map && robot.last_seq == 0) { // what follows a robot's first scan lies to that as it says
+    if (scan.begins_map && robot.last_seq == 0) { // later scans are placed relative to the first
         const auto shows = [](const Member& other) { return other.showed_seq > 0; };
         if (is_mapped || std::ranges::any_of(members_, shows)) return begun_already(robot.name, info_.name);
     }
     return wire::check_scan(scan, *known->sensor);
 }
 
-// What became of it
+// Acknowledgements
 
 void Members::release(const Group& group) {
-    std::map<RobotIndex, std::size_t> bytes; // one message a robot
+    std::map<RobotIndex, std::size_t> bytes; // one message per robot
     for (const auto& released : group.entries) {
         Member& member = members_[released.robot];
         bytes[released.robot] += released.bytes;

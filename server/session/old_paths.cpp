@@ -11,20 +11,20 @@ namespace {
 
 const Error kRestIsKept{Errc::kInternal, "what follows is kept in memory, or too much"};
 
-constexpr Revision kAskEvery = 1024; // entries: a few milliseconds
+constexpr Revision kAskEvery = 1024; // entries, which take a few milliseconds
 
-/// From this revision on, a robot's points are kept.
+/// Returns the first revision from which the maps keep all points of a robot.
 Revision kept_from(const mapping::Snapshot& maps, const mapping::TrajectoryView& path) {
     if (path.begin() == 0) return 0;
     return path.begin() < path.size() ? path[path.begin()].revision : maps.revision + 1;
 }
 
-/// How many of a robot's old points are not beyond it.
+/// Returns the number of a robot's old points up to `until`.
 std::ptrdiff_t count_until(const std::vector<mapping::TrajectoryPoint>& points, Revision until) {
     return std::ranges::upper_bound(points, until, {}, &mapping::TrajectoryPoint::revision) - points.begin();
 }
 
-/// All that would be told, of all robots.
+/// Returns the number of points of all robots in (since, until], in `old` and in the maps.
 std::size_t count_until(const OldPaths& old, const mapping::Snapshot& maps, Revision since, Revision until) {
     std::size_t points = 0;
     for (std::size_t robot = 0; robot < maps.robots.size(); ++robot) {
@@ -35,7 +35,7 @@ std::size_t count_until(const OldPaths& old, const mapping::Snapshot& maps, Revi
     return points;
 }
 
-/// Leaves out what is beyond the last revision up to which they are not more.
+/// Reduces old.until to the last revision up to which there are at most `points_max` points, and removes later points.
 void shorten(OldPaths& old, const mapping::Snapshot& maps, Revision since, std::size_t points_max) {
     if (count_until(old, maps, since, old.until) <= points_max) return;
     Revision beyond = old.until;

@@ -7,7 +7,7 @@
 namespace scanloom::session {
 namespace {
 
-constexpr int kLevel = 1; // cells repeat themselves; more effort gains little
+constexpr int kLevel = 1; // cells repeat; higher levels gain little
 
 } // namespace
 
@@ -21,7 +21,7 @@ std::string PartCompressor::compressed(std::string_view bytes) {
     std::string out(ZSTD_compressBound(bytes.size()), '\0');
     const std::size_t size =
         ZSTD_compressCCtx(context_.get(), out.data(), out.size(), bytes.data(), bytes.size(), kLevel);
-    if (ZSTD_isError(size) != 0) throw std::bad_alloc(); // there is room for any input: nothing else can fail
+    if (ZSTD_isError(size) != 0) throw std::bad_alloc(); // the buffer is large enough, so only memory can be missing
     return out.substr(0, size);
 }
 
@@ -33,7 +33,7 @@ PartDecompressor::PartDecompressor() : context_(ZSTD_createDCtx()) {
 
 std::optional<std::string> PartDecompressor::decompressed(std::string_view bytes, std::size_t bytes_max) {
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-    if (size > bytes_max) return std::nullopt; // an error is a larger number
+    if (size > bytes_max) return std::nullopt; // error codes are larger numbers
     std::string out(static_cast<std::size_t>(size), '\0');
     const std::size_t got = ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), bytes.data(), bytes.size());
     if (ZSTD_isError(got) != 0 || got != out.size()) return std::nullopt;

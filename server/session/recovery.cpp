@@ -13,13 +13,13 @@ namespace {
 
 Error stopped() { return {Errc::kShuttingDown, "stopped before the log's end"}; }
 
-/// Not a failure: the log is folded from its beginning.
+/// Not a failure: the whole log is replayed.
 const Error kOutdated{Errc::kConflict,
                       "the rest of the log excludes scans that are in these maps, or brings some back"};
 
 struct FromCheckpoint {
     mapping::Projection projection;
-    bool can_be_added_to; // by the next checkpoint
+    bool can_be_added_to; // the next checkpoint may write only what has changed
 };
 
 Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
@@ -36,7 +36,7 @@ Result<FromCheckpoint> read_checkpoint(store::ScanLog& log, store::SessionId ses
     return FromCheckpoint{std::move(*projection), can_be_added_to};
 }
 
-/// @return whether the log's end was reached.
+/// Applies the entries after the projection's revision. @return false if it was stopped before the end of the log
 Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::Projection& projection,
                        const std::atomic<bool>& stop) {
     auto read = log.read(session, projection.revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
@@ -51,7 +51,7 @@ Result<bool> fold_rest(store::ScanLog& log, store::SessionId session, mapping::P
     return true;
 }
 
-/// The whole log, with its exclusions.
+/// Replays the whole log, with its exclusions from the start.
 Result<Recovered> recover_from_log(store::ScanLog& log, store::SessionId session, const mapping::MapConfig& config,
                                    const std::atomic<bool>& stop) {
     auto exclusions =
@@ -97,7 +97,7 @@ Result<Recovered> recover(store::ScanLog& log, store::SessionId session, const m
     try {
         auto recovered = recover_from_checkpoint(log, session, config, stop);
         if (recovered || recovered.error() != kOutdated) return recovered;
-        return recover_from_log(log, session, config, stop); // the outdated maps are gone from memory
+        return recover_from_log(log, session, config, stop); // the outdated maps are already freed
     } catch (const std::bad_alloc&) {
         return Error{Errc::kOverloaded, "there is no memory left for its map; free some and start the server again"};
     }

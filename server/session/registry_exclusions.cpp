@@ -8,7 +8,7 @@
 #include <future>
 #include <new>
 
-/// How scans are excluded from the maps of a session.
+/// Exclusion of scans from the maps of a session.
 namespace scanloom::session {
 namespace {
 
@@ -17,7 +17,7 @@ Error maps_are_computed_again(const std::string& name) {
             fmt::format("the maps of session '{}' are computed again from its log; connect again", name)};
 }
 
-/// Returns when the session is closed. What it has acknowledged is durable; robots send the rest again.
+/// Closes the session and waits for it. Acknowledged scans are durable; robots send the others again.
 void close_and_wait(Session& session) {
     std::promise<void> closed;
     session.discard(maps_are_computed_again(session.info().name), [&closed] { closed.set_value(); });
@@ -84,7 +84,7 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
         const auto end = log_.end_of(left->info.id);
         const auto appended =
             end ? store::append_and_wait(log_, left->info.id, *end + 1, std::move(bytes)) : Result<>(end.error());
-        if (appended) { // what can be said of the session until its maps are there
+        if (appended) { // the summary until the session is loaded again
             facts->revision = *end + 1;
             if (const auto* excluded = std::get_if<ScansExcluded>(&*entry)) {
                 static_cast<void>(exclusions->add(*end + 1, *excluded));
@@ -98,7 +98,7 @@ Result<Revision> SessionRegistry::change_exclusions(std::string_view name, const
         if (!appended) return appended.error();
         return *end + 1;
     } catch (const std::bad_alloc&) {
-        if (left->session && left->session->closing()) { // it is closed: it has to be read again
+        if (left->session && left->session->closing()) { // it is closed and must be loaded again
             if (const auto wanted = roster_.arrived(left->info.name, left->summary)) start_reading(*wanted);
             return Error{Errc::kOverloaded, "there is no memory left for this; try again later"};
         }

@@ -10,17 +10,18 @@
 #include <latch>
 #include <set>
 
-/// What a registry does when the server starts.
+/// Recovery of all sessions when the server starts.
 namespace scanloom::session {
 namespace {
 
-/// A session as its record describes it.
+/// The contents of a session's record.
 struct Recorded {
     SessionInfo info;
     std::uint32_t map_patches = 0;
 };
 
-/// @param name  becomes that of the session, as soon as its record has told.
+/// Decodes the record of a stored session.
+/// @param name  set to the session's name if the record can be decoded, even if an error is returned
 Result<Recorded> recorded(const store::StoredSession& stored, std::string& name) {
     if (!stored.record) return stored.record.error();
     const auto record = wire::decode_session(*stored.record);
@@ -35,7 +36,7 @@ Result<Recorded> recorded(const store::StoredSession& stored, std::string& name)
                     record->map_patches};
 }
 
-/// Of two with one name, which only a fault can have stored, the older is served and the other kept aside.
+/// Returns the error for the second session of a name, which only a fault can have stored. The older one is served.
 Error second_of_a_name(const std::string& name) {
     return {Errc::kConflict,
             fmt::format("the store holds a second session '{}'; delete this one, or delete the other and restart the "
@@ -48,11 +49,11 @@ Error second_of_a_name(const std::string& name) {
 Result<> SessionRegistry::recover() {
     const auto stored = log_.sessions();
     if (!stored) return stored.error();
-    const std::lock_guard changing(changing_); // drain() waits
+    const std::lock_guard changing(changing_); // drain() waits for it
     std::vector<Recorded> found;
     std::set<std::string> names;
     for (const auto& session : *stored) {
-        std::string name = fmt::format("#{}", session.id); // until its record has told
+        std::string name = fmt::format("#{}", session.id); // used if its record cannot be decoded
         auto record = recorded(session, name);
         if (!record) {
             keep_damaged(name, session.id, record.error());
@@ -73,12 +74,12 @@ Result<> SessionRegistry::recover() {
 }
 
 void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_patches, std::function<void()> done) {
-    if (draining_) return done(); // told to stop meanwhile: what is not woven now will be at the next start
+    if (draining_) return done(); // the next start replays the rest
     if (can_stay_asleep(info, map_patches)) return done();
     auto session = factory_.read(info, draining_, hurried_);
     if (session && *session && (*session)->snapshot()->revision < map_patches) {
         log::warn({.session = info.name}, "session '{}' is removed: its import came to {} of {} parts before a crash",
-                  info.name, (*session)->snapshot()->revision, map_patches); // nobody was told that it exists
+                  info.name, (*session)->snapshot()->revision, map_patches); // its creation was never confirmed
         if (auto removed = log_.remove_session(info.id); !removed) keep_damaged(info.name, info.id, removed.error());
         return done();
     }
@@ -87,10 +88,11 @@ void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_pat
     done();
 }
 
-/// Whether all of it that a list shows is known without weaving anything.
+/// Adds the session without its maps if its checkpoint has all the facts that a list shows. @return whether it was
+/// added
 bool SessionRegistry::can_stay_asleep(const SessionInfo& info, std::uint32_t map_patches) {
     auto summary = read_summary(log_, info.id, info.config);
-    if (!summary || !*summary || (*summary)->facts->revision < map_patches) return false; // reading it will tell
+    if (!summary || !*summary || (*summary)->facts->revision < map_patches) return false; // loading it gives the reason
     SessionInfo asleep = info;
     asleep.exclusions = (*summary)->facts->exclusions;
     roster_.add(std::move(asleep), std::move(**summary));
@@ -102,7 +104,7 @@ void SessionRegistry::add_recovered(std::shared_ptr<Session> session, std::funct
         roster_.add(std::move(session), config_.clock());
         return done();
     }
-    auto& recovered = *session; // with it there are more than fit into memory: it goes to sleep at once
+    auto& recovered = *session; // the memory for maps is exceeded: evict it immediately
     recovered.close({Errc::kShuttingDown, "the session leaves memory"}, [this, session, done = std::move(done)] {
         roster_.add(session->info(), summary_of(*session->snapshot()));
         done();

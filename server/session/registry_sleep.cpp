@@ -8,11 +8,11 @@
 #include <limits>
 #include <utility>
 
-/// How sessions leave memory, and come back.
+/// Eviction and loading of sessions.
 namespace scanloom::session {
 namespace {
 
-/// For those who want a session for which there is no room: whoever uses the others may be done soon.
+/// How long a request waits for memory, because the users of other sessions may release them soon.
 constexpr std::chrono::seconds kPatience{5};
 
 Error leaves_memory() { return {Errc::kShuttingDown, "the session leaves memory; connect again"}; }
@@ -29,7 +29,7 @@ Error no_room(const Resting& resting) {
 
 } // namespace
 
-// Waking
+// Loading
 
 void SessionRegistry::wake(std::string_view name, Roster::Woken woken) {
     auto told = [this, name = std::string(name), woken = std::move(woken)](Result<std::shared_ptr<Session>> session) {
@@ -65,18 +65,19 @@ void SessionRegistry::read(const Wanted& wanted) {
     if (draining_) return roster_.failed(info.name, shutting_down());
     if (!take_room(wanted)) return;
     auto session = factory_.read(info, draining_, hurried_);
-    pages_->give_back(static_cast<std::int64_t>(pages)); // the session has its own share
+    pages_->give_back(static_cast<std::int64_t>(pages)); // the session has taken its own pages
     if (session && *session) return roster_.arrived(std::move(*session), config_.clock());
     if (session) return roster_.failed(info.name, shutting_down());
     const Error& why = session.error();
-    if (log_.stats().last_error) return roster_.failed(info.name, {Errc::kStoreFailed, why.message}); // it may be whole
+    if (log_.stats().last_error)
+        return roster_.failed(info.name, {Errc::kStoreFailed, why.message}); // it may be intact
     const bool may_pass = why.code == Errc::kOverloaded || why.code == Errc::kStoreFailed;
-    if (may_pass) return roster_.failed(info.name, why); // whoever asks has it tried again
+    if (may_pass) return roster_.failed(info.name, why); // the next request tries again
     keep_damaged(info.name, info.id, why);
     roster_.remove(info.name, why);
 }
 
-/// @return false when it will be tried again, or is refused.
+/// Takes the pages for a session. @return false if it will be retried or was refused
 bool SessionRegistry::take_room(const Wanted& wanted) {
     const auto& [info, pages] = wanted.resting;
     if (pages_->take(static_cast<std::int64_t>(pages))) return true;
@@ -88,25 +89,25 @@ bool SessionRegistry::take_room(const Wanted& wanted) {
         const std::lock_guard lock(room_mutex_);
         waiting_for_room_.push_back(wanted);
     }
-    make_room(pages);                     // whoever leaves for it has it tried again
-    if (draining_) start_reading_again(); // or nobody might any more
+    make_room(pages);                     // the end of an eviction retries it
+    if (draining_) start_reading_again(); // the last eviction may be over already
     return false;
 }
 
-// Going to sleep
+// Eviction
 
 void SessionRegistry::tidy() {
     if (!log_.stats().last_error) read_failed_again();
     lay_down(roster_.send_to_sleep(config_.clock() - config_.idle_after, std::numeric_limits<std::size_t>::max()),
              leaves_memory());
-    make_room(spare_pages()); // before scans have to be refused
+    make_room(spare_pages()); // before scans must be refused
     start_reading_again();
 }
 
-/// What is kept free for maps that grow, as long as anybody can be sent away for it.
+/// Returns the number of pages to keep free for growing maps, as long as there are sessions to evict.
 std::size_t SessionRegistry::spare_pages() const noexcept { return static_cast<std::size_t>(pages_->pages_max()) / 16; }
 
-/// Sends sessions to sleep that nobody holds, until so many pages are free.
+/// Evicts sessions without users until `pages` pages are free.
 void SessionRegistry::make_room(std::size_t pages) {
     const auto missing = static_cast<std::int64_t>(pages) - pages_->free();
     if (missing <= 0) return;
@@ -126,7 +127,8 @@ void SessionRegistry::is_asleep_now(const Session& session) {
     start_reading_again();
 }
 
-/// Looked for each time, as a session may learn of its failure when the store has been opened again already.
+/// Reloads all failed sessions. Called each time, because a session may notice its failure only after the store was
+/// opened again.
 void SessionRegistry::read_failed_again() {
     auto failed = roster_.send_failed_to_sleep();
     std::vector<std::string> names;

@@ -15,7 +15,7 @@
 namespace scanloom::session {
 namespace {
 
-/// Appends to a log in pieces, and waits for each.
+/// Appends entries to a log in pieces, and waits for each piece.
 class LogWriter {
 public:
     LogWriter(store::ScanLog& log, store::SessionId session) : log_(log), session_(session) {}
@@ -46,14 +46,14 @@ private:
     Revision end_ = 0;
 };
 
-/// Made when there is something to write.
+/// The file of entries that cannot be applied. Created with the first entry.
 class AsideFile {
 public:
     explicit AsideFile(std::filesystem::path path) : path_(std::move(path)) {}
 
     Result<> add(std::string_view entry) {
         const auto decoded = wire::plain_entry(entry);
-        const auto plain = decoded ? std::string_view(*decoded) : entry; // what cannot be decoded, as it is
+        const auto plain = decoded ? std::string_view(*decoded) : entry; // undecodable entries are copied
         if (count_++ == 0) {
             std::error_code problem;
             std::filesystem::create_directories(path_.parent_path(), problem);
@@ -85,8 +85,8 @@ private:
     std::uint64_t count_ = 0;
 };
 
-/// A part of an import may be lost, and what is left of it is to be kept: the next start would remove a session that
-/// has fewer entries than its import.
+/// Returns the record for the new store, without the number of imported patches. Some of them may be lost, and a start
+/// removes a session that has fewer entries than its import.
 std::optional<std::string> record_to_keep(const std::string& bytes, const std::string& name) {
     auto record = wire::decode_session(bytes);
     if (!record) return std::nullopt;
@@ -95,7 +95,7 @@ std::optional<std::string> record_to_keep(const std::string& bytes, const std::s
     return wire::encode_session(*record);
 }
 
-/// Where the session goes; nothing: all of it is set aside.
+/// Creates the session in the new store. @return nullopt if its record is lost or cannot be decoded
 Result<std::optional<store::SessionId>> target_of(const std::optional<std::string>& record, const std::string& name,
                                                   store::ScanLog& to) {
     const auto kept = record ? record_to_keep(*record, name) : std::nullopt;

@@ -18,7 +18,7 @@ std::string with_id(std::string name, store::SessionId id) {
     return name + ending;
 }
 
-/// Nothing: it is lost.
+/// Returns the name in a record; nullopt if it is lost or cannot be decoded.
 std::optional<std::string> name_in(const std::optional<std::string>& record) {
     if (!record) return std::nullopt;
     const auto decoded = wire::decode_session(*record);
@@ -40,7 +40,7 @@ repaired_names(const std::map<store::SessionId, std::optional<std::string>>& rec
         const auto name = name_in(session->second);
         if (name && !taken.contains(*name)) give(session->first, *name);
     }
-    for (const auto& [id, record] : records) { // those whose names are taken, or lost
+    for (const auto& [id, record] : records) { // sessions whose name is taken or lost
         if (!names.contains(id)) give(id, with_id(name_in(record).value_or("session"), id));
     }
     return names;

@@ -8,7 +8,7 @@
 namespace scanloom::session {
 namespace {
 
-/// Shows nothing, whatever the sensor.
+/// Returns an empty scan, which fits every sensor.
 Scan blank(const Scan& next, std::uint64_t seq) {
     Scan scan;
     scan.seq = seq;
@@ -32,7 +32,7 @@ std::vector<LogEntry> Rescue::add(Revision revision, LogEntry entry) {
         entries = stand_ins_before(*taken);
     }
     for (const auto& stand_in : entries) {
-        if (!rules_.add(stand_in)) return {}; // cannot be: they follow each other
+        if (!rules_.add(stand_in)) return {}; // cannot happen: their numbers are consecutive
     }
     if (!rules_.add(entry)) return {};
     if (const auto* described = std::get_if<SensorDescribed>(&entry)) {
@@ -43,7 +43,7 @@ std::vector<LogEntry> Rescue::add(Revision revision, LogEntry entry) {
     return entries;
 }
 
-/// @return whether its robot is known, or becomes known with it.
+/// Replaces the robot's index by its new one. @return false if the RobotJoined entry of the robot is lost
 bool Rescue::renumber(LogEntry& entry) {
     if (auto* joined = std::get_if<RobotJoined>(&entry)) {
         joined->robot = robots_.emplace(joined->robot, static_cast<RobotIndex>(robots_.size())).first->second;
@@ -60,7 +60,7 @@ bool Rescue::renumber(LogEntry& entry) {
     return true;
 }
 
-/// Whether it can be woven, and no more scans are missing before it than entries are.
+/// Returns whether the scan can be applied and the lost entries are enough to account for the scans missing before it.
 bool Rescue::fits(const ScanTaken& taken) const {
     const auto sensor = sensors_.find({taken.robot, taken.scan.sensor});
     if (sensor == sensors_.end() || !wire::check_scan(taken.scan, sensor->second)) return false;

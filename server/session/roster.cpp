@@ -75,7 +75,7 @@ void Roster::add(SessionInfo info, Summary summary) {
     entry.summary = std::move(summary);
 }
 
-// Waking
+// Loading
 
 Resting Roster::wake(Entry& entry) {
     entry.state = State::kOnItsWay;
@@ -111,7 +111,7 @@ void Roster::arrived(std::shared_ptr<Session> session, Clock::time_point now) {
     {
         const std::unique_lock lock(mutex_);
         Entry& entry = entries_.find(session->info().name)->second;
-        entry.info = session->info(); // its exclusions may be others
+        entry.info = session->info(); // its exclusions may have changed
         entry.session = session;
         entry.state = State::kAwake;
         entry.summary = {};
@@ -134,10 +134,10 @@ void Roster::failed(const std::string& name, const Error& why) {
     for (const auto& woken : waiting) woken(why);
 }
 
-// Going to sleep
+// Eviction
 
 std::vector<std::shared_ptr<Session>> Roster::send_to_sleep(Clock::time_point used_until, std::size_t pages_wanted) {
-    const std::unique_lock lock(mutex_); // so that nobody comes by a session that nobody holds
+    const std::unique_lock lock(mutex_); // no caller can obtain a session without users meanwhile
     std::vector<Entry*> idle;
     for (auto& [name, entry] : entries_) {
         const bool is_held = entry.session.use_count() > 1;
@@ -170,7 +170,7 @@ std::vector<std::shared_ptr<Session>> Roster::send_failed_to_sleep() {
 
 std::optional<Resting> Roster::arrived(const std::string& name, Summary summary) {
     std::optional<Resting> wanted;
-    std::shared_ptr<Session> last; // goes after the lock
+    std::shared_ptr<Session> last; // destroyed after the lock is released
     {
         const std::unique_lock lock(mutex_);
         Entry& entry = entries_.find(name)->second;
@@ -184,7 +184,7 @@ std::optional<Resting> Roster::arrived(const std::string& name, Summary summary)
     return wanted;
 }
 
-// The end
+// Deletion
 
 std::optional<Listed> Roster::leave(std::string_view name) {
     std::unique_lock lock(mutex_);

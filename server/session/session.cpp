@@ -15,20 +15,20 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 5e6;            // as Reach::work: a few milliseconds
-constexpr double kInPlaceWork = 1e6;          // of a group: about a millisecond, for which readers may have to wait
-constexpr std::size_t kGroupsDurableMax = 2;  // one is folded, one waits for that
-constexpr Revision kCheckpointEvery = 4096;   // entries folded between two checkpoints, or
-constexpr double kCheckpointEveryWork = 1e10; // as much work: bounds what a restart has to weave again
+constexpr double kSliceWork = 5e6;            // in the unit of Reach::work: a few milliseconds
+constexpr double kInPlaceWork = 1e6;          // of a group: about a millisecond, during which readers may have to wait
+constexpr std::size_t kGroupsDurableMax = 2;  // one is being applied, one waits
+constexpr Revision kCheckpointEvery = 4096;   // entries applied between two checkpoints, or
+constexpr double kCheckpointEveryWork = 1e10; // this much work: bounds the work that a restart repeats
 constexpr std::size_t kCheckpointEveryDescribed = std::size_t{4} << 20; // bytes: bounds a checkpoint's last piece
 
-/// For most up to half as many more than kCheckpointEvery: sessions that began together would write all at once, for
-/// ever.
+/// Returns the number of entries between two checkpoints of a session: kCheckpointEvery to 1.5 times as many, depending
+/// on the session. With one value for all, sessions that started together would always write at the same time.
 constexpr Revision checkpoint_every(store::SessionId session) {
     return kCheckpointEvery + (session - 1) * 0x9E37'79B9 % (kCheckpointEvery / 2); // Fibonacci hashing
 }
 
-/// `created_by` is whose limit it is, where it is not everybody's.
+/// @param created_by  token whose limit it is, if `chunks_max` is below SessionLimits::kMost
 Error full(std::size_t chunks, std::size_t chunks_max, const std::string& created_by) {
     const auto whose =
         chunks_max == SessionLimits::kMost
@@ -50,7 +50,7 @@ Error no_memory() {
     return {Errc::kOverloaded, "there is no memory left for this map; use larger cells or another session"};
 }
 
-/// What is shown of a session whose maps were taken back when the memory ran out.
+/// Returns the maps that are published if memory runs out while the session's maps are withdrawn.
 const std::shared_ptr<const mapping::Snapshot>& no_maps() {
     static const auto none = std::make_shared<const mapping::Snapshot>();
     return none;
@@ -65,9 +65,9 @@ Session::Session(SessionInfo info, mapping::Projection projection, std::optional
       may_wait_(may_wait.value_or(compute)), strand_(std::move(compute)), members_(info_, *counters_),
       projection_(std::move(projection)), appended_(projection_.revision()), share_(limits.shared),
       pages_(projection_.page_count()), checkpointed_(checkpointed) {
-    share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is there: it must be shown
+    share_.take_anyway(static_cast<std::int64_t>(pages_)); // its log is stored, so its maps must be served
     members_.restore(projection_.state());
-    static_cast<void>(no_maps()); // made while there is memory
+    static_cast<void>(no_maps()); // create it while there is memory
     if (!publish()) throw std::bad_alloc();
 }
 
@@ -96,7 +96,7 @@ void Session::on_strand(Work work) {
     boost::asio::post(strand_, [self = shared_from_this(), work = std::move(work)]() mutable {
         work(*self);
         self->backlog_size_ = self->waiting_.size();
-        self->tell_watchers(); // last: robots have their acks already
+        self->tell_watchers(); // last, so that acknowledgements go out first
     });
 }
 
@@ -106,7 +106,7 @@ void Session::tell_watchers() {
     if (has_news || told_before != connections_told_) watchers_.tell();
 }
 
-// Down: from a link to the log
+// From a link to the log
 
 void Session::join(Newcomer who, std::shared_ptr<RobotListener> listener, std::function<void(Result<Joined>)> done) {
     on_strand([joining = Joining{std::move(who), std::move(listener), std::move(done)}](Session& self) mutable {
@@ -143,14 +143,14 @@ void Session::enqueue(std::vector<Submitted> entries) {
     append_next();
 }
 
-/// Hands what waits to the log, one group at a time: the next begins when the last is durable, and does
-/// not run ahead of the folding by more than one group.
+/// Appends the waiting entries to the log, one group at a time. The next group is appended when the last one is
+/// durable, and at most one durable group waits to be applied.
 void Session::append_next() {
     while (!appending_ && durable_.size() < kGroupsDurableMax && !waiting_.empty()) {
         const auto taken = static_cast<std::int64_t>(projection_.chunk_count()) + chunks_under_way_;
         const auto left = static_cast<std::int64_t>(limits_.chunks_max) - taken;
         auto group = waiting_.next_group(std::min(left, share_.free()));
-        if (!group.entries.empty() && !share_.take(group.chunks)) { // another session was quicker
+        if (!group.entries.empty() && !share_.take(group.chunks)) { // another session took them first
             waiting_.put_back(std::exchange(group, {}));
         }
         if (!group.entries.empty()) {
@@ -159,7 +159,7 @@ void Session::append_next() {
             refuse_first(share_.free() < left ? short_of_memory()
                                               : full(projection_.chunk_count(), limits_.chunks_max, info_.created_by));
         } else {
-            return; // until it is known how many chunks are new
+            return; // wait until the number of new chunks is known
         }
     }
 }
@@ -182,7 +182,7 @@ void Session::append(Group group) {
                 });
 }
 
-/// Pre: nothing is under way.
+/// Refuses the entries of the robot whose entry is first. Call only while no group is being appended or applied.
 void Session::refuse_first(const Error& error) {
     if (error.code == Errc::kOverloaded && limits_.on_short) {
         limits_.on_short(static_cast<std::size_t>(mapping::chunk_count_of(waiting_.front().reach.cells)));
@@ -192,7 +192,7 @@ void Session::refuse_first(const Error& error) {
     members_.refuse(robot, error, projection_.state());
 }
 
-// Up: from the log to the maps, and to the links
+// From the log to the maps, and to the links
 
 void Session::on_appended(Group group, const Result<>& appended) {
     appending_ = false;
@@ -201,20 +201,20 @@ void Session::on_appended(Group group, const Result<>& appended) {
     if (broken_) return finish_closing();
     durable_.push_back(std::move(group));
     if (hurried_) return finish_closing();
-    append_next(); // the disk works while this group is folded
+    append_next(); // the next group is written while this one is applied
     if (durable_.size() == 1) fold_slice();
 }
 
-/// Folds for a moment, then lets others have the thread. A small group is folded as a whole, into the published maps
-/// themselves where nobody looks at them: else each chunk that a group touches would be copied first.
+/// Applies entries for one slice of work, then yields the thread. A small group is applied as a whole, and in place if
+/// no reader holds the published maps. Otherwise each chunk that the group changes is copied first.
 void Session::fold_slice() {
     if (hurried_) return finish_closing();
-    if (durable_.empty()) return; // dropped meanwhile
+    if (durable_.empty()) return; // dropped in the meantime
     const Group& group = durable_.front();
     const bool in_place = group.work <= kInPlaceWork && published_.take_back();
     auto folded = fold_some(in_place ? HUGE_VAL : kSliceWork);
     const bool finished = folded && folded_ == group.entries.size();
-    if (in_place && !finished) { // failed, or in a hurry: readers wait for what there is
+    if (in_place && !finished) { // failed or hurried: publish for the waiting readers
         const auto published = publish();
         if (folded) folded = published;
     }
@@ -225,8 +225,8 @@ void Session::fold_slice() {
     finish_closing();
 }
 
-/// Fails by a mistake of ours (Members lets only entries through that can follow) or for want of memory,
-/// which must not end the other sessions.
+/// Applies up to `work` of the first group. Fails if memory runs out, which must not affect other sessions, or if a
+/// durable entry cannot follow, which is a program error because Members checks the entries.
 Result<> Session::fold_some(double work) {
     try {
         auto& entries = durable_.front().entries;
@@ -235,7 +235,7 @@ Result<> Session::fold_some(double work) {
             if (!next.entry) continue;
             const auto folded = projection_.fold(*next.entry, work);
             if (!folded) return folded.error();
-            if (!*folded) return {}; // goes on in the next slice
+            if (!*folded) return {}; // continues in the next slice
             work_since_checkpoint_ += next.reach.work;
             if (auto* taken = std::get_if<ScanTaken>(&*next.entry)) count_and_keep(*taken);
             if (std::holds_alternative<SensorDescribed>(*next.entry)) described_since_checkpoint_ += next.bytes;
@@ -246,7 +246,8 @@ Result<> Session::fold_some(double work) {
     }
 }
 
-/// Takes the readings out of a scan that has been folded: of what is left, Members reads the seq.
+/// Counts an applied scan and moves its readings into newest_scans_. Members needs only the sequence number of the
+/// rest.
 void Session::count_and_keep(ScanTaken& folded) {
     if (projection_.has_left_out_newest(folded.robot)) {
         ++counters_->scans_jumped;
@@ -264,7 +265,7 @@ void Session::finish_group() {
     folded_ = 0;
     chunks_under_way_ -= group.chunks;
     const auto grown = projection_.page_count() - std::exchange(pages_, projection_.page_count());
-    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // a track's next block was not foreseen
+    share_.give_back(group.chunks - static_cast<std::int64_t>(grown)); // `grown` may include trajectory blocks, too
     const auto published = publish();
     members_.release(group);
     if (!published) return stop_writing(published.error());
@@ -272,7 +273,7 @@ void Session::finish_group() {
     append_next();
 }
 
-/// Fails for want of memory; whoever asks has the maps from before then, or none.
+/// Publishes the maps. If memory runs out, readers get the previous maps, or empty ones if those were withdrawn.
 Result<> Session::publish() {
     try {
         auto maps = projection_.snapshot();
@@ -309,13 +310,13 @@ void Session::begin_checkpoint() {
             session.finish_closing();
         });
     };
-    boost::asio::post(may_wait_, std::move(write)); // beside the strand: folding goes on
+    boost::asio::post(may_wait_, std::move(write)); // not on the strand, which continues to apply entries
 }
 
-// When things go wrong, and the end
+// Failures and closing
 
-/// The log could not be written, and what the disk holds is unknown until the store is opened again; or a durable
-/// entry could not be woven. Nothing more is taken; the maps stay readable as they are.
+/// Stops ingestion after a failed write, after which the contents of the disk are unknown until the store is opened
+/// again, or because a durable entry could not be applied. The maps remain readable.
 void Session::stop_writing(const Error& error) {
     log::error({.session = info_.name}, "session '{}': {}", info_.name, error.message);
     refusing_ = error;
@@ -330,10 +331,10 @@ void Session::stop_writing(const Error& error) {
     finish_closing();
 }
 
-/// The log had no room: nothing of the last group is stored, nor of what waits. Robots that come again find the session
-/// as if it had not been sent.
+/// Resets the session to the durable entries because the log had no room for the last group. All entries after them are
+/// dropped; robots that reconnect send them again.
 void Session::set_back(const Error& error) {
-    refusing_ = error; // until what is durable is in the maps
+    refusing_ = error; // until the durable entries are in the maps
     setting_back_ = true;
     members_.fail_all(error);
     waiting_.clear();
@@ -380,11 +381,12 @@ void Session::discard(Error reason, std::function<void()> done) {
     close(std::move(reason), std::move(done));
 }
 
-/// Goes on with closing as far as possible: called whenever something it waits for has happened.
+/// Continues closing as far as possible. Called after each event that closing waits for.
 void Session::finish_closing() {
     if (!closed_ || appending_ || checkpointing_) return;
     if (hurried_) {
-        for (const Group& group : durable_) members_.release(group); // in the maps before anybody can look again
+        for (const Group& group : durable_)
+            members_.release(group); // the next recovery applies them before the maps are served
         members_.fail_all(*refusing_);
         drop_what_is_under_way();
     }
@@ -394,7 +396,7 @@ void Session::finish_closing() {
         final_checkpoint_tried_ = true;
         return begin_checkpoint();
     }
-    share_.give_back_all(); // the maps go with the last who holds them
+    share_.give_back_all(); // readers may still hold the maps for a while
     const auto closed = std::move(closed_);
     closed_ = nullptr;
     closed();

@@ -12,7 +12,7 @@
 namespace scanloom::session {
 namespace {
 
-/// One session on its way through the checks. `stopped` is the pace's error.
+/// The state of one check. `stopped` is the error that `pace` returned.
 struct Checking {
     store::ScanLog& log;
     const store::SessionId id;
@@ -42,14 +42,14 @@ Result<> check_sums_of_checkpoint(Checking& checking) {
     });
 }
 
-/// Pre  the log is whole and has so many entries.
+/// @param entries  number of entries in the log, which must be intact
 Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, Revision entries) {
     CheckpointReader reader(config);
     auto read = checking.log.read_checkpoint(checking.id, [&](std::string_view key, std::string_view value) {
         auto added = reader.add(key, value);
         return added ? checking.go_on(key.size() + value.size()) : added;
     });
-    if (!read && read.error().code == Errc::kUnsupportedVersion) return {}; // woven anew
+    if (!read && read.error().code == Errc::kUnsupportedVersion) return {}; // the log is replayed
     if (!read) return read;
     const auto restored = std::move(reader).finish();
     if (!restored) return restored.error();
@@ -59,7 +59,7 @@ Result<> check_checkpoint(Checking& checking, const mapping::MapConfig& config, 
                  fmt::format("the log ends with entry {}, but its checkpoint holds entry {} already", entries, newest)};
 }
 
-/// Pre  log and checkpoint are whole.
+/// Compares the maps of the whole log with those of the checkpoint and the rest of the log. Both must be intact.
 Result<> compare_maps(Checking& checking, const mapping::MapConfig& config, const Exclusions& exclusions) {
     auto recovered = recover(checking.log, checking.id, config, false);
     if (!recovered) return recovered.error();

@@ -9,10 +9,10 @@
 namespace scanloom::session {
 namespace {
 
-/// A long recovery that is stopped again and again should come to its end all the same.
+/// Stores a checkpoint of a stopped recovery, so that a long recovery finishes even if it is stopped repeatedly.
 void keep_progress(store::ScanLog& log, const SessionInfo& info, Recovered& recovered,
                    const std::atomic<bool>& hurried) {
-    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // there is none
+    if (recovered.projection.revision() <= recovered.checkpointed.value_or(0)) return; // no progress
     const auto snapshot = recovered.projection.snapshot();
     const auto written =
         write_checkpoint(log, info.id, snapshot, recovered.projection.state(), recovered.checkpointed, hurried);

@@ -7,7 +7,7 @@
 namespace scanloom::session {
 namespace {
 
-/// A bijection that spreads every bit over all. Source: Steele, Lea, Flood (2014), SplitMix64.
+/// A bijection in which each input bit affects all output bits. Source: Steele, Lea, Flood (2014), SplitMix64.
 std::uint64_t mixed(std::uint64_t bits) {
     bits += 0x9E37'79B9'7F4A'7C15U;
     bits = (bits ^ (bits >> 30)) * 0xBF58'476D'1CE4'E5B9U;

@@ -24,7 +24,7 @@ Result<> check_name(std::string_view name) {
         fmt::format("name is not a valid session name; use 1 to {} characters of A-Z a-z 0-9 _ -", kNameBytesMax)};
 }
 
-/// What the store keeps of a new session.
+/// Returns the record of a new session.
 wire::SessionRecord record_of(std::string_view name, double created, const mapping::MapConfig& config,
                               const Maker& maker) {
     wire::SessionRecord record{std::string(name), created, mapping::options_of(config)};
@@ -68,7 +68,7 @@ std::optional<Error> SessionRegistry::damage_of(std::string_view name) const {
 }
 
 void SessionRegistry::keep_damaged(std::string name, store::SessionId id, Error why) {
-    if (why.code == Errc::kStoreFailed) { // nobody tries again before the next start
+    if (why.code == Errc::kStoreFailed) { // it is not retried before the next start
         why = {Errc::kDataLoss, why.message + "; if its disk is well again, start the server again"};
     }
     log::error({.session = name}, "session '{}' cannot be recovered: {}", name, why.message);
@@ -123,7 +123,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     if (auto ok = check_name(name); !ok) return ok.error();
     const auto config = mapping::resolve(options);
     if (!config) return config.error();
-    // Before anything is stored, and before others have to wait: it takes seconds, and the memory may run out.
+    // Done before the lock and before anything is stored, because it takes seconds and may run out of memory.
     PageShare share({pages_});
     auto projection = integrate_imported(*config, patches, maker, share);
     if (!projection) {
@@ -131,7 +131,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
         if (projection.error().code == Errc::kOverloaded) {
             const std::size_t pages = pages_of_imported(*config, patches);
             make_room(pages);
-            give_back_memory(pages); // of the part that was integrated
+            give_back_memory(pages); // of the patches that were integrated
         }
         return projection.error();
     }
@@ -145,10 +145,10 @@ Result<std::shared_ptr<Session>> SessionRegistry::import_map(std::string_view na
     for (std::size_t n = 0; n < patches.size(); ++n) {
         const auto imported = store::append_and_wait(log_, *id, n + 1, {wire::encode_entry(patches[n])});
         if (imported) continue;
-        static_cast<void>(log_.remove_session(*id)); // if that fails, too, the next start does it
+        static_cast<void>(log_.remove_session(*id)); // if this fails, the next start removes it
         return imported.error();
     }
-    share.give_back_all(); // the session takes them itself
+    share.give_back_all(); // the session takes its pages itself
     return add({*id, record.name, record.created, *config, maker.token, maker.chunks_max}, std::move(*projection));
 }
 
@@ -171,18 +171,18 @@ Result<> SessionRegistry::remove(std::string_view name) {
         is_closed.wait();
     }
     const auto summary = left->session ? summary_of(*left->session->snapshot()) : left->summary;
-    if (auto removed = log_.remove_session(left->info.id); !removed) { // it is still there, closed
+    if (auto removed = log_.remove_session(left->info.id); !removed) { // it still exists, closed
         if (const auto wanted = roster_.arrived(left->info.name, summary)) start_reading(*wanted);
         return removed.error();
     }
     roster_.remove(name, no_such_session(name));
-    left.reset(); // the maps go here, or when the strand is done with the session
+    left.reset(); // frees the maps, unless the strand still holds the session
     boost::asio::post(may_wait_, [this, pages = summary.pages] { give_back_memory(pages); });
     return {};
 }
 
-/// To the system, from time to time: the allocator keeps what lies between other things, and of each thread the most it
-/// ever had.
+/// Returns free memory to the system after `pages` were freed, but not each time. The allocator keeps free memory
+/// between used blocks, and for each thread as much as it ever used.
 void SessionRegistry::give_back_memory(std::size_t pages) {
     constexpr std::size_t kWorthwhile = 4096; // 80 MiB
     {
@@ -197,8 +197,8 @@ void SessionRegistry::give_back_memory(std::size_t pages) {
 }
 
 void SessionRegistry::drain() {
-    draining_ = true;      // recover() and whatever is to be read give up
-    start_reading_again(); // who holds the mutex may wait for one of them
+    draining_ = true;      // stops recover() and loads
+    start_reading_again(); // the thread that holds the mutex may wait for one of these loads
     const std::lock_guard changing(changing_);
     start_reading_again();
     roster_.settle();

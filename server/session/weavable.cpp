@@ -18,7 +18,7 @@ std::string named(const mapping::Projection& projection, RobotIndex robot, const
            fmt::format(" of robot '{}'", robot < projection.robots().size() ? projection.robots()[robot].name : "");
 }
 
-/// The smallest cell size, in whole millimetres, at which the sensor's reach is possible.
+/// Returns the smallest cell size, in metres with whole millimetres, at which the sensor's range is allowed.
 double cell_size_for(const Sensor& sensor) { return std::ceil(sensor.range_max / mapping::kReachCellsMax * 1e3) / 1e3; }
 
 Error too_many_cells(const mapping::Projection& projection, const std::string& what) {

@@ -14,11 +14,11 @@
 namespace scanloom::session {
 namespace {
 
-constexpr double kSliceWork = 5e6; // until it is looked whether to go on
-constexpr double kEntryWork = 1e4; // of any entry: reading it
-constexpr int kNiceness = 10;      // weaving again is never more urgent than what robots and viewers wait for
+constexpr double kSliceWork = 5e6; // between two checks whether to continue
+constexpr double kEntryWork = 1e4; // of reading an entry
+constexpr int kNiceness = 10;      // robots and viewers are more urgent than replay jobs
 
-/// Not failures, but reasons to read no further.
+/// Reasons to end reading that are not failures.
 const Error kEnd{Errc::kShuttingDown, "the end of what is to be woven"};
 const Error kTurnIsOver{Errc::kShuttingDown, "others have their turn"};
 const Error kCancelled{Errc::kShuttingDown, "cancelled"};
@@ -30,7 +30,7 @@ Error no_room() {
             "larger cells, or try again when the others are done"};
 }
 
-/// Linux: of this thread alone.
+/// Lowers the priority; on Linux only of this thread.
 void step_back() { static_cast<void>(setpriority(PRIO_PROCESS, 0, kNiceness)); }
 
 SharedExclusions shared(Exclusions exclusions) { return std::make_shared<const Exclusions>(std::move(exclusions)); }
@@ -43,7 +43,7 @@ Error session_was_deleted(const SessionInfo& session) {
                         session.name)};
 }
 
-// Asking
+// Requests
 
 Weave::Progress Weave::progress() const {
     const std::lock_guard lock(mutex_);
@@ -81,7 +81,7 @@ bool Weave::resume(Revision target, PageBudget& budget) {
     return true;
 }
 
-// Beginning where another stands
+// Starting from another job
 
 bool Weave::is_same_map(const Weave& other) const noexcept {
     return session_.id == other.session_.id && request_.config == other.request_.config;
@@ -100,7 +100,8 @@ std::optional<Revision> Weave::revision_before(const Weave& other, Revision targ
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
     const Revision known = projection_->exclusions()->revision();
     const bool is_same = known == other.session_.exclusions->as_of(target).revision();
-    // One that ends with a stamp may end before it meets the exclusions that this one does not know.
+    // A job with an end stamp may end before it reads the exclusions that this one does not know, so they must be
+    // equal.
     if (end.stamp ? !is_same : known > target) return std::nullopt;
     if (end.stamp && newest_stamp_ && *newest_stamp_ > *end.stamp) return std::nullopt;
     return projection_->revision();
@@ -133,13 +134,13 @@ bool Weave::begin_from(Weave& base) {
 void Weave::cancel(Error reason) {
     const std::lock_guard lock(mutex_);
     if (has_ended(state_) || cancelled_) return;
-    cancelled_ = true; // whoever weaves will see it
+    cancelled_ = true; // checked by the thread in run()
     error_ = std::move(reason);
     if (state_ == State::kWaiting) state_ = State::kCancelled;
     changed_.notify_all();
 }
 
-// Weaving
+// Replay
 
 bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
     const auto target = begin();
@@ -165,7 +166,7 @@ bool Weave::run(store::ScanLog& log, PageBudget& budget, double turn_work) {
     return false;
 }
 
-/// Nothing when it was cancelled.
+/// Starts a turn. @return the target of the round; nullopt if the job was cancelled
 std::optional<Revision> Weave::begin() {
     const std::lock_guard lock(mutex_);
     if (state_ != State::kWaiting) return std::nullopt;
@@ -173,7 +174,7 @@ std::optional<Revision> Weave::begin() {
     return std::exchange(round_, std::nullopt).value_or(target_);
 }
 
-/// The round goes on when the others that wait have had theirs.
+/// Ends a turn. The round continues after the turns of the other waiting jobs.
 bool Weave::wait_for_another_turn(Revision target) {
     const std::lock_guard lock(mutex_);
     state_ = State::kWaiting;
@@ -181,10 +182,10 @@ bool Weave::wait_for_another_turn(Revision target) {
     return true;
 }
 
-/// @return whether nothing more can follow.
+/// Applies entries up to `target`. @return whether the job has reached its end
 Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget& budget) {
     bool is_complete = request_.end.revision.has_value();
-    if (auto claimed = claim(budget); !claimed) return claimed.error(); // what it begins with
+    if (auto claimed = claim(budget); !claimed) return claimed.error(); // of its initial state
     const auto read =
         log.read(session_.id, projection_->revision(), [&](Revision revision, std::string_view bytes) -> Result<> {
             if (revision > target) return kEnd;
@@ -204,14 +205,14 @@ Result<bool> Weave::weave_up_to(Revision target, store::ScanLog& log, PageBudget
     return is_complete;
 }
 
-/// Whether it is a scan, not excluded, that was taken after the stamp with which the maps end.
+/// Returns whether the entry is a scan, not excluded, with a stamp after the end of the job.
 bool Weave::is_beyond_end(Revision revision, const LogEntry& entry) const {
     const auto* taken = std::get_if<ScanTaken>(&entry);
     return taken != nullptr && request_.end.stamp && taken->scan.stamp > *request_.end.stamp &&
            !projection_->exclusions()->cover(revision, scan_pose_of(*taken));
 }
 
-/// Restarts with all exclusions up to `target`. The maps shown so far go first, as both may not fit into the memory.
+/// Restarts with all exclusions up to `target`. Releases the earlier maps first, because both may not fit into memory.
 Result<> Weave::begin_again(Revision target, store::ScanLog& log, PageBudget& budget) {
     const auto exclusions = read_exclusions(log, session_.id, [&](Revision revision, const std::optional<ScanPose>&) {
         return revision <= target && !cancelled_;
@@ -243,12 +244,12 @@ Result<> Weave::fold(const LogEntry& entry, PageBudget& budget) {
     return {};
 }
 
-/// Takes the chunks that there are by now from the budget.
+/// Takes the chunks of the current state from the budget.
 Result<> Weave::claim(PageBudget& budget) {
     const std::size_t chunks = projection_->chunk_count();
     const std::size_t copied = maps_ ? projection_->copied_count() : 0; // maps_ is set by this thread alone
     if (claim(chunks + copied, budget)) return {};
-    forget_maps(); // so that a copy takes the place of what it was made of
+    forget_maps(); // then copied chunks need no second page
     return claim(chunks, budget) ? Result<>{} : no_room();
 }
 
@@ -266,7 +267,7 @@ void Weave::forget_maps() {
     maps_.swap(maps);
 }
 
-/// Shows what has been woven up to `target`. @return whether more has been asked for meanwhile.
+/// Publishes the maps of a round. @return whether the target was raised during the round
 bool Weave::publish(Revision target, bool is_complete, PageBudget& budget) {
     auto maps = std::make_shared<const mapping::Snapshot>(projection_->snapshot());
     const std::lock_guard lock(mutex_);
@@ -289,7 +290,7 @@ void Weave::give_up(const Error& error, PageBudget& budget) {
     end(State::kFailed, budget);
 }
 
-/// From here on it may be resumed. Pre: mutex_ is held.
+/// Ends the job; it may be resumed after this. Pre: mutex_ is held.
 void Weave::end(State state, PageBudget& budget) {
     budget.give_back(std::exchange(claimed_, 0));
     state_ = cancelled_ ? State::kCancelled : state;

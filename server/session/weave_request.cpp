@@ -13,7 +13,7 @@ std::string weave_id_of(const SessionInfo& session, const WeaveRequest& request)
     std::string text = tag_of(session);
     if (request.end.revision) text += fmt::format(" until {}", *request.end.revision);
     if (request.end.stamp) text += fmt::format(" until {} s", *request.end.stamp);
-    // The scan with which such maps end is another when exclusions change.
+    // With other exclusions, another scan may be the first one after the stamp.
     if (request.end.stamp && session.exclusions->revision() != 0) {
         text += fmt::format(" excluding {}", session.exclusions->revision());
     }

@@ -77,8 +77,8 @@ Result<> Weaves::check_room() const {
     return Error{Errc::kOverloaded, "too many maps are being woven at this moment; try again soon"};
 }
 
-/// It begins here and not on the executor, so that of two that are asked for, or wait, the one behind sees where the
-/// one before begins. Pre: mutex_ is held.
+/// Starts a job. It begins here and not on the executor, so that the state of an earlier job is visible to the next
+/// one. Pre: mutex_ is held.
 void Weaves::launch(const std::shared_ptr<Weave>& weave) {
     if (weave->has_begun() || begin(weave)) post(weave);
 }
@@ -88,13 +88,13 @@ void Weaves::post(std::shared_ptr<Weave> weave) {
 }
 
 void Weaves::run(const std::shared_ptr<Weave>& weave) {
-    if (weave->run(log_, budget_)) return post(weave); // behind the others that wait
+    if (weave->run(log_, budget_)) return post(weave); // after the other waiting jobs
     const std::lock_guard lock(mutex_);
     launch_those_behind(*weave);
     evict();
 }
 
-/// Pre: mutex_ is held. @return false: later, when another is there from which this one begins.
+/// Starts the job from the best other job. Pre: mutex_ is held. @return false if it waits for the end of another job
 bool Weaves::begin(const std::shared_ptr<Weave>& weave) {
     try {
         while (const auto start = furthest_before(*weave)) {
@@ -104,7 +104,7 @@ bool Weaves::begin(const std::shared_ptr<Weave>& weave) {
             }
             if (weave->begin_from(*start->weave)) return true;
         }
-    } catch (const std::bad_alloc&) { // then from nothing, which says so itself if it has no room
+    } catch (const std::bad_alloc&) { // start from the beginning, which reports missing memory itself
     }
     return true;
 }
@@ -132,7 +132,7 @@ void Weaves::launch_those_behind(const Weave& ended) {
                                               [&](const Behind& behind) { return behind.ahead.get() != &ended; });
     const std::vector<Behind> next(waited, behind_.end());
     behind_.erase(waited, behind_.end());
-    for (const Behind& behind : next) launch(behind.weave); // the first that waited first
+    for (const Behind& behind : next) launch(behind.weave); // in the order in which they started to wait
 }
 
 std::shared_ptr<Weave> Weaves::find(store::SessionId session, std::string_view id) {
@@ -140,7 +140,7 @@ std::shared_ptr<Weave> Weaves::find(store::SessionId session, std::string_view i
     return touch(session, id);
 }
 
-/// To the front with it, if there is one. Pre: mutex_ is held.
+/// Returns the job, moved to the front of the list; null if it does not exist. Pre: mutex_ is held.
 std::shared_ptr<Weave> Weaves::touch(store::SessionId session, std::string_view id) {
     evict();
     const auto found = std::ranges::find_if(
