@@ -8,7 +8,7 @@
 namespace scanloom::live {
 namespace {
 
-/// It ended before all was found, and goes on from there.
+/// Returns whether the search stopped before the end of the log and will continue.
 bool is_passing(const Error& error) { return error.code == Errc::kShuttingDown || error.code == Errc::kOverloaded; }
 
 } // namespace
@@ -16,7 +16,7 @@ bool is_passing(const Error& error) { return error.code == Errc::kShuttingDown |
 WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const session::Session>& session, Revision revision,
                                               const LandmarkSearch& search) {
     const std::lock_guard lock(mutex_);
-    if (is_finding_ || revision <= searched_) return {found_}; // the watchers are told
+    if (is_finding_ || revision <= searched_) return {found_}; // a notification follows, or nothing is new
     if (Clock::now() < next_) return {found_, next_};
     boost::asio::post(search.executor, [self = shared_from_this(), session, revision, search] {
         self->find(*session, revision, search);
@@ -25,11 +25,11 @@ WatchedLandmarks::Look WatchedLandmarks::look(const std::shared_ptr<const sessio
     return {found_};
 }
 
-/// On the search's executor.
+/// Runs on the search's executor.
 void WatchedLandmarks::find(const session::Session& session, Revision revision, const LandmarkSearch& search) noexcept {
     try {
         keep(find_for_a_turn(session, revision, search.turn), revision, search.pause);
-    } catch (const std::exception& failure) { // no memory
+    } catch (const std::exception& failure) { // std::bad_alloc
         keep(Error{Errc::kOverloaded, failure.what()}, revision, search.pause);
     }
     session.tell_changed();

@@ -22,17 +22,17 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 
-/// Of the range that programs may define (RFC 6455, section 7.4.2), after HTTP's 401 and 404.
+/// Private close codes (RFC 6455, section 7.4.2), named after the HTTP status codes 401 and 404.
 constexpr websocket::close_code kTokenGone{4401};
 constexpr websocket::close_code kSessionDeleted{4404};
 
 websocket::close_reason close_with(websocket::close_code code, std::string_view reason) {
-    constexpr std::size_t kReasonBytesMax = 123; // so that it fits a control frame
+    constexpr std::size_t kReasonBytesMax = 123; // limit of a control frame
     const auto cut = reason.substr(0, kReasonBytesMax);
     return {code, beast::string_view(cut.data(), cut.size())};
 }
 
-/// A session's state as it is now. Pre: it is not deleted.
+/// Returns the current state of a session, which must not be deleted.
 Moment moment_of(const session::Session& session, std::uint64_t goals_revision) {
     Moment moment{session.snapshot(), session.connected(), wire::LiveState::kOk, {}, goals_revision};
     const auto closing = session.closing();
@@ -44,7 +44,7 @@ Moment moment_of(const session::Session& session, std::uint64_t goals_revision) 
     return moment;
 }
 
-/// Counts itself as long as it exists.
+/// Increments a gauge while it exists.
 class Counted {
 public:
     explicit Counted(prometheus::Gauge& gauge) : gauge_(gauge) { gauge_.Increment(); }
@@ -66,14 +66,14 @@ Viewer::Viewer(net::LinkStream stream, Invitation invitation, std::shared_ptr<co
     boost::system::error_code ignored;
     stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(config.send_buffer_bytes), ignored);
     stream_.set_option(websocket::stream_base::timeout{config.handshake, config.idle, true});
-    stream_.set_option(websocket::stream_base::decorator( // or Beast would tell its version
+    stream_.set_option(websocket::stream_base::decorator( // instead of Beast's version
         [](websocket::response_type& response) { response.set(beast::http::field::server, "Scanloom"); }));
     stream_.read_message_max(config.request_bytes_max);
     stream_.auto_fragment(false);
     stream_.binary(true);
 }
 
-// From any thread
+// On any thread
 
 void Viewer::on_changed() noexcept {
     if (told_.exchange(true)) return;
@@ -84,7 +84,7 @@ void Viewer::on_changed() noexcept {
                 self->wake();
             }
         });
-    } catch (...) { // no memory: the next change tries again
+    } catch (...) { // std::bad_alloc: the next change tries again
         told_ = false;
     }
 }
@@ -135,7 +135,7 @@ asio::awaitable<bool> Viewer::accept(const Upgrade& upgrade) {
     co_return !error;
 }
 
-/// Ends when the viewer hangs up, when it breaks a rule, and with the connection.
+/// Ends when the client disconnects, sends an invalid message, or the connection is closed.
 asio::awaitable<void> Viewer::read_requests() {
     const auto self = shared_from_this();
     for (;;) {
@@ -151,7 +151,7 @@ asio::awaitable<void> Viewer::read_requests() {
     }
 }
 
-/// Takes in what was read. @return why the connection ends, if it does.
+/// Handles the message in buffer_. @return the reason to close the connection, if the message is invalid
 std::optional<Viewer::Close> Viewer::fault_of_message() {
     if (!stream_.got_binary()) {
         return close_with(websocket::close_code::unknown_data, "messages are binary: a LiveRequest; see live.proto");
@@ -180,7 +180,7 @@ asio::awaitable<void> Viewer::tell_events() {
     }
 }
 
-/// Until there may be something to tell, and it may be told; or the end.
+/// Waits until the state may have changed and the interval is over, or until the connection ends.
 asio::awaitable<void> Viewer::wait_for_turn() {
     while (!ending_ && reading_) {
         changed_ = changed_ || Clock::now() >= look_again_;
@@ -190,9 +190,9 @@ asio::awaitable<void> Viewer::wait_for_turn() {
     }
 }
 
-/// On `showing`.
+/// Creates the next event. Runs on `showing`.
 Viewer::Narration Viewer::narrate() {
-    told_ = false; // before looking: what changes from now on is told again
+    told_ = false; // before reading the state, so that later changes notify again
     if (invitation_.pass && !invitation_.pass->token()) {
         invitation_.taken_back();
         return {{}, close_with(kTokenGone, "your token does not allow this any more; sign in with another"), {}};
@@ -215,7 +215,7 @@ Viewer::Narration Viewer::narrate() {
     return {wire::encode(*event), end, narrator_.has_more() ? Clock::now() : until};
 }
 
-/// @return when there may be others
+/// @return when to look for landmarks again
 Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const session::Session>& session,
                                                 Moment& moment) {
     if (!narrator_.wishes_for_landmarks()) return Clock::time_point::max();
@@ -225,7 +225,7 @@ Viewer::Clock::time_point Viewer::add_landmarks(const std::shared_ptr<const sess
     return look.until;
 }
 
-/// @return false when the connection cannot be used any more.
+/// @return false if the connection is no longer usable
 asio::awaitable<bool> Viewer::send(const std::string& event) {
     if (!ending_) cut_off_after(services_.config.write);
     const auto [error, size] = co_await stream_.async_write(asio::buffer(event), kAwaitTuple);
@@ -239,7 +239,7 @@ asio::awaitable<bool> Viewer::send(const std::string& event) {
 asio::awaitable<void> Viewer::close() {
     if (ending_ && stream_.is_open()) co_await stream_.async_close(*ending_, kAwaitTuple);
     deadline_.cancel();
-    stream_.next_layer().close(); // what is still being read ends, too
+    stream_.next_layer().close(); // also ends a pending read
 }
 
 void Viewer::end(Close why) {

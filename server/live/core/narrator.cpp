@@ -62,7 +62,7 @@ wire::LiveLandmark to_wire(const landmarks::MapLandmark& one) noexcept {
             one.last};
 }
 
-/// Poses are within kCoordinateMax.
+/// Pre: the pose is within kCoordinateMax.
 PointMm point_of(const Pose2& pose) { return in_millimetres({pose.x, pose.y}); }
 
 } // namespace
@@ -134,7 +134,7 @@ bool Narrator::is_news(const mapping::RobotState& robot, bool connected, const T
            told.scan_count != robot.scan_count || shows_scan(robot, told);
 }
 
-/// So that the scans to be told have no more points together than an event may have, or one each.
+/// Returns the stride with which all scans of the event together have at most kScanPointsMax points, or one point each.
 std::size_t Narrator::stride_for(const mapping::Snapshot& maps) const {
     std::size_t beams = 0;
     for (std::size_t n = 0; n < maps.robots.size(); ++n) {
