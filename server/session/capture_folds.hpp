@@ -57,14 +57,13 @@ struct Folded {
     Revision revision = 0;
 };
 
-/// Computes a layer from the captures of a session on request, and caches it. The ingestion of scans never waits for
-/// it.
+/// Computes a layer from the captures of a session on request, and caches it. Ingestion never waits for this.
 ///
 /// The first request of a session reads its log from the beginning; later requests read only the new entries. The
-/// result depends only on the log, not on the times and number of requests. Memory: at most size_max, plus unfinished
-/// captures. The least recently used sessions are evicted and computed again on request. For a session with more than
-/// size_max, only this fact is cached. Threads: any thread that may wait for the disk. One call at a time computes for
-/// a session; others wait for it.
+/// result depends only on the log, not on the times and number of requests.
+/// Memory: at most size_max, plus unfinished captures. The least recently used sessions are evicted and computed again
+/// on request. For a session with more than size_max, only this fact is cached.
+/// Threads: any thread that may wait for the disk. One call at a time computes for a session; others wait for it.
 template <class Layer>
 class CaptureFolds {
 public:

@@ -56,15 +56,14 @@ public:
     /// Errors: kMalformed if parts are missing.
     [[nodiscard]] Result<mapping::Projection> finish() &&;
 
-    /// Returns whether the parts have the format that this program writes. If not, the next checkpoint must replace the
-    /// whole one.
+    /// Returns whether the parts have the format that this program writes. If not, the next checkpoint must replace all
+    /// parts.
     [[nodiscard]] bool is_newest_format() const noexcept;
 
     /// The first key after the parts of the state. Parts from this key on are sensors and cells.
     static constexpr std::string_view kAfterState = "sensor/";
 
-    /// Returns the state without sensors, after all parts before kAfterState were added; an empty one if no part was
-    /// added.
+    /// Returns the state without sensors; an empty one if no part was added. Call after all parts before kAfterState.
     /// @return nullopt if the checkpoint was written in an earlier format, which does not contain the whole state
     [[nodiscard]] std::optional<mapping::ProjectionState> state() &&;
 

@@ -16,9 +16,8 @@ namespace scanloom::session {
 
 /// Creates the maps of a session that starts with an imported map.
 ///
-/// @param share  takes the pages of each patch before the patch is integrated, so the memory for maps is never
-/// exceeded;
-///               contains the pages of the result afterwards
+/// @param share  takes the pages of each patch before its integration, so that the memory for maps is never exceeded;
+///               keeps the pages of the result
 /// Errors: kInvalidField if the map has no cells or a patch is too large; kFull if the map exceeds the limits of a
 /// session, of the creator, or of the memory for maps; kOverloaded if it exceeds the memory for maps that is free now.
 [[nodiscard]] Result<mapping::Projection> integrate_imported(const mapping::MapConfig& config,

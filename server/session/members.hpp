@@ -50,6 +50,7 @@ public:
     /// @return the entry to append if the robot is new or its properties have changed
     [[nodiscard]] std::optional<Submitted> join(Joining joining);
 
+    /// Disconnects a link. Ignored if it is not the current link of a robot.
     void leave(const std::shared_ptr<RobotListener>& listener);
 
     /// Checks the description of a sensor. An invalid one fails the link.
@@ -65,13 +66,13 @@ public:
     [[nodiscard]] std::vector<Submitted> take(const std::shared_ptr<RobotListener>& from, std::vector<Scan> scans,
                                               std::size_t bytes, bool is_mapped);
 
-    /// Acknowledges a group that is in the maps: calls on_durable() of the links and admits the links that waited for
-    /// it.
+    /// Acknowledges a group that is in the maps: calls on_durable() of its links, and admits links that waited for it.
     void release(const Group& group);
 
     /// Fails the robot's link and forgets the robot's entries that are not in `state`.
     void refuse(RobotIndex robot, const Error& error, const mapping::ProjectionState& state);
 
+    /// Fails the links of all robots, also those that wait to join.
     void fail_all(const Error& error);
 
 private:

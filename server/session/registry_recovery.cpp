@@ -88,8 +88,7 @@ void SessionRegistry::recover_one(const SessionInfo& info, std::uint32_t map_pat
     done();
 }
 
-/// Adds the session without its maps if its checkpoint has all the facts that a list shows. @return whether it was
-/// added
+/// Adds the session without its maps if its checkpoint has the facts that a list shows. @return whether it was added
 bool SessionRegistry::can_stay_asleep(const SessionInfo& info, std::uint32_t map_patches) {
     auto summary = read_summary(log_, info.id, info.config);
     if (!summary || !*summary || (*summary)->facts->revision < map_patches) return false; // loading it gives the reason

@@ -50,7 +50,11 @@ public:
     [[nodiscard]] bool must_be_waited_for(std::string_view name) const;
 
     [[nodiscard]] bool contains(std::string_view name) const;
+
+    /// Returns the session's properties; nullopt if it does not exist.
     [[nodiscard]] std::optional<SessionInfo> info(std::string_view name) const;
+
+    /// Returns the session's entry of all(); nullopt if it does not exist.
     [[nodiscard]] std::optional<Listed> listed(std::string_view name) const;
 
     /// Returns the sessions in memory, sorted by name.

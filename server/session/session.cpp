@@ -385,8 +385,7 @@ void Session::discard(Error reason, std::function<void()> done) {
 void Session::finish_closing() {
     if (!closed_ || appending_ || checkpointing_) return;
     if (hurried_) {
-        for (const Group& group : durable_)
-            members_.release(group); // the next recovery applies them before the maps are served
+        for (const Group& group : durable_) members_.release(group); // the next recovery applies them
         members_.fail_all(*refusing_);
         drop_what_is_under_way();
     }

@@ -101,15 +101,17 @@ public:
 
     /// Describes a sensor, for the scans that are submitted after it.
     ///
-    /// Ignored if `from` has not joined or has failed. An invalid description fails the link.
+    /// Ignored if `from` has not joined or has failed. The link fails with kInvalidField if the range of the sensor
+    /// spans too many cells.
     /// @param bytes  credit, returned by RobotListener::on_durable()
     void submit(std::shared_ptr<RobotListener> from, Sensor sensor, std::size_t bytes);
 
     /// Submits scans. Scans that the log already contains are dropped.
     ///
     /// Ignored if `from` has not joined or has failed. The link fails with kOutOfOrder if a scan is missing,
-    /// kInvalidField if its sensor was not described or its beams do not fit the sensor, and kFull if the scan might
-    /// need more chunks than a map may have.
+    /// kInvalidField if its sensor was not described, its beams do not fit the sensor or it needs too much work,
+    /// kConflict if it should begin the map of a session that contains one already, kFull if it might need more chunks
+    /// than the map may have, and kOverloaded if the memory for maps is used up. The scans before it are kept.
     /// @param bytes  credit, returned by RobotListener::on_durable()
     void submit(std::shared_ptr<RobotListener> from, std::vector<Scan> scans, std::size_t bytes);
 

@@ -121,8 +121,8 @@ public:
     /// Evicts the session: robots and viewers are asked to connect again, and the maps are computed again from the log
     /// when the session is next loaded.
     /// @param robot  a robot that has joined the session
-    /// Errors: kNotFound if there is no such session; kFull if Exclusions::kMost are in effect; kOverloaded or
-    /// kStoreFailed if the entry was not stored; kShuttingDown.
+    /// Errors: kNotFound if there is no such session, or the error in damaged() if it is damaged; kFull if
+    /// Exclusions::kMost are in effect; kOverloaded or kStoreFailed if the entry was not stored; kShuttingDown.
     [[nodiscard]] Result<Exclusion> exclude(std::string_view name, RobotIndex robot,
                                             const std::variant<StampRange, SeqRange>& scans);
 

@@ -100,8 +100,7 @@ std::optional<Revision> Weave::revision_before(const Weave& other, Revision targ
     if (!stands_still || !projection_ || projection_->revision() > target) return std::nullopt;
     const Revision known = projection_->exclusions()->revision();
     const bool is_same = known == other.session_.exclusions->as_of(target).revision();
-    // A job with an end stamp may end before it reads the exclusions that this one does not know, so they must be
-    // equal.
+    // A job with an end stamp may end before it reads exclusions that this one does not know: they must be equal.
     if (end.stamp ? !is_same : known > target) return std::nullopt;
     if (end.stamp && newest_stamp_ && *newest_stamp_ > *end.stamp) return std::nullopt;
     return projection_->revision();

@@ -67,7 +67,7 @@ public:
     /// Returns the newest finished maps; null if there are none.
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> maps() const;
 
-    /// Waits up to `patience` for maps that contain the entry `revision`.
+    /// Waits up to `patience` for maps that contain the entry `revision`, or for the maps of a job that ends before it.
     /// @param revision  at most a target that was requested before
     /// @return null if there are no such maps; progress() has the reason
     [[nodiscard]] std::shared_ptr<const mapping::Snapshot> wait(Revision revision,

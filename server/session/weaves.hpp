@@ -33,7 +33,8 @@ struct WeavesLimits {
 /// Queue: "weaves", at most waiting_max jobs that have not ended; another one is refused with kOverloaded. Ended jobs
 /// are evicted when their place is needed, the least recently used first, and jobs that are not listed before others.
 /// Memory: each job counts with all of its chunks, even if it shares unchanged chunks with the job that it started
-/// from. So the bounds hold in whatever order jobs are evicted. Threads: any thread; nothing here blocks.
+/// from. So the bounds hold in whatever order jobs are evicted.
+/// Threads: any thread; nothing here blocks.
 class Weaves {
 public:
     /// @param log  must outlive the jobs on the executor, as must this object
