@@ -32,11 +32,11 @@ namespace scanloom::live {
 /// needs the memory of one event.
 ///
 /// The connection is closed with a reason and one of these codes: 1001 the server shuts down or the session is
-/// reloaded, 1003 text message, 1007 invalid LiveRequest, 1009 message longer than request_bytes_max, 1011 internal
+/// evicted, 1003 text message, 1007 invalid LiveRequest, 1009 message longer than request_bytes_max, 1011 internal
 /// error, 4401 the token is no longer valid, 4404 the session was deleted. It is closed without a code if the client
-/// disconnects or violates the WebSocket protocol, or if a timeout expires. Threads: the socket's executor, a strand.
-/// narrate() runs on `showing` while the coroutine on the strand waits for it. on_changed(), stop() and abort() may be
-/// called from any thread.
+/// disconnects or violates the WebSocket protocol, or if a timeout expires.
+/// Threads: the socket's executor, a strand. narrate() runs on `showing` while the coroutine on the strand waits for
+/// it. on_changed(), stop() and abort() may be called from any thread.
 class Viewer final : public session::Watcher, public std::enable_shared_from_this<Viewer> {
 public:
     using Upgrade = boost::beast::http::request<boost::beast::http::string_body>;
@@ -55,7 +55,7 @@ public:
     /// Answers the upgrade request and sends events until the connection is closed. Call once.
     [[nodiscard]] boost::asio::awaitable<void> run(const Upgrade& upgrade);
 
-    /// Closes the connection with code 1001, within config.farewell.
+    /// Closes the connection with code 1001 within config.farewell.
     void stop();
 
     /// Closes the connection immediately.

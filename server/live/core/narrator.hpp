@@ -39,7 +39,7 @@ public:
 
     [[nodiscard]] bool wishes_for_landmarks() const noexcept { return wishes_.landmarks; }
 
-    /// Returns whether the last event had no room for all landmarks. The next event continues, even for the same
+    /// Returns whether the last event had no room for all landmarks. The next event adds more, even for an equal
     /// moment.
     [[nodiscard]] bool has_more() const noexcept { return told_landmarks_.following > 0; }
 
