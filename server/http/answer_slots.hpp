@@ -8,9 +8,10 @@
 
 namespace scanloom::http {
 
-/// Bounds what answers hold in memory, from being made until their last byte is sent: readers may be slow.
-/// Small ones are as many as connections; a slow reader of a huge one keeps others from huge ones only.
-/// Thread  any.
+/// Limits the number of large responses in memory. A slot is held from before the response is built until its last byte
+/// is sent, because clients may read slowly. Small responses need no slot: their number is bounded by the connections.
+/// A client that reads a huge response slowly delays other huge responses only.
+/// Threads: any.
 class AnswerSlots {
 public:
     static constexpr std::size_t kSmallMax = std::size_t{256} << 10; ///< bytes
@@ -18,8 +19,9 @@ public:
     static constexpr std::size_t kLargeAnswers = 16;
     static constexpr std::size_t kHugeAnswers = 2;
 
-    /// A slot for an answer of about so many bytes, to be kept with it.
-    /// Errors  kOverloaded: all are taken.
+    /// Takes a slot for a response of about `bytes` bytes.
+    /// @return the slot, to be kept as long as the response; null for a small response
+    /// Errors: kOverloaded if all slots of this size class are taken.
     [[nodiscard]] Result<std::shared_ptr<const void>> take(std::size_t bytes) const {
         if (bytes <= kSmallMax) return std::shared_ptr<const void>();
         if (auto slot = (bytes <= kLargeMax ? large_ : huge_).try_take()) return slot;

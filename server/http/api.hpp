@@ -31,9 +31,10 @@
 
 namespace scanloom::http {
 
-/// From a request to its answer: target -> route -> handler. Here each handler is given what it uses.
-/// Bounds  large answers, map images of up to 64 MB above all, have slots; tiles that are kept take tile_bytes_max.
-/// Thread  answer() may be called from any number of threads; what it refers to must outlive it.
+/// Answers requests: parses the target, finds the route, checks the permission and calls the handler with its
+/// dependencies.
+/// Bounds: large responses take a slot, map images of up to 64 MB above all; cached tiles take at most `tile_bytes_max`.
+/// Threads: answer() may be called on any number of threads. All referenced objects must outlive this one.
 class Api {
 public:
     Api(session::SessionRegistry& sessions, session::Weaves& weaves, guide::GoalBook& goals, store::ScanLog& log,
@@ -42,36 +43,39 @@ public:
         : sessions_(sessions), weaves_(weaves), goals_(goals), maps_(sessions, weaves), tiles_(tile_bytes_max),
           log_(log), metrics_(metrics), doorman_(doorman), web_(std::move(web)) {}
 
-    /// From now on the sessions are served; before, whoever asks for them is told to wait.
+    /// Starts to serve sessions. Before this call, requests for sessions receive kOverloaded.
     void set_recovered() noexcept { recovered_ = true; }
 
-    /// Pre  nobody asks yet.
+    /// Sets where robots connect, for /readyz. Must be called before the first request.
     void set_robot_port(RobotPort robots) { robots_ = std::move(robots); }
 
-    /// Where backups are made; without, there are none. Pre  nobody asks yet.
+    /// Enables backups. Without this call there are none. Must be called before the first request.
     void set_backups(store::Backups& backups) { backups_ = &backups; }
 
-    /// It forgets sessions that are deleted. Pre  nobody asks yet.
+    /// Sets the locator that forgets deleted sessions. Must be called before the first request.
     void set_locator(guide::Locator& locator) { locator_ = &locator; }
 
-    /// What it finds is told, too. Pre  nobody asks yet.
+    /// Adds the findings of `check` to the responses. Must be called before the first request.
     void set_background_check(const session::BackgroundCheck& check) { check_ = &check; }
 
-    /// Every failure is an answer too: application/problem+json.
+    /// Computes the response. A failure becomes a response too, with application/problem+json.
     [[nodiscard]] Response answer(const Request& request);
 
-    /// For I/O threads, before answer(): the answer if it is there, else the lane on which to call answer().
+    /// Returns the response if it is immediately available, else the lane on which to call answer(), or the session to
+    /// load first.
+    /// Threads: I/O threads, before answer().
     [[nodiscard]] Outlook look(const Request& request);
 
-    /// Has the session read, where look() says so. `told` is called once, when it is there or cannot be had: look()
-    /// again, and where it says the same, answer() knows why.
+    /// Loads the session that look() returned. `told` is called once, when the session is in memory or failed to load.
+    /// Then call look() again. If its result is the same, answer() returns the reason.
     void wake(const Asleep& asleep, std::function<void()> told);
 
-    /// For I/O threads, before the request's body is read: the answer to a request whose header is enough to refuse it.
+    /// Returns the refusal of a request whose header is enough to refuse it, else nullopt.
+    /// Threads: I/O threads, before the body is read.
     [[nodiscard]] std::optional<Response> refuse(const Request& request) const;
 
 private:
-    /// A request whose header holds nothing that is refused.
+    /// A request whose header passed all checks.
     struct Admitted {
         Match match;
         Query query;

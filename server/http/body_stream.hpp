@@ -6,8 +6,8 @@
 
 namespace scanloom::http {
 
-/// A body that is made while it is sent, piece by piece: what may be larger than memory.
-/// Thread  next() is called by one at a time, off the I/O threads: it may wait for the disk.
+/// A response body that is produced in pieces while it is sent, for content that may exceed the memory.
+/// Threads: one caller of next() at a time, not on an I/O thread because it may wait for the disk.
 class BodyStream {
 public:
     BodyStream() = default;
@@ -15,8 +15,8 @@ public:
     BodyStream& operator=(const BodyStream&) = delete;
     virtual ~BodyStream() = default;
 
-    /// The next piece, empty at the end. An error ends the connection, so that whoever reads sees that the end is
-    /// missing.
+    /// Returns the next piece, empty at the end. After an error the connection closes, so that the client detects that
+    /// the body is incomplete.
     [[nodiscard]] virtual Result<std::string> next() = 0;
 };
 

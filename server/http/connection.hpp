@@ -22,31 +22,34 @@
 
 namespace scanloom::http {
 
-/// One connection: shakes hands where the port has TLS, reads a request, has it answered, writes the answer, and again,
-/// in order. A request that is invited to watch a session is the last: the connection becomes a live::Viewer's.
+/// Serves one HTTP connection: performs the TLS handshake if the port has TLS, then reads requests and writes their
+/// responses in order. After a request that is accepted as a live subscription, a live::Viewer takes over the
+/// connection.
 ///
-/// Chunked bodies are read, trailers are not: Beast 1.81 throws std::length_error at long ones, which the buffer's
-/// limit prevents here.
-/// Thread  everything runs on the socket's executor, a strand; stop() and abort() may be called from any.
+/// Chunked bodies are read, trailers are not: Beast 1.81 throws std::length_error for long trailers. The limit of the
+/// buffer prevents this here.
+/// Threads: everything runs on the socket's executor, a strand. stop() and abort() may be called on any thread.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
     Connection(net::LinkStream stream, std::shared_ptr<const Service> service);
 
-    /// Serves until the peer hangs up, a deadline passes, the peer breaks the protocol, or stop().
+    /// Serves requests until the peer disconnects, a deadline passes, the peer violates the protocol, or stop() is
+    /// called.
     [[nodiscard]] boost::asio::awaitable<void> run();
 
-    /// Answers the request under way, if there is one, and closes.
+    /// Answers the current request, if any, and closes.
     void stop();
 
     /// Closes at once.
     void abort();
 
-    /// Returns how far the peer is behind: for how long it is waited for, minus the time that what it has sent or taken
-    /// meanwhile may take (read_rate_min, write_rate_min). nullopt while the peer waits for the server, while it
-    /// watches a session, and after make_room(). Thread: any.
+    /// Returns how far the peer is behind: the time that the server has waited for it, minus the time that the data
+    /// sent or received meanwhile may take (read_rate_min, write_rate_min). Returns nullopt while the peer waits for
+    /// the server, while it watches a session, and after make_room().
+    /// Threads: any.
     [[nodiscard]] std::optional<std::chrono::duration<double>> behind() const noexcept;
 
-    /// Closes if the peer is still waited for, because another connection needs the place.
+    /// Closes the connection if the server still waits for the peer, to free its place for another connection.
     void make_room();
 
 private:
@@ -61,7 +64,7 @@ private:
     [[nodiscard]] boost::asio::awaitable<Response> compute(Lane lane, Request request,
                                                            std::shared_ptr<const void> slot);
     [[nodiscard]] boost::asio::awaitable<void> refuse(boost::beast::error_code reason);
-    /// How the request wants to be answered.
+    /// How to write a response.
     struct Manner {
         bool with_body = true;
         bool keep_alive = false;
@@ -82,12 +85,12 @@ private:
     boost::beast::flat_buffer buffer_;
     std::string peer_; // the address
     std::shared_ptr<const Service> service_;
-    std::shared_ptr<live::Viewer> viewer_; // has the socket, once there is one
-    bool idle_ = false;                    // between requests, or before the first
-    bool waits_ = false;                   // for the peer
-    PeerWait wait_;                        // the same, for other threads
+    std::shared_ptr<live::Viewer> viewer_; // owns the socket once it is set
+    bool idle_ = false;                    // between requests, or before the first one
+    bool waits_ = false;                   // whether the server waits for the peer
+    PeerWait wait_;                        // the same for other threads
     bool stopping_ = false;
-    bool must_linger_ = false; // the peer may still have the last answer to read
+    bool must_linger_ = false; // the peer may not have read the last response yet
 };
 
 } // namespace scanloom::http

@@ -4,19 +4,20 @@
 #include <string>
 #include <string_view>
 
-/// How somebody says who he is, in a request's fields.
+/// Credentials in the header fields of a request.
 namespace scanloom::http {
 
 inline constexpr std::string_view kLoginCookie = "scanloom_login";
 
-/// The token of an Authorization field "Bearer TOKEN" (RFC 6750, section 2.1); nothing when it is of another form.
+/// Returns the token of an Authorization field "Bearer TOKEN" (RFC 6750, section 2.1), or nullopt for another form.
 [[nodiscard]] std::optional<std::string_view> bearer_of(std::string_view authorization) noexcept;
 
-/// The value of the cookie of that name in a Cookie field (RFC 6265, section 4.2), the first if there are several.
+/// Returns the value of the first cookie called `name` in a Cookie field (RFC 6265, section 4.2).
 [[nodiscard]] std::optional<std::string_view> cookie_of(std::string_view cookie_field, std::string_view name) noexcept;
 
-/// A Set-Cookie field: for this server's own pages alone, and hidden from scripts. An empty value takes it away.
-/// `is_secure`: only over TLS.
+/// Returns a Set-Cookie field that restricts the cookie to this server's own pages and hides it from scripts.
+/// @param value      empty to delete the cookie
+/// @param is_secure  whether the browser sends it over TLS only
 [[nodiscard]] std::string set_login_cookie(std::string_view value, bool is_secure);
 
 } // namespace scanloom::http

@@ -9,26 +9,26 @@
 
 namespace scanloom::http {
 
-/// A deadline that is moved with every operation and hardly ever passes. Its timer is set anew only when it runs out
-/// too early, or would too late: a connection that is used costs no timer.
-/// Thread  the executor, a strand, for all.
+/// A deadline that moves with every operation and rarely passes. Its timer is restarted only if it expires before the
+/// deadline or would expire after it, so a busy connection restarts no timers.
+/// Threads: one executor, a strand, for all calls.
 class Deadline {
 public:
     using Clock = std::chrono::steady_clock;
 
     explicit Deadline(const boost::asio::any_io_executor& executor) : timer_(executor) {}
 
-    /// From now on `passed` is called when a deadline passes, as long as `owner` lives, which holds this.
+    /// Calls `passed` each time a deadline passes, as long as `owner`, the object that contains this one, is alive.
     void watch(std::weak_ptr<void> owner, std::function<void()> passed);
 
-    /// In place of the one before. Pre: watch() was called.
+    /// Replaces the deadline. Must be called after watch().
     void set(Clock::time_point at);
     void set_after(Clock::duration while_) { set(Clock::now() + while_); }
 
-    /// There is none.
+    /// Removes the deadline.
     void clear() noexcept { at_ = Clock::time_point::max(); }
 
-    /// Calls nothing any more.
+    /// Stops the timer. `passed` is not called any more.
     void stop();
 
 private:
@@ -36,7 +36,7 @@ private:
 
     boost::asio::steady_timer timer_;
     Clock::time_point at_ = Clock::time_point::max();
-    Clock::time_point armed_ = Clock::time_point::max(); // when the timer runs out
+    Clock::time_point armed_ = Clock::time_point::max(); // when the timer expires
     std::weak_ptr<void> owner_;
     std::function<void()> passed_;
 };

@@ -17,29 +17,31 @@
 
 namespace scanloom::http {
 
-/// Who asks, and whether his token allows it.
+/// Identifies the sender of a request and checks that its token permits the operation.
 ///
-/// Whoever may not see a session is told the same of one that exists and of one that does not.
-/// Thread  any; what it refers to must outlive it.
+/// A client that may not see a session receives the same response whether or not that session exists.
+/// Threads: any. All referenced objects must outlive this one.
 class Doorman {
 public:
     Doorman(guard::Gate& gate, guard::Audit& audit, guard::Logins& logins)
         : gate_(gate), audit_(audit), logins_(logins) {}
 
-    /// The token, null for somebody unknown where anybody may ask; or the answer that refuses.
+    /// Checks the credentials of a request and the permission for its operation.
+    /// @return the token, null for an unknown client if the operation needs no token; or the response that refuses
     [[nodiscard]] std::variant<access::TokenRef, Response> admit(const Request& request, const Match& match) const;
 
-    /// Why the token is not for that session, if it is not.
+    /// Returns why `token` does not permit access to `session`, or nullopt if it does.
     [[nodiscard]] static std::optional<guard::Denied> objection(const access::Token& token, std::string_view session);
 
-    /// Tells the audit. @return 401 with WWW-Authenticate where no known token was shown, else 403.
+    /// Writes the refusal to the audit log.
+    /// @return 401 with WWW-Authenticate if the request had no known token, else 403
     [[nodiscard]] Response refuse(const Request& request, const guard::Denied& why,
                                   std::string_view session = {}) const;
 
-    /// Tells the audit alone.
+    /// Writes a refusal to the audit log.
     void note(access::Refusal refusal) const { audit_.note(std::move(refusal)); }
 
-    /// The same error; the audit is told where it says that a limit is reached.
+    /// Returns `error` unchanged. Writes it to the audit log if a limit is reached (kFull).
     [[nodiscard]] Error noted(const Call& call, Error error, std::string_view session) const;
 
     [[nodiscard]] guard::Gate& gate() const noexcept { return gate_; }

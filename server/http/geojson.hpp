@@ -17,11 +17,11 @@
 #include <string_view>
 #include <vector>
 
-/// GeoJSON as text, in metres of the map frame (RFC 7946 knows only degrees; the foreign members say so). Written
-/// straight into the text: many points would be many times their size as JSON values.
+/// GeoJSON as text, in metres of the map frame. RFC 7946 knows only degrees; foreign members state the difference. The
+/// text is written directly, because JSON values of many points would need many times its memory.
 namespace scanloom::http {
 
-/// About how much text a point of a line takes, and a cell of an area at most: bytes.
+/// Approximate bytes of text for one point of a line, and at most for one cell of an area.
 inline constexpr std::size_t kPointTextBytes = 32;
 inline constexpr std::size_t kCellTextBytes = 120;
 
@@ -31,24 +31,24 @@ inline constexpr std::size_t kCellTextBytes = 120;
 /// A Point.
 [[nodiscard]] std::string point_geometry(const Point2& point);
 
-/// A LineString; of a single point, one that stays there.
+/// A LineString. A single point is repeated, as a LineString needs two.
 [[nodiscard]] std::string line_string(std::span<const Point2> points);
 
 /// A MultiPolygon: the outlines of cells.
 [[nodiscard]] std::string multi_polygon(std::vector<grid::Cell> cells, double cell_size_m);
 
-/// A Feature, as one of a collection.
+/// A Feature for a collection.
 [[nodiscard]] std::string feature(const boost::json::object& properties, std::string_view geometry,
                                   std::optional<std::uint64_t> id = std::nullopt);
 
-/// A whole document: one Feature, or a FeatureCollection of them.
-/// @param members  more that it says of itself
+/// A complete document: one Feature or a FeatureCollection.
+/// @param members  further members of the collection
 [[nodiscard]] std::string feature_document(Revision revision, const boost::json::object& properties,
                                            std::string_view geometry);
 [[nodiscard]] std::string collection_document(Revision revision, const boost::json::object& members,
                                               std::span<const std::string> features);
 
-/// 200 with a text that may be large: its slot is kept until it was sent.
+/// Returns 200 with a text that may be large. The response keeps `slot` until it has been sent.
 [[nodiscard]] Response ok_text(std::string_view content_type, std::shared_ptr<const void> slot, std::string text);
 
 } // namespace scanloom::http

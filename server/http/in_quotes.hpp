@@ -5,8 +5,8 @@
 
 namespace scanloom::http {
 
-/// What a stranger sent, fit for a message or a line of the log: in quotes, at most 64 characters
-/// of it, everything but printable ASCII as '?'.
+/// Quotes untrusted text for a message or a log line: at most 64 characters, with '?' for everything but printable
+/// ASCII.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 } // namespace scanloom::http

@@ -7,17 +7,17 @@
 
 #include <string_view>
 
-/// Beast's messages as our requests.
+/// Conversion of Beast's messages to Request.
 namespace scanloom::http {
 
 using Incoming = boost::beast::http::request<boost::beast::http::string_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// What tells the lane, and who asks: all but the body and what conditions it has.
+/// Returns the request without its body, If-None-Match and Accept-Encoding: enough for the lane and the credentials.
 [[nodiscard]] Request head_of(const Incoming& message);
 
-/// Takes the body out of the message.
+/// Returns the whole request. Moves the body out of the message.
 [[nodiscard]] Request request_of(Incoming& message);
 
 } // namespace scanloom::http

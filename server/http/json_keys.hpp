@@ -6,9 +6,9 @@
 
 namespace scanloom::http {
 
-/// The first key that an object of this JSON has twice, at any depth; nothing when there is none. A parser that keeps
-/// the last of two would hide from whoever wrote the first that it does not count.
-/// Pre  well-formed JSON; of other text, what comes before the fault.
+/// Returns the first key that occurs twice in one object of `json`, at any depth, or nullopt. A parser that keeps the
+/// last of two values would silently ignore the first one.
+/// @param json  well-formed; of malformed text, only the part before the error is checked
 [[nodiscard]] std::optional<std::string> duplicate_key(std::string_view json);
 
 } // namespace scanloom::http

@@ -11,21 +11,21 @@
 
 namespace scanloom::http {
 
-/// Whether a Content-Type field says JSON, with any parameters.
+/// Returns whether a Content-Type field denotes JSON, with any parameters.
 [[nodiscard]] bool is_json(std::string_view content_type);
 
-/// The JSON object that a body is, at most 8 levels deep.
-/// Errors  kMalformed: not JSON, deeper, or not an object. kInvalidField: a key that is given twice.
+/// Parses a body as a JSON object of at most 8 levels.
+/// Errors: kMalformed if it is not JSON, deeper, or not an object; kInvalidField if a key is given twice.
 [[nodiscard]] Result<boost::json::object> parse_json_object(std::string_view body);
 
-/// Errors  kInvalidField, naming the first member that is none of these.
+/// Errors: kInvalidField, naming the first member that is not in `known`.
 [[nodiscard]] Result<> check_members(const boost::json::object& object, std::span<const std::string_view> known);
 
-/// Errors  kInvalidField, naming the member: absent, or no string.
+/// Errors: kInvalidField, naming the member, if it is absent or not a string.
 [[nodiscard]] Result<std::string> read_text(const boost::json::object& object, std::string_view name);
 
-/// Nothing when the member is absent.
-/// Errors  kInvalidField, naming the member: no number, or one too large for a double.
+/// Returns the member's value, or nullopt if it is absent.
+/// Errors: kInvalidField, naming the member, if it is not a number or too large for a double.
 [[nodiscard]] Result<std::optional<double>> read_number(const boost::json::object& object, std::string_view name);
 
 } // namespace scanloom::http
