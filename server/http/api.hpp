@@ -33,7 +33,7 @@ namespace scanloom::http {
 
 /// Answers requests: parses the target, finds the route, checks the permission and calls the handler with its
 /// dependencies.
-/// Bounds: large responses take a slot, map images of up to 64 MB above all; cached tiles take at most `tile_bytes_max`.
+/// Bounds: large responses take a slot, such as map images of up to 64 MB; cached tiles take at most `tile_bytes_max`.
 /// Threads: answer() may be called on any number of threads. All referenced objects must outlive this one.
 class Api {
 public:

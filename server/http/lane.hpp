@@ -11,33 +11,33 @@ namespace scanloom::http {
 struct Match;
 class Query;
 
-/// What an answer may have to wait for; each lane has an executor of its own, so that none holds up another.
+/// What a request may have to wait for. Each lane has its own executor, so that no lane delays another.
 enum class Lane {
-    kAtOnce,    ///< nothing: liveness, readiness, the viewer's files, refusals; on the I/O thread itself
-    kTelling,   ///< a look at the system: metrics
-    kServing,   ///< its own work on a part of a snapshot: tiles (but see look_at_tile()), facts
-    kSurvey,    ///< its own work on a whole map, which may take a second: digests, images, first drawings of tiles that
-                ///< show much
-    kPaths,     ///< the disk, and its own work on a part of a log, which may take seconds: paths of robots, landmarks
-    kLog,       ///< a small piece of a log: its first one; the others follow there as the reader takes them
-    kWeaving,   ///< maps that are to be woven first
+    kAtOnce,    ///< nothing: liveness, readiness, the viewer's files, refusals; runs on the I/O thread
+    kTelling,   ///< queries to the operating system: metrics
+    kServing,   ///< computation on a part of a snapshot: tiles (but see look_at_tile()), session data
+    kSurvey,    ///< computation on a whole map, up to a second: digests, images, first rendering of tiles that
+                ///< cover much
+    kPaths,     ///< the disk, and computation on a part of a log, for seconds: trajectories, landmarks
+    kLog,       ///< the first small piece of a log; the others follow on this lane as the client reads them
+    kWeaving,   ///< maps that a replay job must compute first
     kImporting, ///< as kChanging, with a large body
-    kPlanning,  ///< a search through a map, which takes seconds and half a gigabyte where it is huge: one at a time
+    kPlanning,  ///< a search in a map, which takes seconds and half a gigabyte in a huge map; one at a time
     kChanging,  ///< the disk, or a session's strand: creating and deleting sessions, making backups
 };
 
 [[nodiscard]] Lane lane_of(const Request& request);
 
-/// The same once it is routed.
+/// Returns the lane of a request that has been routed.
 [[nodiscard]] Lane lane_of(const Match& match, const Query& query);
 
-/// The session that a request is about has to be read from the store first.
+/// The request's session must be loaded from the store first.
 struct Asleep {
     std::string session;
 };
 
-/// What is known of a request on the I/O thread: its answer, where that took microseconds and no waiting; the lane on
-/// which the answer is to be made; or that its session has to be woken before that can be told.
+/// What an I/O thread can determine about a request: its response, if that took microseconds and no waiting; the lane
+/// that computes the response; or the session that must be loaded first.
 using Outlook = std::variant<Lane, Response, Asleep>;
 
 } // namespace scanloom::http

@@ -9,7 +9,7 @@
 
 namespace scanloom::http {
 
-/// A whole number in decimal digits, one minus sign before it at most; nothing also when it does not fit.
+/// Parses an integer in decimal digits with at most one leading minus sign. Returns nullopt if it does not fit into T.
 template <std::integral T>
 [[nodiscard]] std::optional<T> parse_integer(std::string_view text) {
     T value{};
@@ -18,7 +18,7 @@ template <std::integral T>
     return value;
 }
 
-/// A finite number, as JSON writes them.
+/// Parses a finite number in the notation of JSON.
 [[nodiscard]] inline std::optional<double> parse_real(std::string_view text) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -26,8 +26,8 @@ template <std::integral T>
     return value;
 }
 
-/// Metres to be shown, without the noise of the last bits: -19.95 where a product of cells and their size has
-/// -19.950000000000003. Exact to a micrometre.
+/// Rounds metres for output to a micrometre: -19.95 instead of -19.950000000000003, the product of a cell count and the
+/// cell size.
 [[nodiscard]] inline double rounded_metres(double metres) {
     constexpr double kPerMetre = 1e6;
     const double rounded = std::round(metres * kPerMetre) / kPerMetre;

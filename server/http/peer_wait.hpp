@@ -6,8 +6,9 @@
 
 namespace scanloom::http {
 
-/// How long a connection has been waiting for its peer, compared with what the peer has sent or taken meanwhile.
-/// Thread  begin(), end() and allow() from one at a time; behind() from any.
+/// Measures how long a connection has waited for its peer, compared with the data that the peer sent or received
+/// meanwhile.
+/// Threads: begin(), end() and allow() from one thread at a time; behind() from any.
 class PeerWait {
 public:
     using Clock = std::chrono::steady_clock;
@@ -19,10 +20,10 @@ public:
 
     void end() noexcept { since_ = kNever; }
 
-    /// @param seconds  that what was sent or taken since begin() may take
+    /// @param seconds  the time that the data sent or received since begin() may take
     void allow(double seconds) noexcept { allowed_seconds_ = seconds; }
 
-    /// Returns the time since begin() minus what was allowed; nullopt while the peer is not waited for.
+    /// Returns the time since begin() minus the allowed time, or nullopt between end() and begin().
     [[nodiscard]] std::optional<std::chrono::duration<double>> behind(Clock::time_point now) const noexcept {
         const auto since = since_.load();
         if (since == kNever) return std::nullopt;

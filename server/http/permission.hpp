@@ -4,19 +4,20 @@
 
 namespace scanloom::http {
 
-/// What a token has to allow for an operation.
+/// The permission that an operation requires of a token.
 enum class Need {
-    kNothing, ///< anybody may; some are told more when they show a token
-    kAll,     ///< it is for all sessions
-    kKeep,    ///< to keep the whole store: it is for all sessions, and may change them
-    kList,    ///< to look at sessions; only those that it is for are shown
-    kLook,    ///< to look at this session
+    kNothing, ///< none; some responses contain more if the request has a token
+    kAll,     ///< the token is for all sessions
+    kKeep,    ///< to back up the store: the token is for all sessions and may change them
+    kList,    ///< to read sessions; only those that the token is for are returned
+    kLook,    ///< to read this session
     kGuide,   ///< to assign goals to robots of this session
-    kCreate,  ///< to change sessions; the handler knows which
+    kCreate,  ///< to change sessions; the handler checks which
     kChange,  ///< to change this session
 };
 
-/// The one table of it. Maps that are woven once more change nothing of a session: GET asks for them as well as POST.
+/// Returns the permission for an operation. A replay job does not change its session: it needs the same permission with
+/// GET as with POST.
 [[nodiscard]] Need need_of(Operation operation) noexcept;
 
 } // namespace scanloom::http

@@ -12,24 +12,26 @@
 #include <optional>
 #include <string>
 
-/// What a connection answers before anybody is asked: to bytes that are no request, and to requests whose body is
+/// Responses that a connection sends without a handler: to bytes that are not a request, and to requests whose body is
 /// not worth reading.
 namespace scanloom::http {
 
 using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
-/// Whether they begin as TLS does: with a record of a handshake (RFC 8446, section 5.1).
+/// Returns whether the bytes begin with a TLS handshake record (RFC 8446, section 5.1).
 [[nodiscard]] bool is_tls_hello(const boost::beast::flat_buffer& unread);
 
-/// The answer to bytes that cannot be read as a request for this reason; nothing when there is nobody to answer.
+/// Returns the response to bytes that cannot be parsed as a request, or nullopt if a response is not possible.
+/// @param reason  why parsing failed
 [[nodiscard]] std::optional<Response> refusal_of(const boost::beast::flat_buffer& unread,
                                                  boost::beast::error_code reason);
 
-/// Returns how many bytes of body a request may have.
+/// Returns the maximum size of the request's body, in bytes.
 [[nodiscard]] std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config);
 
-/// What is wrong with a request whose header alone has been read. Who asks for a foreign host is told of.
-/// @param peer  the address that it comes from.
+/// Returns the refusal of a request of which only the header has been read, or nullopt. Reports requests for a foreign
+/// host to Answering::foreign_host.
+/// @param peer  the client's address
 [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer);
 
 } // namespace scanloom::http

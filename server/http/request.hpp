@@ -5,14 +5,14 @@
 
 namespace scanloom::http {
 
-/// What whoever wants to go on with a WebSocket says (RFC 6455, section 4.1), unchecked; empty: not said.
+/// The fields of a WebSocket handshake (RFC 6455, section 4.1), unchecked; empty if absent.
 struct WebSocketUpgrade {
     std::string version;
     std::string key;
     std::string origin;
 };
 
-/// A request as it arrived: nothing in it has been checked but that it is HTTP. Secrets may be anywhere in it.
+/// A request as received. Only its HTTP syntax has been checked. Any part of it may contain secrets.
 struct Request {
     std::string method = "GET";
     std::string target = "/";
@@ -20,13 +20,13 @@ struct Request {
     std::string content_type;    ///< empty when absent
     std::string accept_encoding; ///< all such fields, joined with commas; empty when absent
     std::string if_none_match;   ///< all such fields, joined with commas; empty when absent
-    std::string authorization;   ///< empty when absent, as the two below
+    std::string authorization;   ///< empty when absent, as the next two
     std::string cookie;
     std::string origin;
     std::string body;
-    std::optional<WebSocketUpgrade> upgrade; ///< when it asks for one
-    std::string peer;                        ///< the address it came from, without a port
-    bool is_secure = false;                  ///< it came over TLS
+    std::optional<WebSocketUpgrade> upgrade; ///< set if the request asks for a WebSocket
+    std::string peer;                        ///< the client's address, without a port
+    bool is_secure = false;                  ///< received over TLS
 };
 
 } // namespace scanloom::http

@@ -9,7 +9,7 @@
 
 namespace scanloom::http {
 
-/// Everything that can be asked for; what each does is in api.cpp.
+/// All operations of the API. api.cpp maps each of them to its handler.
 enum class Operation {
     kViewer,
     kViewerAsset,
@@ -60,8 +60,8 @@ enum class Operation {
     kMakeBackup,
 };
 
-/// A method and a path that one operation answers. A segment of the pattern is literal, or "{name}"
-/// with an optional ending ("{y}.png"), which matches any text before that ending.
+/// A method and a path that select an operation. A segment of the pattern is literal, or "{name}" with an optional
+/// ending ("{y}.png"), which matches any text before that ending.
 struct Route {
     std::string_view method; ///< a GET route also answers HEAD
     std::string_view pattern;
@@ -70,12 +70,12 @@ struct Route {
 
 [[nodiscard]] std::span<const Route> routes() noexcept;
 
-/// What the named segments of a pattern matched.
+/// The text that the named segments of a pattern matched.
 class Arguments {
 public:
     void add(std::string_view name, std::string value) { values_.emplace_back(name, std::move(value)); }
 
-    /// Pre: the route's pattern has this name.
+    /// @param name  occurs in the route's pattern
     [[nodiscard]] const std::string& operator[](std::string_view name) const;
 
 private:

@@ -19,41 +19,42 @@
 
 namespace scanloom::http {
 
-/// Whether an address may open another connection: many of one address would cost the others their places. Loopback
-/// and config.proxies are not bounded.
-/// @param open  how many the address has
+/// Returns whether an address may open another connection. The limit per address keeps one client from using all
+/// places. It does not apply to loopback and config.proxies.
+/// @param open  current number of connections of this address
 [[nodiscard]] bool may_connect(const boost::asio::ip::address& peer, std::size_t open, const ServerConfig& config);
 
 /// Listens, and runs one coroutine per connection.
 ///
-/// Queue   "connections": at most config.connections_max, each with one request at a time, which
-///         also bounds what waits for the executors. For one more the one whose peer is furthest behind is closed
-///         (Connection::behind()); if every peer waits for the server, it is answered 503. At most
+/// Queues: "connections": at most config.connections_max, each with one request at a time, which also bounds the work
+///         that waits for the executors. To accept one more, the server closes the connection whose peer is furthest
+///         behind (Connection::behind()); if every peer waits for the server, the new one receives 503. At most
 ///         config.connections_per_peer_max of one address, except loopback and config.proxies.
-///         "changes": at most config.changes_max requests create or delete sessions; one more is answered 503.
-///         "imports": at most config.imports_max maps are read and imported; one more is answered 503.
-///         "weaves": at most config.weaves_max requests wait for maps to be woven; one more is answered 503.
-///         "paths": at most config.paths_max requests have paths read; one more is answered 503.
-///         "plans": at most config.plans_max requests look for ways, or wait for their turn; one more is answered 503.
-///         Viewers, who watch live: at most config.live.viewers_max of the connections; one more is answered 503.
-/// Thread  any. The counters must outlive the server's work on all executors.
+///         The following limits answer one more request with 503:
+///         "changes": at most config.changes_max requests that create or delete sessions.
+///         "imports": at most config.imports_max maps that are read and imported.
+///         "weaves": at most config.weaves_max requests that wait for replay jobs.
+///         "paths": at most config.paths_max requests that read trajectories.
+///         "plans": at most config.plans_max requests that plan paths or wait for their turn.
+///         Live viewers: at most config.live.viewers_max of the connections.
+/// Threads: any. The counters must outlive the server's work on all executors.
 class Server : public std::enable_shared_from_this<Server> {
 public:
-    /// Binds; connections wait until start().
+    /// Binds the port. Connections wait until start().
     ///
-    /// Errors  kUnreachable, naming the endpoint: it is taken, or not an address of this machine.
+    /// Errors: kUnreachable, naming the endpoint, if it is in use or not an address of this machine.
     [[nodiscard]] static Result<std::shared_ptr<Server>> listen(boost::asio::io_context& io, Executors executors,
                                                                 const ServerConfig& config, Answering answering,
                                                                 metrics::HttpCounters& counters);
 
-    /// The port that is bound.
+    /// Returns the bound port.
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
 
     void start();
 
-    /// Accepts nothing more, closes idle connections, answers the requests under way, and calls `done`
-    /// (on the I/O executor) when the last connection is closed. After config.drain the rest is cut off.
-    /// Pre  called once, after start().
+    /// Stops accepting, closes idle connections, answers current requests, and calls `done` (on the I/O executor) after
+    /// the last connection is closed. After config.drain it closes the remaining connections. Must be called once,
+    /// after start().
     void stop(std::function<void()> done);
 
 private:
@@ -75,9 +76,9 @@ private:
 
     // On the strand only.
     boost::asio::ip::tcp::acceptor acceptor_;
-    boost::asio::steady_timer drained_;                                           // runs out at the end of draining
-    std::map<std::shared_ptr<Connection>, boost::asio::ip::address> connections_; // with their peers
-    std::map<boost::asio::ip::address, std::size_t> peers_;                       // how many of each
+    boost::asio::steady_timer drained_;                                           // expires at the end of draining
+    std::map<std::shared_ptr<Connection>, boost::asio::ip::address> connections_; // with their peers' addresses
+    std::map<boost::asio::ip::address, std::size_t> peers_;                       // number of connections of each
     bool accepting_ = false;
     std::function<void()> done_; // set while stopping
 };

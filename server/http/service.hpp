@@ -22,37 +22,38 @@ namespace scanloom::http {
 /// Computes the answer to a request. Called on several threads at once.
 using Answer = std::function<Response(const Request&)>;
 
-/// What is done with requests.
+/// How requests are answered.
 struct Answering {
-    Answer answer; ///< on the lane's threads
+    Answer answer; ///< called on the lane's threads
     std::function<Outlook(const Request&)> look = [](const Request& r) {
         return lane_of(r);
-    }; ///< on I/O threads, first
+    }; ///< called first, on I/O threads
     std::function<std::optional<Response>(const Request&)> refuse = [](const Request&) {
         return std::nullopt;
-    }; ///< on I/O threads, before a body is read: the answer to who is not let in
-    std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; tells when, on any
+    }; ///< called on I/O threads before a body is read; returns the response to a request without permission
+    std::function<void(const Asleep&, std::function<void()>)> wake =
+        {}; ///< called on I/O threads; calls back on any thread
     std::function<void(const std::string&, net::ClientFault)> turned_away = [](const std::string&, net::ClientFault) {
-    }; ///< on I/O threads: at that address, in the handshake
+    }; ///< called on I/O threads with the client's address when its handshake failed
     std::function<void(const std::string&)> foreign_host = [](const std::string&) {
-    }; ///< on I/O threads: that address asked for a host that this server is not
+    }; ///< called on I/O threads with the address of a client that asked for a foreign host
 };
 
-/// Where answers are computed, by Lane. A lane that waits must not run where it would hold up what it waits for:
-/// deleting a session waits for the executor that the sessions work on.
+/// The executors of the lanes. A lane that waits must not share an executor with the work that it waits for: deleting a
+/// session waits for the executor of the sessions.
 struct Executors {
     boost::asio::any_io_executor telling;
     boost::asio::any_io_executor serving;
     boost::asio::any_io_executor survey;
     boost::asio::any_io_executor paths;
-    boost::asio::any_io_executor logs; ///< the pieces of streamed bodies, too
+    boost::asio::any_io_executor logs; ///< also produces the pieces of streamed bodies
     boost::asio::any_io_executor weaving;
     boost::asio::any_io_executor planning;
     boost::asio::any_io_executor changing;
-    boost::asio::any_io_executor showing; ///< not a lane: what viewers are told live is made here
+    boost::asio::any_io_executor showing; ///< not a lane; encodes the events of live viewers
 };
 
-/// What all connections of a server share.
+/// State that all connections of a server share.
 struct Service {
     ServerConfig config;
     bool check_host = true;
@@ -64,13 +65,15 @@ struct Service {
     sockets::Slots weaves;  ///< requests in Lane::kWeaving
     sockets::Slots paths;   ///< requests in Lane::kPaths
     sockets::Slots plans;   ///< requests in Lane::kPlanning
-    live::Seats seats;      ///< connections that are viewers'
+    live::Seats seats;      ///< connections of live viewers
 };
 
-/// For what must not pile up, kept while it is under way; null where that does not matter. Errors  kOverloaded.
+/// Takes a slot of a lane whose number of concurrent requests is limited. Keep it until the request is answered.
+/// @return the slot; null for a lane without a limit
+/// Errors: kOverloaded if all slots are taken.
 [[nodiscard]] Result<std::shared_ptr<const void>> take_slot(const Service& service, Lane lane);
 
-/// Pre: not Lane::kAtOnce.
+/// @param lane  not Lane::kAtOnce
 [[nodiscard]] const boost::asio::any_io_executor& executor_of(const Executors& executors, Lane lane);
 
 } // namespace scanloom::http

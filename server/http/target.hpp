@@ -12,16 +12,16 @@
 
 namespace scanloom::http {
 
-/// The parameters behind the '?', decoded, each of another name.
+/// The decoded parameters after the '?', with distinct names.
 class Query {
 public:
     Query() = default;
     explicit Query(std::vector<std::pair<std::string, std::string>> parameters) : parameters_(std::move(parameters)) {}
 
-    /// The parameter's value; nothing when it was not given.
+    /// Returns the parameter's value, or nullopt if it is not given.
     [[nodiscard]] std::optional<std::string_view> find(std::string_view name) const;
 
-    /// Errors  kInvalidField, naming the first parameter that is none of these.
+    /// Errors: kInvalidField, naming the first parameter that is not in `known`.
     [[nodiscard]] Result<> check_only(std::initializer_list<std::string_view> known) const {
         return check_only(std::span(known.begin(), known.size()));
     }
@@ -31,16 +31,16 @@ private:
     std::vector<std::pair<std::string, std::string>> parameters_;
 };
 
-/// What a request asks for: the decoded segments of the path ("/" has one, which is empty) and the query.
+/// A parsed request target: the decoded segments of the path ("/" has one, which is empty) and the query.
 struct Target {
     std::vector<std::string> segments;
     Query query;
 };
 
-/// Reads a request target in origin form, "/path?query", as RFC 3986 has it.
+/// Parses a request target in origin form, "/path?query" (RFC 3986).
 ///
-/// Errors  kMalformed: not of that form; a segment that is "." or "..", or decodes to something with
-///         a slash or a control character. kInvalidField: a parameter that is given twice.
+/// Errors: kMalformed if it has another form, or a segment is "." or "..", or decodes to text with a slash or a control
+///         character; kInvalidField if a parameter is given twice.
 [[nodiscard]] Result<Target> parse_target(std::string_view text);
 
 } // namespace scanloom::http
