@@ -61,7 +61,7 @@ bool needs_sessions(Operation operation) {
     }
 }
 
-/// Whether the session that the path names has to be in memory.
+/// Returns whether the session in the path must be in memory.
 bool needs_maps(Operation operation) {
     switch (operation) {
     case Operation::kListSessions:
@@ -82,7 +82,7 @@ std::optional<tiles::TileFormat> tile_format_of(Operation operation) {
     return std::nullopt;
 }
 
-/// What a body must be.
+/// Checks that the Content-Type is the one that the operation reads.
 Result<> check_content_type(Operation operation, const Request& request) {
     if (request.method != "POST") return {};
     const bool wants_form = operation == Operation::kImportMap;
@@ -163,7 +163,7 @@ void Api::wake(const Asleep& asleep, std::function<void()> told) {
                    [told = std::move(told)](const Result<std::shared_ptr<session::Session>>&) { told(); });
 }
 
-/// What only some may see, is kept by nobody who passes it on to others.
+/// A response that depends on permissions must not be kept by shared caches, so "public" becomes "private".
 Response Api::for_who_asked(Operation operation, Response response) const {
     if (need_of(operation) == Need::kNothing || doorman_.gate().is_open()) return response;
     for (auto& [field, value] : response.fields) {

@@ -9,7 +9,7 @@ void skip(std::string_view& text, std::string_view characters) {
     text.remove_prefix(std::min(text.find_first_not_of(characters), text.size()));
 }
 
-/// Takes one entity tag off the front, without its W/; empty when there is none.
+/// Removes one entity tag from the front and returns it without its W/; empty if there is none.
 std::string_view take_tag(std::string_view& text) {
     if (text.starts_with("W/")) text.remove_prefix(2);
     if (!text.starts_with('"')) return {};
@@ -33,7 +33,7 @@ bool if_none_match_has(std::string_view field, std::string_view etag) {
         found = found || tag == etag;
         skip(field, kBlank);
         if (!field.empty() && !field.starts_with(',')) return false;
-        skip(field, ", \t"); // lists may hold empty elements
+        skip(field, ", \t"); // lists may contain empty elements
     }
     return found;
 }

@@ -29,7 +29,7 @@ namespace beast = boost::beast;
 
 constexpr std::size_t kReadBytes = 4096;
 
-/// The boundary at which a fault of ours costs one answer and nothing else. `use` is one of Answering.
+/// Confines a fault of the server to one response. `use` is a member of Answering.
 template <class Use>
 auto guarded(const Use& use, const Request& request) -> decltype(use(request)) {
     try {
@@ -47,7 +47,7 @@ std::string_view text_of(const beast::flat_buffer& received) {
     return {static_cast<const char*>(received.data().data()), received.size()};
 }
 
-/// Skips an empty line before a request: some clients send one after a body (RFC 9112, 2.2).
+/// Skips an empty line before a request, which some clients send after a body (RFC 9112, 2.2).
 /// @return whether there was one
 bool skip_empty_line(beast::flat_buffer& received) {
     constexpr std::string_view kEmptyLine = "\r\n";
@@ -67,7 +67,7 @@ Connection::Connection(net::LinkStream stream, std::shared_ptr<const Service> se
 }
 
 asio::awaitable<void> Connection::run() {
-    // g++ 12 loses `this` where a condition mixes && and co_await: one co_await a statement in this file.
+    // g++ 12 loses `this` if a condition mixes && and co_await, so this file has one co_await per statement.
     beast::error_code ignored;
     stream_.socket().non_blocking(true, ignored);
     deadline_.watch(weak_from_this(), [this] { close(); });
@@ -126,7 +126,7 @@ void Connection::abort() {
 /// @return whether requests can be read.
 asio::awaitable<bool> Connection::shake_hands() {
     if (!stream_.is_encrypted()) co_return true;
-    idle_ = true; // whoever stops the server does not wait for it
+    idle_ = true; // stopping the server does not wait for a handshake
     deadline_.set_after(service_->config.handshake);
     const auto [failed] = co_await stream_.async_handshake(net::LinkStream::Role::kServer, kAwaitTuple);
     deadline_.clear();
@@ -137,12 +137,12 @@ asio::awaitable<bool> Connection::shake_hands() {
         co_await tell_plainly("this port speaks HTTPS alone; ask for the same address with https:// before it");
     } else if (const auto fault = net::client_fault_of(failed)) {
         service_->answering.turned_away(peer_, *fault);
-        must_linger_ = true; // until TLS's own alert is read
+        must_linger_ = true; // until the peer has read the TLS alert
     }
     co_return false;
 }
 
-/// To whoever did not encrypt what he asked.
+/// Answers without TLS a peer that sent a request without TLS.
 asio::awaitable<void> Connection::tell_plainly(std::string_view sentence) {
     const auto response = problem(Status::bad_request, sentence, "");
     service_->counters.answered(static_cast<unsigned>(response.status)).Increment();
@@ -172,7 +172,8 @@ asio::awaitable<bool> Connection::wait_for_request() {
 asio::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
-    parser.body_limit(service_->config.import_bytes_max); // of what it asks for, once that is known: refusal_of()
+    parser.body_limit(
+        service_->config.import_bytes_max); // refusal_of() applies the limit of the operation once it is known
     const auto error = co_await read_header(parser);
     end_waiting();
     if (error) {
@@ -203,7 +204,8 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await wake(*asleep);
         outlook = guarded(service_->answering.look, request);
     }
-    if (std::holds_alternative<Asleep>(outlook)) outlook = lane_of(request); // it cannot be had: the answer says why
+    if (std::holds_alternative<Asleep>(outlook))
+        outlook = lane_of(request); // loading failed: the response states the reason
     if (const auto* lane = std::get_if<Lane>(&outlook)) {
         outlook = co_await compute(*lane, std::move(request), std::move(slot));
     }
@@ -217,8 +219,9 @@ asio::awaitable<bool> Connection::serve_request() {
     co_return co_await write(response, manner);
 }
 
-/// Nobody sends a body to be refused after it. `slot` is for what is kept while the request is under way.
-/// @return false when the connection cannot be used any more.
+/// Refuses a request before its body is sent if the header is enough for that.
+/// @param slot  receives what must be kept until the request is answered
+/// @return false if the connection cannot be used any more
 asio::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<const void>& slot) {
     Request head = head_of(parser.get());
     head.peer = peer_;
@@ -228,7 +231,7 @@ asio::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<cons
         co_return false;
     }
     const Lane lane = lane_of(head);
-    if (lane == Lane::kImporting) { // its body is large
+    if (lane == Lane::kImporting) { // it has a large body
         auto taken = take_slot(*service_, lane);
         if (!taken) {
             co_await write(problem(taken.error(), instance_of(head.target)), {});
@@ -239,7 +242,7 @@ asio::awaitable<bool> Connection::take_body(Parser& parser, std::shared_ptr<cons
     co_return co_await read_body(parser);
 }
 
-/// Most often all of it has come with the first bytes, and nothing is waited for.
+/// Usually the whole header arrives with the first bytes, and no wait is needed.
 asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
     beast::error_code error;
     buffer_.consume(parser.put(buffer_.data(), error));
@@ -250,7 +253,7 @@ asio::awaitable<beast::error_code> Connection::read_header(Parser& parser) {
     co_return failed;
 }
 
-/// @return false when the connection cannot be used any more.
+/// @return false if the connection cannot be used any more
 asio::awaitable<bool> Connection::read_body(Parser& parser) {
     if (parser.is_done()) co_return true;
     if (beast::iequals(parser.get()[beast::http::field::expect], "100-continue")) {
@@ -281,7 +284,7 @@ asio::awaitable<bool> Connection::read_body(Parser& parser) {
     co_return false;
 }
 
-/// Hands the socket over to a viewer, until that ends.
+/// Hands the socket over to a viewer and returns when the viewer ends.
 asio::awaitable<void> Connection::show(const live::Invitation& invitation, const Incoming& upgrade) {
     const auto path = instance_of(head_of(upgrade).target);
     auto seat = service_->seats.try_take(invitation.session_id);
@@ -305,7 +308,7 @@ asio::awaitable<void> Connection::show(const live::Invitation& invitation, const
     co_await viewer_->run(upgrade);
 }
 
-/// Returns when the session has been read, or cannot be.
+/// Returns when the session has been loaded or loading has failed.
 asio::awaitable<void> Connection::wake(Asleep asleep) {
     const auto executor = stream_.get_executor();
     co_await asio::async_initiate<const asio::use_awaitable_t<>&, void()>(
@@ -317,8 +320,9 @@ asio::awaitable<void> Connection::wake(Asleep asleep) {
         asio::use_awaitable);
 }
 
-/// Off this thread, which serves other sockets too, unless there is nothing to wait for.
-/// `slot` is that of an import, whose body was read with it.
+/// Computes the response on the lane's executor, because this thread serves other sockets too. Work that does not wait
+/// stays on this thread.
+/// @param slot  that of an import, taken before its body was read
 asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::shared_ptr<const void> slot) {
     if (lane == Lane::kAtOnce) co_return guarded(service_->answering.answer, request);
     if (!slot) {
@@ -334,7 +338,7 @@ asio::awaitable<Response> Connection::compute(Lane lane, Request request, std::s
 
 asio::awaitable<void> Connection::refuse(beast::error_code reason) {
     if (is_tls_hello(buffer_)) {
-        must_linger_ = true; // no words of ours could be read there
+        must_linger_ = true; // the peer cannot read a response without TLS
     } else if (const auto refusal = refusal_of(buffer_, reason)) {
         co_await write(*refusal, {});
     }

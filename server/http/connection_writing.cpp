@@ -11,7 +11,7 @@
 #include <array>
 #include <chrono>
 
-/// How answers leave, and how a connection is left.
+/// The part of Connection that writes responses and closes the connection.
 namespace scanloom::http {
 namespace {
 
@@ -21,7 +21,7 @@ namespace beast = boost::beast;
 constexpr std::size_t kLingerReadBytes = 4096;
 constexpr std::size_t kLingerBytesMax = 256 * 1024;
 
-/// A fault of ours costs this answer and nothing else.
+/// Confines a fault of the server to this response.
 Result<std::string> next_guarded(BodyStream& stream) {
     try {
         return stream.next();
@@ -53,7 +53,7 @@ asio::awaitable<bool> Connection::write(const Response& response, Manner manner)
     co_return can_go_on;
 }
 
-/// Each piece is made when the one before it is sent: whoever reads slowly holds one piece.
+/// Produces each piece after the previous one is sent, so a slow client occupies one piece of memory.
 asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing framing) {
     for (;;) {
         const Result<std::string> piece =
@@ -68,15 +68,16 @@ asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing frami
             if (!sent) co_return false;
             continue;
         }
-        const std::string chunk = fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty one is the last
+        const std::string chunk =
+            fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty chunk is the last one
         const bool sent = co_await write_all(chunk, {});
         if (!sent || piece->empty()) co_return sent;
     }
 }
 
-/// What the socket takes at once, goes at once. For the rest a deadline for each piece, so that a large answer may take
-/// its time as long as somebody reads it; and one for all, so that nobody holds one in memory by reading a byte now and
-/// then.
+/// Sends at once what the socket accepts. For the rest, each piece has a deadline, so that a large response may take
+/// long while the client reads it. The whole has a deadline too, so that a client cannot keep a response in memory by
+/// reading single bytes.
 asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_view body) {
     const std::array<asio::const_buffer, 2> whole = {asio::buffer(head), asio::buffer(body)};
     beast::buffers_suffix<std::array<asio::const_buffer, 2>> rest(whole);
@@ -104,8 +105,8 @@ asio::awaitable<bool> Connection::write_all(std::string_view head, std::string_v
     co_return true;
 }
 
-/// Closing a socket with unread bytes resets it, and a peer still sending would never see the answer.
-/// So: say that nothing more comes, and read on for a while.
+/// Closing a socket with unread bytes resets it, and a peer that is still sending would never see the response.
+/// Therefore this shuts down the sending side and continues to read for a while.
 asio::awaitable<void> Connection::linger() {
     deadline_.set_after(service_->config.linger);
     co_await stream_.async_farewell(kAwaitTuple);

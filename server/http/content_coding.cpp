@@ -11,11 +11,11 @@
 namespace scanloom::http {
 namespace {
 
-/// Less is sent in one packet either way.
+/// A shorter text fits into one packet without compression.
 constexpr std::size_t kBytesMin = 1400;
 
-constexpr int kLevel = 1;            // of 9: a table of a map shrinks to a twentieth in 2 ms a megabyte
-constexpr int kGzipWindow = 15 + 16; // zlib: the largest window, and a header of gzip
+constexpr int kLevel = 1;            // of 9: compresses the table of a map to a twentieth at 2 ms per megabyte
+constexpr int kGzipWindow = 15 + 16; // zlib: largest window, with a gzip header
 constexpr int kMemoryLevel = 8;      // zlib's default
 constexpr std::string_view kBlank = " \t";
 
@@ -28,7 +28,7 @@ bool is_same_word(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, [](char x, char y) { return (x | 0x20) == (y | 0x20); });
 }
 
-/// What stands before a separator, taken off the front with it.
+/// Removes the text before the next separator and the separator from the front, and returns that text.
 std::string_view take_until(std::string_view& text, char separator) {
     const auto end = std::min(text.find(separator), text.size());
     const auto taken = trimmed(text.substr(0, end));
@@ -36,7 +36,7 @@ std::string_view take_until(std::string_view& text, char separator) {
     return taken;
 }
 
-/// The weight of "q=0.5"; nothing when it is none.
+/// Returns the weight in "q=0.5", or nullopt if the parameter is not a weight.
 std::optional<double> weight_of(std::string_view parameter) {
     if (!parameter.starts_with("q=") && !parameter.starts_with("Q=")) return std::nullopt;
     const auto digits = parameter.substr(2);
@@ -63,7 +63,7 @@ bool accepts_gzip(std::string_view field) {
     std::optional<double> of_others;
     while (!field.empty()) {
         auto element = take_until(field, ',');
-        if (element.empty()) continue; // lists may hold empty elements
+        if (element.empty()) continue; // lists may contain empty elements
         const auto coding = take_until(element, ';');
         std::optional<double> weight = 1.0;
         if (!element.empty()) weight = weight_of(trimmed(element));

@@ -23,8 +23,8 @@ Denied denied(Reason reason, const Token& token, std::string why) {
     return {reason, token.name, {Errc::kUnauthorized, std::move(why)}};
 }
 
-/// Browsers send here what any page tells them to, with the cookie, from machines that only they reach. What only
-/// reads, no other page gets to see; all else has to come from a page of ours.
+/// Any page can make a browser send requests here, with the cookie, also from a machine in a private network. Other
+/// pages cannot see the response to a request that only reads. All other requests must come from a page of this server.
 bool is_of_foreign_page(const Request& request) {
     const bool only_reads = !request.upgrade && (request.method == "GET" || request.method == "HEAD");
     return !only_reads && !is_own_page(request.origin, request.host, request.is_secure);
@@ -71,8 +71,8 @@ std::string_view session_in(const Match& match) {
 } // namespace
 
 std::variant<TokenRef, Response> Doorman::admit(const Request& request, const Match& match) const {
-    // Only a program that knows a token sends it in a field. Other credentials, as of a proxy, a browser adds by
-    // itself.
+    // Only a program that knows a token sends it in the Authorization field. A browser adds other credentials, for
+    // example those for a proxy, by itself.
     const bool has_token = !gate_.is_open() && bearer_of(request.authorization);
     const bool is_told_to = !has_token && !request.origin.empty() && is_of_foreign_page(request);
     const bool asks_no_token = gate_.is_open() || need_of(match.operation) == Need::kNothing;
@@ -109,7 +109,7 @@ guard::Admitted<TokenRef> Doorman::identify_browser(const Request& request, std:
     return token;
 }
 
-/// Source  RFC 6750, section 3.
+/// Source: RFC 6750, section 3.
 Response Doorman::refuse(const Request& request, const Denied& why, std::string_view session) const {
     note(request, why, session);
     const auto path = instance_of(request.target);

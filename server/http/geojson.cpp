@@ -16,7 +16,7 @@ void append_position(std::string& text, double x, double y) {
     fmt::format_to(std::back_inserter(text), "[{},{}]", rounded_metres(x), rounded_metres(y));
 }
 
-/// [a,b,c] of what write() appends for each.
+/// Appends [a,b,c], where write() appends each element.
 template <class Items, class Write>
 void append_list(std::string& text, const Items& items, Write&& write) {
     const char* separator = "[";

@@ -21,7 +21,7 @@ bool is_known_host(std::string_view host_field, const std::vector<std::string>& 
 
 namespace {
 
-/// The port that an authority names, or else that of the scheme.
+/// Returns the port of an authority, or the scheme's port if it has none.
 std::string_view port_of(const boost::urls::authority_view& authority, std::string_view scheme) {
     if (authority.has_port() && !authority.port().empty()) return authority.port();
     return scheme == "https" ? "443" : "80";

@@ -21,9 +21,9 @@ std::optional<WebSocketUpgrade> upgrade_of(const Incoming& message) {
                             std::string(view(message[field::origin]))};
 }
 
-/// Takes an absolute form, "http://host/path?query", apart: its authority replaces the Host field. Leaves all other
-/// targets as they are, for parse_target() to judge.
-/// Source  RFC 9112, 3.2.2.
+/// Splits a target in absolute form, "http://host/path?query": its authority replaces the Host field. Leaves all other
+/// targets unchanged for parse_target() to check.
+/// Source: RFC 9112, 3.2.2.
 void split_absolute_form(Request& request) {
     if (request.target.starts_with('/')) return;
     const auto url = boost::urls::parse_absolute_uri(request.target);
@@ -34,7 +34,7 @@ void split_absolute_form(Request& request) {
     request.target = resource.starts_with('/') ? resource : '/' + resource;
 }
 
-/// All fields of that name.
+/// Joins the values of all fields called `name` with commas.
 std::string joined(const Incoming& message, beast::http::field name) {
     std::string values;
     const auto [begin, end] = message.equal_range(name);

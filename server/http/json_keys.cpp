@@ -11,7 +11,7 @@
 namespace scanloom::http {
 namespace {
 
-/// Told of every piece of a JSON text by the parser; a false ends the parsing.
+/// The parser's handler: called for each part of a JSON text; returning false ends the parsing.
 struct KeyWatch {
     static constexpr std::size_t max_object_size = SIZE_MAX;
     static constexpr std::size_t max_array_size = SIZE_MAX;
@@ -61,7 +61,7 @@ struct KeyWatch {
     std::optional<std::string> duplicate;
 
 private:
-    std::vector<std::set<std::string>> open_; // keys of the objects around, outermost first
+    std::vector<std::set<std::string>> open_; // keys of the enclosing objects, outermost first
     std::string key_;
 };
 
@@ -69,7 +69,7 @@ private:
 
 std::optional<std::string> duplicate_key(std::string_view json) {
     boost::json::basic_parser<KeyWatch> parser({});
-    boost::json::error_code ignored; // that it is well-formed, others have checked
+    boost::json::error_code ignored; // the callers check that it is well-formed
     parser.write_some(false, json.data(), json.size(), ignored);
     return std::move(parser.handler().duplicate);
 }

@@ -17,11 +17,11 @@ Error malformed(std::string_view what) {
     return {Errc::kMalformed, fmt::format("the form is malformed: {}; send it as curl -F does", what)};
 }
 
-/// A parameter behind a header field's value, such as boundary="x", without its quotes.
+/// Returns a parameter after a header field's value, such as boundary="x", without its quotes.
 std::optional<std::string> parameter(std::string_view value, std::string_view name) {
     const auto semicolon = value.find(';');
     if (semicolon == std::string_view::npos) return std::nullopt;
-    const std::string list(value.substr(semicolon)); // param_list looks at memory beyond a view's end for no zero
+    const std::string list(value.substr(semicolon)); // param_list reads past the end of a view that has no zero there
     for (const auto& [key, text] : beast::http::param_list(list)) {
         if (!beast::iequals(key, beast::string_view(name.data(), name.size()))) continue;
         std::string_view unquoted(text.data(), text.size());
@@ -31,7 +31,7 @@ std::optional<std::string> parameter(std::string_view value, std::string_view na
     return std::nullopt;
 }
 
-/// The name that a part's header gives it.
+/// Returns the name in a part's header.
 std::optional<std::string> name_in(std::string_view header) {
     constexpr std::string_view kDisposition = "content-disposition:";
     while (!header.empty()) {
@@ -62,7 +62,7 @@ Result<std::vector<FormField>> parse_form(std::string_view content_type, std::st
     body.remove_prefix(delimiter.size() - 2);
 
     std::vector<FormField> fields;
-    while (!body.starts_with("--")) { // which stand behind the last boundary
+    while (!body.starts_with("--")) { // "--" follows the last boundary
         if (!body.starts_with("\r\n")) return malformed("a boundary does not end its line");
         const auto header_end = body.find("\r\n\r\n");
         const auto end = header_end == std::string_view::npos ? header_end : body.find(delimiter, header_end + 2);

@@ -52,7 +52,7 @@ Need need_of(Operation operation) noexcept {
     case Operation::kGetWeave: return Need::kLook;
     case Operation::kAssignGoal: return Need::kGuide;
     }
-    return Need::kChange; // a new operation is nobody's until it has a line above
+    return Need::kChange; // a new operation requires kChange until it has a line above
 }
 
 } // namespace scanloom::http

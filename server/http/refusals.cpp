@@ -14,7 +14,7 @@ namespace {
 
 namespace beast = boost::beast;
 
-/// Whether the unread bytes begin as a robot's frames do: with a length below 2^24, its highest byte first.
+/// Returns whether the unread bytes begin like a robot's frame: with a length below 2^24, most significant byte first.
 bool is_frame(const beast::flat_buffer& unread) {
     return unread.size() > 0 && *static_cast<const char*>(unread.data().data()) == '\0';
 }

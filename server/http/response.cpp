@@ -9,10 +9,10 @@
 namespace scanloom::http {
 namespace {
 
-/// What is no page of ours may load nothing and be framed nowhere.
+/// Forbids loading and framing for every response that is not a page of the viewer.
 constexpr std::string_view kNothingAllowed = "default-src 'none'; frame-ancestors 'none'";
 
-/// Of this host alone: what others of its domain speak is not known here.
+/// Without includeSubDomains: whether other hosts of the domain support TLS is not known here.
 constexpr std::string_view kSecureForAYear = "max-age=31536000";
 
 } // namespace

@@ -58,7 +58,7 @@ constexpr std::array kRoutes = {
     Route{"DELETE", "/api/v1/sessions/{session}/exclusions/{exclusion}", Operation::kLiftExclusion},
 };
 
-/// Takes the first segment off a pattern that begins with '/'.
+/// Removes the first segment from a pattern that begins with '/', and returns it.
 std::string_view take_segment(std::string_view& pattern) {
     pattern.remove_prefix(1);
     const auto segment = pattern.substr(0, pattern.find('/'));

@@ -22,12 +22,12 @@ using net::ip::tcp;
 
 namespace {
 
-constexpr std::size_t kOnTheirWayOutMax = 64; // connections that were asked to go and have not gone yet
+constexpr std::size_t kOnTheirWayOutMax = 64; // connections that are closing
 
 } // namespace
 
 bool may_connect(const net::ip::address& peer, std::size_t open, const ServerConfig& config) {
-    if (peer.is_v6() && peer.to_v6().is_v4_mapped()) { // on a port that takes both
+    if (peer.is_v6() && peer.to_v6().is_v4_mapped()) { // on a port that accepts IPv4 and IPv6
         return may_connect(net::ip::make_address_v4(net::ip::v4_mapped, peer.to_v6()), open, config);
     }
     return open < config.connections_per_peer_max || peer.is_loopback() ||
@@ -120,9 +120,9 @@ void Server::take(tcp::socket socket) {
     }
 }
 
-/// Closes the connection whose peer is furthest behind: it is silent, sends its body slowly or reads slowly.
-/// @param of_peer  an address, whose connections alone are looked at; null: all
-/// @return false: every peer waits for this server, or more connections are closing already than places are lent.
+/// Closes the connection whose peer is furthest behind: it is idle, sends its body slowly or reads slowly.
+/// @param of_peer  considers only connections of this address; null: all
+/// @return false if every peer waits for this server, or if more than kOnTheirWayOutMax connections are closing already
 bool Server::make_room(const net::ip::address* of_peer) {
     if (connections_.size() >= service_->config.connections_max + kOnTheirWayOutMax) return false;
     std::shared_ptr<Connection> slowest;
@@ -138,10 +138,10 @@ bool Server::make_room(const net::ip::address* of_peer) {
     return slowest != nullptr;
 }
 
-/// Says why, as far as that is possible without waiting: nothing may pile up here.
+/// Sends the reason if that is possible without waiting, so that no refusals accumulate.
 void Server::refuse(tcp::socket socket, std::string_view why) {
     service_->counters.connections_refused.Increment();
-    if (service_->config.tls) return; // a handshake would have to be waited for
+    if (service_->config.tls) return; // a handshake would require waiting
     const auto response = problem(Error{Errc::kOverloaded, fmt::format("{}; try again later", why)}, "");
     const auto text = head_text(response, Persistence::kClose, "") + std::string(response.body.bytes());
     boost::system::error_code ignored;

@@ -40,7 +40,7 @@ struct ServerConfig {
     std::chrono::milliseconds header{10'000};     ///< from a request's first byte to the end of its header
     std::chrono::milliseconds body{30'000};       ///< for the body at first; each byte extends it by read_rate_min
     std::chrono::milliseconds body_pause{10'000}; ///< longest time without a byte of the body
-    std::uint64_t read_rate_min = 256 * 1024;     ///< bytes per second of a body after its first `body`
+    std::uint64_t read_rate_min = 256 * 1024;     ///< bytes per second by which a received body extends `body`
     std::chrono::milliseconds write{30'000};      ///< longest time without progress of the response
     std::uint64_t write_rate_min = 256 * 1024;    ///< bytes per second by which a whole response extends `write`
     std::chrono::milliseconds linger{2'000};      ///< for the peer to read the last response and disconnect

@@ -16,7 +16,7 @@ bool has_control_character(std::string_view text) {
     return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
-/// Decoding happens once and after splitting, so that "%2F" never becomes a border between segments.
+/// Decodes once and after splitting, so that "%2F" never separates segments.
 Result<std::vector<std::string>> parse_segments(std::string_view path) {
     std::vector<std::string> segments;
     for (std::size_t begin = 1; begin <= path.size();) {
@@ -36,7 +36,7 @@ Result<std::vector<std::string>> parse_segments(std::string_view path) {
 
 Result<Query> parse_query(const boost::urls::url_view& url) {
     std::vector<std::pair<std::string, std::string>> parameters;
-    if (url.encoded_query().empty()) return Query(); // also behind a '?'
+    if (url.encoded_query().empty()) return Query(); // also after a '?'
     for (const auto& parameter : url.params()) {
         if (std::ranges::any_of(parameters, [&](const auto& seen) { return seen.first == parameter.key; })) {
             return Error{Errc::kInvalidField,

@@ -48,7 +48,7 @@ std::string_view type_of(const std::filesystem::path& path) {
     return found == kTypes.end() ? "application/octet-stream" : found->second;
 }
 
-/// Vite puts eight characters of a hash before the ending: index-BvC3kD9x.js.
+/// Vite inserts an eight-character hash before the ending: index-BvC3kD9x.js.
 bool has_hash(const std::filesystem::path& path) {
     const std::string stem = path.stem().native();
     constexpr std::size_t kHash = 8;
@@ -73,7 +73,7 @@ std::optional<std::string> read_file(const std::filesystem::path& path) {
     return content;
 }
 
-/// "index.html" and what is in "assets"; the viewer is built into these.
+/// Lists "index.html" and the files in "assets", where the viewer's build places its files.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> files;
     std::error_code ignored; // a missing folder has no files
@@ -141,7 +141,7 @@ Result<Response> serve_web_file(const WebFiles& files, std::string_view name, st
         response.set("ETag", file.etag).set("Cache-Control", cache_control);
         response.gzip = file.gzip;
     }
-    // Of a 304, too: a browser applies its fields to the page it has (RFC 9111, section 3.2).
+    // Also for a 304, because a browser applies its fields to the cached page (RFC 9111, section 3.2).
     response.set("Content-Security-Policy", viewer_policy(host, is_secure));
     return response;
 }
