@@ -21,7 +21,7 @@ Error malformed(std::string_view what) {
 std::optional<std::string> parameter(std::string_view value, std::string_view name) {
     const auto semicolon = value.find(';');
     if (semicolon == std::string_view::npos) return std::nullopt;
-    const std::string list(value.substr(semicolon)); // param_list reads past the end of a view that has no zero there
+    const std::string list(value.substr(semicolon)); // param_list reads past the end of a view that no zero follows
     for (const auto& [key, text] : beast::http::param_list(list)) {
         if (!beast::iequals(key, beast::string_view(name.data(), name.size()))) continue;
         std::string_view unquoted(text.data(), text.size());

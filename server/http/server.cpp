@@ -122,7 +122,7 @@ void Server::take(tcp::socket socket) {
 
 /// Closes the connection whose peer is furthest behind: it is idle, sends its body slowly or reads slowly.
 /// @param of_peer  considers only connections of this address; null: all
-/// @return false if every peer waits for this server, or if more than kOnTheirWayOutMax connections are closing already
+/// @return false if every peer waits for this server, or if kOnTheirWayOutMax connections exceed the maximum already
 bool Server::make_room(const net::ip::address* of_peer) {
     if (connections_.size() >= service_->config.connections_max + kOnTheirWayOutMax) return false;
     std::shared_ptr<Connection> slowest;

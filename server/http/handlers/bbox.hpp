@@ -8,8 +8,8 @@
 
 namespace scanloom::http {
 
-/// The bbox parameter, `min_x,min_y,max_x,max_y` in metres; nothing when it is not given.
-/// Errors  kInvalidField: not four numbers.
+/// Returns the bbox parameter, `min_x,min_y,max_x,max_y` in metres, or nullopt if it is not given.
+/// Errors: kInvalidField if it is not four numbers.
 [[nodiscard]] Result<std::optional<tiles::Extent>> bbox_parameter(const Query& query);
 
 } // namespace scanloom::http

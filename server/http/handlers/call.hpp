@@ -7,12 +7,12 @@
 
 namespace scanloom::http {
 
-/// A request that found its handler: what its path and query say, and the rest of it.
+/// A routed request: the arguments of its path, its query, and the request itself.
 struct Call {
     const Request& request;
     const Arguments& arguments;
     const Query& query;
-    access::TokenRef token = nullptr; ///< of who asks; null only where anybody may
+    access::TokenRef token = nullptr; ///< of the client; null only if the operation needs no token
 };
 
 } // namespace scanloom::http

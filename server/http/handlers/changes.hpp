@@ -6,8 +6,8 @@
 
 namespace scanloom::http {
 
-/// GET .../changes?layer&since: every tile of every zoom that was touched after revision `since`.
-/// A `since` beyond the revision now is of a session that was deleted and made anew: every tile is told.
+/// GET .../changes?layer&since: lists every tile of every zoom that changed after revision `since`. If `since` is
+/// greater than the current revision, the session was recreated, and every tile is listed.
 [[nodiscard]] Result<Response> get_changes(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http

@@ -8,11 +8,11 @@
 
 namespace scanloom::http {
 
-/// Every setting, by its name.
+/// Returns every setting by its name.
 [[nodiscard]] boost::json::object to_json(const mapping::MapConfig& config);
 
-/// Sets what the object has members for; leaves the rest. Ranges are for resolve() to check.
-/// Errors  kInvalidField, naming the member: a value of another kind.
+/// Sets the options that `object` has members for and keeps the others. resolve() checks the ranges.
+/// Errors: kInvalidField, naming the member, if a value has another type.
 [[nodiscard]] Result<> read_options(const boost::json::object& object, SessionOptions& options);
 
 } // namespace scanloom::http

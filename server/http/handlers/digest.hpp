@@ -6,7 +6,7 @@
 
 namespace scanloom::http {
 
-/// GET .../digest?layer: a hash over the canonical cells of each layer; equal digests are equal maps.
+/// GET .../digest?layer: returns a hash of the canonical cells of each layer. Equal digests mean equal maps.
 [[nodiscard]] Result<Response> get_digest(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http

@@ -7,8 +7,8 @@
 
 namespace scanloom::http {
 
-/// GET .../frontiers.geojson?robot&size_min&body_radius: a feature for each frontier, the largest first: its cells as
-/// areas, and where to stand to explore it, by the cheapest way from the named robot or from any.
+/// GET .../frontiers.geojson?robot&size_min&body_radius: returns a feature for each frontier, largest first: its cells
+/// as areas, and the goal for exploring it with the cheapest path from the named robot, or from any robot.
 [[nodiscard]] Result<Response> get_frontiers(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
 
 } // namespace scanloom::http

@@ -8,8 +8,8 @@
 
 namespace scanloom::http {
 
-/// GET .../goals.geojson: for each robot the way it planned last and the goal it was given, as far as it has them. Its
-/// revision is the book's, as LiveEvent::goals_revision. Gives nobody anything.
+/// GET .../goals.geojson: returns for each robot its last planned path and its assigned goal, if any. The revision is
+/// that of the WayBook, as LiveEvent::goals_revision. Assigns nothing.
 [[nodiscard]] Result<Response> get_goals(session::SessionRegistry& sessions, guide::WayBook& ways,
                                          const AnswerSlots& slots, const Call& call);
 

@@ -13,17 +13,17 @@ namespace scanloom::http {
 
 /// Where robots connect.
 struct RobotPort {
-    std::string host; ///< an address; empty when every address of this machine will do
+    std::string host; ///< an address; empty: any address of this machine
     std::uint16_t port = 0;
 };
 
-/// GET /livez: the process answers.
+/// GET /livez: responds if the process runs.
 [[nodiscard]] Result<Response> get_livez(const Call& call);
 
-/// GET /readyz: 200 with the sessions that are damaged or take no scans and where robots connect, or 503 with the
-/// reasons: sessions not recovered yet, draining, a failed store. It waits for nothing. Sessions are named to those
-/// alone whose token is for them.
-/// @param check  null: none is made.
+/// GET /readyz: returns 200 with the address for robots and the sessions that are damaged or accept no scans, or 503
+/// with the reasons: sessions not recovered yet, draining, a failed store. Does not wait. Sessions are named only to a
+/// client whose token is for them.
+/// @param check  null if there is no background check
 [[nodiscard]] Result<Response> get_readyz(const session::SessionRegistry& sessions,
                                           const session::BackgroundCheck* check, const store::ScanLog& log,
                                           bool recovered, const RobotPort& robots, const Call& call);

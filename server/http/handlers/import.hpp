@@ -7,8 +7,8 @@
 
 namespace scanloom::http {
 
-/// POST .../import: makes the session from a ROS map, a form with the fields `yaml` and `image` (PGM or PNG), and any
-/// settings of a session; cells are of the map's size unless cell_size says otherwise. Answers as POST /sessions.
+/// POST .../import: creates the session from a ROS map. The form has the fields `yaml` and `image` (PGM or PNG), and
+/// any settings of a session. The cell size is that of the map unless cell_size is given. Responds as POST /sessions.
 [[nodiscard]] Result<Response> import_map(session::SessionRegistry& sessions, const Doorman& doorman, const Call& call);
 
 } // namespace scanloom::http

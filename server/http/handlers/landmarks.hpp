@@ -9,13 +9,13 @@
 
 namespace scanloom::http {
 
-/// GET .../landmarks.geojson?since&bbox&seen_min: the session's landmarks as points, by id, in metres of the map frame:
-/// all of them, or those that were seen after `since`, whose position lies in `bbox`, that at least `seen_min` captures
-/// saw. The collection tells how alike what robots saw in succession was: persistence, stability and continuity, each
-/// a mean, null where there is nothing to tell. "revision" is what to ask for as `since` the next time; "reset": the
-/// session has not come as far as `since`, it was made anew, and all are told.
-/// Waits for the log to be read, which takes seconds where nobody has asked for a long one before.
-/// Errors  those of find_session(), LandmarkFolds::up_to(); kInvalidField: a parameter.
+/// GET .../landmarks.geojson?since&bbox&seen_min: returns the session's landmarks as points by id, in metres of the map
+/// frame: all of them, or those observed after `since`, with a position in `bbox`, in at least `seen_min` captures. The
+/// collection states how consistent successive observations are: persistence, stability and continuity, each a mean,
+/// null without data. "revision" is the `since` for the next request. "reset" means that the session has not reached
+/// `since` because it was recreated; then all landmarks are returned. Waits until the log has been read, which takes
+/// seconds for a long log at the first request.
+/// Errors: those of find_session() and LandmarkFolds::up_to(); kInvalidField for a parameter.
 [[nodiscard]] Result<Response> get_landmarks(session::SessionRegistry& sessions, session::LandmarkFolds& folds,
                                              const AnswerSlots& slots, const Call& call);
 

@@ -10,10 +10,10 @@
 
 namespace scanloom::http {
 
-/// Lets a WebSocket in that watches the session: 101, with an invitation. 426 when no WebSocket of version 13 is asked
-/// for, 403 when a page of another host asks for it: browsers let any page open one and show what comes. The viewer
-/// watches for as long as its token allows it.
-/// Errors  kInvalidField: an unknown parameter; those of find_session().
+/// Accepts a WebSocket that watches the session: 101 with an invitation. Responds 426 if the request is not for a
+/// WebSocket of version 13, and 403 to a page of another host, because browsers let any page open a WebSocket and read
+/// it. The viewer watches as long as its token permits it.
+/// Errors: kInvalidField for an unknown parameter; those of find_session().
 [[nodiscard]] Result<Response> get_live(session::SessionRegistry& sessions, guide::WayBook& ways,
                                         live::LandmarkHub& landmarks, const Doorman& doorman, const Call& call);
 

@@ -7,8 +7,8 @@
 
 namespace scanloom::http {
 
-/// GET .../log: the session's log up to its newest entry, whole.
-///   format=protobuf (or none)  each entry as a scanloom.v1.LogEntry, its length before it: uint32, big-endian
+/// GET .../log: returns the session's whole log up to its newest entry.
+///   format=protobuf (default)  each entry as a scanloom.v1.LogEntry after its length: uint32, big-endian
 ///   format=clf                 as a CARMEN log (exchange/carmen_text.hpp)
 [[nodiscard]] Result<Response> get_log(session::SessionRegistry& sessions, store::ScanLog& log, const Call& call);
 

@@ -7,11 +7,10 @@
 
 namespace scanloom::http {
 
-/// GET .../map.png, .../map.pgm, .../map.yaml, .../map.csv, .../map.npy: the whole map of a layer, or with
-/// `bbox=min_x,min_y,max_x,max_y` (metres) the cells which that rectangle overlaps. The PGM and the YAML are what ROS
-/// loads.
+/// GET .../map.png, .../map.pgm, .../map.yaml, .../map.csv, .../map.npy: returns the whole map of a layer, or with
+/// `bbox=min_x,min_y,max_x,max_y` (metres) the cells that overlap this rectangle. ROS loads the PGM and the YAML.
 ///
-/// A large file takes a slot until its last byte was sent; when there is none, the answer is 503.
+/// A large file takes a slot until its last byte is sent. If no slot is free, the response is 503.
 [[nodiscard]] Result<Response> get_map_png(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
 [[nodiscard]] Result<Response> get_map_pgm(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
 [[nodiscard]] Result<Response> get_map_csv(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);

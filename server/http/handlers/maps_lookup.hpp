@@ -14,12 +14,12 @@
 
 namespace scanloom::http {
 
-/// The maps that a request is about.
+/// The maps that a request refers to.
 struct Maps {
     std::shared_ptr<session::Session> session;
     std::shared_ptr<const mapping::Snapshot> snapshot;
-    std::shared_ptr<const void> origin; ///< what makes them: the session or the weave
-    std::string tag;                    ///< tells them from those of every other session and weave: for entity tags
+    std::shared_ptr<const void> origin; ///< their producer: the session or the replay job
+    std::string tag;                    ///< unique among all sessions and replay jobs; for entity tags
 };
 
 /// The maps that a request compares.
@@ -28,35 +28,36 @@ struct TwoMaps {
     Maps b;
 };
 
-/// Finds the maps of a session: its own, those of the weave that `weave` names, or those that settings and `until` ask
-/// for (see weave_request()).
-/// Thread  any.
+/// Finds the maps of a session: its own, those of the replay job that `weave` names, or those for given settings and
+/// `until` (see weave_request()).
+/// Threads: any.
 class MapsLookup {
 public:
-    /// Whoever asks for settings waits for so long at most until they are woven.
+    /// The longest time that a request with settings waits for its replay job.
     static constexpr std::chrono::milliseconds kPatience{20'000};
 
     MapsLookup(session::SessionRegistry& sessions, session::Weaves& weaves,
                std::chrono::milliseconds patience = kPatience)
         : sessions_(sessions), weaves_(weaves), patience_(patience) {}
 
-    /// Those that exist: the session's, or the newest that a weave has finished. `known` are the other parameters that
-    /// the caller reads.
-    /// Errors  those of find_session(); kInvalidField: an unknown parameter; kNotFound: no such weave; kOverloaded: it
-    ///         has none yet; its own, where it failed.
+    /// Returns existing maps: the session's own, or the newest that a replay job has finished.
+    /// @param known  the other parameters that the caller reads
+    /// Errors: those of find_session(); kInvalidField for an unknown parameter; kNotFound if there is no such replay job;
+    ///         kOverloaded if it has no maps yet; the job's own error if it failed.
     [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// The same for threads that may not wait: without a snapshot where the session's own maps are being written, and
-    /// without a session where that is not in memory.
+    /// Returns what find() returns, but without waiting: without a snapshot while the session's own maps are being
+    /// written, and without a session if that is not in memory.
     [[nodiscard]] Result<Maps> find_at_once(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// The same as find(), and weaves them if settings are given; waits until what the session shows now is in.
-    /// Errors  also those of weave_request().
+    /// Returns what find() returns if no settings are given. Otherwise starts a replay job with the settings and waits
+    /// until it has reached the session's current revision.
+    /// Errors: those of find() and weave_request().
     [[nodiscard]] Result<Maps> find_or_weave(const Call& call, std::initializer_list<std::string_view> known) const;
 
-    /// Two of them, to be compared: those of `weave` and those of `with`, at least one of which names a weave; where
-    /// one does not, the session's own. Both may name the same weave.
-    /// Errors  as find(); kInvalidField: neither is given.
+    /// Returns two maps to compare, those of the parameters `weave` and `with`. At least one of them must name a replay
+    /// job; an absent one means the session's own map. Both may name the same job.
+    /// Errors: those of find(); kInvalidField if neither is given.
     [[nodiscard]] Result<TwoMaps> find_two(const Call& call, std::initializer_list<std::string_view> known) const;
 
     [[nodiscard]] session::SessionRegistry& sessions() const noexcept { return sessions_; }

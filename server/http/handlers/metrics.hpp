@@ -11,8 +11,8 @@
 
 namespace scanloom::http {
 
-/// GET /metrics: what was counted, and what the process, the store and the sessions say of themselves.
-/// @param check  null: none is made.
+/// GET /metrics: returns the counters and the current state of the process, the store and the sessions.
+/// @param check  null if there is no background check
 [[nodiscard]] Result<Response> get_metrics(const metrics::Metrics& counted, const session::SessionRegistry& sessions,
                                            const session::BackgroundCheck* check, const session::Weaves& weaves,
                                            const store::ScanLog& log, const tiles::TileCache::Stats& tiles,

@@ -5,7 +5,7 @@
 
 namespace scanloom::http {
 
-/// GET /openapi.json: server/http/openapi.json, compiled in.
+/// GET /openapi.json: returns server/http/openapi.json, which is compiled in.
 [[nodiscard]] Result<Response> get_openapi(const Call& call);
 
 } // namespace scanloom::http

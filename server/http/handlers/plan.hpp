@@ -7,8 +7,8 @@
 
 namespace scanloom::http {
 
-/// POST .../plan {from, to, allow_unknown?, body_radius?, danger_cost?}: the cheapest way, as a LineString; 409 with
-/// the reason where there is none. `from` may be {"robot": name}.
+/// POST .../plan {from, to, allow_unknown?, body_radius?, danger_cost?}: returns the cheapest path as a LineString, or
+/// 409 with the reason if there is none. `from` may be {"robot": name}.
 [[nodiscard]] Result<Response> post_plan(const MapsLookup& maps, const AnswerSlots& slots, const Call& call);
 
 } // namespace scanloom::http

@@ -15,45 +15,46 @@
 #include <string_view>
 #include <vector>
 
-/// What requests for ways have in common. All errors name the field.
+/// Parsing that all requests for planned paths share. Each error names the field.
 namespace scanloom::http {
 
-/// Where a path begins.
+/// The start of a path.
 struct Place {
     Point2 point;                           ///< metres, map frame
-    std::optional<double> body_radius = {}; ///< metres, of the robot that is there, where one was named that states it
+    std::optional<double> body_radius = {}; ///< metres; of the named robot, if it stated one
 };
 
-/// MapsLookup::find() for a search: none is begun while the server shuts down.
-/// Errors  also kShuttingDown.
+/// Returns MapsLookup::find() for a search. No search starts while the server shuts down.
+/// Errors: those of MapsLookup::find(); kShuttingDown.
 [[nodiscard]] Result<Maps> find_for_search(const MapsLookup& maps, const Call& call,
                                            std::initializer_list<std::string_view> known);
 
-/// The parameters or members size_min and body_radius; without the latter the body is `own`, if that is known.
-/// Errors  kInvalidField.
+/// Reads size_min and body_radius from the parameters or members.
+/// @param own  the robot's body radius (m), if known; used if body_radius is not given
+/// Errors: kInvalidField.
 [[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const Query& query,
                                                                        const std::optional<double>& own = {});
 
 [[nodiscard]] Result<planning::ExplorationOptions> exploration_options(const boost::json::object& body,
                                                                        const std::optional<double>& own = {});
 
-/// The members allow_unknown, body_radius and danger_cost, each if it is there; `own` as above. Ranges are for the
-/// planning to check.
-/// Errors  kInvalidField.
+/// Reads the optional members allow_unknown, body_radius and danger_cost. The planner checks the ranges.
+/// @param own  the robot's body radius (m), if known; used if body_radius is not given
+/// Errors: kInvalidField.
 [[nodiscard]] Result<planning::PassabilityOptions> passability_options(const boost::json::object& body,
                                                                        const std::optional<double>& own);
 
-/// [x, y], in metres.
-/// Errors  kInvalidField: something else, or further out than any robot may be.
+/// Reads [x, y] in metres.
+/// Errors: kInvalidField if the value is something else, or further out than any robot may be.
 [[nodiscard]] Result<Point2> read_point(const boost::json::value& value, std::string_view name);
 
-/// [x, y], or {"robot": name}: where that robot is.
-/// Errors  kInvalidField; kNotFound: no such robot; kNoPath: nobody knows where it is.
+/// Reads [x, y], or {"robot": name} for the position of that robot.
+/// Errors: kInvalidField; kNotFound if there is no such robot; kNoPath if its position is unknown.
 [[nodiscard]] Result<Place> read_place(const boost::json::value& value, std::string_view name,
                                        const mapping::Snapshot& maps);
 
-/// A polygon's corners [[x, y], ...], or a box [min_x, min_y, max_x, max_y].
-/// Errors  kInvalidField.
+/// Reads the corners of a polygon [[x, y], ...], or a box [min_x, min_y, max_x, max_y].
+/// Errors: kInvalidField.
 [[nodiscard]] Result<std::vector<Point2>> read_region(const boost::json::value& value, std::string_view name);
 
 } // namespace scanloom::http

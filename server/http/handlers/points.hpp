@@ -11,13 +11,14 @@ namespace scanloom::http {
 
 enum class PointFile { kCsv, kPly };
 
-/// GET .../points.csv and .../points.ply?since&until&robot&threshold: what robots saw from many places as one cloud of
-/// points (landmarks::fuse_captures), of the captures that ended after log entry `since`, up to `until`, of all robots
-/// or of one; those that are being taken count as ended now. So parts that follow each other have each capture once.
-/// Points of different captures at most `threshold` metres apart, 0.05 if not given, become one. Reads the log from its
-/// beginning, which takes seconds where it is long.
-/// Errors  those of find_session() and read_captures(); kInvalidField: a parameter; kNotFound: no such robot; kTooLarge:
-///         the captures have more than a million points, which says what part has not, or it takes more than 5 s.
+/// GET .../points.csv and .../points.ply?since&until&robot&threshold: returns what robots observed from many positions
+/// as one point cloud (landmarks::fuse_captures). It contains the captures that ended after log entry `since`, up to
+/// `until`, of all robots or of one. Unfinished captures count as ended now. Therefore consecutive parts contain each
+/// capture once. Points of different captures are fused if they are at most `threshold` metres apart (default 0.05).
+/// Reads the log from its beginning, which takes seconds for a long log.
+/// Errors: those of find_session() and read_captures(); kInvalidField for a parameter; kNotFound if there is no such robot;
+///         kTooLarge if the captures have more than a million points (the message names a part that has fewer), or if
+///         it takes more than 5 s.
 [[nodiscard]] Result<Response> get_points(session::SessionRegistry& sessions, store::ScanLog& log,
                                           const AnswerSlots& slots, PointFile file, const Call& call);
 

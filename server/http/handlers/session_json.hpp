@@ -12,23 +12,24 @@
 
 namespace scanloom::http {
 
-/// Everything about a session, as the API shows it.
+/// Returns all properties of a session, as the API shows them.
 [[nodiscard]] boost::json::object to_json(const session::Session& session);
 [[nodiscard]] boost::json::object to_json(const session::Listed& listed);
 
-/// A session that takes no scans until it is read from the store again, in short: its name, its state and why.
+/// Returns a short description of a session that accepts no scans until it is loaded again from the store: its name,
+/// its state and the reason.
 [[nodiscard]] boost::json::object failed_json(std::string_view name, const Error& reason);
 
-/// A session whose log is damaged, so that there is no more to show of it than that.
+/// Returns a short description of a session whose log is damaged, so that its other properties are not available.
 [[nodiscard]] boost::json::object damaged_json(std::string_view name, const Error& reason);
 
-/// What a new session is to be.
+/// The parameters of a new session.
 struct SessionRequest {
     std::string name;
     SessionOptions options;
 };
 
-/// Errors  kMalformed, kInvalidField, naming the field. Ranges are for the session to check.
+/// Errors: kMalformed or kInvalidField, naming the field. The session checks the ranges.
 [[nodiscard]] Result<SessionRequest> parse_session_request(std::string_view body);
 
 } // namespace scanloom::http

@@ -12,10 +12,10 @@
 
 namespace scanloom::http {
 
-/// GET /api/v1/sessions: by rising name, at most `limit` (1..1000, default 100) names after `after`;
-/// those whose log is damaged, too, marked so. Only those that the token is for.
-/// Of those that are served all the same, "damage" says what `check` found.
-/// @param check  null: none is made.
+/// GET /api/v1/sessions: lists at most `limit` (1..1000, default 100) sessions that the token is for, by ascending
+/// name, starting after the name `after`. Sessions with a damaged log are included and marked. For sessions that are
+/// served despite damage, "damage" contains the finding of `check`.
+/// @param check  null if there is no background check
 [[nodiscard]] Result<Response> list_sessions(const session::SessionRegistry& sessions,
                                              const session::BackgroundCheck* check, const Call& call);
 
@@ -27,11 +27,11 @@ namespace scanloom::http {
 [[nodiscard]] Result<Response> get_session(const session::SessionRegistry& sessions,
                                            const session::BackgroundCheck* check, const Call& call);
 
-/// Who forgets a session that is deleted.
+/// The objects that must forget a deleted session.
 struct Forgetful {
     session::Weaves& weaves;
     session::LandmarkFolds& landmarks;
-    guide::Locator* locator; ///< null: nobody asks where they are
+    guide::Locator* locator; ///< null if there is no relocalization
     tiles::TileMaker& tiles;
 };
 

@@ -10,13 +10,13 @@ namespace scanloom::http {
 
 /// GET .../tiles/{layer}/{z}/{x}/{y}.png, in the colours of style_of(layer), and .bin: 65,536 codes, row 0 on top.
 ///
-/// `v` is a revision and `id` the session's: an answer that will never change under such an address
-/// may be kept for good. Without them it must be asked for again, with its entity tag.
+/// The parameters are `v`, a revision, and `id`, that of the session. A response that cannot change for these
+/// parameters may be cached without limit. Without them the client must revalidate it with its entity tag.
 [[nodiscard]] Result<Response> get_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
                                         tiles::TileFormat format);
 
-/// The same as far as it goes in microseconds, for I/O threads: a refusal, "not modified", or a tile that is there;
-/// else on which lane get_tile() is to be called.
+/// Does as much of get_tile() as takes microseconds, for I/O threads.
+/// @return a refusal, "not modified", or a tile that exists; else the lane on which to call get_tile()
 [[nodiscard]] Result<Outlook> look_at_tile(const MapsLookup& maps, tiles::TileMaker& maker, const Call& call,
                                            tiles::TileFormat format);
 

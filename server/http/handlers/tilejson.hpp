@@ -6,9 +6,8 @@
 
 namespace scanloom::http {
 
-/// GET .../tiles/{layer}.json: TileJSON 3.0.0. Its own bounds and center are longitudes and latitudes,
-/// so the map's metres are in members of ours: cell_size, extent (what the tiles cover), bounds_m (what
-/// was seen), frame_id.
+/// GET .../tiles/{layer}.json: returns TileJSON 3.0.0. Its bounds and center are longitudes and latitudes, so metres
+/// are in additional members: cell_size, extent (covered by the tiles), bounds_m (the observed area), frame_id.
 [[nodiscard]] Result<Response> get_tilejson(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http

@@ -7,11 +7,11 @@
 
 namespace scanloom::http {
 
-/// GET .../trajectory.geojson?since&times: where each robot was, one feature a robot, in metres of the map
-/// frame (RFC 7946 knows only degrees; the foreign members say so). With times=true its properties tell of each
-/// position also the revision, the stamp (seconds, the robot's clock) and the yaw (radians). `revision` is up to where
-/// paths are told: that of the maps, unless they are longer than session::kPathPointsMax. A long path takes a slot, as
-/// a large map image does; what is in memory no more is read from the log.
+/// GET .../trajectory.geojson?since&times: returns the trajectory of each robot as a feature, in metres of the map
+/// frame (RFC 7946 knows only degrees; the foreign members state the difference). With times=true the properties also
+/// have the revision, the stamp (seconds, the robot's clock) and the yaw (radians) of each position. `revision` is the
+/// end of the trajectories: that of the maps, unless they exceed session::kPathPointsMax. A long trajectory takes a
+/// slot, as a large map image does. Points that are not in memory any more are read from the log.
 [[nodiscard]] Result<Response> get_trajectory(session::SessionRegistry& sessions, store::ScanLog& log,
                                               const AnswerSlots& slots, const Call& call);
 

@@ -6,7 +6,7 @@
 
 namespace scanloom::http {
 
-/// GET /: the viewer's page. Its query is the viewer's own business.
+/// GET /: returns the viewer's page. Only the viewer reads the query.
 [[nodiscard]] Result<Response> get_viewer(const WebFiles& files, const Call& call);
 
 /// GET /assets/{file}

@@ -6,17 +6,17 @@
 
 namespace scanloom::http {
 
-/// POST .../weave: maps of the same log with other settings, or up to `until`. 202 while it lasts, 200 when they are
-/// there already; `weave={id}` then shows them at every address of maps.
+/// POST .../weave: starts a replay job: maps of the same log with other settings, or up to `until`. Responds 202 while
+/// the job runs, 200 if its maps exist already. Every URL of maps accepts `weave={id}` to return them.
 [[nodiscard]] Result<Response> start_weave(const MapsLookup& maps, const Call& call);
 
-/// GET .../weave: all that there are of the session, the last used first.
+/// GET .../weave: lists all replay jobs of the session, most recently used first.
 [[nodiscard]] Result<Response> list_weaves(const MapsLookup& maps, const Call& call);
 
-/// GET .../weave/{weave}: how far it is.
+/// GET .../weave/{weave}: returns the progress of a replay job.
 [[nodiscard]] Result<Response> get_weave(const MapsLookup& maps, const Call& call);
 
-/// DELETE .../weave/{weave}: cancels and forgets it.
+/// DELETE .../weave/{weave}: cancels and deletes a replay job.
 [[nodiscard]] Result<Response> delete_weave(const MapsLookup& maps, const Call& call);
 
 } // namespace scanloom::http
