@@ -9,7 +9,7 @@
 namespace scanloom::http {
 namespace {
 
-/// As a field of the configuration takes it; what no field takes becomes an empty text.
+/// Converts a value to the type that a configuration field accepts. A value of no such type becomes an empty string.
 mapping::ConfigValue config_value(const boost::json::value& json) {
     if (json.is_bool()) return json.get_bool();
     if (json.is_string()) return std::string_view(json.get_string());

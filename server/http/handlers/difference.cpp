@@ -18,7 +18,7 @@
 namespace scanloom::http {
 namespace {
 
-/// What a request for a comparison comes to before anything is compared.
+/// A parsed request for a comparison.
 struct WantedDifference {
     TwoMaps maps;
     mapping::Layer layer;
@@ -53,7 +53,7 @@ boost::json::object shown(const tiles::Extent& extent) {
             {"max_y", rounded_metres(extent.max_y)}};
 }
 
-/// Null where nothing is there to take a part of.
+/// Returns part / whole, or null if the whole is 0.
 boost::json::value part_of(double part, std::uint64_t whole) {
     if (whole == 0) return nullptr;
     return part / static_cast<double>(whole);

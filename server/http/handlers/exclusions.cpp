@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 3> kExclusionMembers = {"robot", "from", 
 constexpr std::string_view kSeq = "seq:";
 
 /// One end of a range.
-using Bound = std::variant<double, std::uint64_t>; // a stamp in seconds, or a seq
+using Bound = std::variant<double, std::uint64_t>; // a stamp (s) or a sequence number
 
 Error no_bound(std::string_view name, std::string_view what) {
     return {Errc::kInvalidField, fmt::format("{} is {}; a stamp in seconds or a text \"seq:N\" is needed", name, what)};
@@ -67,7 +67,7 @@ boost::json::object to_json(const Exclusion& exclusion, std::string_view robot) 
     return json;
 }
 
-/// What is known of the session without its maps.
+/// Returns the session's data without its maps.
 Result<std::shared_ptr<const mapping::Snapshot>> find_facts(const session::SessionRegistry& sessions,
                                                             const Call& call) {
     const auto& name = call.arguments["session"];

@@ -19,7 +19,7 @@
 namespace scanloom::http {
 namespace {
 
-/// A search from each robot, one after the other: in a map as large as can be, from so many cells a few seconds.
+/// Limits the sequential searches, one from each robot. In a map of maximum size, this many cells take a few seconds.
 constexpr std::int64_t kCellsSearchedMax = 4 * planning::kSearchCellsMax;
 
 constexpr std::size_t kTextBytesMax = std::size_t{64} << 20;
@@ -42,8 +42,8 @@ Point2 place_of(const mapping::Snapshot& maps, RobotIndex robot) {
     return {pose.x, pose.y};
 }
 
-/// Pre     all robots have a pose.
-/// Errors  kInvalidField: the search would take too long.
+/// Checks that the search does not take too long. All robots must have a pose.
+/// Errors: kInvalidField if it would.
 Result<> check_cells_searched(const mapping::Snapshot& maps, const std::vector<RobotIndex>& robots,
                               const planning::ExplorationOptions& options) {
     if (robots.size() < 2) return {};
@@ -61,7 +61,7 @@ Result<> check_cells_searched(const mapping::Snapshot& maps, const std::vector<R
                                                   robots.size())};
 }
 
-/// Where to explore a frontier from, and who.
+/// The goal from which to explore a frontier, and the robot for it.
 struct Offer {
     planning::FrontierGoal goal;
     RobotIndex robot;
@@ -69,10 +69,10 @@ struct Offer {
 
 struct Offers {
     std::vector<std::optional<Offer>> of_frontiers;
-    std::vector<RobotIndex> robots; ///< that have a place to go from
+    std::vector<RobotIndex> robots; ///< that have a valid start
 };
 
-/// A robot that is in no place to go from is left out. Pre: all have a pose.
+/// Returns the cheapest offer for each frontier. Ignores robots without a valid start. All robots must have a pose.
 Result<Offers> cheapest_offers(const mapping::Snapshot& maps, const std::vector<classify::Frontier>& frontiers,
                                const std::vector<RobotIndex>& robots, const planning::ExplorationOptions& options) {
     Offers offers{std::vector<std::optional<Offer>>(frontiers.size()), {}};

@@ -39,7 +39,7 @@ std::string head_text(std::string_view robot, Revision revision, std::string_vie
 
 constexpr std::string_view kNoGoal = R"("goal":null,"target":null,"in_danger":null,"path":null,"length":null)";
 
-/// What was assigned just now.
+/// Describes a goal that has just been assigned.
 std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, const planning::NextGoal& next) {
     const auto head =
         head_text(robot, maps.revision, name_of(next.outcome)) + fmt::format(R"("given_up":{},)", next.given_up);
@@ -52,7 +52,7 @@ std::string goal_text(std::string_view robot, const mapping::Snapshot& maps, con
                               rounded_metres(next.path.cost));
 }
 
-/// What was assigned earlier. A robot that planned another way since then has its goal, and no way there.
+/// Describes a goal that was assigned earlier. If the robot has planned another path since, the goal has no path.
 std::string goal_text(std::string_view robot, const guide::Goal& goal, const guide::Way* way) {
     const bool leads_there = way != nullptr && way->kind == guide::WayKind::kGoal;
     return head_text(robot, goal.revision, "goal") +

@@ -61,7 +61,7 @@ Result<Response> get_goals(session::SessionRegistry& sessions, guide::WayBook& w
     const auto maps = (*session)->snapshot();
     std::vector<std::string> features;
     for (const auto& held : page.robots) {
-        if (held.robot >= maps->robots.size()) continue; // it asked before its joining was woven in: a moment ago
+        if (held.robot >= maps->robots.size()) continue; // its join has not been applied to the maps yet
         const std::string& name = maps->robots[held.robot].name;
         if (held.way) features.push_back(feature_of(name, *held.way));
         if (held.goal) features.push_back(feature_of(name, *held.goal));

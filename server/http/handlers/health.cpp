@@ -9,7 +9,7 @@
 namespace scanloom::http {
 namespace {
 
-/// Damaged and failed sessions keep nobody from using the others.
+/// Damaged and failed sessions do not affect readiness, because the other sessions are available.
 boost::json::object readiness(const session::SessionRegistry& sessions, const session::BackgroundCheck* check,
                               const RobotPort& robots, const access::TokenRef& seen_by) {
     const auto is_seen = [&](std::string_view session) { return seen_by && is_for(*seen_by, session); };

@@ -18,7 +18,7 @@
 namespace scanloom::http {
 namespace {
 
-/// What the form holds.
+/// The contents of the form.
 struct Form {
     std::optional<std::string_view> yaml;
     std::optional<std::string_view> image;

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kLandmarkTextBytes = 320;
 
-/// Which landmarks.
+/// Selects landmarks.
 struct LandmarkQuery {
     Revision since = 0;
     std::optional<tiles::Extent> bbox;

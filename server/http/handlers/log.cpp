@@ -23,7 +23,7 @@ constexpr std::size_t kPieceBytes = std::size_t{64} << 10;
 
 const Error kPieceIsFull{Errc::kShuttingDown, "the piece is large enough"};
 
-/// How an entry is written.
+/// Writes entries in one of the formats.
 class Format {
 public:
     Format() = default;
@@ -68,14 +68,14 @@ private:
     exchange::CarmenText carmen_;
 };
 
-/// Reads a log piece by piece: nothing is held between two of them but where it goes on.
+/// Reads a log piece by piece. Between two pieces it keeps only the position at which to continue.
 class LogStream final : public BodyStream {
 public:
     LogStream(std::shared_ptr<session::Session> session, store::ScanLog& log, std::unique_ptr<Format> format)
         : session_(std::move(session)), log_(log), format_(std::move(format)), newest_(session_->snapshot()->revision),
           piece_(format_->head()) {}
 
-    /// Reads the first piece, so that what cannot be written at all is told before anything is sent.
+    /// Reads the first piece, so that a log that cannot be written is reported before anything is sent.
     [[nodiscard]] Result<> begin() { return read(); }
 
     [[nodiscard]] Result<std::string> next() override {
@@ -103,7 +103,7 @@ private:
     std::unique_ptr<Format> format_;
     const Revision newest_;
     Revision read_ = 0;
-    std::string piece_; // read and not yet handed out
+    std::string piece_; // read and not yet returned
 };
 
 } // namespace

@@ -18,7 +18,7 @@
 namespace scanloom::http {
 namespace {
 
-/// What a request for a map comes to before anything is drawn.
+/// A parsed request for a map.
 struct WantedMapFile {
     std::shared_ptr<const mapping::Snapshot> snapshot;
     mapping::Layer layer;
@@ -26,7 +26,7 @@ struct WantedMapFile {
     std::string etag;
 };
 
-/// How much a file takes for each cell of a layer, at most and before compression.
+/// Returns the maximum bytes of a file for each cell of a layer, before compression.
 using BytesPerCell = std::int64_t (*)(mapping::Layer);
 
 std::int64_t one_byte(mapping::Layer) { return 1; }
@@ -49,7 +49,7 @@ Response map_answer(std::string_view content_type, Body body, std::string_view e
     return ok(content_type, std::move(body)).set("ETag", etag).set("Cache-Control", kRevalidate);
 }
 
-/// Makes the file of what was asked for: bytes or text.
+/// Writes the requested file as bytes or text.
 template <class Write>
 Result<Response> get_file(const MapsLookup& maps, const AnswerSlots& slots, const Call& call,
                           std::string_view content_type, BytesPerCell bytes_per_cell, Write&& write) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view kWeave = "weave";
 constexpr std::string_view kWith = "with";
 
-/// The maps of a weave, or why there are none.
+/// Returns the maps of a replay job, or the reason why it has none.
 Result<Maps> maps_of(std::shared_ptr<session::Session> session, const std::shared_ptr<session::Weave>& weave,
                      std::shared_ptr<const mapping::Snapshot> maps) {
     if (maps) {
@@ -87,7 +87,7 @@ Result<Maps> MapsLookup::find_or_weave(const Call& call, std::initializer_list<s
     return Error{Errc::kInvalidField, "weave names maps that have their settings; leave the other settings out"};
 }
 
-/// Those of the weave that the parameter names, or the session's own.
+/// Returns the maps of the replay job that `parameter` names, or the session's own maps.
 Result<Maps> MapsLookup::chosen(const Call& call, std::string_view parameter, Waiting waiting) const {
     if (waiting == Waiting::kNotAllowed) {
         const auto info = sessions_.info(call.arguments["session"]);

@@ -42,7 +42,7 @@ public:
 
     /// Returns existing maps: the session's own, or the newest that a replay job has finished.
     /// @param known  the other parameters that the caller reads
-    /// Errors: those of find_session(); kInvalidField for an unknown parameter; kNotFound if there is no such replay job;
+    /// Errors: those of find_session(); kInvalidField for an unknown parameter; kNotFound if there is no such job;
     ///         kOverloaded if it has no maps yet; the job's own error if it failed.
     [[nodiscard]] Result<Maps> find(const Call& call, std::initializer_list<std::string_view> known) const;
 

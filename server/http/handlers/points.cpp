@@ -20,11 +20,11 @@
 namespace scanloom::http {
 namespace {
 
-constexpr std::size_t kPointsMax = 1'000'000; // of all captures; 100 MiB while they are fused
+constexpr std::size_t kPointsMax = 1'000'000; // of all captures; need 100 MiB during fusion
 constexpr double kThreshold = 0.05;           // metres
 constexpr double kThresholdMax = 1.0;
 
-/// Which captures, and what becomes of them.
+/// Selects captures and sets how they are fused.
 struct CloudQuery {
     Revision since = 0;
     std::optional<Revision> until;
@@ -34,7 +34,7 @@ struct CloudQuery {
     [[nodiscard]] bool wants(RobotIndex of, Revision ended) const { return ended > since && (!robot || of == *robot); }
 };
 
-/// Without it, what robots are in the middle of is wanted, too: it has not ended yet, so it would be in a later part.
+/// Without `until`, unfinished captures are included too. With it they are not, because they belong to a later part.
 Result<std::optional<Revision>> until_parameter(const Query& query) {
     const auto text = query.find("until");
     if (!text) return std::optional<Revision>();
@@ -68,12 +68,12 @@ Result<CloudQuery> cloud_query(const mapping::Snapshot& snapshot, const Query& q
     return asked;
 }
 
-/// Those that were asked for, as many as one answer may have the points of.
+/// Collects the selected captures, up to the number of points that one response may have.
 class Chosen {
 public:
     explicit Chosen(const CloudQuery& query) : query_(query) {}
 
-    /// @param ends  the log entry that it ends with, at the earliest
+    /// @param ends  the log entry with which the capture ends, at the earliest
     Result<> add(const landmarks::RobotCapture& one, Revision ends) {
         if (!query_.wants(one.robot, ends)) return {};
         points_ += one.capture.points.size();
@@ -93,12 +93,12 @@ public:
 
 private:
     const CloudQuery& query_;
-    std::vector<landmarks::RobotCapture> captures_; // as they ended
+    std::vector<landmarks::RobotCapture> captures_; // in the order of their ends
     std::size_t points_ = 0;
-    Revision last_ = 0; // of those that fit
+    Revision last_ = 0; // the last log entry of the captures that fit
 };
 
-/// Says when an answer takes too long: others wait for the same thread.
+/// Stops a request that takes too long, because others wait for the same thread.
 class Patience {
 public:
     explicit Patience(const session::SessionRegistry& sessions) : sessions_(sessions) {}
@@ -123,7 +123,8 @@ private:
 Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
-    landmarks::SessionCaptures cut(session::scan_filter_of(session)); // also for `until`: parts make up a whole
+    landmarks::SessionCaptures cut(
+        session::scan_filter_of(session)); // the same filter for every `until`, so that parts make up the whole
     auto read = session::read_captures(
         log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },

@@ -16,7 +16,7 @@ enum class PointFile { kCsv, kPly };
 /// `until`, of all robots or of one. Unfinished captures count as ended now. Therefore consecutive parts contain each
 /// capture once. Points of different captures are fused if they are at most `threshold` metres apart (default 0.05).
 /// Reads the log from its beginning, which takes seconds for a long log.
-/// Errors: those of find_session() and read_captures(); kInvalidField for a parameter; kNotFound if there is no such robot;
+/// Errors: those of find_session() and read_captures(); kInvalidField for a parameter; kNotFound for the robot;
 ///         kTooLarge if the captures have more than a million points (the message names a part that has fewer), or if
 ///         it takes more than 5 s.
 [[nodiscard]] Result<Response> get_points(session::SessionRegistry& sessions, store::ScanLog& log,

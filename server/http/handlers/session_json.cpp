@@ -47,7 +47,7 @@ boost::json::value radius_json(const std::optional<double>& radius) {
     return *radius;
 }
 
-/// @param session  null: it is not in memory
+/// @param session  null if it is not in memory
 boost::json::object session_json(const session::SessionInfo& info, const mapping::Snapshot& snapshot,
                                  const session::Session* session) {
     boost::json::array robots;

@@ -22,7 +22,7 @@ Result<std::shared_ptr<session::Session>> find_session(session::SessionRegistry&
 std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name) {
     const auto damaged = sessions.damaged();
     if (const auto found = damaged.find(name); found != damaged.end()) {
-        if (found->second.code == Errc::kOverloaded) { // nothing is wrong with it
+        if (found->second.code == Errc::kOverloaded) { // the session itself is intact
             return Error{Errc::kOverloaded,
                          fmt::format("the session {} is not loaded: {}", name, found->second.message)};
         }

@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::size_t kLimitMax = 1000;
 
-/// A session's name, or the '#' and number of one whose record cannot be read.
+/// Accepts a session's name, or '#' and the number of a session whose record cannot be read.
 bool is_listed_name(std::string_view text) { return is_valid_name(text.substr(text.starts_with('#') ? 1 : 0)); }
 
 struct Page {
     std::size_t limit = 100;
-    std::string_view after; ///< empty: from the first
+    std::string_view after; ///< empty: starts with the first
 };
 
 Result<Page> parse_page(const Query& query) {
@@ -51,7 +51,7 @@ Result<Page> parse_page(const Query& query) {
     return page;
 }
 
-/// A session that is served, or why it is not.
+/// A session that is served, or the reason why it is not.
 using Listed = Result<session::Listed>;
 
 std::map<std::string, Listed, std::less<>> sessions_by_name(const session::SessionRegistry& sessions,
@@ -63,7 +63,7 @@ std::map<std::string, Listed, std::less<>> sessions_by_name(const session::Sessi
     return listed;
 }
 
-/// What was found since the start, of sessions that are served as far as they can be.
+/// Returns the damage found since the start in sessions that are still served as far as possible.
 std::map<std::string, Error> found_by(const session::BackgroundCheck* check) {
     return check == nullptr ? std::map<std::string, Error>() : check->damaged();
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr Revision kNewest = std::numeric_limits<Revision>::max();
 
-/// Which version of a tile is asked for.
+/// The requested version of a tile.
 struct Version {
     std::optional<Revision> revision;
     std::optional<std::string_view> session_tag;
@@ -36,13 +36,13 @@ Result<Version> parse_version(const Query& query) {
     return version;
 }
 
-/// Whether the tile as it is now is the tile of that version for ever: nothing changed it since, and
-/// that revision has been reached.
+/// Returns whether the current tile will always be the tile of that version: it has not changed since, and that
+/// revision has been reached.
 bool is_final(const Version& version, std::string_view tag, Revision tile, Revision now) {
     return version.revision && *version.revision >= tile && *version.revision <= now && version.session_tag == tag;
 }
 
-/// What the request says.
+/// The parsed parameters of the request.
 struct TileParameters {
     Version version;
     tiles::TileKey key;
@@ -59,7 +59,7 @@ Result<TileParameters> parse(const Call& call) {
     return TileParameters{*version, *key, *layer};
 }
 
-/// A tile that was asked for, before anything is drawn.
+/// A requested tile before rendering.
 struct WantedTile {
     Maps maps;
     tiles::TilePlace place;

@@ -19,7 +19,7 @@
 namespace scanloom::http {
 namespace {
 
-/// Which points of each robot, and what of them besides where they are.
+/// Selects points of each robot and their properties other than the position.
 struct TrajectoryParameters {
     Revision since = 0;
     bool with_times = false;
@@ -31,10 +31,10 @@ Result<bool> times_parameter(const Query& query) {
     return Error{Errc::kInvalidField, fmt::format("times is {}; true or false is needed", in_quotes(text))};
 }
 
-/// A robot's points that were asked for: those that the log told of, then those that are kept.
+/// The selected points of a robot: first those read from the log, then those in memory.
 class Points {
 public:
-    /// Of the kept ones those after `since`, up to `until`.
+    /// Selects the points in memory after `since`, up to `until`.
     Points(const std::vector<mapping::TrajectoryPoint>& old, const mapping::TrajectoryView& kept, Revision since,
            Revision until)
         : old_(old), kept_(kept), first_kept_(kept.first_after(since)), end_kept_(kept.first_after(until)) {}
@@ -54,7 +54,7 @@ private:
     std::size_t end_kept_;
 };
 
-/// `[...]` with what `append` adds to the text for each point.
+/// Appends `[...]`, where `append` writes each point.
 template <class Append>
 void append_list(std::string& text, const Points& points, Append&& append) {
     text += '[';
@@ -81,8 +81,8 @@ void append_times(std::string& text, const Points& points) {
     append_all("yaws", [](const auto& point) { return rounded_radians(point.pose.yaw); });
 }
 
-/// Written straight into the text: a long path would be many times its size as JSON values.
-/// Names are [A-Za-z0-9_-] and need no escapes; poses and stamps were checked to be finite.
+/// Written as text, because JSON values of a long trajectory would need many times its memory. Names are [A-Za-z0-9_-]
+/// and need no escapes. Poses and stamps are known to be finite.
 void append_feature(std::string& text, const std::string& robot, const Points& points, bool with_times) {
     fmt::format_to(std::back_inserter(text),
                    R"({{"type":"Feature","id":"{0}","properties":{{"robot":"{0}","points":{1})", robot, points.size());

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kUntil = "until";
 
-/// "2000-12-05T22:27:37.5Z" in seconds since 1970.
+/// Converts "2000-12-05T22:27:37.5Z" to seconds since 1970.
 std::optional<double> parse_rfc3339(std::string_view text) {
     constexpr std::string_view kPattern = "0000-00-00T00:00:00";
     if (text.size() < kPattern.size() + 1 || text.back() != 'Z') return std::nullopt;
@@ -52,7 +52,7 @@ Error wrong_until(std::string_view shown) {
                                              shown)};
 }
 
-/// Pre: `newest` is the session's revision.
+/// @param newest  the session's revision
 Result<session::WeaveEnd> parse_until(std::string_view text, Revision newest) {
     if (const auto revision = parse_integer<Revision>(text)) {
         if (*revision <= newest) return session::WeaveEnd{*revision, std::nullopt};
