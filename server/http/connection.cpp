@@ -172,8 +172,8 @@ asio::awaitable<bool> Connection::wait_for_request() {
 asio::awaitable<bool> Connection::serve_request() {
     Parser parser;
     parser.header_limit(service_->config.header_bytes_max);
-    parser.body_limit(
-        service_->config.import_bytes_max); // refusal_of() applies the limit of the operation once it is known
+    // refusal_of() applies the limit of the operation once it is known.
+    parser.body_limit(service_->config.import_bytes_max);
     const auto error = co_await read_header(parser);
     end_waiting();
     if (error) {
@@ -204,8 +204,7 @@ asio::awaitable<bool> Connection::serve_request() {
         co_await wake(*asleep);
         outlook = guarded(service_->answering.look, request);
     }
-    if (std::holds_alternative<Asleep>(outlook))
-        outlook = lane_of(request); // loading failed: the response states the reason
+    if (std::holds_alternative<Asleep>(outlook)) outlook = lane_of(request); // not loaded; the response has the reason
     if (const auto* lane = std::get_if<Lane>(&outlook)) {
         outlook = co_await compute(*lane, std::move(request), std::move(slot));
     }

@@ -14,7 +14,7 @@ class Query;
 /// What a request may have to wait for. Each lane has its own executor, so that no lane delays another.
 enum class Lane {
     kAtOnce,    ///< nothing: liveness, readiness, the viewer's files, refusals; runs on the I/O thread
-    kTelling,   ///< queries to the operating system: metrics
+    kTelling,   ///< queries about the process and the store: metrics
     kServing,   ///< computation on a part of a snapshot: tiles (but see look_at_tile()), session data
     kSurvey,    ///< computation on a whole map, up to a second: digests, images, first rendering of tiles that
                 ///< cover much

@@ -29,7 +29,7 @@ using Parser = boost::beast::http::request_parser<boost::beast::http::string_bod
 /// Returns the maximum size of the request's body, in bytes.
 [[nodiscard]] std::uint64_t body_bytes_max(const Request& head, const ServerConfig& config);
 
-/// Returns the refusal of a request of which only the header has been read, or nullopt. Reports requests for a foreign
+/// Returns the refusal of a request after reading only its header, or nullopt. Reports requests for a foreign
 /// host to Answering::foreign_host.
 /// @param peer  the client's address
 [[nodiscard]] std::optional<Response> refusal_of(const Parser& parser, const Service& service, const std::string& peer);

@@ -34,8 +34,8 @@ namespace scanloom::http {
 ///         "changes": at most config.changes_max requests that create or delete sessions.
 ///         "imports": at most config.imports_max maps that are read and imported.
 ///         "weaves": at most config.weaves_max requests that wait for replay jobs.
-///         "paths": at most config.paths_max requests that read trajectories.
-///         "plans": at most config.plans_max requests that plan paths or wait for their turn.
+///         "paths": at most config.paths_max requests that read trajectories, landmarks or point clouds.
+///         "plans": at most config.plans_max requests that plan paths, or wait for their turn to.
 ///         Live viewers: at most config.live.viewers_max of the connections.
 /// Threads: any. The counters must outlive the server's work on all executors.
 class Server : public std::enable_shared_from_this<Server> {

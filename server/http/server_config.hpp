@@ -14,7 +14,7 @@
 
 namespace scanloom::http {
 
-/// Limits for the clients: sizes, deadlines, counts. For a count of requests, one more is answered 503.
+/// Limits for the clients: sizes, deadlines, counts. Requests above a limit on their number are answered 503.
 struct ServerConfig {
     boost::asio::ip::tcp::endpoint endpoint; ///< port 0 picks a free one
     std::size_t connections_max = 1024;      ///< one more replaces the slowest one; see Server
@@ -23,7 +23,7 @@ struct ServerConfig {
 
     std::size_t changes_max = 16; ///< requests that create or delete sessions
     std::size_t weaves_max = 16;  ///< requests that wait for replay jobs
-    std::size_t paths_max = 8;    ///< requests for trajectories, each of which may take a second
+    std::size_t paths_max = 8;    ///< requests for trajectories, landmarks and point clouds; each may take a second
     std::size_t plans_max = 16;   ///< requests for frontiers, goals and planned paths
 
     std::uint32_t header_bytes_max = 8 * 1024;

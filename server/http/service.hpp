@@ -19,7 +19,7 @@
 
 namespace scanloom::http {
 
-/// Computes the answer to a request. Called on several threads at once.
+/// Computes the response to a request. May be called on several threads at once.
 using Answer = std::function<Response(const Request&)>;
 
 /// How requests are answered.
@@ -31,8 +31,7 @@ struct Answering {
     std::function<std::optional<Response>(const Request&)> refuse = [](const Request&) {
         return std::nullopt;
     }; ///< called on I/O threads before a body is read; returns the response to a request without permission
-    std::function<void(const Asleep&, std::function<void()>)> wake =
-        {}; ///< called on I/O threads; calls back on any thread
+    std::function<void(const Asleep&, std::function<void()>)> wake = {}; ///< on I/O threads; calls back on any
     std::function<void(const std::string&, net::ClientFault)> turned_away = [](const std::string&, net::ClientFault) {
     }; ///< called on I/O threads with the client's address when its handshake failed
     std::function<void(const std::string&)> foreign_host = [](const std::string&) {

@@ -76,7 +76,7 @@ private:
     std::chrono::milliseconds patience_;
 };
 
-/// Errors  kNotFound.
+/// Errors: kNotFound if there is no such replay job.
 [[nodiscard]] Result<std::shared_ptr<session::Weave>> find_weave(session::Weaves& weaves,
                                                                  const session::Session& session, std::string_view id);
 

@@ -123,8 +123,8 @@ private:
 Result<> choose(store::ScanLog& log, const session::SessionInfo& session, const CloudQuery& query, Revision newest,
                 const Patience& patience, Chosen& chosen) {
     const Revision until = std::min(newest, query.until.value_or(newest));
-    landmarks::SessionCaptures cut(
-        session::scan_filter_of(session)); // the same filter for every `until`, so that parts make up the whole
+    // The filter is the same for every `until`, so that parts make up the whole.
+    landmarks::SessionCaptures cut(session::scan_filter_of(session));
     auto read = session::read_captures(
         log, session.id, cut, until,
         [&](const landmarks::RobotCapture& ended) { return chosen.add(ended, ended.ended); },
