@@ -68,8 +68,7 @@ asio::awaitable<bool> Connection::write_stream(BodyStream& stream, Framing frami
             if (!sent) co_return false;
             continue;
         }
-        const std::string chunk =
-            fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty chunk is the last one
+        const std::string chunk = fmt::format("{:x}\r\n{}\r\n", piece->size(), *piece); // an empty one is the last
         const bool sent = co_await write_all(chunk, {});
         if (!sent || piece->empty()) co_return sent;
     }

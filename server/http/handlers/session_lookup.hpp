@@ -20,7 +20,7 @@ namespace scanloom::http {
                                                                      const Call& call);
 
 /// Returns why a stored session cannot be served, or nullopt: kDataLoss if its log is damaged, kOverloaded if memory
-/// was too short to load it.
+/// ran out while loading it.
 [[nodiscard]] std::optional<Error> damage_of(const session::SessionRegistry& sessions, const std::string& name);
 
 /// Versions of the algorithms that compute maps from logs, and bytes from maps.
